@@ -1,0 +1,228 @@
+"""The chart: a grid of knit and purl stitches seen from the face (right) side."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+
+MAX_STITCHES_PER_SIDE = 1000
+"""Charts are refused beyond this many rows or columns."""
+
+KNIT_SYMBOLS = frozenset("Kk|")
+PURL_SYMBOLS = frozenset("Pp•–-")
+_SEPARATORS = re.compile(r"[ \t,]+")
+
+
+@dataclass(frozen=True, eq=False)
+class StitchChart:
+    """A rectangular chart of knits and purls, immutable.
+
+    Parameters
+    ----------
+    purl : bool array (rows, columns)
+        True where the stitch is a purl on the face side. Row 0 is the bottom row (row 1 of a
+        knitter's chart), column 0 the leftmost wale of the face. x runs along a row (course), y
+        up a column (wale).
+
+    Raises
+    ------
+    InputError
+        If the grid is empty, not two-dimensional or over-large.
+
+    Examples
+    --------
+    >>> chart = StitchChart.parse("KP\\nPK")
+    >>> chart.rows, chart.columns
+    (2, 2)
+    >>> print(chart)
+    KP
+    PK
+    >>> chart == chart.turn_over().turn_over()
+    True
+    """
+
+    purl: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        grid = np.array(self.purl, dtype=bool)
+        if grid.ndim != 2 or 0 in grid.shape:
+            raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
+        check_size(*grid.shape)
+        grid.setflags(write=False)
+        object.__setattr__(self, "purl", grid)
+
+    @classmethod
+    def parse(cls, text: str) -> StitchChart:
+        """Read K/P lines, the top row first, as on paper.
+
+        K, k or ``|`` is a knit; P, p, ``•``, ``–`` or ``-`` is a purl. Blanks and commas between
+        stitches, blank lines around the chart and lines that begin with ``#`` are passed over.
+
+        Raises
+        ------
+        InputError
+            Unknown symbols and ragged rows are named with their line and column.
+        """
+        rows: list[list[bool]] = []
+        first_line = 0
+        for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
+            stitches = _SEPARATORS.sub("", line.strip())
+            if not stitches or stitches.startswith("#"):
+                continue
+            row = []
+            for column, symbol in enumerate(stitches, start=1):
+                if symbol not in KNIT_SYMBOLS and symbol not in PURL_SYMBOLS:
+                    raise InputError(
+                        "chart",
+                        f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P.",
+                        "Write every stitch as K or P.",
+                    )
+                row.append(symbol in PURL_SYMBOLS)
+            if not rows:
+                first_line = number
+            elif len(row) != len(rows[0]):
+                raise InputError(
+                    "chart",
+                    f"line {number} has {len(row)} stitches, line {first_line} has {len(rows[0])}.",
+                    "Give every row the same number of stitches.",
+                )
+            rows.append(row)
+            check_size(len(rows), len(row))
+        if not rows:
+            raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
+        return cls(np.array(rows[::-1], dtype=bool))
+
+    @classmethod
+    def from_rows(cls, rows: ArrayLike) -> StitchChart:
+        """A chart from a nested sequence of booleans, bottom row first, True = purl."""
+        return cls(np.asarray(rows, dtype=bool))
+
+    @classmethod
+    def of_fabric(cls, fabric: Fabric | str, rows: int, columns: int) -> StitchChart:
+        """A pure fabric of the given size.
+
+        Rows 1, 3, 5 … and columns 1, 3, 5 … begin with a knit at the bottom left.
+        """
+        kind = Fabric(fabric) if isinstance(fabric, Fabric) else Fabric.parse(fabric)
+        check_size(rows, columns)
+        row = np.arange(rows)[:, None] * kind.wale_odd
+        column = np.arange(columns)[None, :] * kind.course_odd
+        return cls((row + column) % 2 == 1)
+
+    @property
+    def rows(self) -> int:
+        """Number of courses."""
+        return int(self.purl.shape[0])
+
+    @property
+    def columns(self) -> int:
+        """Number of wales."""
+        return int(self.purl.shape[1])
+
+    @property
+    def text(self) -> str:
+        """The chart as K/P lines, top row first; :meth:`parse` reads it back."""
+        return "\n".join("".join("P" if p else "K" for p in row) for row in self.purl[::-1])
+
+    def tile(self, down: int, across: int) -> StitchChart:
+        """The chart repeated ``down`` times along the wales and ``across`` times along courses."""
+        if down < 1 or across < 1:
+            raise InputError("tile", "the counts must be positive.", "Use whole numbers from 1.")
+        check_size(self.rows * down, self.columns * across)
+        return StitchChart(np.tile(self.purl, (down, across)))
+
+    def resized(self, rows: int, columns: int) -> StitchChart:
+        """The chart continued periodically, from its bottom left, to the given size."""
+        check_size(rows, columns)
+        return StitchChart(
+            self.purl[np.ix_(np.arange(rows) % self.rows, np.arange(columns) % self.columns)]
+        )
+
+    def mirror(self) -> StitchChart:
+        """The chart reflected left to right (knits stay knits)."""
+        return StitchChart(self.purl[:, ::-1])
+
+    def mirror_vertical(self) -> StitchChart:
+        """The chart reflected top to bottom."""
+        return StitchChart(self.purl[::-1])
+
+    def swap(self) -> StitchChart:
+        """Every knit becomes a purl and every purl a knit, in place."""
+        return StitchChart(~self.purl)
+
+    def turn_over(self) -> StitchChart:
+        """The back of the same cloth: columns mirrored and K/P swapped."""
+        return StitchChart(~self.purl[:, ::-1])
+
+    def region(self, rows: slice, columns: slice) -> StitchChart:
+        """A rectangular part, as a chart of its own."""
+        return StitchChart(self.purl[rows, columns])
+
+    def repeat(self) -> StitchChart:
+        """The smallest chart that tiles this one exactly.
+
+        Examples
+        --------
+        >>> StitchChart.of_fabric("rib", rows=6, columns=8).repeat().text
+        'KP'
+        """
+        return StitchChart(self.purl[: _period(self.purl), : _period(self.purl.T)])
+
+    def repeat_cut(self) -> StitchChart:
+        """The smallest repeat whose periodic continuation, cut anywhere, gives this chart.
+
+        Unlike :meth:`repeat` the last copy may be cut off, as in a swatch of 31 x 31 rib. A
+        repeat is seen only if it occurs twice; otherwise that direction keeps its full length.
+        """
+        return StitchChart(
+            self.purl[: _period(self.purl, cut=True), : _period(self.purl.T, cut=True)]
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, StitchChart) and np.array_equal(self.purl, other.purl)
+
+    def __hash__(self) -> int:
+        return hash((self.purl.shape, self.purl.tobytes()))
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return f"StitchChart({self.rows} rows, {self.columns} columns)"
+
+
+def check_size(rows: int, columns: int) -> None:
+    """Refuse a chart that is empty or over-large.
+
+    Raises
+    ------
+    InputError
+        Naming the size that would be accepted.
+    """
+    if rows < 1 or columns < 1:
+        raise InputError(
+            "chart", f"{columns}x{rows} has no stitches.", "Give at least 1 column and 1 row."
+        )
+    if max(rows, columns) > MAX_STITCHES_PER_SIDE:
+        raise InputError(
+            "chart",
+            f"{columns} columns x {rows} rows is too large.",
+            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
+        )
+
+
+def _period(grid: NDArray[np.bool_], *, cut: bool = False) -> int:
+    """Smallest period along axis 0 (one that occurs twice, if it may be cut; else a divisor)."""
+    n = int(grid.shape[0])
+    return next((p for p in _candidates(n, cut=cut) if np.array_equal(grid[p:], grid[: n - p])), n)
+
+
+def _candidates(n: int, *, cut: bool) -> Iterator[int]:
+    return (p for p in range(1, n // 2 + 1) if cut or n % p == 0)

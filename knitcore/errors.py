@@ -1,0 +1,43 @@
+"""What can go wrong.
+
+KnitcoreError
+├── InputError (also ValueError)   something the caller gave cannot be used; names field and remedy
+├── ConvergenceError               a solver stopped short; says where and why
+├── UnravelledError                a relaxation lost the topology of the stitch
+└── CancelledError                 the caller asked to stop
+"""
+
+from __future__ import annotations
+
+
+class KnitcoreError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class InputError(KnitcoreError, ValueError):
+    """An input that cannot be used.
+
+    Parameters
+    ----------
+    field : the name of the offending input, as the caller knows it (``"chart"``, ``"strain"``).
+    problem : one sentence that says what is wrong with it.
+    remedy : one sentence that says what would be accepted.
+    """
+
+    def __init__(self, field: str, problem: str, remedy: str) -> None:
+        super().__init__(f"{field}: {problem} {remedy}")
+        self.field = field
+        self.problem = problem
+        self.remedy = remedy
+
+
+class ConvergenceError(KnitcoreError):
+    """A solver stopped before it reached its tolerance."""
+
+
+class UnravelledError(KnitcoreError):
+    """Yarn passed through yarn, or a loop slipped off: the result is no fabric any more."""
+
+
+class CancelledError(KnitcoreError):
+    """The caller's cancellation callback asked the computation to stop."""

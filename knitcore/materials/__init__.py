@@ -1,0 +1,1 @@
+"""Materials: a yarn on one machine setting or needle, with one law per pure fabric."""

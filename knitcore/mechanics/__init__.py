@@ -1,0 +1,1 @@
+"""From laws and segments to moduli, composites and pressure."""

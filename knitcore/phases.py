@@ -1,0 +1,82 @@
+"""Quarter cells: every chart as a composite of the four pure fabrics.
+
+A stitch has four quarters. A quarter touches exactly one course-wise segment (left or right) and
+one wale-wise segment (below or above), so their parities put it in exactly one of four phases,
+named after the pure fabric whose segments are all like that. The four parities around a stitch,
+its surroundings code, hold all that the composite knows of it: there are only 16 kinds of stitch.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.segments import segment_map
+
+LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
+"""Bits of a surroundings code: that segment of the stitch is odd."""
+
+
+def surroundings(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.uint8]:
+    """The 4-bit code of odd segments around every stitch, shape (rows, columns).
+
+    Parameters
+    ----------
+    chart : the chart, from the face side.
+    periodic : treat the chart as a repeat. Otherwise a segment that would cross an edge takes the
+        parity of the same stitch's segment on the other side (a lone row or column counts as
+        even), so that a swatch of a pure fabric is pure up to its edge.
+
+    Examples
+    --------
+    >>> surroundings(StitchChart.parse("KKP"))
+    array([[0, 2, 3]], dtype=uint8)
+    """
+    segments = segment_map(chart, periodic=periodic)
+    left, right = _before_and_after(segments.course_odd.T, chart.columns, periodic)
+    below, above = _before_and_after(segments.wale_odd, chart.rows, periodic)
+    code: NDArray[np.uint8] = left.T * LEFT | right.T * RIGHT | below * BELOW | above * ABOVE
+    return code
+
+
+def quarter_phases(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.uint8]:
+    """Phase of every quarter cell, with edges as in :func:`surroundings`.
+
+    Returns
+    -------
+    uint8 array (2 * rows, 2 * columns)
+        Codes of :attr:`knitcore.fabric.Fabric.phase`; row 0 is the lower half of the bottom row.
+
+    Examples
+    --------
+    >>> quarter_phases(StitchChart.parse("KKP"))
+    array([[0, 0, 0, 2, 2, 2],
+           [0, 0, 0, 2, 2, 2]], dtype=uint8)
+    """
+    phases = QUARTERS_OF_CODE[surroundings(chart, periodic=periodic)]  # (rows, columns, 2, 2)
+    return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
+
+
+def _before_and_after(
+    odd: NDArray[np.bool_], stitches: int, periodic: bool
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Parity of the segments before and after each stitch along axis 0."""
+    if periodic:
+        return np.roll(odd, 1, axis=0).astype(np.uint8), odd.astype(np.uint8)
+    if stitches == 1:
+        even = np.zeros((1, odd.shape[1]), dtype=np.uint8)
+        return even, even
+    padded = np.concatenate([odd[:1], odd, odd[-1:]]).astype(np.uint8)
+    return padded[:-1], padded[1:]
+
+
+def _quarters_of_codes() -> NDArray[np.uint8]:
+    codes = np.arange(16)
+    course = np.stack([codes & LEFT, codes & RIGHT], axis=-1) > 0  # (16, left/right)
+    wale = np.stack([codes & BELOW, codes & ABOVE], axis=-1) > 0  # (16, below/above)
+    return (2 * course[:, None, :] + wale[:, :, None]).astype(np.uint8)
+
+
+QUARTERS_OF_CODE = _quarters_of_codes()
+"""Phases of the quarters of each surroundings code: uint8 (16, below/above, left/right)."""

@@ -1,0 +1,69 @@
+"""Even and odd connecting segments: the symmetry of the yarn between neighbouring stitches.
+
+Two like neighbours (K-K, P-P) are joined by a segment of even symmetry, unlike ones (K-P) by an
+odd one (the paper's Fig. 3a, b). Everything that the reduced-symmetry model knows of a chart is in
+these two maps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+
+
+@dataclass(frozen=True)
+class SegmentCounts:
+    """How many segments of one direction are even and odd."""
+
+    even: int
+    odd: int
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentMap:
+    """Parities of all segments of a chart.
+
+    Attributes
+    ----------
+    course_odd : bool array (rows, columns - 1), or (rows, columns) if periodic
+        Segment between the stitches (row, column) and (row, column + 1).
+    wale_odd : bool array (rows - 1, columns), or (rows, columns) if periodic
+        Segment between the stitches (row, column) and (row + 1, column).
+    periodic : whether the chart is a repeat that goes on beyond its edges.
+    """
+
+    course_odd: NDArray[np.bool_]
+    wale_odd: NDArray[np.bool_]
+    periodic: bool
+
+    def counts(self, direction: Direction) -> SegmentCounts:
+        """Numbers of even and odd segments that run in this direction."""
+        odd_map = self.course_odd if direction is Direction.COURSE else self.wale_odd
+        odd = int(np.count_nonzero(odd_map))
+        return SegmentCounts(even=int(odd_map.size) - odd, odd=odd)
+
+
+def segment_map(chart: StitchChart, *, periodic: bool = False) -> SegmentMap:
+    """The even/odd maps of a chart, course-wise and wale-wise.
+
+    Parameters
+    ----------
+    chart : the chart, from the face side.
+    periodic : join the last column to the first and the top row to the bottom one, as in a repeat.
+
+    Examples
+    --------
+    >>> rib = StitchChart.of_fabric("rib", rows=3, columns=4)
+    >>> segment_map(rib).counts(Direction.COURSE), segment_map(rib).counts(Direction.WALE)
+    (SegmentCounts(even=0, odd=9), SegmentCounts(even=8, odd=0))
+    """
+    purl = chart.purl
+    if periodic:
+        right, above = np.roll(purl, -1, axis=1), np.roll(purl, -1, axis=0)
+        return SegmentMap(purl ^ right, purl ^ above, periodic=True)
+    return SegmentMap(purl[:, :-1] ^ purl[:, 1:], purl[:-1] ^ purl[1:], periodic=False)
