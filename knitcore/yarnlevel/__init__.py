@@ -1,0 +1,1 @@
+"""The yarn level: a stitch as a curve that bends and touches itself."""

@@ -1,0 +1,58 @@
+"""The core-shell potential between two points of yarn, compiled.
+
+With the shell ``d = 2r - 2r_core`` and ``ζ = (R - 2r_core) / d`` (paper, Supplementary Note 2),
+
+    V(R) = k d² / (p (p - 1)) * [ζ^(1-p) - 1 - (p - 1)(1 - ζ)]      for ζ < 1, else 0,
+
+in N/mm² (energy per length of either yarn) when k is in N/mm³. Below ζ = 1e-5 the authors' code
+continues it by ``V(R*) + 100 ((R - R*) / R*)²``: finite, but with a jump in slope at R*.
+"""
+
+from __future__ import annotations
+
+import numba
+
+CAP = 1e-5
+"""ζ below which the capped form holds."""
+
+
+@numba.njit(cache=True)
+def potential(distance: float, k: float, p: float, radius: float, core: float) -> float:
+    """V(R), N/mm², for a distance R of two centre lines (all lengths mm, k N/mm³)."""
+    shell = 2.0 * (radius - core)
+    zeta = (distance - 2.0 * core) / shell
+    if zeta >= 1.0:
+        return 0.0
+    capped = max(zeta, 1e-5)
+    scale = k * shell * shell / (p * (p - 1.0))
+    value = scale * (capped ** (1.0 - p) - 1.0 - (p - 1.0) * (1.0 - capped))
+    if zeta < 1e-5:
+        star = 2.0 * core + 1e-5 * shell
+        value += 100.0 * ((distance - star) / star) ** 2
+    return float(value)
+
+
+@numba.njit(cache=True)
+def potential_slope(distance: float, k: float, p: float, radius: float, core: float) -> float:
+    """V'(R), N/mm³; minus this is the repulsion."""
+    shell = 2.0 * (radius - core)
+    zeta = (distance - 2.0 * core) / shell
+    if zeta >= 1.0:
+        return 0.0
+    if zeta < 1e-5:
+        star = 2.0 * core + 1e-5 * shell
+        return float(200.0 * (distance - star) / (star * star))
+    return float(-k * shell / p * (zeta ** (-p) - 1.0))
+
+
+@numba.njit(cache=True)
+def potential_curvature(distance: float, k: float, p: float, radius: float, core: float) -> float:
+    """V''(R), N/mm⁴."""
+    shell = 2.0 * (radius - core)
+    zeta = (distance - 2.0 * core) / shell
+    if zeta >= 1.0:
+        return 0.0
+    if zeta < 1e-5:
+        star = 2.0 * core + 1e-5 * shell
+        return 200.0 / (star * star)
+    return float(k * zeta ** (-p - 1.0))

@@ -1,0 +1,116 @@
+"""What a relaxation and a stretch of the yarn level return, whichever branch made it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from knitcore.fabric import Direction
+from knitcore.yarnlevel.conventions import Convention
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RelaxedCell:
+    """A cell of yarn at the lowest energy that was found.
+
+    Parameters
+    ----------
+    branch : the shape space: ``published``, ``mirrored`` or ``free``.
+    convention : the factors of the energy.
+    cell_course_mm, cell_wale_mm : size of one stitch, mm (of a repeat: its mean stitch).
+    energy_n_mm : energy of one stitch, N·mm, all terms.
+    bending_share : share of bending and regularisation in it.
+    contact_share : share of contact in it.
+    yarn_length_mm : length of yarn in one stitch, mm.
+    seconds : CPU time it took.
+    evaluations : evaluations of the energy with its gradient.
+    converged : whether the optimiser reached its tolerance.
+    centre_lines : centre lines, mm, shape (courses, points, 3), bottom course first: each runs
+        once across the repeat.
+    state : unknowns of the branch, from which it can go on.
+    notes : what a user should know about this result.
+    """
+
+    branch: str
+    convention: Convention
+    cell_course_mm: float
+    cell_wale_mm: float
+    energy_n_mm: float
+    bending_share: float
+    contact_share: float
+    yarn_length_mm: float
+    seconds: float
+    evaluations: int
+    converged: bool
+    centre_lines: FloatArray
+    state: FloatArray
+    notes: tuple[str, ...] = ()
+
+    def cell_mm(self, direction: Direction) -> float:
+        """Size of one stitch along a direction, mm."""
+        return self.cell_course_mm if direction is Direction.COURSE else self.cell_wale_mm
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A stretch in one direction while the other is free of force.
+
+    Parameters
+    ----------
+    direction : the stretched direction.
+    zero : the force-free cell that strain and stress refer to.
+    cells : the cells, by increasing stretch.
+    stress_n_per_mm : nominal stress at each cell: ∂E/∂l over the transverse size at zero force.
+    jumps : indices i where the lowest state changes shape abruptly between cell i - 1 and cell i.
+    notes : what a user should know about this result.
+    """
+
+    direction: Direction
+    zero: RelaxedCell
+    cells: tuple[RelaxedCell, ...]
+    stress_n_per_mm: FloatArray
+    jumps: tuple[int, ...] = ()
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def strain(self) -> FloatArray:
+        """Strain along the stretch."""
+        return self._strain(self.direction)
+
+    @property
+    def transverse_strain(self) -> FloatArray:
+        """Strain across the stretch (negative where the fabric narrows)."""
+        return self._strain(self.direction.other)
+
+    @property
+    def energy_n_mm(self) -> FloatArray:
+        """Energy of one stitch at each cell, N·mm."""
+        return np.array([cell.energy_n_mm for cell in self.cells])
+
+    @property
+    def bending_share(self) -> FloatArray:
+        """Share of bending (with regularisation) in the energy at each cell (paper, Fig. S7)."""
+        return np.array([cell.bending_share for cell in self.cells])
+
+    @property
+    def contact_share(self) -> FloatArray:
+        """Share of contact in the energy at each cell."""
+        return np.array([cell.contact_share for cell in self.cells])
+
+    @property
+    def seconds(self) -> float:
+        """CPU time of the whole sweep, without the force-free cell."""
+        return float(sum(cell.seconds for cell in self.cells))
+
+    @property
+    def converged(self) -> bool:
+        """Whether every cell converged."""
+        return all(cell.converged for cell in self.cells)
+
+    def _strain(self, direction: Direction) -> FloatArray:
+        rest = self.zero.cell_mm(direction)
+        return np.array([cell.cell_mm(direction) / rest - 1.0 for cell in self.cells])

@@ -1,0 +1,44 @@
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from knitcore.yarnlevel.potential import CAP, potential, potential_curvature, potential_slope
+
+K, P, R, CORE = 6e-4, 2.4, 0.74, 0.335
+SHELL = 2 * (R - CORE)
+
+
+@settings(deadline=None)
+@given(st.floats(0.02, 0.999))
+def test_slope_and_curvature_are_the_derivatives(zeta):
+    distance, step = 2 * CORE + zeta * SHELL, 1e-6 * SHELL * zeta
+    slope = (
+        potential(distance + step, K, P, R, CORE) - potential(distance - step, K, P, R, CORE)
+    ) / (2 * step)
+    bend = (
+        potential_slope(distance + step, K, P, R, CORE)
+        - potential_slope(distance - step, K, P, R, CORE)
+    ) / (2 * step)
+    assert potential_slope(distance, K, P, R, CORE) == pytest.approx(slope, rel=1e-5, abs=1e-12)
+    assert potential_curvature(distance, K, P, R, CORE) == pytest.approx(bend, rel=1e-5)
+
+
+def test_force_is_the_measured_compression_law():
+    # paper, Supplementary Note 2: force per area k rho0 / p * ((rho0 / rho)^p - 1)
+    zeta = 0.4
+    force = K * SHELL / P * (zeta**-P - 1)
+    assert -potential_slope(2 * CORE + zeta * SHELL, K, P, R, CORE) == pytest.approx(force)
+
+
+def test_yarns_apart_do_not_feel_each_other():
+    for f in (potential, potential_slope, potential_curvature):
+        assert f(2 * R, K, P, R, CORE) == 0
+        assert f(3 * R, K, P, R, CORE) == 0
+
+
+def test_inside_the_core_the_potential_is_finite_and_grows():
+    edge = 2 * CORE + CAP * SHELL
+    at_edge = potential(edge, K, P, R, CORE)
+    inside = potential(0.9 * edge, K, P, R, CORE)
+    assert inside == pytest.approx(at_edge + 100 * 0.1**2)
+    assert potential_slope(0.9 * edge, K, P, R, CORE) == pytest.approx(-200 * 0.1 / edge)
