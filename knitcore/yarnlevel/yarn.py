@@ -37,8 +37,8 @@ class YarnModel:
 
     Examples
     --------
-    >>> YarnModel(0.046, 6e-4, 2.4, 0.74, 0.34).shell_mm
-    0.8
+    >>> YarnModel(0.046, 6e-4, 2.4, 0.75, 0.25).shell_mm
+    1.0
     """
 
     bending_modulus_n_mm2: float
