@@ -1,0 +1,111 @@
+"""A law that agrees with all figures printed for it, and the check that figures agree at all.
+
+The paper prints the stiffnesses C, the Young's moduli Y and the Poisson ratios to three decimals.
+They hang together (Note 7): nu_yx = C_yyxx / C_yyyy, nu_xy = C_xxyy / C_xxxx and
+Y = (1 - nu_xy nu_yx) C. Where C is small its rounding is coarse: acrylic rib prints C_xxxx = 0.011
+and Y_x = 0.010, 3 % apart from what the printed ratios give. The law takes the ratios as
+printed, C = Y / (1 - nu_xy nu_yx) as far as the printed C's rounding allows, and the couplings
+nu C. So every Young's modulus stays within 1 % of its printed value, and every stiffness on
+the diagonal rounds to the printed one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from knitcore.errors import InputError
+from knitcore.materials.figures import Figure
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+
+MODULUS_TOLERANCE = 0.01
+"""Largest relative deviation of a law's Young's moduli from those stated for it."""
+
+POISSON_TOLERANCE = 0.002
+"""Largest deviation of a law's Poisson ratios from those stated for it."""
+
+LINEAR_QUANTITIES = ("C_xxxx", "C_yyyy", "C_xxyy", "C_yyxx", "Y_x", "Y_y", "nu_yx", "nu_xy")
+STIFFENING_QUANTITIES = ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy")
+LAW_QUANTITIES = LINEAR_QUANTITIES + STIFFENING_QUANTITIES
+
+
+def consistent_law(figures: Mapping[str, Figure]) -> ConstitutiveLaw:
+    """The law behind one row of the paper's constitutive tables.
+
+    Parameters
+    ----------
+    figures : the row's twelve figures by quantity (:data:`LAW_QUANTITIES`).
+
+    Raises
+    ------
+    InputError
+        If the figures contradict each other or the stiffness is not positive definite.
+    """
+    nu_yx, nu_xy = figures["nu_yx"].corrected, figures["nu_xy"].corrected
+    stiffness_xxxx = _diagonal(figures["Y_x"], figures["C_xxxx"], 1 - nu_xy * nu_yx)
+    stiffness_yyyy = _diagonal(figures["Y_y"], figures["C_yyyy"], 1 - nu_xy * nu_yx)
+    law = ConstitutiveLaw(
+        stiffness_xxxx=stiffness_xxxx,
+        stiffness_yyyy=stiffness_yyyy,
+        stiffness_xxyy=nu_xy * stiffness_xxxx,
+        stiffness_yyxx=nu_yx * stiffness_yyyy,
+        alpha_xx=figures["alpha_xx"].corrected,
+        alpha_yy=figures["alpha_yy"].corrected,
+        beta_xx=figures["beta_xx"].corrected,
+        beta_yy=figures["beta_yy"].corrected,
+    )
+    check_stated_constants(
+        law,
+        modulus_course=figures["Y_x"].corrected,
+        modulus_wale=figures["Y_y"].corrected,
+        poisson_yx=nu_yx,
+        poisson_xy=nu_xy,
+    )
+    for name, coupling in (("C_xxyy", law.stiffness_xxyy), ("C_yyxx", law.stiffness_yyxx)):
+        figure = figures[name]
+        # A coupling is a product of two rounded figures, so its own rounding is not enough.
+        if abs(coupling - figure.corrected) > max(2 * figure.half_unit, 0.02 * figure.corrected):
+            raise InputError(
+                name,
+                f"{figure.corrected} contradicts its Poisson ratio, which gives {coupling:.4f}.",
+                "Correct the one that is wrong.",
+            )
+    return law
+
+
+def check_stated_constants(
+    law: ConstitutiveLaw,
+    *,
+    modulus_course: float | None = None,
+    modulus_wale: float | None = None,
+    poisson_yx: float | None = None,
+    poisson_xy: float | None = None,
+) -> None:
+    """Refuse a law whose linear constants differ from those stated beside it.
+
+    Raises
+    ------
+    InputError
+        Naming the constant, its stated value and the law's.
+    """
+    for name, stated in (("modulus_course", modulus_course), ("modulus_wale", modulus_wale)):
+        actual = getattr(law, name)
+        if stated is not None and abs(actual / stated - 1) > MODULUS_TOLERANCE:
+            _refuse(name, stated, actual)
+    for name, stated in (("poisson_yx", poisson_yx), ("poisson_xy", poisson_xy)):
+        actual = getattr(law, name)
+        if stated is not None and abs(actual - stated) > POISSON_TOLERANCE:
+            _refuse(name, stated, actual)
+
+
+def _diagonal(modulus: Figure, stiffness: Figure, factor: float) -> float:
+    low = stiffness.corrected - stiffness.half_unit
+    high = stiffness.corrected + stiffness.half_unit
+    return min(max(modulus.corrected / factor, low), high)
+
+
+def _refuse(name: str, stated: float, actual: float) -> None:
+    raise InputError(
+        name,
+        f"{stated:g} is stated, but the stiffnesses give {actual:.4g}.",
+        "nu_yx = C_yyxx/C_yyyy, nu_xy = C_xxyy/C_xxxx and Y = (1 - nu_xy nu_yx) C must hold.",
+    )

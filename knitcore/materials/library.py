@@ -1,0 +1,235 @@
+"""The library: the paper's eight yarns, and their variants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cache
+from statistics import median
+from types import MappingProxyType
+
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.materials.consistency import LAW_QUANTITIES, consistent_law
+from knitcore.materials.figures import Figure, paper_figures, read_packaged
+from knitcore.materials.material import MM_PER_INCH, FabricRecord, Material, Origin, Yarn
+from knitcore.materials.uncertainty import LawUncertainty, log_deviation
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+
+SIMULATION = "simulation"
+NEEDLE_2_MM = "needle-2.0mm"
+GLOVE = "glove"
+
+_DEFAULT_POISSON_SD = 0.02
+"""Upper end of the ± printed for acrylic and cotton."""
+
+
+@cache
+def load_library() -> Mapping[str, Material]:
+    """The eight yarns of the paper by identifier, as measured on their default setting.
+
+    Loading checks that each row's figures hang together and that its stiffness is positive
+    definite. Their variants are in :func:`load_variants`.
+
+    Raises
+    ------
+    InputError
+        If the packaged data contradict themselves.
+
+    Examples
+    --------
+    >>> list(load_library())[:3]
+    ['acrylic', 'cotton', 'lace-acrylic']
+    """
+    rows = read_packaged("yarns.csv")
+    return MappingProxyType({row["identifier"]: _measured(row) for row in rows})
+
+
+@cache
+def load_variants() -> Mapping[str, Material]:
+    """Other records of the same yarns by identifier, ``yarn:variant``.
+
+    ``acrylic:simulation`` and ``cotton:simulation`` are the paper's stitch simulations.
+    ``glove-wool:needle-2.0mm`` is the stockinette knitted on 2.0 mm needles (starred in tables 6,
+    19 and 20), alone; ``glove-wool:glove`` has it beside the other fabrics on 2.75 mm needles, as
+    the paper's glove was knitted (its Methods). Plain ``glove-wool`` is on 2.75 mm needles
+    throughout, so that its four fabrics can be compared.
+    """
+    library = load_library()
+    found = {}
+    for yarn in ("acrylic", "cotton"):
+        base = library[yarn]
+        identifier = f"{yarn}:{SIMULATION}"
+        found[identifier] = Material(
+            identifier,
+            f"{base.name}, simulated",
+            base.yarn,
+            {fabric: _record(yarn, fabric, SIMULATION) for fabric in Fabric},
+            note="The paper's simulation of the relaxed stitch; no friction, no fuzz.",
+        )
+    glove = library["glove-wool"]
+    tight = _record("glove-wool", Fabric.STOCKINETTE, NEEDLE_2_MM)
+    for variant, name, fabrics, note in (
+        (
+            NEEDLE_2_MM,
+            "on 2.0 mm needles",
+            {Fabric.STOCKINETTE: tight},
+            "Stockinette only: the paper has no other fabric on this needle.",
+        ),
+        (
+            GLOVE,
+            "as in the glove",
+            {**glove.fabrics, Fabric.STOCKINETTE: tight},
+            "Stockinette on 2.0 mm needles, the other fabrics on 2.75 mm.",
+        ),
+    ):
+        identifier = f"glove-wool:{variant}"
+        found[identifier] = Material(
+            identifier, f"{glove.name}, {name}", glove.yarn, fabrics, note=note
+        )
+    return MappingProxyType(found)
+
+
+def material(identifier: str) -> Material:
+    """A material of the library, or one of its variants.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name.
+
+    Examples
+    --------
+    >>> from knitcore.fabric import Fabric
+    >>> round(material("acrylic").law(Fabric.GARTER).modulus_course, 3)
+    0.223
+    >>> material("glove-wool:glove").record(Fabric.STOCKINETTE).loop_length_mm
+    9.83
+    """
+    key = identifier.strip().lower()
+    found = load_library().get(key) or load_variants().get(key)
+    if found is None:
+        known = ", ".join([*load_library(), *load_variants()])
+        raise InputError(
+            "material", f"{identifier!r} is not in the library.", f"Use a file or one of {known}."
+        )
+    return found
+
+
+def _measured(row: Mapping[str, str]) -> Material:
+    identifier = row["identifier"]
+    return Material(
+        identifier,
+        row["name"],
+        _yarn(row),
+        {fabric: _record(identifier, fabric) for fabric in Fabric},
+        note=_NOTES.get(identifier, ""),
+    )
+
+
+_NOTES = {
+    "glove-wool": "Knitted on 2.75 mm needles throughout. The paper's glove has its stockinette on "
+    "2.0 mm needles: glove-wool:glove."
+}
+
+
+def _yarn(row: Mapping[str, str]) -> Yarn:
+    figures = paper_figures()
+    identifier = row["identifier"]
+    bending = figures.get(identifier, "B")
+    stiffness, exponent = figures.find(identifier, "k"), figures.find(identifier, "p")
+    wraps_per_inch = (float(row["wraps_per_inch_low"]) + float(row["wraps_per_inch_high"])) / 2
+    deviation = bending.standard_deviation
+    return Yarn(
+        fibre=row["fibre"],
+        product=row["product"],
+        bending_modulus_n_mm2=bending.corrected / 1000,
+        bending_modulus_sd_n_mm2=None if deviation is None else deviation / 1000,
+        compression_stiffness_n_per_mm3=None if stiffness is None else stiffness.corrected / 1000,
+        compression_exponent=None if exponent is None else exponent.corrected,
+        diameter_mm=round(MM_PER_INCH / wraps_per_inch, 2),
+    )
+
+
+def _record(identifier: str, fabric: Fabric, variant: str = "") -> FabricRecord:
+    figures = paper_figures()
+
+    def value(quantity: str, of: str) -> float | None:
+        figure = figures.find(identifier, quantity, variant=of, fabric=fabric)
+        return None if figure is None else figure.corrected
+
+    # Simulations stand for the measured sample, so they share its dimensions.
+    sample = "" if variant == SIMULATION else variant
+    printed = {
+        name: figures.get(identifier, name, variant=variant, fabric=fabric)
+        for name in LAW_QUANTITIES
+    }
+    law = consistent_law(printed)
+    area = figures.get(identifier, "stitch_area", variant=sample, fabric=fabric)
+    aspect, aspect_source = _aspects()[fabric]
+    return FabricRecord(
+        fabric=fabric,
+        law=law,
+        stitch_course_mm=math.sqrt(area.corrected * aspect),
+        stitch_wale_mm=math.sqrt(area.corrected / aspect),
+        stitch_size_source=f"stitch area of table {area.table}; width to height {aspect}, assumed "
+        f"alike for all yarns: {aspect_source}",
+        uncertainty=_uncertainty(printed, law),
+        origin=Origin.SIMULATED if variant == SIMULATION else Origin.MEASURED,
+        loop_length_mm=value("loop_length", sample),
+        hand_loop_length_mm=value("loop_length", "hand-knit"),
+        yarn_diameter_mm=value("yarn_diameter", sample),
+        hand_yarn_diameter_mm=value("yarn_diameter", "hand-knit"),
+        setting=_setting(identifier, variant),
+        printed=MappingProxyType(printed),
+    )
+
+
+def _setting(identifier: str, variant: str) -> str:
+    if variant == NEEDLE_2_MM:
+        return "hand-knit on 2.0 mm needles (US 0), 25 columns x 34 rows"
+    rows = {row["identifier"]: row["setting"] for row in read_packaged("yarns.csv")}
+    return rows[identifier]
+
+
+@cache
+def _aspects() -> Mapping[Fabric, tuple[float, str]]:
+    return {
+        Fabric(row["fabric"]): (float(row["aspect"]), row["source"])
+        for row in read_packaged("aspect.csv")
+    }
+
+
+def _uncertainty(printed: Mapping[str, Figure], law: ConstitutiveLaw) -> LawUncertainty:
+    """From the printed ±, or from the spread of those that are printed."""
+    moduli = (printed["Y_x"], printed["Y_y"])
+    stated = all(figure.standard_deviation is not None for figure in moduli)
+    course, wale = (
+        math.hypot(_log_deviation(figure), figure.half_unit / math.sqrt(3) / figure.corrected)
+        for figure in moduli
+    )
+    return LawUncertainty(
+        log_modulus_course=course,
+        log_modulus_wale=wale,
+        poisson_yx=printed["nu_yx"].standard_deviation or _DEFAULT_POISSON_SD,
+        poisson_xy=printed["nu_xy"].standard_deviation or _DEFAULT_POISSON_SD,
+        source=f"± of table {moduli[0].table}, and rounding"
+        if stated
+        else "none printed: the median relative ± of acrylic and cotton, and rounding",
+    )
+
+
+def _log_deviation(figure: Figure) -> float:
+    if figure.standard_deviation is None:
+        return _typical_log_deviation()
+    return log_deviation(figure.corrected, figure.standard_deviation)
+
+
+@cache
+def _typical_log_deviation() -> float:
+    """Median of the relative standard deviations that the paper prints for Young's moduli."""
+    return median(
+        log_deviation(figure.corrected, figure.standard_deviation)
+        for figure in paper_figures()
+        if figure.quantity in ("Y_x", "Y_y") and figure.standard_deviation is not None
+    )

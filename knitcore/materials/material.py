@@ -1,0 +1,150 @@
+"""What a material is: one yarn on one machine setting, with a law for each pure fabric."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from types import MappingProxyType
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials.figures import Figure
+from knitcore.materials.uncertainty import LawUncertainty
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+
+MM_PER_INCH = 25.4
+
+
+class Origin(StrEnum):
+    """Where the constants of a law come from."""
+
+    MEASURED = "measured"
+    SIMULATED = "simulated"
+    FITTED = "fitted"
+    ESTIMATED = "estimated"
+
+
+@dataclass(frozen=True)
+class Yarn:
+    """A yarn by itself.
+
+    Attributes
+    ----------
+    fibre, product : composition, and maker's name of the yarn.
+    bending_modulus_n_mm2 : B, in N·mm², with its standard deviation (None if unknown).
+    compression_stiffness_n_per_mm3, compression_exponent : k and p of the contact law (None if
+        unmeasured).
+    diameter_mm : nominal diameter, from the wraps per inch (25.4 mm / WPI). Inside a fabric the
+        yarn is squeezed: see :attr:`FabricRecord.yarn_diameter_mm`.
+    """
+
+    fibre: str = ""
+    product: str = ""
+    bending_modulus_n_mm2: float | None = None
+    bending_modulus_sd_n_mm2: float | None = None
+    compression_stiffness_n_per_mm3: float | None = None
+    compression_exponent: float | None = None
+    diameter_mm: float | None = None
+
+
+@dataclass(frozen=True)
+class FabricRecord:
+    """One pure fabric of a material.
+
+    Attributes
+    ----------
+    fabric : which of the four.
+    law : the constants to compute with. For the paper's fabrics they are consistent with all its
+        printed figures (see :mod:`knitcore.materials.consistency`).
+    printed : the paper's figures behind it, by quantity; empty for other materials.
+    loop_length_mm : yarn per stitch (None if unknown).
+    hand_loop_length_mm : the same of the hand-knit comparison sample, where the paper has one.
+    yarn_diameter_mm, hand_yarn_diameter_mm : measured in the fabric (None if unmeasured).
+    stitch_course_mm, stitch_wale_mm : relaxed width and height of one stitch.
+    stitch_size_source : where these two come from.
+    setting : machine and stitch setting, or needle.
+    origin : measured, simulated, fitted or estimated.
+    uncertainty : standard deviations of the linear constants.
+    """
+
+    fabric: Fabric
+    law: ConstitutiveLaw
+    stitch_course_mm: float
+    stitch_wale_mm: float
+    uncertainty: LawUncertainty
+    origin: Origin
+    loop_length_mm: float | None = None
+    hand_loop_length_mm: float | None = None
+    yarn_diameter_mm: float | None = None
+    hand_yarn_diameter_mm: float | None = None
+    stitch_size_source: str = ""
+    setting: str = ""
+    printed: Mapping[str, Figure] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def stitch_area_mm2(self) -> float:
+        """Relaxed area of one stitch."""
+        return self.stitch_course_mm * self.stitch_wale_mm
+
+    def stitch_size_mm(self, direction: Direction) -> float:
+        """Relaxed extent of one stitch in a direction."""
+        course = direction is Direction.COURSE
+        return self.stitch_course_mm if course else self.stitch_wale_mm
+
+
+@dataclass(frozen=True)
+class Material:
+    """One yarn on one machine setting (or needle).
+
+    Attributes
+    ----------
+    identifier : the name by which commands and files refer to it.
+    name : for people.
+    yarn : the yarn.
+    fabrics : the pure fabrics that are known, up to four.
+    note : what a user should know before relying on it.
+    """
+
+    identifier: str
+    name: str
+    yarn: Yarn
+    fabrics: Mapping[Fabric, FabricRecord]
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.fabrics:
+            raise InputError("fabrics", "the material has no fabric.", "Give at least one law.")
+        object.__setattr__(self, "fabrics", MappingProxyType(dict(self.fabrics)))
+
+    def record(self, fabric: Fabric) -> FabricRecord:
+        """Everything known of one pure fabric.
+
+        Raises
+        ------
+        InputError
+            If this material has no such fabric.
+        """
+        try:
+            return self.fabrics[fabric]
+        except KeyError:
+            known = ", ".join(self.fabrics)
+            raise InputError(
+                "material",
+                f"{self.identifier} has no {fabric}; it has {known}.",
+                f"Add a measured or estimated law for {fabric}, or use a chart without it.",
+            ) from None
+
+    def law(self, fabric: Fabric) -> ConstitutiveLaw:
+        """The constitutive law of one pure fabric."""
+        return self.record(fabric).law
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all four pure fabrics are known, so that any chart can be predicted."""
+        return len(self.fabrics) == len(Fabric)
+
+    def yarn_diameter_mm(self, fabric: Fabric) -> float | None:
+        """The yarn's diameter in that fabric, or its nominal one if that was not measured."""
+        measured = self.record(fabric).yarn_diameter_mm
+        return self.yarn.diameter_mm if measured is None else measured
