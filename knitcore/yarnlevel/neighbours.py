@@ -1,0 +1,139 @@
+"""Which samples of the yarn may touch: a cell list over the periodic (mirrored) sheet.
+
+A pair (i, j, across, up) means sample i of the cell and the image of sample j that lies ``across``
+cells further along the course and ``up`` cells higher. Every pair is listed once, whatever the
+size of the cell: the bins of the list are repeated as often as the reach demands.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+EXCLUSION_RADII = 2.1
+"""Samples of one yarn nearer than this many radii along it do not touch (authors' code)."""
+
+
+@numba.njit(cache=True)
+def neighbour_pairs(
+    curve: NDArray[np.float64],
+    place: NDArray[np.float64],
+    cell: tuple[float, float],
+    shape: tuple[int, int],
+    mirror: tuple[int, int],
+    reach: float,
+    exclusion: float,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """All pairs of samples nearer than ``reach``.
+
+    Parameters
+    ----------
+    curve : (courses * S, 4, 3), positions without the drift of the cell.
+    place : (S,) parameter t of the samples of a course.
+    cell : size of one stitch (course, wale), mm.
+    shape : (rows, wales) of the cell, in stitches.
+    mirror : -1 where z changes its sign from one cell to the next (course, wale), else 1.
+    reach : mm.
+    exclusion : stitches of yarn within which a yarn does not touch itself.
+
+    Returns
+    -------
+    pairs : int (n, 5): i, j, across, up, sign of z of the image of j relative to i.
+    start : int (courses * S + 1): pairs start[i] … start[i + 1] belong to sample i.
+    """
+    rows, wales = shape
+    n = curve.shape[0]
+    samples = place.shape[0]
+    width = cell[0] * wales
+    height = cell[1] * rows
+    bins_x = max(1, int(width / reach))
+    bins_y = max(1, int(height / reach))
+    span_x = int(np.ceil(reach * bins_x / width))
+    span_y = int(np.ceil(reach * bins_y / height))
+    x = np.empty(n)
+    y = np.empty(n)
+    image_x = np.empty(n, np.int64)
+    image_y = np.empty(n, np.int64)
+    bin_of = np.empty(n, np.int64)
+    head = np.full(bins_x * bins_y, -1, np.int64)
+    following = np.empty(n, np.int64)
+    for i in range(n):
+        full_x = curve[i, 0, 0] + cell[0] * place[i % samples]
+        full_y = curve[i, 0, 1] + cell[1] * (i // samples)
+        image_x[i] = int(np.floor(full_x / width))
+        image_y[i] = int(np.floor(full_y / height))
+        x[i] = full_x - image_x[i] * width
+        y[i] = full_y - image_y[i] * height
+        b = min(bins_y - 1, int(y[i] / height * bins_y)) * bins_x + min(
+            bins_x - 1, int(x[i] / width * bins_x)
+        )
+        bin_of[i] = b
+        following[i] = head[b]
+        head[b] = i
+    capacity = 64 * n
+    pairs = np.empty((capacity, 5), np.int64)
+    start = np.zeros(n + 1, np.int64)
+    count = 0
+    square = reach * reach
+    for i in range(n):
+        start[i] = count
+        by, bx = bin_of[i] // bins_x, bin_of[i] % bins_x
+        for v in range(by - span_y, by + span_y + 1):
+            lift = v // bins_y
+            for u in range(bx - span_x, bx + span_x + 1):
+                shift = u // bins_x
+                j = head[(v - lift * bins_y) * bins_x + (u - shift * bins_x)]
+                while j >= 0:
+                    across = shift - image_x[j] + image_x[i]
+                    up = lift - image_y[j] + image_y[i]
+                    wanted = j > i or (j == i and (across > 0 or (across == 0 and up > 0)))
+                    if wanted:
+                        dx = x[j] + shift * width - x[i]
+                        dy = y[j] + lift * height - y[i]
+                        flip = 1
+                        if mirror[0] < 0 and across % 2 != 0:
+                            flip = -flip
+                        if mirror[1] < 0 and up % 2 != 0:
+                            flip = -flip
+                        dz = flip * curve[j, 0, 2] - curve[i, 0, 2]
+                        if dx * dx + dy * dy + dz * dz < square:
+                            same = j // samples + up * rows == i // samples
+                            along = abs(place[j % samples] + across * wales - place[i % samples])
+                            if not (same and along <= exclusion):
+                                if count == capacity:
+                                    capacity *= 2
+                                    grown = np.empty((capacity, 5), np.int64)
+                                    grown[:count] = pairs[:count]
+                                    pairs = grown
+                                pairs[count, 0] = i
+                                pairs[count, 1] = j
+                                pairs[count, 2] = across
+                                pairs[count, 3] = up
+                                pairs[count, 4] = flip
+                                count += 1
+                    j = following[j]
+    start[n] = count
+    return pairs[:count], start
+
+
+@numba.njit(cache=True)
+def pair_distances(
+    curve: NDArray[np.float64],
+    place: NDArray[np.float64],
+    cell: tuple[float, float],
+    shape: tuple[int, int],
+    pairs: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """Vectors (n, 3) from sample i to the image of sample j, mm."""
+    rows, wales = shape
+    samples = place.shape[0]
+    out = np.empty((pairs.shape[0], 3))
+    for q in range(pairs.shape[0]):
+        i, j = pairs[q, 0], pairs[q, 1]
+        across = place[j % samples] + pairs[q, 2] * wales - place[i % samples]
+        up = float(j // samples + pairs[q, 3] * rows - i // samples)
+        out[q, 0] = curve[j, 0, 0] - curve[i, 0, 0] + across * cell[0]
+        out[q, 1] = curve[j, 0, 1] - curve[i, 0, 1] + up * cell[1]
+        out[q, 2] = pairs[q, 4] * curve[j, 0, 2] - curve[i, 0, 2]
+    return out
