@@ -1,0 +1,74 @@
+# Two commands do everything: `make serve` runs the tool, `make test` runs every test.
+# Set-up happens on the way and is skipped while its inputs have not changed.
+SHELL := /bin/bash
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.DEFAULT_GOAL := help
+.PHONY: help install serve test lint format types frontend-check bench docs stitches lock clean
+
+help:            ## Show the targets
+	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
+
+# --- set-up -----------------------------------------------------------------------------------
+$(VENV)/.installed: requirements.lock pyproject.toml
+	$(PYTHON) scripts/check_python.py
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --editable .
+	touch $@
+
+$(VENV)/.installed-dev: requirements-dev.lock $(VENV)/.installed
+	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	touch $@
+
+frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
+	cd frontend && npm ci --no-audit --no-fund --loglevel=error
+	touch $@
+
+install: $(VENV)/.installed ## Make .venv with the product in it
+
+# --- running ----------------------------------------------------------------------------------
+serve: install   ## Run the tool and print its address
+	$(BIN)/knitcore serve
+
+# --- checking ---------------------------------------------------------------------------------
+test: $(VENV)/.installed-dev frontend-check ## Run every test (browser tests install Chromium if missing)
+	scripts/ensure-chromium
+	$(BIN)/pytest -n 2 --dist loadgroup
+
+frontend-check: frontend/node_modules/.installed
+	cd frontend && npm run --silent check && npm run --silent test
+
+lint: $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --strict, tsc
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	cd frontend && npm run --silent check
+
+format: $(VENV)/.installed-dev ## Format the code
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
+	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+docs: $(VENV)/.installed-dev ## Run every example of the documentation
+	$(BIN)/pytest -q tests/test_docs.py
+
+stitches: install ## Make the packaged store of relaxed stitches again
+	$(BIN)/python -m knitcore.yarnlevel.store build
+
+# --- upkeep -----------------------------------------------------------------------------------
+lock: $(VENV)/.installed-dev ## Pin the dependencies again
+	$(BIN)/pip install --quiet uv
+	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
+		pyproject.toml -o requirements.lock
+	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
+		--extra dev pyproject.toml -c requirements.lock -o requirements-dev.lock
+
+clean:           ## Remove what was installed and built
+	rm -rf $(VENV) frontend/node_modules build *.egg-info

@@ -1,0 +1,66 @@
+"""What commands share: the chart argument, the material option and the two ways of printing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+from pydantic import BaseModel
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.formats.chart_files import read_chart
+
+Decorated = Callable[..., Any]
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+material_option = click.option(
+    "--material", required=True, help="Library id (see `knitcore materials`) or a material file."
+)
+
+
+def chart_argument(function: Decorated) -> Decorated:
+    """CHART and --size."""
+    size = click.option(
+        "--size", metavar="COLUMNSxROWS", help="Size of a fabric given by name, such as 31x20."
+    )
+    return click.argument("chart", metavar="CHART")(size(function))
+
+
+def resolve_chart(chart: str, size: str | None) -> StitchChart:
+    """The chart that CHART and --size mean: a file, or a pure fabric of a size.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or the size is missing or malformed.
+    """
+    if chart.lower() in set(Fabric):
+        if size is None:
+            raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
+        match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", size.strip().lower())
+        if match is None:
+            raise InputError("size", f"{size!r} is no size.", "Write COLUMNSxROWS, such as 31x20.")
+        columns, rows = int(match[1]), int(match[2])
+        return StitchChart.of_fabric(chart, rows=rows, columns=columns)
+    if size is not None:
+        raise InputError(
+            "size", "goes with the name of a fabric, not with a file.", "Leave --size out."
+        )
+    if not Path(chart).suffix:
+        names = ", ".join(Fabric)
+        raise InputError(
+            "chart",
+            f"{chart!r} is neither a file nor a fabric.",
+            f"Name a .txt, .png or .json file, or one of {names} with --size.",
+        )
+    return read_chart(chart)
+
+
+def emit(result: BaseModel, text: str, *, as_json: bool) -> None:
+    """Print a result as one JSON object, or as text for people."""
+    click.echo(result.model_dump_json() if as_json else text)

@@ -1,0 +1,57 @@
+"""``knitcore``: the command line."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from typing import Any
+
+import click
+
+import app.cli as commands
+from knitcore.errors import KnitcoreError
+
+
+class Failure(click.ClickException):
+    """An error for the user: one line on stderr, exit code 2."""
+
+    exit_code = 2
+
+    def show(self, file: Any = None) -> None:
+        """Print the message to stderr."""
+        click.echo(f"Error: {self.message}", file=file, err=True)
+
+
+class Commands(click.Group):
+    """The subcommands, one module of this package each, loaded when they are called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all commands."""
+        modules = (m.name for m in pkgutil.iter_modules(commands.__path__))
+        return sorted(m for m in modules if m not in ("main", "common"))
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of that name."""
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        module = importlib.import_module(f"{commands.__name__}.{cmd_name}")
+        command = module.command
+        assert isinstance(command, click.Command)  # noqa: S101 - a mistake of ours, not the user's
+        return command
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; what goes wrong on purpose is told in one line."""
+        try:
+            return super().invoke(ctx)
+        except KnitcoreError as error:
+            raise Failure(str(error)) from error
+
+
+@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="knitcore")
+def main() -> None:
+    """Design the mechanics of knitted fabric, stitch by stitch."""
+
+
+if __name__ == "__main__":
+    main(prog_name="knitcore")

@@ -1,0 +1,55 @@
+"""``knitcore serve``."""
+
+from __future__ import annotations
+
+import logging
+import socket
+
+import click
+
+from app.settings import Settings
+from knitcore.errors import InputError
+
+
+@click.command("serve")
+@click.option("--host", help="Address to listen on (default: loopback, or KNITCORE_HOST).")
+@click.option("--port", type=click.IntRange(0, 65535), help="Port; 0 takes a free one.")
+def command(host: str | None, port: int | None) -> None:
+    """Start the service and print its address."""
+    given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
+    settings = Settings.model_validate(Settings().model_dump() | given).check()
+    import uvicorn
+
+    from app.main import create_app
+
+    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s %(message)s")
+    logging.getLogger("websockets").setLevel(logging.WARNING)
+    listener = _listen(settings)
+    shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
+    name = f"[{shown}]" if ":" in shown else shown
+    click.echo(f"Knitcore is at http://{name}:{listener.getsockname()[1]}/  (Ctrl+C stops it)")
+    server = uvicorn.Server(
+        uvicorn.Config(
+            create_app(settings),
+            log_level="warning",
+            ws_per_message_deflate=False,  # deflate drops most frames of an animation
+            timeout_graceful_shutdown=3,
+        )
+    )
+    server.run(sockets=[listener])
+
+
+def _listen(settings: Settings) -> socket.socket:
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((settings.host, settings.port))
+    except OSError as error:
+        listener.close()
+        raise InputError(
+            "port",
+            f"{settings.host}:{settings.port} cannot be used ({error.strerror}).",
+            "Stop what listens there, or choose another with --port.",
+        ) from error
+    return listener

@@ -1,0 +1,97 @@
+"""The application: everything put together."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import plotly
+from fastapi import FastAPI
+from fastapi.responses import FileResponse
+from fastapi.staticfiles import StaticFiles
+from starlette.middleware.gzip import GZipMiddleware
+
+from app.api import routers
+from app.compute import Compute
+from app.problems import PROBLEM_RESPONSES, install_problem_handlers
+from app.recent import RecentResults
+from app.security import Guard
+from app.settings import Settings
+from app.viewer import relay
+from app.viewer.views import Views
+
+log = logging.getLogger("knitcore.app")
+
+FRONTEND = Path(__file__).resolve().parent.parent / "frontend"
+PLOTLY_SCRIPT = Path(plotly.__file__).parent / "package_data" / "plotly.min.js"
+JANITOR_PERIOD_S = 30.0
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The service, ready for an ASGI server.
+
+    Raises
+    ------
+    InputError
+        If the settings would open the service to strangers.
+    """
+    chosen = (settings or Settings()).check()
+
+    @contextlib.asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+            os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
+        app.state.compute = Compute(chosen.workers, chosen.job_timeout_s)
+        app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
+        app.state.recent = RecentResults()
+        app.state.viewer_page = relay.viewer_page()
+        janitor = asyncio.create_task(_close_idle_views(app.state.views))
+        yield
+        janitor.cancel()
+        app.state.compute.close()
+        await asyncio.to_thread(app.state.views.close)
+
+    app = FastAPI(
+        title="Knitcore",
+        summary="Design the mechanics of knitted fabric, stitch by stitch.",
+        version="1",
+        lifespan=lifespan,
+        responses=PROBLEM_RESPONSES,
+    )
+    app.state.settings = chosen
+    install_problem_handlers(app)
+    for router in routers():
+        app.include_router(router, prefix="/api/v1")
+    app.include_router(relay.router)
+    _serve_page(app)
+    app.add_middleware(GZipMiddleware, minimum_size=2_000, compresslevel=4)
+    app.add_middleware(Guard, settings=chosen)
+    return app
+
+
+def _serve_page(app: FastAPI) -> None:
+    @app.get("/", include_in_schema=False)
+    async def page() -> FileResponse:
+        return FileResponse(FRONTEND / "index.html", headers={"Cache-Control": "no-cache"})
+
+    @app.get("/static/plotly.min.js", include_in_schema=False)
+    async def plotly_script() -> FileResponse:
+        return FileResponse(PLOTLY_SCRIPT, headers={"Cache-Control": "public, max-age=86400"})
+
+    @app.get("/healthz", tags=["service"], summary="Whether the service is up")
+    async def healthz() -> dict[str, str]:
+        return {"status": "ok"}
+
+    app.mount("/static", StaticFiles(directory=FRONTEND), name="static")
+
+
+async def _close_idle_views(views: Views) -> None:
+    while True:
+        await asyncio.sleep(JANITOR_PERIOD_S)
+        closed = await asyncio.to_thread(views.close_idle)
+        if closed:
+            log.info("closed %d idle 3D views, %d left", closed, len(views))

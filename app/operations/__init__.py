@@ -1,0 +1,1 @@
+"""The operations that REST and the command line share: request, result, function."""

@@ -1,0 +1,73 @@
+"""Charts at the border, and reading them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.fabric import Fabric
+
+MAX_TEXT = 1_200_000
+"""Characters of a chart text: the largest chart with its line ends and some blanks."""
+
+
+class PureFabricChart(BaseModel):
+    """A pure fabric by name and size."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    fabric: Fabric
+    columns: int = Field(ge=1, le=MAX_STITCHES_PER_SIDE)
+    rows: int = Field(ge=1, le=MAX_STITCHES_PER_SIDE)
+
+
+ChartText = Annotated[
+    str,
+    Field(
+        max_length=MAX_TEXT,
+        description="K/P lines, the top row first, as seen from the face.",
+        examples=["KPKP\nPKPK"],
+    ),
+]
+ChartInput = ChartText | PureFabricChart
+
+
+def to_chart(chart: ChartInput) -> StitchChart:
+    """The chart that a request means."""
+    if isinstance(chart, PureFabricChart):
+        return StitchChart.of_fabric(chart.fabric, rows=chart.rows, columns=chart.columns)
+    return StitchChart.parse(chart)
+
+
+class ParseRequest(BaseModel):
+    """A chart text as somebody typed it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    text: ChartText
+
+
+class ChartResult(BaseModel):
+    """A chart, read and written again in the canonical form."""
+
+    rows: int
+    columns: int
+    text: str
+
+
+class ParsedChart(ChartResult):
+    """A chart and its smallest repeat."""
+
+    repeat: ChartResult
+
+
+def parse_chart(request: ParseRequest) -> ParsedChart:
+    """Read a chart text and find its repeat."""
+    chart = StitchChart.parse(request.text)
+    return ParsedChart(**_result(chart).model_dump(), repeat=_result(chart.repeat_cut()))
+
+
+def _result(chart: StitchChart) -> ChartResult:
+    return ChartResult(rows=chart.rows, columns=chart.columns, text=chart.text)

@@ -1,0 +1,135 @@
+"""Errors as problem details (RFC 9457): type, title, status, detail, field, remedy."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
+
+from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
+
+log = logging.getLogger("knitcore.app")
+
+
+class Problem(BaseModel):
+    """What every error response looks like."""
+
+    type: str = Field(description="Short name of the kind of problem.")
+    title: str
+    status: int
+    detail: str = Field(description="What is wrong, for people.")
+    field: str | None = Field(None, description="The input that is to blame.")
+    remedy: str | None = Field(None, description="What would be accepted.")
+
+
+PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
+    status: {"model": Problem, "description": text}
+    for status, text in {
+        400: "The request cannot be read.",
+        403: "The request comes from another site, or without the token.",
+        413: "The request is too large.",
+        422: "An input cannot be used; the problem names the field and the remedy.",
+        503: "The service is busy or the computation took too long.",
+    }.items()
+}
+
+
+class UnavailableError(Exception):
+    """The service cannot take this on now; the text says what to do."""
+
+
+def problem_response(problem: Problem) -> JSONResponse:
+    """A problem as a response."""
+    return JSONResponse(
+        problem.model_dump(), status_code=problem.status, media_type="application/problem+json"
+    )
+
+
+def install_problem_handlers(app: FastAPI) -> None:
+    """Turn every error into a problem response."""
+
+    @app.exception_handler(InputError)
+    async def _(_: Request, error: InputError) -> JSONResponse:
+        return problem_response(
+            Problem(
+                type="input",
+                title="This input cannot be used",
+                status=422,
+                detail=f"{error.field}: {error.problem}",
+                field=error.field,
+                remedy=error.remedy,
+            )
+        )
+
+    @app.exception_handler(RequestValidationError)
+    async def _(_: Request, error: RequestValidationError) -> JSONResponse:
+        first = error.errors()[0]
+        malformed = first["type"] == "json_invalid"
+        field = ".".join(str(part) for part in first["loc"] if part != "body") or "body"
+        return problem_response(
+            Problem(
+                type="input",
+                title="The request is not valid JSON" if malformed else "This input cannot be used",
+                status=422,
+                detail=f"body: {first['ctx']['error']}"
+                if malformed
+                else f"{field}: {first['msg']}.",
+                field="body" if malformed else field,
+                remedy="Send one JSON object as /docs describes it.",
+            )
+        )
+
+    @app.exception_handler(HTTPException)
+    async def _(_: Request, error: HTTPException) -> JSONResponse:
+        return problem_response(
+            Problem(
+                type="http",
+                title=str(error.detail),
+                status=error.status_code,
+                detail=str(error.detail),
+            )
+        )
+
+    @app.exception_handler(ConvergenceError)
+    @app.exception_handler(UnravelledError)
+    @app.exception_handler(CancelledError)
+    async def _(_: Request, error: Exception) -> JSONResponse:
+        return problem_response(
+            Problem(
+                type="unsolved",
+                title="No result was reached",
+                status=422,
+                detail=str(error),
+                remedy="Ask for less: a smaller strain, a smaller chart or more steps.",
+            )
+        )
+
+    @app.exception_handler(UnavailableError)
+    async def _(_: Request, error: UnavailableError) -> JSONResponse:
+        return problem_response(
+            Problem(
+                type="busy",
+                title="Not now",
+                status=503,
+                detail=str(error),
+                remedy="Try again in a moment, or ask for less.",
+            )
+        )
+
+    @app.exception_handler(Exception)
+    async def _(request: Request, error: Exception) -> JSONResponse:
+        log.error("unexpected error at %s %s", request.method, request.url.path, exc_info=error)
+        return problem_response(
+            Problem(
+                type="internal",
+                title="Something went wrong in the service",
+                status=500,
+                detail="The service met an error that it did not expect; its log has the details.",
+                remedy="Nothing you painted is lost. Try again, or report it with the log.",
+            )
+        )

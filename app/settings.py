@@ -1,0 +1,62 @@
+"""Settings, from the environment (``KNITCORE_…``)."""
+
+from __future__ import annotations
+
+import os
+from functools import cached_property
+from ipaddress import ip_address
+
+from pydantic import Field, SecretStr
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from knitcore.errors import InputError
+
+
+class Settings(BaseSettings):
+    """How the service runs."""
+
+    model_config = SettingsConfigDict(env_prefix="KNITCORE_", frozen=True)
+
+    host: str = Field("127.0.0.1", description="Address to listen on.")
+    port: int = Field(8737, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
+    token: SecretStr | None = Field(
+        None, description="Token that every request must bring; needed beyond loopback."
+    )
+    allowed_hosts: tuple[str, ...] = Field(
+        (), description="Host names that a browser may use for this service beyond loopback."
+    )
+    workers: int = Field(
+        max(1, min(4, (os.cpu_count() or 2) - 1)), ge=1, description="Processes for heavy work."
+    )
+    job_timeout_s: float = Field(120.0, gt=0, description="Longest run of one computation.")
+    max_body_bytes: int = Field(4_000_000, gt=0, description="Largest request body.")
+    max_viewers: int = Field(64, ge=1, description="3D views kept open at once.")
+    viewer_idle_s: float = Field(300.0, gt=0, description="A view nobody watches closes after.")
+
+    @cached_property
+    def is_loopback(self) -> bool:
+        """Whether the service can only be reached from this machine."""
+        if self.host == "localhost":
+            return True
+        try:
+            return ip_address(self.host).is_loopback
+        except ValueError:
+            return False
+
+    def check(self) -> Settings:
+        """The settings themselves, if they are safe to serve with.
+
+        Raises
+        ------
+        InputError
+            If the service would listen beyond loopback without a token.
+        """
+        if not self.is_loopback and self.token is None:
+            raise InputError(
+                "token",
+                f"listening on {self.host} would open the service to other machines unprotected.",
+                "Set KNITCORE_TOKEN to a long random text, or listen on 127.0.0.1.",
+            )
+        if self.token is not None and len(self.token.get_secret_value()) < 16:
+            raise InputError("token", "is too short.", "Use at least 16 characters.")
+        return self

@@ -1,0 +1,119 @@
+"""One private viser server per open design, closed when nobody looks for a while."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from dataclasses import dataclass, field
+
+import viser
+
+from app.problems import UnavailableError
+from app.viewer.scene import FabricScene, SceneWriter
+
+log = logging.getLogger("knitcore.app")
+
+
+@dataclass
+class View:
+    """A design's viser server; it listens on loopback only and is reached through the relay."""
+
+    server: viser.ViserServer
+    writer: SceneWriter
+    watchers: int = 0
+    last_used: float = field(default_factory=time.monotonic)
+
+    @property
+    def port(self) -> int:
+        """Loopback port of the viser server."""
+        return int(self.server.get_port())
+
+    def show(self, scene: FabricScene) -> int:
+        """Draw a scene; returns the number of stitches drawn."""
+        self.last_used = time.monotonic()
+        return self.writer.write(scene)
+
+
+class Views:
+    """The open views by design.
+
+    Views are disposable: the scene is built from the design again when somebody comes back.
+
+    Parameters
+    ----------
+    most : how many are kept at once; the longest unwatched one makes room.
+    idle_s : how long an unwatched view is kept.
+    """
+
+    def __init__(self, most: int, idle_s: float) -> None:
+        self._most = most
+        self._idle_s = idle_s
+        self._views: dict[str, View] = {}
+        self._lock = threading.Lock()
+
+    def open(self, design: str) -> View:
+        """The design's view, made if it is not there.
+
+        Raises
+        ------
+        UnavailableError
+            If as many views as allowed are being watched.
+        """
+        with self._lock:
+            view = self._views.get(design)
+            if view is None:
+                self._make_room()
+                view = self._views[design] = _new_view()
+            view.last_used = time.monotonic()
+            return view
+
+    def get(self, design: str) -> View | None:
+        """The design's view, if it is open."""
+        with self._lock:
+            return self._views.get(design)
+
+    def watch(self, design: str, change: int) -> None:
+        """Count a watcher in (+1) or out (-1)."""
+        with self._lock:
+            view = self._views.get(design)
+            if view is not None:
+                view.watchers += change
+                view.last_used = time.monotonic()
+
+    def close_idle(self) -> int:
+        """Close what nobody has watched for a while; returns how many views that were."""
+        deadline = time.monotonic() - self._idle_s
+        with self._lock:
+            idle = [d for d, v in self._views.items() if not v.watchers and v.last_used < deadline]
+            stopped = [self._views.pop(design) for design in idle]
+        for view in stopped:
+            view.server.stop()
+        return len(stopped)
+
+    def close(self) -> None:
+        """Close all views."""
+        with self._lock:
+            views = list(self._views.values())
+            self._views.clear()
+        for view in views:
+            view.server.stop()
+
+    def __len__(self) -> int:
+        return len(self._views)
+
+    def _make_room(self) -> None:
+        if len(self._views) < self._most:
+            return
+        unwatched = [(v.last_used, d) for d, v in self._views.items() if not v.watchers]
+        if not unwatched:
+            raise UnavailableError(f"All {self._most} 3D views are in use.")
+        self._views.pop(min(unwatched)[1]).server.stop()
+
+
+def _new_view() -> View:
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    server.gui.configure_theme(control_layout="collapsible", show_logo=False)
+    server.scene.set_up_direction("+y")
+    server.scene.world_axes.visible = False
+    return View(server, SceneWriter(server))

@@ -1,0 +1,1 @@
+"""Shapes for pictures: loops of yarn on the (deformed) lattice of stitches."""

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import pytest
+from fastapi.testclient import TestClient
+
+from knitcore import StitchChart
+from knitcore.patterns import PATTERNS
+
+
+def test_a_text_is_read_and_its_repeat_found(client: TestClient) -> None:
+    answer = client.post("/api/v1/charts/parse", json={"text": "kpkpk\n• | • | •"}).json()
+    assert (answer["rows"], answer["columns"]) == (2, 5)
+    assert answer["text"] == "KPKPK\nPKPKP"
+    assert answer["repeat"] == {"rows": 2, "columns": 2, "text": "KP\nPK"}
+
+
+def test_patterns_are_repeats_without_a_smaller_one(client: TestClient) -> None:
+    shelf = client.get("/api/v1/patterns").json()["patterns"]
+    assert [p["id"] for p in shelf] == [p.identifier for p in PATTERNS]
+    for pattern in shelf:
+        chart = StitchChart.parse(pattern["chart"])
+        assert chart.repeat() == chart
+
+
+@pytest.mark.parametrize(
+    ("body", "field"),
+    [
+        ({"text": "KQ"}, "chart"),
+        ({"text": "KP\nK"}, "chart"),
+        ({"text": ""}, "chart"),
+        ({"text": 5}, "text"),
+        ({}, "text"),
+        ({"text": "K", "extra": 1}, "extra"),
+    ],
+)
+def test_bad_charts_name_field_and_remedy(
+    client: TestClient, body: dict[str, object], field: str
+) -> None:
+    response = client.post("/api/v1/charts/parse", json=body)
+    assert response.status_code == 422
+    assert response.headers["content-type"] == "application/problem+json"
+    problem = response.json()
+    assert problem["field"] == field
+    assert problem["detail"]
+    assert problem["remedy"]
+
+
+def test_malformed_json_is_told_as_such(client: TestClient) -> None:
+    response = client.post(
+        "/api/v1/charts/parse", content=b'{"text": ', headers={"content-type": "application/json"}
+    )
+    assert response.status_code == 422
+    assert response.json()["title"] == "The request is not valid JSON"
+
+
+def test_what_is_not_there_is_a_problem_too(client: TestClient) -> None:
+    response = client.get("/api/v1/nothing")
+    assert response.status_code == 404
+    assert response.json()["type"] == "http"

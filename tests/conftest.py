@@ -1,0 +1,26 @@
+"""What all tests share."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+_CHECKOUT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def study_data() -> Path:
+    """Folder with the study's public data, which is no part of the product.
+
+    Looked up by KNITCORE_STUDY_DATA or beside the checkout; tests that need it are skipped
+    where it is not.
+    """
+    folder = Path(os.environ.get("KNITCORE_STUDY_DATA", _CHECKOUT.parent / "shared" / "data"))
+    if not (folder / "uniaxial").is_dir():
+        pytest.skip("the study's data are not on this machine (set KNITCORE_STUDY_DATA)")
+    return folder

@@ -1,0 +1,15 @@
+"""Random charts for property tests."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from knitcore import StitchChart
+
+
+def stitch_charts(most: int = 12) -> st.SearchStrategy[StitchChart]:
+    """Charts of any pattern up to ``most`` rows and columns."""
+    shapes = hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=most)
+    return hnp.arrays(np.bool_, shapes).map(StitchChart)

@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from knitcore import Fabric, InputError, StitchChart
+from knitcore.chart import MAX_STITCHES_PER_SIDE
+from tests.knitcore.charts import stitch_charts
+
+
+@given(stitch_charts())
+def test_text_is_read_back(chart: StitchChart) -> None:
+    assert StitchChart.parse(chart.text) == chart
+
+
+@given(stitch_charts())
+def test_mirrors_and_turning_over_undo_themselves(chart: StitchChart) -> None:
+    for act in (
+        StitchChart.mirror,
+        StitchChart.mirror_vertical,
+        StitchChart.swap,
+        StitchChart.turn_over,
+    ):
+        assert act(act(chart)) == chart
+
+
+@given(stitch_charts())
+def test_turning_over_is_mirror_and_swap_in_either_order(chart: StitchChart) -> None:
+    assert chart.turn_over() == chart.mirror().swap() == chart.swap().mirror()
+
+
+@given(stitch_charts(6), st.integers(1, 3), st.integers(1, 3))
+def test_the_repeat_of_a_tiling_tiles_it(chart: StitchChart, down: int, across: int) -> None:
+    tiled = chart.tile(down, across)
+    repeat = tiled.repeat()
+    assert repeat.rows <= chart.rows
+    assert repeat.columns <= chart.columns
+    assert repeat.tile(tiled.rows // repeat.rows, tiled.columns // repeat.columns) == tiled
+
+
+@given(stitch_charts(8))
+def test_a_cut_repeat_continues_to_the_chart(chart: StitchChart) -> None:
+    assert chart.repeat_cut().resized(chart.rows, chart.columns) == chart
+
+
+@pytest.mark.parametrize(("fabric", "size"), [("stockinette", (1, 1)), ("garter", (2, 1))])
+def test_pure_fabrics_have_their_repeat(fabric: str, size: tuple[int, int]) -> None:
+    repeat = StitchChart.of_fabric(fabric, rows=31, columns=31).repeat_cut()
+    assert (repeat.rows, repeat.columns) == size
+
+
+def test_the_top_row_is_written_first() -> None:
+    chart = StitchChart.parse("PP\nKK")
+    assert not chart.purl[0].any()
+    assert chart.purl[1].all()
+
+
+def test_symbols_blanks_and_comments() -> None:
+    assert StitchChart.parse("# a comment\n | • \n\n–,k\n") == StitchChart.parse("KP\nPK")
+
+
+def test_charts_cannot_be_changed() -> None:
+    chart = StitchChart.of_fabric(Fabric.RIB, rows=2, columns=2)
+    with pytest.raises(ValueError, match="read-only"):
+        chart.purl[0, 0] = True
+
+
+def test_a_chart_keeps_its_own_copy() -> None:
+    grid = np.zeros((2, 2), dtype=bool)
+    chart = StitchChart(grid)
+    grid[0, 0] = True
+    assert not chart.purl.any()
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "no stitches"),
+        ("KX", "line 1, stitch 2 is 'X'"),
+        ("KP\nK", "line 2 has 1 stitches, line 1 has 2"),
+        ("K" * (MAX_STITCHES_PER_SIDE + 1), "too large"),
+        ("\n".join("K" * (MAX_STITCHES_PER_SIDE + 1)), "too large"),
+    ],
+)
+def test_bad_text_is_refused_with_place_and_remedy(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=says) as caught:
+        StitchChart.parse(text)
+    assert caught.value.field == "chart"
+    assert caught.value.remedy
+
+
+def test_an_empty_or_flat_grid_is_refused() -> None:
+    for grid in (np.zeros((0, 3)), np.zeros((3, 0)), np.zeros(3)):
+        with pytest.raises(InputError):
+            StitchChart(grid.astype(bool))
+
+
+def test_unknown_fabrics_are_refused() -> None:
+    with pytest.raises(InputError, match="stockinette, garter, rib, seed"):
+        StitchChart.of_fabric("velvet", rows=2, columns=2)

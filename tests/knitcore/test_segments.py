@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from knitcore import Direction, Fabric, StitchChart, segment_map
+from tests.knitcore.charts import stitch_charts
+
+
+@given(stitch_charts())
+def test_turning_over_mirrors_the_maps(chart: StitchChart) -> None:
+    face, back = segment_map(chart), segment_map(chart.turn_over())
+    np.testing.assert_array_equal(back.course_odd, face.course_odd[:, ::-1])
+    np.testing.assert_array_equal(back.wale_odd, face.wale_odd[:, ::-1])
+
+
+@given(stitch_charts())
+def test_swapping_knits_and_purls_changes_no_segment(chart: StitchChart) -> None:
+    face, swapped = segment_map(chart), segment_map(chart.swap())
+    np.testing.assert_array_equal(swapped.course_odd, face.course_odd)
+    np.testing.assert_array_equal(swapped.wale_odd, face.wale_odd)
+
+
+@given(stitch_charts())
+def test_around_a_repeat_the_number_of_odd_segments_is_even(chart: StitchChart) -> None:
+    segments = segment_map(chart, periodic=True)
+    assert not (segments.course_odd.sum(axis=1) % 2).any()
+    assert not (segments.wale_odd.sum(axis=0) % 2).any()
+
+
+@given(stitch_charts())
+def test_the_maps_determine_the_chart_up_to_one_stitch(chart: StitchChart) -> None:
+    segments = segment_map(chart)
+    row = np.logical_xor.accumulate(
+        np.concatenate([chart.purl[0, :1], segments.course_odd[0]])
+    )
+    grid = np.logical_xor.accumulate(np.concatenate([row[None], segments.wale_odd]), axis=0)
+    assert StitchChart(grid) == chart
+
+
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_pure_fabrics_have_segments_of_one_kind(fabric: Fabric) -> None:
+    segments = segment_map(StitchChart.of_fabric(fabric, rows=7, columns=5))
+    course, wale = segments.counts(Direction.COURSE), segments.counts(Direction.WALE)
+    assert (course.odd, course.even) == ((28, 0) if fabric.course_odd else (0, 28))
+    assert (wale.odd, wale.even) == ((30, 0) if fabric.wale_odd else (0, 30))
