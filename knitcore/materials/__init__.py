@@ -1,5 +1,12 @@
 """Materials: yarns, their fabrics and laws; the paper's tables, and users' own files."""
 
+from knitcore.materials.document import (
+    LawDocument,
+    MaterialDocument,
+    load_material_file,
+    material_from_mapping,
+    save_material_file,
+)
 from knitcore.materials.figures import Figure, FigureTable, paper_figures
 from knitcore.materials.library import load_library, load_variants, material
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
@@ -10,12 +17,17 @@ __all__ = [
     "Figure",
     "FigureTable",
     "Interval",
+    "LawDocument",
     "LawUncertainty",
     "Material",
+    "MaterialDocument",
     "Origin",
     "Yarn",
     "load_library",
+    "load_material_file",
     "load_variants",
     "material",
+    "material_from_mapping",
     "paper_figures",
+    "save_material_file",
 ]

@@ -1,0 +1,352 @@
+"""Users' own materials: JSON or YAML files, checked by one model.
+
+::
+
+    format: knitcore-material
+    version: 1
+    identifier: my-merino
+    name: My merino on 3.5 mm needles
+    yarn: {fibre: wool, bending_modulus_n_mm2: 0.03, diameter_mm: 1.4}
+    fabrics:
+      stockinette:
+        law:
+          modulus_course: 0.16        # N/mm; or the four stiffnesses stiffness_xxxx …
+          modulus_wale: 0.45
+          poisson_yx: 0.45
+          poisson_xy: 0.43
+          alpha_xx: 1.1
+          alpha_yy: 2.4
+          beta_xx: 0.04               # N/mm
+          beta_yy: 0.01
+        stitch_course_mm: 3.3
+        stitch_wale_mm: 2.3
+        loop_length_mm: 11.2
+        origin: fitted
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.materials.consistency import check_stated_constants
+from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
+from knitcore.materials.uncertainty import LawUncertainty, log_deviation
+from knitcore.mechanics.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
+
+FORMAT = "knitcore-material"
+MAX_FILE_BYTES = 1_000_000
+
+_DEFAULT_RELATIVE_SD = 0.10
+"""Assumed where a file gives no standard deviation: the paper's median."""
+
+_DEFAULT_POISSON_SD = 0.02
+
+Length = Annotated[float, Field(gt=0, le=500, description="mm")]
+Modulus = Annotated[float, Field(gt=0, le=1000, description="N/mm")]
+Deviation = Annotated[float, Field(ge=0, le=1000)]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class LawDocument(_Model):
+    """A law as its stiffnesses, as its moduli and Poisson ratios, or as both if they agree."""
+
+    stiffness_xxxx: Modulus | None = None
+    stiffness_yyyy: Modulus | None = None
+    stiffness_xxyy: Annotated[float, Field(ge=-1000, le=1000)] | None = None
+    stiffness_yyxx: Annotated[float, Field(ge=-1000, le=1000)] | None = None
+    modulus_course: Modulus | None = None
+    modulus_wale: Modulus | None = None
+    poisson_yx: Annotated[float, Field(ge=-2, le=5)] | None = None
+    poisson_xy: Annotated[float, Field(ge=-2, le=5)] | None = None
+    alpha_xx: Annotated[float, Field(ge=0, le=50)]
+    alpha_yy: Annotated[float, Field(ge=0, le=50)]
+    beta_xx: Annotated[float, Field(ge=0, le=1000)]
+    beta_yy: Annotated[float, Field(ge=0, le=1000)]
+    shear_modulus: Modulus = DEFAULT_SHEAR_MODULUS_N_PER_MM
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if None not in self._stiffnesses() or None not in self._engineering():
+            return self
+        raise ValueError(
+            "give stiffness_xxxx, stiffness_yyyy, stiffness_xxyy and stiffness_yyxx, or "
+            "modulus_course, modulus_wale, poisson_yx and poisson_xy"
+        )
+
+    def _stiffnesses(self) -> tuple[float | None, ...]:
+        return self.stiffness_xxxx, self.stiffness_yyyy, self.stiffness_xxyy, self.stiffness_yyxx
+
+    def _engineering(self) -> tuple[float | None, ...]:
+        return self.modulus_course, self.modulus_wale, self.poisson_yx, self.poisson_xy
+
+    def to_law(self) -> ConstitutiveLaw:
+        """The law.
+
+        Raises
+        ------
+        InputError
+            If it is not positive definite, or if stated moduli contradict the stiffnesses.
+        """
+        xxxx, yyyy, xxyy, yyxx = self._stiffnesses()
+        if xxxx is None or yyyy is None or xxyy is None or yyxx is None:
+            xxxx, yyyy, xxyy, yyxx = self._from_engineering()
+        law = ConstitutiveLaw(
+            stiffness_xxxx=xxxx,
+            stiffness_yyyy=yyyy,
+            stiffness_xxyy=xxyy,
+            stiffness_yyxx=yyxx,
+            alpha_xx=self.alpha_xx,
+            alpha_yy=self.alpha_yy,
+            beta_xx=self.beta_xx,
+            beta_yy=self.beta_yy,
+            shear_modulus=self.shear_modulus,
+        )
+        check_stated_constants(
+            law,
+            modulus_course=self.modulus_course,
+            modulus_wale=self.modulus_wale,
+            poisson_yx=self.poisson_yx,
+            poisson_xy=self.poisson_xy,
+        )
+        return law
+
+    def _from_engineering(self) -> tuple[float, float, float, float]:
+        course, wale, nu_yx, nu_xy = (value or 0.0 for value in self._engineering())
+        if nu_yx * nu_xy >= 1:
+            raise InputError(
+                "poisson_xy",
+                f"{nu_xy:g} times poisson_yx {nu_yx:g} is 1 or more.",
+                "Their product must stay below 1.",
+            )
+        xxxx, yyyy = course / (1 - nu_yx * nu_xy), wale / (1 - nu_yx * nu_xy)
+        return xxxx, yyyy, nu_xy * xxxx, nu_yx * yyyy
+
+    @classmethod
+    def from_law(cls, law: ConstitutiveLaw) -> LawDocument:
+        """The document of a law, as stiffnesses."""
+        return cls(**{name: getattr(law, name) for name in ConstitutiveLaw.__dataclass_fields__})
+
+
+class DeviationDocument(_Model):
+    """Standard deviations of the linear constants, in their units."""
+
+    modulus_course: Deviation | None = None
+    modulus_wale: Deviation | None = None
+    poisson_yx: Deviation | None = None
+    poisson_xy: Deviation | None = None
+
+
+class FabricDocument(_Model):
+    """One pure fabric of a user's material."""
+
+    law: LawDocument
+    stitch_course_mm: Length
+    stitch_wale_mm: Length
+    stitch_size_source: str = "given by the user"
+    loop_length_mm: Length | None = None
+    yarn_diameter_mm: Length | None = None
+    setting: str = ""
+    origin: Origin = Origin.FITTED
+    standard_deviation: DeviationDocument = DeviationDocument()
+
+    def to_record(self, fabric: Fabric) -> FabricRecord:
+        """The record of this fabric."""
+        law = self.law.to_law()
+        if self.loop_length_mm is not None and self.loop_length_mm <= self.stitch_course_mm:
+            raise InputError(
+                "loop_length_mm",
+                f"{self.loop_length_mm:g} mm of yarn cannot make a stitch "
+                f"{self.stitch_course_mm:g} mm wide.",
+                "Give the length of yarn in one stitch, in mm.",
+            )
+        return FabricRecord(
+            fabric=fabric,
+            law=law,
+            stitch_course_mm=self.stitch_course_mm,
+            stitch_wale_mm=self.stitch_wale_mm,
+            stitch_size_source=self.stitch_size_source,
+            uncertainty=self._uncertainty(law),
+            origin=self.origin,
+            loop_length_mm=self.loop_length_mm,
+            yarn_diameter_mm=self.yarn_diameter_mm,
+            setting=self.setting,
+        )
+
+    def _uncertainty(self, law: ConstitutiveLaw) -> LawUncertainty:
+        given = self.standard_deviation
+        stated = given.modulus_course is not None and given.modulus_wale is not None
+
+        def logarithmic(value: float, deviation: float | None) -> float:
+            return log_deviation(
+                value, _DEFAULT_RELATIVE_SD * value if deviation is None else deviation
+            )
+
+        def absolute(deviation: float | None) -> float:
+            return _DEFAULT_POISSON_SD if deviation is None else deviation
+
+        return LawUncertainty(
+            log_modulus_course=logarithmic(law.modulus_course, given.modulus_course),
+            log_modulus_wale=logarithmic(law.modulus_wale, given.modulus_wale),
+            poisson_yx=absolute(given.poisson_yx),
+            poisson_xy=absolute(given.poisson_xy),
+            source="stated in the file"
+            if stated
+            else "not stated: 10 % assumed, the paper's median",
+        )
+
+    @classmethod
+    def from_record(cls, record: FabricRecord) -> FabricDocument:
+        """The document of a record."""
+        law, spread = record.law, record.uncertainty
+        return cls(
+            law=LawDocument.from_law(law),
+            stitch_course_mm=record.stitch_course_mm,
+            stitch_wale_mm=record.stitch_wale_mm,
+            stitch_size_source=record.stitch_size_source,
+            loop_length_mm=record.loop_length_mm,
+            yarn_diameter_mm=record.yarn_diameter_mm,
+            setting=record.setting,
+            origin=record.origin,
+            standard_deviation=DeviationDocument(
+                modulus_course=law.modulus_course * _coefficient(spread.log_modulus_course),
+                modulus_wale=law.modulus_wale * _coefficient(spread.log_modulus_wale),
+                poisson_yx=spread.poisson_yx,
+                poisson_xy=spread.poisson_xy,
+            ),
+        )
+
+
+class YarnDocument(_Model):
+    """A yarn by itself; everything is optional."""
+
+    fibre: str = ""
+    product: str = ""
+    bending_modulus_n_mm2: Annotated[float, Field(gt=0, le=100)] | None = None
+    bending_modulus_sd_n_mm2: Deviation | None = None
+    compression_stiffness_n_per_mm3: Annotated[float, Field(gt=0, le=100)] | None = None
+    compression_exponent: Annotated[float, Field(gt=1, le=20)] | None = None
+    diameter_mm: Annotated[float, Field(gt=0, le=50)] | None = None
+
+
+class MaterialDocument(_Model):
+    """A material file."""
+
+    format: Literal["knitcore-material"] = "knitcore-material"
+    version: Literal[1] = 1
+    identifier: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._:-]{0,63}$")]
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    yarn: YarnDocument = YarnDocument()
+    fabrics: Annotated[dict[Fabric, FabricDocument], Field(min_length=1)]
+    note: str = ""
+
+    def to_material(self) -> Material:
+        """The material.
+
+        Raises
+        ------
+        InputError
+            Naming the fabric and the constant that cannot be used.
+        """
+        fabrics = {}
+        for fabric, document in self.fabrics.items():
+            try:
+                fabrics[fabric] = document.to_record(fabric)
+            except InputError as error:
+                where = f"fabrics.{fabric}.{error.field}"
+                raise InputError(where, error.problem, error.remedy) from error
+        return Material(
+            self.identifier, self.name, Yarn(**self.yarn.model_dump()), fabrics, note=self.note
+        )
+
+    @classmethod
+    def from_material(cls, material: Material) -> MaterialDocument:
+        """The document of a material; :meth:`to_material` gives it back."""
+        yarn = {name: getattr(material.yarn, name) for name in YarnDocument.model_fields}
+        return cls(
+            identifier=material.identifier,
+            name=material.name,
+            yarn=YarnDocument(**yarn),
+            fabrics={
+                fabric: FabricDocument.from_record(record)
+                for fabric, record in material.fabrics.items()
+            },
+            note=material.note,
+        )
+
+
+def material_from_mapping(data: Mapping[str, Any]) -> Material:
+    """A material from the content of a material file.
+
+    Raises
+    ------
+    InputError
+        Naming the first field that cannot be used.
+    """
+    try:
+        document = MaterialDocument.model_validate(dict(data))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        field = ".".join(str(part) for part in first["loc"] if part != "[key]") or "material"
+        more = f" ({error.error_count() - 1} more)" if error.error_count() > 1 else ""
+        raise InputError(
+            field, f"{first['msg']}{more}.", "See the material file in docs/materials.md."
+        ) from error
+    return document.to_material()
+
+
+def load_material_file(path: str | Path) -> Material:
+    """Read a user's material from a ``.json``, ``.yaml`` or ``.yml`` file.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, not JSON or YAML, or describes no sound material.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise InputError(
+            "material", f"{file} is not a file.", "Give a library name or a material file."
+        )
+    if file.stat().st_size > MAX_FILE_BYTES:
+        raise InputError("material", f"{file} is over 1 MB.", "Give a material file.")
+    try:
+        text = file.read_text(encoding="utf-8")
+        data = json.loads(text) if file.suffix.lower() == ".json" else yaml.safe_load(text)
+    except (UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
+        reason = str(error).replace("\n", " ")
+        raise InputError(
+            "material", f"{file} cannot be read: {reason}.", "Give valid JSON or YAML."
+        ) from error
+    if not isinstance(data, dict):
+        raise InputError(
+            "material", f"{file} holds no material.", "Begin with identifier, name and fabrics."
+        )
+    return material_from_mapping(data)
+
+
+def save_material_file(material: Material, path: str | Path) -> None:
+    """Write a material as JSON or YAML (by the suffix), so that it can be loaded again."""
+    file = Path(path)
+    data = MaterialDocument.from_material(material).model_dump(mode="json", exclude_none=True)
+    if file.suffix.lower() == ".json":
+        text = json.dumps(data, indent=2, ensure_ascii=False)
+    else:
+        text = yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
+    file.write_text(text, encoding="utf-8")
+
+
+def _coefficient(log_standard_deviation: float) -> float:
+    """Coefficient of variation; inverse of :func:`log_deviation`."""
+    return math.sqrt(math.expm1(log_standard_deviation**2))

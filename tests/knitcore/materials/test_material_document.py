@@ -1,0 +1,154 @@
+"""Users' material files: what is read, and what is refused."""
+
+import json
+
+import pytest
+import yaml
+
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.materials import (
+    load_library,
+    load_material_file,
+    load_variants,
+    material,
+    material_from_mapping,
+    save_material_file,
+)
+
+
+@pytest.fixture
+def document():
+    return {
+        "identifier": "my-merino",
+        "name": "My merino",
+        "yarn": {"bending_modulus_n_mm2": 0.03},
+        "fabrics": {
+            "stockinette": {
+                "law": {
+                    "modulus_course": 0.16,
+                    "modulus_wale": 0.45,
+                    "poisson_yx": 0.45,
+                    "poisson_xy": 0.43,
+                    "alpha_xx": 1.1,
+                    "alpha_yy": 2.4,
+                    "beta_xx": 0.04,
+                    "beta_yy": 0.01,
+                },
+                "stitch_course_mm": 3.3,
+                "stitch_wale_mm": 2.3,
+                "loop_length_mm": 11.2,
+            }
+        },
+    }
+
+
+def law_of(document):
+    return document["fabrics"]["stockinette"]["law"]
+
+
+@pytest.mark.parametrize("suffix", [".json", ".yaml", ".yml"])
+def test_a_file_is_read(tmp_path, document, suffix):
+    path = tmp_path / f"merino{suffix}"
+    path.write_text(json.dumps(document) if suffix == ".json" else yaml.safe_dump(document))
+    merino = load_material_file(path)
+    law = merino.law(Fabric.STOCKINETTE)
+    assert law.modulus_course == pytest.approx(0.16)
+    assert law.poisson_xy == pytest.approx(0.43)
+    assert not merino.is_complete
+    assert "10 % assumed" in merino.record(Fabric.STOCKINETTE).uncertainty.source
+
+
+@pytest.mark.parametrize("identifier", [*load_library(), *load_variants()])
+@pytest.mark.parametrize("suffix", [".json", ".yaml"])
+def test_saving_and_loading_keeps_the_laws(tmp_path, identifier, suffix):
+    original = material(identifier)
+    save_material_file(original, tmp_path / f"m{suffix}")
+    again = load_material_file(tmp_path / f"m{suffix}")
+    assert (again.identifier, again.yarn) == (original.identifier, original.yarn)
+    for fabric, record in original.fabrics.items():
+        copy = again.record(fabric)
+        assert copy.law == record.law
+        assert copy.loop_length_mm == record.loop_length_mm
+        assert copy.uncertainty.log_modulus_wale == pytest.approx(
+            record.uncertainty.log_modulus_wale
+        )
+
+
+def test_moduli_that_contradict_the_stiffnesses_are_refused(document):
+    law_of(document).update(
+        stiffness_xxxx=0.3, stiffness_yyyy=0.5, stiffness_xxyy=0.1, stiffness_yyxx=0.2
+    )
+    with pytest.raises(InputError, match="the stiffnesses give") as caught:
+        material_from_mapping(document)
+    assert caught.value.field == "fabrics.stockinette.modulus_course"
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "message"),
+    [
+        ({"poisson_xy": 2.3}, "fabrics.stockinette.poisson_xy", "1 or more"),
+        ({"modulus_course": -0.1}, "fabrics.stockinette.law.modulus_course", "greater than 0"),
+        ({"alpha_xx": float("nan")}, "fabrics.stockinette.law.alpha_xx", "finite"),
+        ({"modulus_wale": None}, "fabrics.stockinette.law", "modulus_course, modulus_wale"),
+        ({"stifness": 1}, "fabrics.stockinette.law.stifness", "not permitted"),
+        ({"modulus_course": "soft"}, "fabrics.stockinette.law.modulus_course", "number"),
+    ],
+)
+def test_unsound_laws_are_refused_by_name(document, change, field, message):
+    law_of(document).update(change)
+    with pytest.raises(InputError, match=message) as caught:
+        material_from_mapping(document)
+    assert caught.value.field == field
+
+
+def test_an_indefinite_stiffness_is_refused(document):
+    document["fabrics"]["stockinette"]["law"] = {
+        "stiffness_xxxx": 0.099,
+        "stiffness_yyyy": 0.399,
+        "stiffness_xxyy": 0.870,
+        "stiffness_yyxx": 0.181,
+        "alpha_xx": 1,
+        "alpha_yy": 1,
+        "beta_xx": 0.1,
+        "beta_yy": 0.1,
+    }
+    with pytest.raises(InputError, match="not positive definite"):
+        material_from_mapping(document)
+
+
+def test_a_loop_shorter_than_its_stitch_is_refused(document):
+    document["fabrics"]["stockinette"]["loop_length_mm"] = 2.0
+    with pytest.raises(InputError, match="cannot make a stitch"):
+        material_from_mapping(document)
+
+
+def test_unknown_fabrics_and_missing_laws_are_refused(document):
+    document["fabrics"]["moss"] = document["fabrics"]["stockinette"]
+    with pytest.raises(InputError, match="stockinette"):
+        material_from_mapping(document)
+    document["fabrics"] = {}
+    with pytest.raises(InputError) as caught:
+        material_from_mapping(document)
+    assert caught.value.field == "fabrics"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("broken.json", b"{", "cannot be read"),
+        ("broken.yaml", b"a: [", "cannot be read"),
+        ("binary.yaml", b"\xff\xfe\x00", "cannot be read"),
+        ("list.json", b"[1, 2]", "holds no material"),
+        ("large.yaml", b"#" * 1_000_001, "over 1 MB"),
+    ],
+)
+def test_files_that_are_no_materials_are_refused(tmp_path, name, content, message):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError, match=message):
+        load_material_file(tmp_path / name)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(InputError, match="is not a file"):
+        load_material_file(tmp_path / "none.yaml")
