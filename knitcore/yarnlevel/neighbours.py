@@ -118,7 +118,7 @@ def neighbour_pairs(
 
 
 @numba.njit(cache=True)
-def pair_distances(
+def pair_vectors(
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
     cell: tuple[float, float],

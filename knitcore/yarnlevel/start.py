@@ -38,7 +38,7 @@ def start_state(
     size = (course_per_loop * loop_length_mm, wale_per_loop * loop_length_mm)
     grid = cell.grid
     u = np.arange(grid.controls) / grid.controls
-    swing_x = 0.17 * size[0] * np.sin(4.0 * np.pi * (u - 0.5))
+    swing_x = 0.22 * size[0] * np.sin(4.0 * np.pi * (u - 0.5))
     swing_y = 0.78 * size[1] * np.cos(2.0 * np.pi * (u - 0.5))
     points = np.zeros((cell.rows, cell.controls_per_course, 3))
     for row in range(cell.rows):

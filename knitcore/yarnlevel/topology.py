@@ -1,0 +1,115 @@
+"""Yarn must not pass through yarn: how far a step may go.
+
+Between two states every point moves along a straight line. Consecutive samples of a course are at
+most a spacing h apart at either end of the step, hence also in between. Where two stretches of yarn
+meet, some sample of one lies within 0.75 h of some sample of the other; so if the vector between
+any two samples changes by less than its length minus 0.75 h, nothing meets on the way. Pairs beyond the reach of the list are covered by a
+bound: their distance shrinks by no more than the strain of the cell times itself plus twice the
+largest displacement. A step that passes keeps the topology. Stretches of one yarn nearer than
+2.1 r along it are exempt: they would need a kink to cross.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.yarnlevel.cell import YarnCell
+from knitcore.yarnlevel.neighbours import pair_vectors
+
+Array = NDArray[np.float64]
+
+CROSSING = 0.75
+"""Two polylines that meet have samples within h / sqrt(2) of each other; the rest is for the bend
+of the yarn between its samples."""
+SAFETY = 0.95
+"""Part of the free distance that a step may use."""
+
+
+@dataclass(frozen=True, eq=False)
+class Guard:
+    """The distances at a state, and the step they allow.
+
+    Parameters
+    ----------
+    cell : the cell.
+    state, curve : where the step begins.
+    pairs : all pairs of samples nearer than ``reach_mm``.
+    reach_mm : reach of that list.
+    touch_mm : 2r; unlisted pairs must stay beyond it, so that the energy of the step is complete.
+    vectors : (pairs, 3) from sample to sample, mm.
+    """
+
+    cell: YarnCell
+    state: Array
+    curve: Array
+    pairs: NDArray[np.int64]
+    reach_mm: float
+    touch_mm: float
+    vectors: Array
+
+    @classmethod
+    def at(
+        cls, cell: YarnCell, state: Array, curve: Array, pairs: NDArray[np.int64],
+        reach_mm: float, touch_mm: float,
+    ) -> Guard:  # fmt: skip
+        """Measure the distances at a state."""
+        vectors = _vectors(cell, state, curve, pairs)
+        return cls(cell, state, curve, pairs, reach_mm, touch_mm, vectors)
+
+    @property
+    def min_distance_mm(self) -> float:
+        """Smallest distance between samples of different stretches of yarn."""
+        return float(self._lengths.min()) if len(self.pairs) else self.reach_mm
+
+    def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> float:
+        """Fraction (at most 1) of the way to another state that is certified.
+
+        ``pair_cap_mm`` also bounds the change of the vector between any listed pair.
+        """
+        old, new = self.state[-2:], state[-2:]
+        strain = float(np.abs(new / old - 1.0).max())
+        moved = curve[:, 0] - self.curve[:, 0]
+        moved = moved - moved.mean(axis=0) * np.array([1.0, 1.0, 0.0])
+        # what is left beside the affine change of the cell: the same in every image
+        drift = (new - old) / old
+        moved[:, 0] -= drift[0] * (self.curve[:, 0, 0] - self.curve[:, 0, 0].mean())
+        moved[:, 1] -= drift[1] * (self.curve[:, 0, 1] - self.curve[:, 0, 1].mean())
+        far = 2.0 * float(np.sqrt(np.einsum("im,im->i", moved, moved).max()))
+        allowed = (self.reach_mm - self.touch_mm) / max(far + strain * self.reach_mm, 1e-300)
+        allowed = min(1.0, allowed)
+        if len(self.pairs):
+            change = _vectors(self.cell, state, curve, self.pairs) - self.vectors
+            shift = np.sqrt(np.einsum("im,im->i", change, change))
+            allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
+            spacing = self._spacing(curve, allowed)
+            room = np.maximum(self._lengths - CROSSING * spacing, 0.0) * SAFETY
+            allowed = min(allowed, float((room / np.maximum(shift, 1e-300)).min()))
+        return allowed
+
+    @cached_property
+    def _lengths(self) -> Array:
+        return np.asarray(np.sqrt(np.einsum("im,im->i", self.vectors, self.vectors)))
+
+    def _spacing(self, curve: Array, fraction: float) -> float:
+        """Largest distance of consecutive samples up to a fraction of the step, mm.
+
+        Positions are linear in the fraction, so the spacing is convex in it. Speeds between the
+        samples hardly exceed those at the samples; five per cent are added for that.
+        """
+        here, there = (
+            float(np.sqrt(np.einsum("im,im->i", c[:, 1], c[:, 1]).max()))
+            for c in (self.curve, curve)
+        )
+        largest = max(here, (1.0 - fraction) * here + fraction * there)
+        return 1.05 * largest / self.cell.grid.samples
+
+
+def _vectors(cell: YarnCell, state: Array, curve: Array, pairs: NDArray[np.int64]) -> Array:
+    vectors: Array = pair_vectors(
+        curve, cell.place, (float(state[-2]), float(state[-1])), (cell.rows, cell.wales), pairs
+    )
+    return vectors
