@@ -21,10 +21,10 @@ router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
 VIEW_STYLE = """<style>
-  /* the page around the view has all controls; viser's own panel would repeat them */
-  .mantine-Paper-root, [class*="ControlPanel"], [class*="FloatingPanel"] {
-    display: none !important;
-  }
+  /* The page around the view has all controls and states; viser's own would repeat them. */
+  .mantine-Paper-root, .mantine-Notifications-root { display: none !important; }
+  /* The page's theme shows through. */
+  html, body, #root, #root div { background-color: transparent !important; }
 </style>"""
 SHARE_REQUESTS = frozenset({"ShareUrlRequest", "ShareUrlDisconnect"})
 """Messages that would make viser open a public tunnel to this machine."""

@@ -113,7 +113,15 @@ class Views:
 
 def _new_view() -> View:
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    server.gui.configure_theme(control_layout="collapsible", show_logo=False)
-    server.scene.set_up_direction("+y")
-    server.scene.world_axes.visible = False
+    server.gui.configure_theme(show_logo=False, show_share_button=False)
+    scene = server.scene
+    scene.set_up_direction("+y")
+    scene.world_axes.visible = False
+    # Light from the upper left, as charts and maps have it; soft enough to keep colours true.
+    scene.configure_environment_map(hdri=None)
+    scene.configure_default_lights(enabled=False)
+    scene.add_light_hemisphere(
+        "/light/sky", sky_color=(255, 252, 246), ground_color=(150, 145, 140), intensity=1.6
+    )
+    scene.add_light_directional("/light/key", intensity=1.7, position=(-60.0, 80.0, 120.0))
     return View(server, SceneWriter(server))

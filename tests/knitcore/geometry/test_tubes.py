@@ -33,9 +33,7 @@ def test_a_straight_tube_encloses_its_volume() -> None:
     assert side_flux + caps == pytest.approx(np.pi * 4.0, rel=5e-3)
 
 
-@pytest.mark.parametrize(
-    ("points", "radius", "sides"), [(1, 1.0, 8), (5, 0.0, 8), (5, 1.0, 2)]
-)
+@pytest.mark.parametrize(("points", "radius", "sides"), [(1, 1.0, 8), (5, 0.0, 8), (5, 1.0, 2)])
 def test_what_has_no_body_is_refused(points: int, radius: float, sides: int) -> None:
     with pytest.raises(InputError):
         tube(np.eye(5, 3)[:points], radius, sides)
