@@ -16,7 +16,8 @@ from knitcore.fabric import Direction
 COVERAGE = 0.90
 """Probability content of all intervals."""
 
-_Z = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
+Z_SCORE = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
+"""Half width of such an interval in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -64,10 +65,10 @@ def log_interval(value: float, log_standard_deviation: float) -> Interval:
     >>> round(interval.low, 3), round(interval.high, 3)
     (0.191, 0.26)
     """
-    factor = math.exp(_Z * log_standard_deviation)
+    factor = math.exp(Z_SCORE * log_standard_deviation)
     return Interval(value / factor, value * factor)
 
 
 def normal_interval(value: float, standard_deviation: float) -> Interval:
     """Interval of a quantity with a symmetric error."""
-    return Interval(value - _Z * standard_deviation, value + _Z * standard_deviation)
+    return Interval(value - Z_SCORE * standard_deviation, value + Z_SCORE * standard_deviation)
