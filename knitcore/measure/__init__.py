@@ -1,0 +1,1 @@
+"""From measurements to constants: stretch tests, hanging yarn, squeezed yarn."""

@@ -1,0 +1,250 @@
+"""Uniaxial stretch tests as arrays: the records that the readers give and the fit takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+
+Array = NDArray[np.float64]
+
+MINIMUM_POINTS = 20
+"""Fewer points cannot tell a straight part from a stiffening one."""
+PERCENT_STRAIN = 6.0
+"""A strain above this (600 %) is more than any knit reaches before it locks: it is in percent."""
+SPIKE_SHARE = 0.1
+"""A reading that leaves the median of its six neighbours by more of the peak is a misreading."""
+FALL_SHARE = 0.35
+"""A force below its running maximum by more of the peak is an unloading or a rupture."""
+
+
+@dataclass(frozen=True, eq=False)
+class StretchRun:
+    """One pull of one sample; arrays of one length.
+
+    Attributes
+    ----------
+    name : where the run comes from, for messages.
+    strain_along, strain_across : engineering strains, dimensionless.
+    stress : N/mm, force per clamped width.
+    """
+
+    name: str
+    strain_along: Array
+    strain_across: Array
+    stress: Array
+
+    @property
+    def length(self) -> int:
+        """Number of points."""
+        return len(self.stress)
+
+
+@dataclass(frozen=True, eq=False)
+class StretchTest:
+    """Repeated pulls of one fabric in one direction.
+
+    Attributes
+    ----------
+    source : file name, for messages.
+    description : what the file says about the sample ("" when nothing).
+    runs : at least one.
+    width_mm : clamped width at rest, per run.
+    notes : what was left out and why, in sentences.
+    """
+
+    source: str
+    description: str
+    runs: tuple[StretchRun, ...]
+    width_mm: tuple[float, ...]
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def peak_stress(self) -> float:
+        """Largest stress of all runs (N/mm)."""
+        return max(float(run.stress.max()) for run in self.runs)
+
+    @property
+    def largest_strain(self) -> float:
+        """Largest strain along the pull of all runs."""
+        return max(float(run.strain_along.max()) for run in self.runs)
+
+    def pooled(self) -> StretchRun:
+        """All points of all runs, one after the other."""
+        return StretchRun(
+            name=self.source,
+            strain_along=np.concatenate([run.strain_along for run in self.runs]),
+            strain_across=np.concatenate([run.strain_across for run in self.runs]),
+            stress=np.concatenate([run.stress for run in self.runs]),
+        )
+
+    def without(self, index: int) -> StretchTest:
+        """The test with one run left out (for the jackknife)."""
+        keep = [i for i in range(len(self.runs)) if i != index]
+        return StretchTest(
+            self.source,
+            self.description,
+            tuple(self.runs[i] for i in keep),
+            tuple(self.width_mm[i] for i in keep),
+            self.notes,
+        )
+
+
+def misread_forces(force: Array) -> NDArray[np.bool_]:
+    """Isolated readings far from their neighbours (a digit misread from a display)."""
+    if len(force) < 7:
+        return np.zeros(len(force), dtype=bool)
+    away = np.abs(force - median_filter(force, size=7, mode="nearest"))
+    result: NDArray[np.bool_] = away > SPIKE_SHARE * float(force.max(initial=0.0))
+    return result
+
+
+def check_run(run: StretchRun, *, first_row: int = 1) -> None:
+    """Refuse a run that no fit could make sense of.
+
+    Parameters
+    ----------
+    run : the run, free of NaN.
+    first_row : row number of the first point in its file, for messages.
+
+    Raises
+    ------
+    InputError
+        If the points are too few, a strain is in percent, the columns are exchanged, the force is
+        in another unit, falls, or never rises.
+    """
+    if run.length < MINIMUM_POINTS:
+        raise InputError(
+            run.name,
+            f"has {run.length} usable points.",
+            f"Give at least {MINIMUM_POINTS} points between rest and the largest force.",
+        )
+    _check_percent(run, first_row)
+    _check_stress(run, first_row)
+    along, across = run.strain_along, run.strain_across
+    if along.max() < 0.01:
+        raise InputError(
+            run.name,
+            f"the strain along the pull never exceeds {along.max():.4f}.",
+            "Give strain as change of length over initial length, and the whole pull.",
+        )
+    if across[np.argmax(along)] > 0.5 * along.max() and np.ptp(across) > np.ptp(along):
+        raise InputError(
+            run.name,
+            "the sample grows more across than along the pull.",
+            "Exchange strain_along and strain_across, or course and wale.",
+        )
+    if _rank_correlation(along, run.stress) < 0.3:
+        raise InputError(
+            run.name,
+            "the force does not grow with the strain along the pull.",
+            "Check that force and strain belong to the same run and are in the same order.",
+        )
+
+
+def _check_percent(run: StretchRun, first_row: int) -> None:
+    largest = int(np.argmax(np.abs(run.strain_along)))
+    narrowest = int(np.argmin(run.strain_across))
+    if abs(run.strain_along[largest]) > PERCENT_STRAIN:
+        raise InputError(
+            f"{run.name}, strain_along",
+            f"{run.strain_along[largest]:.4g} in row {largest + first_row} looks like a strain"
+            " in percent (%).",
+            "Divide the strains by 100: 0.25 means 25 %.",
+        )
+    if run.strain_across[narrowest] <= -1:
+        raise InputError(
+            f"{run.name}, strain_across",
+            f"{run.strain_across[narrowest]:.4g} in row {narrowest + first_row} would make the"
+            " width negative; it looks like a strain in percent (%).",
+            "Divide the strains by 100: -0.05 means 5 % narrower.",
+        )
+
+
+def _check_stress(run: StretchRun, first_row: int) -> None:
+    peak = float(run.stress.max())
+    if peak <= 0:
+        raise InputError(
+            f"{run.name}, force",
+            "never rises above zero.",
+            "Give tension as a positive force in newton.",
+        )
+    if peak > 50.0:
+        raise InputError(
+            f"{run.name}, force",
+            f"gives a stress of {peak:.3g} N/mm, more than yarn carries.",
+            "Give the force in newton (not mN, gram or kgf) and the width in mm.",
+        )
+    fall = np.maximum.accumulate(run.stress) - run.stress
+    fallen = fall > FALL_SHARE * peak
+    if fallen.mean() > 0.02:
+        row = int(np.argmax(fallen)) + first_row
+        raise InputError(
+            f"{run.name}, force",
+            f"is not monotone: it has fallen by more than {FALL_SHARE:.0%} of its peak in row"
+            f" {row} and {int(fallen.sum())} rows in all.",
+            "Cut the unloading part off; give one pull from rest to the largest force.",
+        )
+
+
+def _rank_correlation(a: Array, b: Array) -> float:
+    ranks = [np.argsort(np.argsort(v)).astype(float) for v in (a, b)]
+    return float(np.corrcoef(ranks[0], ranks[1])[0, 1])
+
+
+def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
+    """Notes about whether two tests belong together; refuses exchanged directions.
+
+    Raises
+    ------
+    InputError
+        If a file says that it was pulled in the other direction, or both are the same test.
+    """
+    stated = {d: stated_direction(t) for d, t in zip(Direction, (course, wale), strict=True)}
+    for direction, test in zip(Direction, (course, wale), strict=True):
+        said = stated[direction]
+        if said is not None and said is not direction:
+            raise InputError(
+                f"test_{direction}",
+                f"{test.source} says that it was pulled {said}-wise.",
+                "Give the test pulled along the rows (x) first and the one along the columns (y)"
+                " second.",
+            )
+    if _same_points(course, wale):
+        raise InputError(
+            "test_wale",
+            f"{wale.source} holds the same points as {course.source}.",
+            "Give one test course-wise and one wale-wise.",
+        )
+    samples = [_sample_name(test.description) for test in (course, wale)]
+    if all(samples) and samples[0] != samples[1]:
+        return (
+            f"The tests name different samples ({course.description!r}, {wale.description!r}).",
+        )
+    return ()
+
+
+def stated_direction(test: StretchTest) -> Direction | None:
+    """The direction that a description or file name states as a lone X or Y, if any."""
+    for text in (test.description, test.source.rsplit(".", 1)[0]):
+        words = [w for w in text.replace("_", " ").replace("-", " ").split() if w in ("X", "Y")]
+        if words:
+            return Direction.COURSE if words[-1] == "X" else Direction.WALE
+    return None
+
+
+def _sample_name(description: str) -> str:
+    return " ".join(w for w in description.split() if w not in ("X", "Y", "New")).lower()
+
+
+def _same_points(a: StretchTest, b: StretchTest) -> bool:
+    first, second = a.runs[0], b.runs[0]
+    return first.length == second.length and bool(
+        np.array_equal(first.strain_along, second.strain_along)
+        and np.array_equal(first.stress, second.stress)
+    )

@@ -1,0 +1,320 @@
+"""Read stretch tests: the HDF5 layout of the study's authors, and a simple CSV.
+
+HDF5: one group ``videoN`` per pull with ``forces`` (n,) in N, ``traj`` (7, 2, n) in pixels (right,
+left, bottom, top, centre, clamp bottom, clamp top; the pull is vertical in the image) and
+``frames`` (n,); the datasets ``clampSize`` (px, the length of a clamp of 35.5 mm) and
+``fabricSize`` (px, the clamped width). ``video1`` conditions the sample and is not used.
+
+CSV: a header line with ``strain_along, strain_across, force_n, width_mm`` and, for repeated pulls,
+``run``; one row per point in the order of the pull.
+"""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from knitcore.errors import InputError
+from knitcore.measure.stretch_test import (
+    MINIMUM_POINTS,
+    StretchRun,
+    StretchTest,
+    check_run,
+    misread_forces,
+)
+
+Array = NDArray[np.float64]
+
+CLAMP_MM = 35.5
+CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
+MAXIMUM_CSV_BYTES = 64 * 2**20
+MAXIMUM_FRAMES = 2_000_000
+MAXIMUM_VIDEOS = 100
+_RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
+
+
+class Gauge(StrEnum):
+    """Between which tracked points the strain along the pull is read.
+
+    ``centre`` (centre of the fabric to the lower clamp) reproduces the published numbers;
+    ``clamps`` is the whole sample.
+    """
+
+    CENTRE = "centre"
+    CLAMPS = "clamps"
+
+    @property
+    def points(self) -> tuple[int, int]:
+        """Indices of the two tracked points."""
+        return (_CENTRE, _CLAMP_BOTTOM) if self is Gauge.CENTRE else (_CLAMP_BOTTOM, _CLAMP_TOP)
+
+
+def read_stretch_test(
+    path: Path, *, gauge: Gauge = Gauge.CLAMPS, file_format: str | None = None
+) -> StretchTest:
+    """A test from a file; the format is taken from the content unless it is given.
+
+    Parameters
+    ----------
+    path : HDF5 or CSV file.
+    gauge : for HDF5, which points give the strain along the pull.
+    file_format : ``"h5"``, ``"csv"`` or None.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is not what it claims to be, or holds no usable run.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(str(path), "is not a file.", "Give the path of an HDF5 or CSV file.")
+    actual = "h5" if h5py.is_hdf5(path) else "csv"
+    if file_format not in (None, "h5", "csv"):
+        raise InputError("format", f"{file_format!r} is unknown.", "Use csv or h5.")
+    claims_hdf5 = file_format == "h5" or (
+        file_format is None and path.suffix.lower() in (".h5", ".hdf5")
+    )
+    if claims_hdf5 and actual != "h5":
+        raise InputError(
+            path.name, "is not an HDF5 file, or is cut off.", "Give the file again, complete."
+        )
+    if file_format == "csv" and actual == "h5":
+        raise InputError(path.name, "is an HDF5 file, not a CSV.", "Use the format h5.")
+    return _read_hdf5(path, gauge) if actual == "h5" else _read_csv(path)
+
+
+# -- HDF5 ----------------------------------------------------------------------------------------
+
+
+def _read_hdf5(path: Path, gauge: Gauge) -> StretchTest:
+    try:
+        with h5py.File(path, "r") as file:
+            return _test_from_hdf5(path.name, file, gauge)
+    except (OSError, RuntimeError, KeyError) as error:
+        raise InputError(
+            path.name,
+            f"cannot be read as HDF5 ({str(error).splitlines()[0]}).",
+            "The file may be cut off or damaged: copy it again.",
+        ) from None
+
+
+def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
+    videos = sorted(
+        (int(match.group(1)), key)
+        for key in file
+        if (match := re.fullmatch(r"video[ _]?(\d+)", key, re.IGNORECASE))
+    )
+    if not videos or len(videos) > MAXIMUM_VIDEOS:
+        raise InputError(
+            name,
+            f"has {len(videos)} groups named video1, video2, ….",
+            f"Give 1 to {MAXIMUM_VIDEOS} pulls in the layout of docs/fit-a-law.md.",
+        )
+    notes: list[str] = []
+    if len(videos) > 1 and videos[0][0] == 1:
+        videos = videos[1:]
+        notes.append("video1 conditions the sample and is left out.")
+    clamp_px = _numbers(name, file, "clampSize")
+    fabric_px = _numbers(name, file, "fabricSize")
+    if clamp_px.size == 0 or fabric_px.size == 0 or min(clamp_px.min(), fabric_px.min()) <= 0:
+        raise InputError(
+            f"{name}, clampSize and fabricSize",
+            "must both hold a positive number of pixels.",
+            f"clampSize is the length in pixels of a clamp of {CLAMP_MM} mm.",
+        )
+    width_mm = float(fabric_px.mean() / clamp_px.mean() * CLAMP_MM)
+    runs: list[StretchRun] = []
+    reference: tuple[float, float] | None = None
+    for _, key in videos:
+        tracked = _tracked(name, file, key, gauge, notes)
+        if tracked is None:
+            continue
+        length, across, force = tracked
+        reference = reference or (float(length[0]), float(across[0]))
+        runs.append(
+            StretchRun(
+                name=f"{name}, {key}",
+                strain_along=length / reference[0] - 1,
+                strain_across=across / reference[1] - 1,
+                stress=force / width_mm,
+            )
+        )
+    if not runs:
+        raise InputError(
+            name,
+            "has no usable pull. " + " ".join(notes),
+            "Give at least one pull that is tracked from rest to the largest force.",
+        )
+    for run in runs:
+        check_run(run)
+    description = np.asarray(file.attrs.get("description", "")).ravel()
+    text = _text(description[0]) if description.size else ""
+    return StretchTest(name, text, tuple(runs), (width_mm,) * len(runs), tuple(notes))
+
+
+def _tracked(
+    name: str, file: h5py.File, key: str, gauge: Gauge, notes: list[str]
+) -> tuple[Array, Array, Array] | None:
+    """(length along, length across, force) of the frames that are tracked, or None."""
+    force = _numbers(name, file, f"{key}/forces").ravel()
+    points = _numbers(name, file, f"{key}/traj")
+    if points.ndim != 3 or points.shape[0] < 7 or points.shape[1] != 2:
+        raise InputError(
+            f"{name}, {key}/traj",
+            f"has the shape {points.shape}.",
+            "It must be (7 points, 2 coordinates, frames).",
+        )
+    frames = min(len(force), points.shape[2])
+    if abs(len(force) - points.shape[2]) > max(5, 0.01 * frames):
+        raise InputError(
+            f"{name}, {key}",
+            f"has {len(force)} forces but {points.shape[2]} tracked frames.",
+            "The file is cut off or mixes two pulls; give forces and points of the same frames.",
+        )
+    force, points = force[:frames], points[:, :, :frames]
+    used = points[[_RIGHT, _LEFT, *gauge.points]]
+    # A point that leaves the image sticks to its border.
+    lost = ~np.all(np.isfinite(used) & (used > 0), axis=(0, 1))
+    unread = ~np.isfinite(force)
+    good = ~(lost | unread)
+    good[good] = ~misread_forces(force[good])
+    if good.sum() < max(MINIMUM_POINTS, 0.5 * frames):
+        notes.append(
+            f"{key} is left out: {int(lost.sum())} of {frames} frames have an untracked point,"
+            f" {int(unread.sum())} no force."
+        )
+        return None
+    if (~good).any():
+        notes.append(f"{key}: {int((~good).sum())} of {frames} frames are left out.")
+    first, second = gauge.points
+    length = np.hypot(*(points[first] - points[second]))[good]
+    across = np.hypot(*(points[_RIGHT] - points[_LEFT]))[good]
+    if length[0] <= 0 or across[0] <= 0:
+        raise InputError(
+            f"{name}, {key}/traj",
+            "two points coincide in the first tracked frame.",
+            "Track the points from the unstretched sample on.",
+        )
+    return length, across, force[good]
+
+
+def _numbers(name: str, file: h5py.File, key: str) -> Array:
+    """A dataset of numbers stored in this very file, of bounded size."""
+    if key not in file:
+        raise InputError(f"{name}, {key}", "is missing.", "See docs/fit-a-law.md for the layout.")
+    if not isinstance(file.get(key, getlink=True), h5py.HardLink):
+        raise InputError(f"{name}, {key}", "is a link.", "Store the numbers in the file itself.")
+    data = file[key]
+    if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "iuf" or data.external:
+        raise InputError(f"{name}, {key}", "is no dataset of numbers.", "Store plain numbers.")
+    if data.size > 14 * MAXIMUM_FRAMES:
+        raise InputError(
+            f"{name}, {key}", f"holds {data.size} numbers.", f"Up to {MAXIMUM_FRAMES} frames."
+        )
+    return np.asarray(data[()], dtype=float)
+
+
+def _text(value: object) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+# -- CSV -----------------------------------------------------------------------------------------
+
+
+def _read_csv(path: Path) -> StretchTest:
+    if path.stat().st_size > MAXIMUM_CSV_BYTES:
+        raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
+    try:
+        table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str, engine="c")
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
+        raise InputError(
+            path.name,
+            f"cannot be read as CSV ({str(error).strip()}).",
+            f"Give a header line {', '.join(CSV_COLUMNS)} and comma-separated numbers.",
+        ) from None
+    table.columns = [re.sub(r"[\s-]+", "_", str(c).strip().lower()) for c in table.columns]
+    _check_header(path.name, list(table.columns))
+    values = {column: _column(path.name, column, table[column]) for column in CSV_COLUMNS}
+    labels = (
+        table["run"].fillna("").str.strip().to_numpy(dtype=str)
+        if "run" in table
+        else np.full(len(table), "")
+    )
+    if len(table) == 0:
+        raise InputError(path.name, "has no rows.", "Give one row per point.")
+    runs: list[StretchRun] = []
+    widths: list[float] = []
+    for label in dict.fromkeys(labels.tolist()):
+        rows = np.flatnonzero(labels == label)
+        run, width = _csv_run(path.name, label, rows, values)
+        runs.append(run)
+        widths.append(width)
+    return StretchTest(path.name, "", tuple(runs), tuple(widths))
+
+
+def _check_header(name: str, columns: list[str]) -> None:
+    percent = [c for c in columns if "strain" in c and ("%" in c or "percent" in c)]
+    if percent:
+        raise InputError(
+            f"{name}, {percent[0]}",
+            "is a strain in percent (%).",
+            "Divide the strains by 100 and name the columns strain_along and strain_across.",
+        )
+    missing = [c for c in CSV_COLUMNS if c not in columns]
+    if missing:
+        raise InputError(
+            name,
+            f"has no column {', '.join(missing)} (it has {', '.join(columns[:8])}).",
+            f"The header line must name {', '.join(CSV_COLUMNS)}.",
+        )
+
+
+def _column(name: str, column: str, texts: pd.Series) -> Array:
+    numbers = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
+    bad = np.flatnonzero(~np.isfinite(numbers))
+    if bad.size:
+        row = int(bad[0])
+        raise InputError(
+            f"{name}, column {column}",
+            f"row {row + 2} holds {texts.iloc[row]!r}, which is not a number"
+            f" ({bad.size} such rows).",
+            "Remove the row or give a number with a decimal point.",
+        )
+    return numbers
+
+
+def _csv_run(
+    name: str, label: str, rows: NDArray[np.intp], values: dict[str, Array]
+) -> tuple[StretchRun, float]:
+    title = f"{name}, run {label}" if label else name
+    width = values["width_mm"][rows]
+    if width.min() < 5:
+        row = int(rows[np.argmin(width)])
+        raise InputError(
+            f"{title}, column width_mm",
+            f"{width.min():g} in row {row + 2} is below 5 mm, so it may be in cm or m.",
+            "Give the clamped width at rest in mm.",
+        )
+    if np.ptp(width) > 0.01 * width[0]:
+        row = int(rows[np.argmax(np.abs(width - width[0]) > 0.01 * width[0])])
+        raise InputError(
+            f"{title}, column width_mm",
+            f"changes from {width[0]:g} to {values['width_mm'][row]:g} mm in row {row + 2}.",
+            "Stress is force per width at rest: give that width in every row of a run.",
+        )
+    force = values["force_n"][rows]
+    good = ~misread_forces(force)
+    run = StretchRun(
+        name=title,
+        strain_along=values["strain_along"][rows][good],
+        strain_across=values["strain_across"][rows][good],
+        stress=force[good] / width[0],
+    )
+    check_run(run, first_row=int(rows[0]) + 2)
+    return run, float(width[0])
