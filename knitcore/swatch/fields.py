@@ -1,0 +1,157 @@
+"""Strain, stress and energy fields of a deformed sheet, at cells and at nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.mechanics.stiffening import StiffeningForm, stiffening
+from knitcore.swatch.models import EnergyModel
+from knitcore.swatch.sheet import Sheet, State
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """Fields of one state on the corners of the cells; arrays (rows + 1, columns + 1).
+
+    Attributes
+    ----------
+    x_mm, y_mm : rest positions; ux_mm, uy_mm : displacements.
+    strain_xx, strain_yy, strain_xy : strains of the model. Of ``full``: elongations along course
+        and wale and half the change of their angle; of ``published``: the linearised strain.
+    principal_strain : (2, ...) larger and smaller principal value of the strain tensor.
+    principal_angle : rad, direction of the larger one from the course direction.
+    stress_xx, stress_yy, stress_xy : N/mm, force per rest width.
+    energy_density : N·mm per mm² at rest.
+    utilisation : alpha * strain, the larger of the two directions; 1 is the lock-up.
+    """
+
+    x_mm: Array
+    y_mm: Array
+    ux_mm: Array
+    uy_mm: Array
+    strain_xx: Array
+    strain_yy: Array
+    strain_xy: Array
+    principal_strain: Array
+    principal_angle: Array
+    stress_xx: Array
+    stress_yy: Array
+    stress_xy: Array
+    energy_density: Array
+    utilisation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CellStrains:
+    """Strains in the four triangles of every cell, (rows, columns, 4) each."""
+
+    xx: Array
+    yy: Array
+    xy: Array
+
+    @property
+    def mean(self) -> tuple[Array, Array, Array]:
+        """Cell means, (rows, columns) each."""
+        return self.xx.mean(axis=2), self.yy.mean(axis=2), self.xy.mean(axis=2)
+
+
+def cell_strains(sheet: Sheet, state: State) -> CellStrains:
+    """Strains of the sheet's model in every triangle."""
+    grid = sheet.grid
+    x = state.corners[grid.cell_corners]  # (cells, 4, 2)
+    width, height = grid.natural_width.ravel()[:, None], grid.natural_height.ravel()[:, None]
+    south, east = x[:, 1] - x[:, 0], x[:, 2] - x[:, 1]
+    north, west = x[:, 2] - x[:, 3], x[:, 3] - x[:, 0]
+    twice = 2 * state.centres
+    up, down = twice - x[:, 0] - x[:, 1], x[:, 2] + x[:, 3] - twice
+    right, left = twice - x[:, 0] - x[:, 3], x[:, 1] + x[:, 2] - twice
+    a = np.stack([south / width, left / width, north / width, right / width], axis=1)
+    b = np.stack([up / height, east / height, down / height, west / height], axis=1)
+    if sheet.model.energy is EnergyModel.PUBLISHED:
+        strains = a[..., 0] - 1, b[..., 1] - 1, (a[..., 1] + b[..., 0]) / 2
+    else:
+        dot = np.sum(a * b, axis=-1)
+        cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+        strains = (
+            np.linalg.norm(a, axis=-1) - 1,
+            np.linalg.norm(b, axis=-1) - 1,
+            np.arctan2(dot, cross) / 2,
+        )
+    return CellStrains(*(s.reshape(grid.rows, grid.columns, 4) for s in strains))
+
+
+def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
+    """alpha * strain of every cell and direction, (2, rows, columns)."""
+    xx, yy, _ = strains.mean
+    alpha = np.array([(law.alpha_xx, law.alpha_yy) for law in sheet.laws])[sheet.grid.law_of_cell]
+    kappa = sheet.model.stiffening_coupling
+    return np.stack([alpha[..., 0] * (xx + kappa * yy), alpha[..., 1] * (yy + kappa * xx)])
+
+
+def node_fields(sheet: Sheet, state: State) -> Fields:
+    """All fields at the corners: means over the cells that meet there, weighted by rest area."""
+    grid = sheet.grid
+    strains = cell_strains(sheet, state)
+    cells = {"strain_xx": strains.mean[0], "strain_yy": strains.mean[1]}
+    cells["strain_xy"] = strains.mean[2]
+    cells |= _response(sheet, *strains.mean)
+    cells["utilisation"] = utilisation(sheet, strains).max(axis=0)
+    area = grid.natural_width * grid.natural_height
+    total = _to_corners(area)
+    nodes = {name: _to_corners(area * value) / total for name, value in cells.items()}
+    xx, yy, xy = nodes["strain_xx"], nodes["strain_yy"], nodes["strain_xy"]
+    middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    shape = xx.shape
+    moved = state.corners - grid.corners
+    return Fields(
+        x_mm=grid.corners[:, 0].reshape(shape),
+        y_mm=grid.corners[:, 1].reshape(shape),
+        ux_mm=moved[:, 0].reshape(shape),
+        uy_mm=moved[:, 1].reshape(shape),
+        principal_strain=np.stack([middle + radius, middle - radius]),
+        principal_angle=np.arctan2(2 * xy, xx - yy) / 2,
+        **nodes,
+    )
+
+
+def _response(sheet: Sheet, xx: Array, yy: Array, xy: Array) -> dict[str, Array]:
+    """Stresses and energy density of cells at mean strains (wrinkling not considered)."""
+    codes = sheet.grid.law_of_cell
+
+    def constant(name: str) -> Array:
+        return np.array([getattr(law, name) for law in sheet.laws])[codes]
+
+    form = StiffeningForm(sheet.model.energy.value)
+    kappa = sheet.model.stiffening_coupling
+    alpha_x, alpha_y = constant("alpha_xx"), constant("alpha_yy")
+    beta_x, beta_y = constant("beta_xx"), constant("beta_yy")
+    coupling, shear = constant("stiffness_xxyy"), constant("shear_modulus")
+    energy_x, slope_x, _ = stiffening(alpha_x * (xx + kappa * yy), form)
+    energy_y, slope_y, _ = stiffening(alpha_y * (yy + kappa * xx), form)
+    linear_x = constant("stiffness_xxxx") * xx + coupling * yy
+    linear_y = constant("stiffness_yyyy") * yy + coupling * xx
+    stiff_x, stiff_y = beta_x * slope_x, beta_y * slope_y
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stored = np.where(alpha_x > 0, beta_x / alpha_x, 0) * energy_x
+        stored = stored + np.where(alpha_y > 0, beta_y / alpha_y, 0) * energy_y
+    return {
+        "stress_xx": linear_x + stiff_x + kappa * stiff_y,
+        "stress_yy": linear_y + stiff_y + kappa * stiff_x,
+        "stress_xy": 2 * shear * xy,
+        "energy_density": (xx * linear_x + yy * linear_y) / 2 + 2 * shear * xy**2 + stored,
+    }
+
+
+def _to_corners(cells: Array) -> Array:
+    """Sums over the up to four cells that meet at each corner."""
+    out = np.zeros((cells.shape[0] + 1, cells.shape[1] + 1))
+    out[:-1, :-1] += cells
+    out[:-1, 1:] += cells
+    out[1:, :-1] += cells
+    out[1:, 1:] += cells
+    return out

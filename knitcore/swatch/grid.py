@@ -1,0 +1,255 @@
+"""The quarter grid: the mesh of a swatch, one cell per quarter of a stitch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Fabric
+from knitcore.phases import quarter_phases
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+MAX_CELLS = 1_500_000
+"""Meshes are refused beyond this many cells: the factorised tangent would not fit in 8 GB."""
+
+
+@dataclass(frozen=True, eq=False)
+class QuarterGrid:
+    """A rectangle of rows x columns cells between straight grid lines.
+
+    Parameters
+    ----------
+    column_lines : float array (columns + 1,), mm
+        x of the vertical lines, increasing.
+    row_lines : float array (rows + 1,), mm
+        y of the horizontal lines, increasing.
+    law_of_cell : uint8 array (rows, columns)
+        Which law a cell follows; for a chart, its phase code.
+    natural_width, natural_height : float arrays (rows, columns), mm
+        Size of the cell's own fabric at rest. By default the size between the lines.
+
+    Raises
+    ------
+    InputError
+        If sizes are not positive or the mesh would not fit in memory.
+    """
+
+    column_lines: Array
+    row_lines: Array
+    law_of_cell: NDArray[np.uint8]
+    natural_width: Array
+    natural_height: Array
+
+    def __post_init__(self) -> None:
+        rows, columns = self.law_of_cell.shape
+        check_cells(rows, columns)
+        for name, lines, count in (
+            ("width_mm", self.column_lines, columns),
+            ("length_mm", self.row_lines, rows),
+        ):
+            if lines.shape != (count + 1,) or not np.all(np.diff(lines) > 0):
+                raise InputError(name, "gives cells without size.", "Give sizes above 0 mm.")
+        for array in (self.natural_width, self.natural_height):
+            if array.shape != (rows, columns) or not np.all(array > 0):
+                raise InputError("size", "a cell has no natural size.", "Give sizes above 0 mm.")
+
+    @classmethod
+    def uniform(cls, columns: int, rows: int, width_mm: float, length_mm: float) -> QuarterGrid:
+        """Cells of one law and one size, centred on the origin."""
+        check_cells(rows, columns)
+        check_size_mm(width_mm, length_mm)
+        return cls.between(
+            np.linspace(-width_mm / 2, width_mm / 2, columns + 1),
+            np.linspace(-length_mm / 2, length_mm / 2, rows + 1),
+            np.zeros((rows, columns), dtype=np.uint8),
+        )
+
+    @classmethod
+    def between(
+        cls, column_lines: Array, row_lines: Array, law_of_cell: NDArray[np.uint8]
+    ) -> QuarterGrid:
+        """Cells that are at rest as laid out between the lines."""
+        shape = law_of_cell.shape
+        return cls(
+            column_lines,
+            row_lines,
+            law_of_cell,
+            np.broadcast_to(np.diff(column_lines), shape).copy(),
+            np.broadcast_to(np.diff(row_lines)[:, None], shape).copy(),
+        )
+
+    @classmethod
+    def of_chart(
+        cls,
+        chart: StitchChart,
+        stitch_size_mm: Mapping[Fabric, tuple[float, float]],
+        *,
+        width_mm: float | None = None,
+        length_mm: float | None = None,
+    ) -> QuarterGrid:
+        """The grid of a chart, each phase with its fabric's stitch size (width, height).
+
+        Where fabrics of different gauge meet, a column is as wide and a row as high as its
+        quarters are on average; what each quarter would like to measure stays in
+        ``natural_width`` and ``natural_height``. With ``width_mm`` or ``length_mm`` all sizes are
+        scaled so that the swatch measures that.
+        """
+        check_cells(2 * chart.rows, 2 * chart.columns)
+        phases = quarter_phases(chart)
+        sizes = np.full((len(PHASES), 2), np.nan)
+        for code in np.unique(phases):
+            fabric = PHASES[code]
+            if fabric not in stitch_size_mm:
+                raise InputError(
+                    "material",
+                    f"it has no {fabric}, which this chart contains.",
+                    "Use a material with this fabric or another chart.",
+                )
+            check_size_mm(*stitch_size_mm[fabric])
+            sizes[code] = stitch_size_mm[fabric]
+        natural_width, natural_height = (sizes[phases, axis] / 2 for axis in (0, 1))
+        widths, heights = natural_width.mean(axis=0), natural_height.mean(axis=1)
+        if width_mm is not None:
+            check_size_mm(width_mm, 1.0)
+            scale = width_mm / widths.sum()
+            widths, natural_width = widths * scale, natural_width * scale
+        if length_mm is not None:
+            check_size_mm(1.0, length_mm)
+            scale = length_mm / heights.sum()
+            heights, natural_height = heights * scale, natural_height * scale
+        return cls(_lines(widths), _lines(heights), phases, natural_width, natural_height)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of cells."""
+        return int(self.law_of_cell.shape[0])
+
+    @property
+    def columns(self) -> int:
+        """Number of columns of cells."""
+        return int(self.law_of_cell.shape[1])
+
+    @property
+    def width_mm(self) -> float:
+        """Course-wise size."""
+        return float(self.column_lines[-1] - self.column_lines[0])
+
+    @property
+    def length_mm(self) -> float:
+        """Wale-wise size."""
+        return float(self.row_lines[-1] - self.row_lines[0])
+
+    @property
+    def dofs(self) -> int:
+        """Displacement unknowns of corners and centres, constrained ones included."""
+        return 2 * ((self.rows + 1) * (self.columns + 1) + self.rows * self.columns)
+
+    @property
+    def at_rest_as_laid_out(self) -> QuarterGrid:
+        """The same grid without the misfit of the gauges."""
+        return QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
+
+    @cached_property
+    def corners(self) -> Array:
+        """Positions (mm) of the cells' corners, row by row from the bottom, (n, 2)."""
+        x, y = np.meshgrid(self.column_lines, self.row_lines)
+        return np.column_stack([x.ravel(), y.ravel()])
+
+    @cached_property
+    def centres(self) -> Array:
+        """Positions (mm) of the cells' centres, (rows * columns, 2)."""
+        x, y = np.meshgrid(
+            (self.column_lines[1:] + self.column_lines[:-1]) / 2,
+            (self.row_lines[1:] + self.row_lines[:-1]) / 2,
+        )
+        return np.column_stack([x.ravel(), y.ravel()])
+
+    @cached_property
+    def cell_corners(self) -> Indices:
+        """Corner numbers of each cell, counter-clockwise from the lower left, (cells, 4)."""
+        first = (
+            np.arange(self.rows)[:, None] * (self.columns + 1) + np.arange(self.columns)
+        ).ravel()
+        above = first + self.columns + 1
+        return np.column_stack([first, first + 1, above + 1, above])
+
+    def edge(self, name: str) -> Indices:
+        """Corner numbers along ``bottom``, ``top``, ``left`` or ``right``."""
+        numbers = np.arange((self.rows + 1) * (self.columns + 1)).reshape(self.rows + 1, -1)
+        edges: dict[str, Indices] = {
+            "bottom": numbers[0],
+            "top": numbers[-1],
+            "left": numbers[:, 0],
+            "right": numbers[:, -1],
+        }
+        return edges[name]
+
+    @cached_property
+    def triangles(self) -> Indices:
+        """The crossed triangulation, (4 * cells, 3); centres are numbered after the corners."""
+        c = self.cell_corners
+        centre = len(self.corners) + np.arange(len(c))
+        sides = [np.column_stack([c[:, i], c[:, (i + 1) % 4], centre]) for i in range(4)]
+        return np.stack(sides, axis=1).reshape(-1, 3)
+
+    def mesh(self) -> Any:
+        """The mesh as a scikit-fem ``MeshTri`` with named boundaries, nodes numbered as here."""
+        from skfem import MeshTri
+
+        points = np.vstack([self.corners, self.centres]).T
+        mesh = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(self.triangles.T))
+        x, y = self.column_lines, self.row_lines
+        return mesh.with_boundaries(
+            {
+                "left": lambda p: np.isclose(p[0], x[0]),
+                "right": lambda p: np.isclose(p[0], x[-1]),
+                "bottom": lambda p: np.isclose(p[1], y[0]),
+                "top": lambda p: np.isclose(p[1], y[-1]),
+            }
+        )
+
+
+def check_cells(rows: int, columns: int) -> None:
+    """Refuse a mesh that is empty or would not fit in memory.
+
+    Raises
+    ------
+    InputError
+        Naming the number of cells that would be accepted.
+    """
+    if rows < 1 or columns < 1:
+        raise InputError("size", f"{columns} x {rows} cells are none.", "Give at least 1 x 1.")
+    if rows * columns > MAX_CELLS:
+        raise InputError(
+            "size",
+            f"{rows * columns} cells would not fit in memory.",
+            f"Use at most {MAX_CELLS} cells ({MAX_CELLS // 4} stitches), "
+            f"such as {int((MAX_CELLS / 4) ** 0.5)} x {int((MAX_CELLS / 4) ** 0.5)} stitches.",
+        )
+
+
+def check_size_mm(width_mm: float, length_mm: float) -> None:
+    """Refuse sizes that are not positive numbers.
+
+    Raises
+    ------
+    InputError
+        Naming the side.
+    """
+    for name, value in (("width_mm", width_mm), ("length_mm", length_mm)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(name, f"{value} mm is no size.", "Give a number above 0 mm.")
+
+
+def _lines(sizes: Array) -> Array:
+    lines = np.concatenate([[0.0], np.cumsum(sizes)])
+    return np.asarray(lines - lines[-1] / 2)

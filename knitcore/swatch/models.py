@@ -1,0 +1,146 @@
+"""Energy models of the sheet, by name.
+
+``published``
+    What the paper's demonstration solved (Note 9): linearised strain and the stiffening energy
+    truncated at quartic order. It never locks and it is not objective.
+``full``
+    Fibre strains ``e_x = |F X| - 1`` and ``e_y = |F Y| - 1`` along the courses and wales and the
+    change ``gamma`` of the angle between them, as an extensometer and a protractor would read
+    them; the whole stiffening term in tension only, continued beyond 98 % of the lock-up by its
+    osculating quadratic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.errors import InputError
+from knitcore.mechanics.constitutive import ConstitutiveLaw, Symmetrisation
+
+
+class EnergyModel(StrEnum):
+    """Which sheet energy is meant."""
+
+    PUBLISHED = "published"
+    FULL = "full"
+
+    @property
+    def code(self) -> int:
+        """Number by which the compiled kernel knows the model."""
+        return 0 if self is EnergyModel.PUBLISHED else 1
+
+
+class Coupling(StrEnum):
+    """How C_xxyy and C_yyxx become the one coupling that an energy needs.
+
+    ``geometric`` keeps both Young's moduli and nu_xy nu_yx; ``arithmetic`` is the paper's text
+    and ``script`` (C_xxyy alone) what the authors' script used.
+    """
+
+    GEOMETRIC = "geometric"
+    ARITHMETIC = "arithmetic"
+    SCRIPT = "script"
+
+
+@dataclass(frozen=True)
+class SheetModel:
+    """An energy model and its assumptions, all visible.
+
+    Parameters
+    ----------
+    energy : which energy.
+    coupling : symmetrisation rule; by default the model's own (arithmetic for ``published``).
+    shear_modulus : N/mm, replaces the laws' assumed shear modulus if given.
+    stiffening_coupling : dimensionless
+        kappa in the argument ``e_y + kappa e_x`` of the stiffening (``full`` only): part of the
+        yarn that a contracting course frees for the wale.
+    tension_field : bool
+        Let the sheet wrinkle instead of carrying compression along a course or wale (``full``).
+
+    Raises
+    ------
+    InputError
+        If an option is out of range or not one of the model.
+    """
+
+    energy: EnergyModel = EnergyModel.FULL
+    coupling: Coupling | None = None
+    shear_modulus: float | None = None
+    stiffening_coupling: float = 0.0
+    tension_field: bool = False
+
+    def __post_init__(self) -> None:
+        if self.shear_modulus is not None and not (
+            np.isfinite(self.shear_modulus) and self.shear_modulus > 0
+        ):
+            raise InputError(
+                "shear_modulus", f"{self.shear_modulus} N/mm is no stiffness.", "Give above 0 N/mm."
+            )
+        if not 0.0 <= self.stiffening_coupling <= 1.0:
+            raise InputError(
+                "stiffening_coupling",
+                f"{self.stiffening_coupling} is out of range.",
+                "Give a number from 0 to 1.",
+            )
+        if self.energy is EnergyModel.PUBLISHED and (
+            self.stiffening_coupling != 0 or self.tension_field
+        ):
+            raise InputError(
+                "model", "the published model has no such option.", "Use the full model."
+            )
+        if self.tension_field and self.stiffening_coupling != 0:
+            raise InputError(
+                "tension_field",
+                "cannot be combined with a coupling of the stiffening.",
+                "Set stiffening_coupling to 0.",
+            )
+
+    @property
+    def rule(self) -> Coupling:
+        """The symmetrisation rule in force."""
+        if self.coupling is not None:
+            return self.coupling
+        return Coupling.ARITHMETIC if self.energy is EnergyModel.PUBLISHED else Coupling.GEOMETRIC
+
+    def prepare(self, law: ConstitutiveLaw) -> ConstitutiveLaw:
+        """The symmetric law, with this model's shear modulus.
+
+        Raises
+        ------
+        InputError
+            If the rule makes the stiffness indefinite.
+        """
+        if self.shear_modulus is not None:
+            law = replace(law, shear_modulus=self.shear_modulus)
+        match self.rule:
+            case Coupling.GEOMETRIC:
+                return law.symmetrised(Symmetrisation.GEOMETRIC)
+            case Coupling.ARITHMETIC:
+                return law.symmetrised(Symmetrisation.ARITHMETIC)
+            case Coupling.SCRIPT:
+                return replace(law, stiffness_yyxx=law.stiffness_xxyy)
+
+    def parameters(self, laws: Sequence[ConstitutiveLaw]) -> NDArray[np.float64]:
+        """Kernel parameters of symmetric laws, shape (laws, 10)."""
+        return np.array(
+            [
+                [
+                    law.stiffness_xxxx,
+                    law.stiffness_yyyy,
+                    law.stiffness_xxyy,
+                    law.shear_modulus,
+                    law.alpha_xx,
+                    law.alpha_yy,
+                    law.beta_xx,
+                    law.beta_yy,
+                    self.stiffening_coupling,
+                    float(self.tension_field),
+                ]
+                for law in (self.prepare(law) for law in laws)
+            ]
+        )

@@ -1,0 +1,187 @@
+"""What a test of a swatch gives back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.fabric import PHASES, Direction
+from knitcore.swatch.fields import Fields, cell_strains, node_fields, utilisation
+from knitcore.swatch.sheet import Sheet, State
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LockUp:
+    """Where a swatch is nearest to its lock-up.
+
+    Attributes
+    ----------
+    utilisation : alpha * strain there; 1 is the lock-up.
+    step : index of the load step.
+    x_mm, y_mm : rest position of the quarter cell.
+    direction : which of the cell's two fibres.
+    fabric : the cell's phase.
+    """
+
+    utilisation: float
+    step: int
+    x_mm: float
+    y_mm: float
+    direction: Direction
+    fabric: str
+
+
+@dataclass(frozen=True, eq=False)
+class SwatchTest:
+    """Load steps of a test, as far as they converged.
+
+    Attributes
+    ----------
+    sheet : grid, laws and model that were solved.
+    states : node positions at each step.
+    energy_n_mm : stored energy per step.
+    iterations : linear systems solved per step.
+    converged : whether every step that was asked for is here.
+    problem : why the test ended early, else None.
+    seconds : wall-clock time of the solution.
+    """
+
+    sheet: Sheet
+    states: tuple[State, ...]
+    energy_n_mm: Array
+    iterations: tuple[int, ...]
+    converged: bool
+    problem: str | None
+    seconds: float
+
+    @property
+    def steps(self) -> int:
+        """Number of load steps that converged."""
+        return len(self.states)
+
+    @property
+    def dofs(self) -> int:
+        """Displacement unknowns."""
+        return self.sheet.grid.dofs
+
+    @property
+    def x_mm(self) -> Array:
+        """Rest positions of the nodes, (rows + 1, columns + 1)."""
+        return self.sheet.grid.corners[:, 0].reshape(self._shape)
+
+    @property
+    def y_mm(self) -> Array:
+        """Rest positions of the nodes, (rows + 1, columns + 1)."""
+        return self.sheet.grid.corners[:, 1].reshape(self._shape)
+
+    @property
+    def ux_mm(self) -> Array:
+        """Course-wise displacements, (steps, rows + 1, columns + 1)."""
+        return self._displacements(0)
+
+    @property
+    def uy_mm(self) -> Array:
+        """Wale-wise displacements, (steps, rows + 1, columns + 1)."""
+        return self._displacements(1)
+
+    def fields(self, step: int = -1) -> Fields:
+        """All fields at the nodes after a load step (the last one by default)."""
+        return node_fields(self.sheet, self.states[step])
+
+    @property
+    def utilisation(self) -> Array:
+        """Largest alpha * strain of any quarter cell, per step."""
+        return np.array([self._utilisation(state).max() for state in self.states])
+
+    @property
+    def nearest_lock_up(self) -> LockUp | None:
+        """The quarter cell nearest to its lock-up in the last step (None without steps)."""
+        if not self.states:
+            return None
+        used = self._utilisation(self.states[-1])
+        axis, row, column = np.unravel_index(int(np.argmax(used)), used.shape)
+        grid = self.sheet.grid
+        return LockUp(
+            utilisation=float(used[axis, row, column]),
+            step=self.steps - 1,
+            x_mm=float(grid.column_lines[column : column + 2].mean()),
+            y_mm=float(grid.row_lines[row : row + 2].mean()),
+            direction=Direction.COURSE if axis == 0 else Direction.WALE,
+            fabric=PHASES[grid.law_of_cell[row, column]].value,
+        )
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return self.sheet.grid.rows + 1, self.sheet.grid.columns + 1
+
+    def _displacements(self, axis: int) -> Array:
+        rest = self.sheet.grid.corners[:, axis]
+        moved = [(s.corners[:, axis] - rest).reshape(self._shape) for s in self.states]
+        return np.array(moved).reshape(-1, *self._shape)
+
+    def _utilisation(self, state: State) -> Array:
+        return utilisation(self.sheet, cell_strains(self.sheet, state))
+
+
+@dataclass(frozen=True, eq=False)
+class StripTest(SwatchTest):
+    """A simulated strip test (geometry after ISO 20932-1), not a certified test.
+
+    Attributes
+    ----------
+    direction : of the pull.
+    strain : clamp-to-clamp engineering strain per step.
+    force_n : force on a clamp per step.
+    stress_n_per_mm : force per initial width.
+    waist_strain : change of width half-way between the clamps, over the initial width.
+    width_mm, length_mm : initial size across and along the pull.
+    requested_strain : what was asked for.
+    """
+
+    direction: Direction
+    strain: Array
+    force_n: Array
+    stress_n_per_mm: Array
+    waist_strain: Array
+    width_mm: float
+    length_mm: float
+    requested_strain: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class BiaxialTest(SwatchTest):
+    """All four edges pulled apart, free to slide along themselves.
+
+    Attributes
+    ----------
+    strain_course, strain_wale : strains per step.
+    force_course_n, force_wale_n : forces on the edges.
+    stress_course_n_per_mm, stress_wale_n_per_mm : forces per initial length of the edge.
+    """
+
+    strain_course: Array
+    strain_wale: Array
+    force_course_n: Array
+    force_wale_n: Array
+    stress_course_n_per_mm: Array
+    stress_wale_n_per_mm: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TrellisTest(SwatchTest):
+    """A picture frame: rigid hinged bars along the edges change the angle of courses and wales.
+
+    Attributes
+    ----------
+    shear_angle : rad, change of the angle per step.
+    moment_n_mm : work per shear angle, dE/d gamma.
+    shear_stress_n_per_mm : the moment over the rest area.
+    """
+
+    shear_angle: Array
+    moment_n_mm: Array
+    shear_stress_n_per_mm: Array

@@ -1,0 +1,277 @@
+"""Equilibrium of a sheet along a path of prescribed edge positions.
+
+One load step: predict (polynomial extrapolation of the last equilibria; along the tangent while
+there are too few), then Newton steps with an energy line search. The linear systems are solved by
+conjugate gradients on the true tangent, preconditioned by the last factorised one, so that a
+factorisation serves several Newton steps. A state is accepted only where its forces balance and
+its tangent is positive definite. A step that fails is halved; what cannot be halved any more is
+reported, with the part of the path that was reached.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.errors import CancelledError
+from knitcore.swatch.dissection import GridFactor, IndefiniteTangentError
+from knitcore.swatch.sheet import Linearisation, Sheet, State
+
+Array = NDArray[np.float64]
+
+MAX_NEWTON_STEPS = 30
+MAX_HALVINGS = 7
+HISTORY = 4
+"""Equilibria used by the extrapolation."""
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """When a state counts as balanced.
+
+    Attributes
+    ----------
+    relative : residual force over the force at the prescribed nodes (Euclidean norms).
+    absolute_n : N, floor below which a residual is none.
+    """
+
+    relative: float = 1e-9
+    absolute_n: float = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A balanced state.
+
+    Attributes
+    ----------
+    state : positions.
+    energy : N·mm.
+    reaction : N, (corners, 2), force that holds the prescribed unknowns; 0 elsewhere.
+    iterations : linear systems solved on the way here since the last level.
+    """
+
+    state: State
+    energy: float
+    reaction: Array
+    iterations: int
+
+
+class StepError(Exception):
+    """A load step found no equilibrium; the message says why."""
+
+
+class PathSolver:
+    """Follows the equilibria of a sheet as prescribed corner positions change.
+
+    Parameters
+    ----------
+    sheet : the sheet.
+    fixed : bool array (corners, 2)
+        Unknowns that are prescribed. They must at least take away the rigid motions.
+    tolerance : when a state counts as balanced.
+    cancelled : asked between linear solves; True stops with :class:`CancelledError`.
+    """
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        fixed: NDArray[np.bool_],
+        *,
+        tolerance: Tolerance | None = None,
+        cancelled: Callable[[], bool] | None = None,
+    ) -> None:
+        self.sheet = sheet
+        self.fixed = fixed
+        self.free = (~fixed).astype(float)
+        self.tolerance = tolerance or Tolerance()
+        self.cancelled = cancelled or (lambda: False)
+        self.factor = GridFactor(sheet.grid.columns, sheet.grid.rows, fixed.ravel())
+        self.factorisations = 0
+        self.conjugate_steps = 0
+        self._has_factor = False
+        self._factor_is_current = False
+        self._history: list[tuple[float, State]] = []
+        self._spare: Linearisation | None = None
+
+    def follow(
+        self, start: State, targets: list[Array], position: Callable[[float], Array] | None = None
+    ) -> Iterator[Equilibrium]:
+        """Equilibria at each target, the corner positions (corners, 2) of the prescribed unknowns.
+
+        The first target is approached from ``start``. Between targets the prescribed positions
+        move along straight lines.
+
+        Raises
+        ------
+        StepError
+            When a step fails even after halving; what was yielded before stays valid.
+        CancelledError
+            When the caller asked to stop.
+        """
+        state = start
+        origin = start.corners
+        self._history = []
+        for number, target in enumerate(targets):
+            done, share, iterations, halvings = 0.0, 1.0, 0, 0
+            while done < 1.0:
+                goal = min(1.0, done + share)
+                prescribed = target if goal == 1.0 else origin + goal * (target - origin)
+                try:
+                    found = self._step(state, prescribed, number + goal)
+                except StepError as reason:
+                    halvings += 1
+                    if halvings > MAX_HALVINGS:
+                        raise StepError(
+                            f"{reason} {done:.0%} of this step was reached, and halving it "
+                            f"{MAX_HALVINGS} times did not help."
+                        ) from reason
+                    share /= 2
+                    continue
+                state, done = found.state, goal
+                iterations += found.iterations
+                share = min(2 * share, 1.0 - done) if done < 1.0 else share
+            origin = target
+            yield Equilibrium(found.state, found.energy, found.reaction, iterations)
+
+    # -- one step ---------------------------------------------------------------------------
+
+    def _step(self, state: State, prescribed: Array, level: float) -> Equilibrium:
+        """Equilibrium with the prescribed positions, near a balanced state."""
+        iterations = 0
+        guess = self._extrapolated(level, prescribed)
+        if guess is None:
+            lin = self._linearise(state)
+            move = np.where(self.fixed, prescribed - state.corners, 0.0)
+            force = lin.condensed_force() + lin.apply(move)
+            if not self._has_factor:
+                self._factorise(lin)
+            step = move + self._solve(lin, -force * self.free, 1e-3)
+            guess = state.moved(step, lin.centre_step(step))
+            guess.corners[self.fixed] = prescribed[self.fixed]
+            iterations += 1
+        lin = self._linearise(guess)
+        if not np.isfinite(lin.energy):
+            raise StepError("A predicted fibre collapsed to a point.")
+        state = guess
+        for _ in range(MAX_NEWTON_STEPS):
+            residual, limit = self._residual(lin)
+            if residual <= limit:
+                return self._accept(state, lin, level, iterations)
+            force = lin.condensed_force() * self.free
+            step = self._solve(lin, -force, max(0.3 * limit / residual, 1e-4))
+            iterations += 1
+            state, lin = self._line_search(state, lin, step)
+        raise StepError(
+            f"Newton's method did not balance the forces in {MAX_NEWTON_STEPS} steps "
+            f"(residual {residual:.2g} N, wanted {limit:.2g} N)."
+        )
+
+    def _accept(
+        self, state: State, lin: Linearisation, level: float, iterations: int
+    ) -> Equilibrium:
+        try:
+            self._factorise(lin)
+        except IndefiniteTangentError:
+            raise StepError(
+                "The balanced state is unstable (its tangent is not positive definite)."
+            ) from None
+        self._history = [*self._history[1 - HISTORY :], (level, state)]
+        return Equilibrium(state, lin.energy, np.where(self.fixed, lin.corner_force, 0), iterations)
+
+    def _extrapolated(self, level: float, prescribed: Array) -> State | None:
+        if len(self._history) < 3:
+            return None
+        levels = np.array([known for known, _ in self._history])
+        weights = [
+            float(np.prod((level - np.delete(levels, i)) / (levels[i] - np.delete(levels, i))))
+            for i in range(len(levels))
+        ]
+        states = [state for _, state in self._history]
+        corners = sum(
+            (w * s.corners for w, s in zip(weights, states, strict=True)),
+            start=np.zeros_like(prescribed),
+        )
+        centres = sum(
+            (w * s.centres for w, s in zip(weights, states, strict=True)),
+            start=np.zeros_like(states[0].centres),
+        )
+        corners[self.fixed] = prescribed[self.fixed]
+        return State(corners, centres)
+
+    def _residual(self, lin: Linearisation) -> tuple[float, float]:
+        """Norm of the unbalanced force (N) and the norm that is tolerated."""
+        free = float(
+            np.sqrt(np.sum((lin.corner_force * self.free) ** 2) + np.sum(lin.centre_force**2))
+        )
+        held = float(np.linalg.norm(lin.corner_force[self.fixed]))
+        return free, max(self.tolerance.relative * held, self.tolerance.absolute_n)
+
+    def _line_search(
+        self, state: State, lin: Linearisation, step: Array
+    ) -> tuple[State, Linearisation]:
+        centre_step = lin.centre_step(step)
+        slope = float(np.sum(lin.corner_force * step) + np.sum(lin.centre_force * centre_step))
+        energy = lin.energy
+        noise = 1e-13 * abs(energy) + 1e-300
+        share = 1.0
+        self._spare = lin
+        while share > 1e-6:
+            trial = state.moved(step, centre_step, share)
+            found = self._linearise(trial)
+            if found.energy <= energy + 1e-4 * share * slope + noise:
+                return trial, found
+            share /= 2
+        raise StepError("The line search found no state of lower energy.")
+
+    # -- linear algebra ----------------------------------------------------------------------
+
+    def _linearise(self, state: State) -> Linearisation:
+        if self.cancelled():
+            raise CancelledError("The caller stopped the test.")
+        reuse, self._spare = self._spare, None
+        self._factor_is_current = False
+        lin = self.sheet.linearise(state, reuse)
+        return lin
+
+    def _factorise(self, lin: Linearisation) -> None:
+        self.factor.factorise(lin.matrix)
+        self.factorisations += 1
+        self._has_factor = True
+        self._factor_is_current = True
+
+    def _solve(self, lin: Linearisation, force: Array, relative: float) -> Array:
+        """Step (corners, 2) with K step = force on the free unknowns, by preconditioned CG.
+
+        Stops early in a direction of negative curvature, so that the step always goes downhill.
+        """
+        x = np.zeros_like(force)
+        r = force.copy()
+        z = self.factor.solve(r).reshape(r.shape)
+        p = z
+        rz = float(np.sum(r * z))
+        goal = relative * float(np.linalg.norm(r))
+        for count in range(40):
+            q = lin.apply(p) * self.free
+            curvature = float(np.sum(p * q))
+            self.conjugate_steps += 1
+            if curvature <= 0:
+                return p if count == 0 else x
+            a = rz / curvature
+            x = x + a * p
+            r = r - a * q
+            if float(np.linalg.norm(r)) <= goal:
+                return x
+            if count == 8 and not self._factor_is_current:
+                try:
+                    self._factorise(lin)
+                except IndefiniteTangentError:
+                    self._has_factor = False
+            z = self.factor.solve(r).reshape(r.shape)
+            new = float(np.sum(r * z))
+            p = z + (new / rz) * p
+            rz = new
+        return x

@@ -1,0 +1,318 @@
+"""The strip test: a swatch pulled between two clamps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Direction
+from knitcore.materials.material import Material
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.swatch.grid import QuarterGrid
+from knitcore.swatch.models import EnergyModel, SheetModel
+from knitcore.swatch.results import StripTest
+from knitcore.swatch.run import Path, Progress, run_path
+from knitcore.swatch.sheet import Sheet
+
+Array = NDArray[np.float64]
+
+DEFAULT_STEPS = 10
+MAX_STEPS = 1000
+MAX_STRAIN = 5.0
+"""Bound for laws that never lock."""
+LOCK_UP_SHARE = 0.98
+"""Share of the lock-up strain that a test may ask for."""
+
+
+class Clamps(StrEnum):
+    """How the ends are held: gripped, or free to slide along the clamp."""
+
+    CLAMPED = "clamped"
+    SLIDING = "sliding"
+
+
+def strip_test(
+    chart: StitchChart,
+    material: Material,
+    direction: Direction | str,
+    strain: float | Sequence[float],
+    *,
+    steps: int = DEFAULT_STEPS,
+    model: EnergyModel | str | SheetModel = EnergyModel.FULL,
+    shear_modulus: float | None = None,
+    clamps: Clamps | str = Clamps.CLAMPED,
+    draw_in: bool = False,
+    width_mm: float | None = None,
+    length_mm: float | None = None,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> StripTest:
+    """Pull a chart of a material.
+
+    Parameters
+    ----------
+    chart : the stitches, face side.
+    material : yarn and laws of its fabrics.
+    direction : of the pull; ``course`` clamps the left and right edges, ``wale`` bottom and top.
+    strain : last clamp-to-clamp strain, reached in equal steps, or all strains in order.
+    steps : number of load steps if one strain is given.
+    model : energy model by name, or with all its options.
+    shear_modulus : N/mm, replaces the laws' assumed one.
+    clamps : gripped or sliding ends.
+    draw_in : let each fabric keep its own gauge as rest size instead of the mean grid's, so that
+        regions of different gauge pull on each other (the ends stay at the grid's size).
+    width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
+    progress : called with (steps done, steps in all).
+    cancelled : asked now and then; True stops the test.
+
+    Returns
+    -------
+    StripTest
+        With ``converged`` False and ``problem`` set if it stopped short; the steps before that
+        are valid.
+
+    Raises
+    ------
+    InputError
+        For strains at or beyond the lock-up, sizes, steps or meshes that cannot be used.
+    CancelledError
+        If ``cancelled`` returned True.
+
+    Examples
+    --------
+    >>> from knitcore.materials import material
+    >>> chart = StitchChart.of_fabric("garter", rows=4, columns=6)
+    >>> test = strip_test(chart, material("acrylic"), "wale", 0.3, steps=3)
+    >>> test.converged, test.strain.round(2).tolist()
+    (True, [0.1, 0.2, 0.3])
+    """
+    sheet = chart_sheet(
+        chart, material, model, shear_modulus, draw_in, width_mm=width_mm, length_mm=length_mm
+    )
+    return pull(
+        sheet,
+        parse_direction(direction),
+        load_levels(strain, steps),
+        clamps=Clamps(clamps),
+        progress=progress,
+        cancelled=cancelled,
+    )
+
+
+def chart_sheet(
+    chart: StitchChart,
+    material: Material,
+    model: EnergyModel | str | SheetModel = EnergyModel.FULL,
+    shear_modulus: float | None = None,
+    draw_in: bool = False,
+    *,
+    width_mm: float | None = None,
+    length_mm: float | None = None,
+) -> Sheet:
+    """The sheet that a chart of a material is."""
+    chosen = sheet_model(model, shear_modulus)
+    sizes = {
+        fabric: (record.stitch_course_mm, record.stitch_wale_mm)
+        for fabric, record in material.fabrics.items()
+    }
+    grid = QuarterGrid.of_chart(chart, sizes, width_mm=width_mm, length_mm=length_mm)
+    if not draw_in:
+        grid = grid.at_rest_as_laid_out
+    used = {PHASES[code] for code in np.unique(grid.law_of_cell)}
+    some = next(iter(used))
+    return Sheet(
+        grid, [material.law(fabric if fabric in used else some) for fabric in PHASES], chosen
+    )
+
+
+def sheet_model(
+    model: EnergyModel | str | SheetModel, shear_modulus: float | None = None
+) -> SheetModel:
+    """A model by name or as it is, with a shear modulus."""
+    if isinstance(model, SheetModel):
+        if shear_modulus is not None:
+            raise InputError(
+                "shear_modulus", "is given twice.", "Give it in the model or apart, not both."
+            )
+        return model
+    try:
+        energy = EnergyModel(model)
+    except ValueError:
+        known = " or ".join(EnergyModel)
+        raise InputError("model", f"{model!r} is not known.", f"Use {known}.") from None
+    return SheetModel(energy, shear_modulus=shear_modulus)
+
+
+def pull(
+    sheet: Sheet,
+    direction: Direction,
+    levels: Array,
+    *,
+    clamps: Clamps = Clamps.CLAMPED,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> StripTest:
+    """A strip test of any sheet at the given strains.
+
+    Raises
+    ------
+    InputError
+        If a strain reaches the lock-up.
+    """
+    check_lock_up(sheet, direction, float(levels.max()))
+    fixed = clamp_mask(sheet.grid, direction, clamps)
+    targets = [stretched(sheet.grid, direction, e) for e in levels]
+    path = run_path(sheet, fixed, targets, progress=progress, cancelled=cancelled)
+    return strip_result(sheet, direction, levels, path)
+
+
+def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) -> StripTest:
+    """The result of a path whose steps are the strains ``levels``."""
+    grid, axis = sheet.grid, direction.axis
+    length, width = _along_across(grid, direction)
+    _, end = clamp_edges(direction)
+    force = path.forces(grid.edge(end), axis)
+    return StripTest(
+        sheet=sheet,
+        states=path.states,
+        energy_n_mm=path.energies,
+        iterations=path.iterations,
+        converged=path.problem is None,
+        problem=path.problem,
+        seconds=path.seconds,
+        direction=direction,
+        strain=levels[: len(path.found)],
+        force_n=force,
+        stress_n_per_mm=force / width,
+        waist_strain=np.array([_waist(grid, s.corners, direction) for s in path.states]),
+        width_mm=width,
+        length_mm=length,
+        requested_strain=tuple(float(e) for e in levels),
+    )
+
+
+def load_levels(strain: float | Sequence[float], steps: int) -> Array:
+    """Strains of the load steps.
+
+    Raises
+    ------
+    InputError
+        If they are not positive and increasing, or the number of steps cannot be used.
+    """
+    if not 1 <= steps <= MAX_STEPS:
+        raise InputError("steps", f"{steps} cannot be used.", f"Use 1 to {MAX_STEPS}.")
+    values = np.asarray(strain, dtype=float)
+    levels = values * np.arange(1, steps + 1) / steps if values.ndim == 0 else values
+    if levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:
+        raise InputError("strain", f"{strain} is no stretch.", "Give a number above 0.")
+    if np.any(np.diff(levels) <= 0):
+        raise InputError("strain", "the strains do not increase.", "Give increasing strains.")
+    return levels
+
+
+def lock_up_strain(sheet: Sheet, direction: Direction) -> float:
+    """Clamp-to-clamp strain at which the first straight line of cells locks (may be infinite)."""
+    if sheet.model.energy is EnergyModel.PUBLISHED:
+        return float("inf")
+    grid, axis = sheet.grid, direction.axis
+    limits = np.array([law.lock_up_strain(direction) for law in sheet.laws])[grid.law_of_cell]
+    natural = grid.natural_width if axis == 0 else grid.natural_height
+    lines = grid.column_lines if axis == 0 else grid.row_lines
+    longest = np.sum(natural * (1 + limits), axis=1 if axis == 0 else 0)
+    return float(longest.min() / (lines[-1] - lines[0]) - 1)
+
+
+def check_lock_up(sheet: Sheet, direction: Direction, strain: float) -> None:
+    """Refuse a strain that a line of cells cannot reach.
+
+    Raises
+    ------
+    InputError
+        Naming the largest strain that is accepted.
+    """
+    limit = min(LOCK_UP_SHARE * lock_up_strain(sheet, direction), MAX_STRAIN)
+    if strain > limit:
+        why = (
+            "is at or beyond the lock-up of this swatch" if limit < MAX_STRAIN else "is no fabric's"
+        )
+        raise InputError(
+            "strain",
+            f"{strain:.3g} {why} {direction}-wise.",
+            f"Use at most {np.floor(1000 * limit) / 1000:.3f}.",
+        )
+
+
+def clamp_edges(direction: Direction) -> tuple[str, str]:
+    """Names of the clamped edges, the fixed and the pulled one."""
+    return ("left", "right") if direction is Direction.COURSE else ("bottom", "top")
+
+
+def clamp_mask(grid: QuarterGrid, direction: Direction, clamps: Clamps) -> NDArray[np.bool_]:
+    """Which unknowns the clamps hold, (corners, 2)."""
+    fixed = np.zeros((len(grid.corners), 2), dtype=bool)
+    edges = [grid.edge(name) for name in clamp_edges(direction)]
+    for nodes in edges:
+        fixed[nodes, direction.axis] = True
+        if clamps is Clamps.CLAMPED:
+            fixed[nodes, direction.other.axis] = True
+    if clamps is Clamps.SLIDING:  # one node keeps the strip from drifting along the clamps
+        middle = edges[0][len(edges[0]) // 2]
+        fixed[middle, direction.other.axis] = True
+    return fixed
+
+
+def stretched(grid: QuarterGrid, direction: Direction, strain: float) -> Array:
+    """Corner positions of the uniformly stretched grid; the clamps' targets are among them."""
+    corners = grid.corners.copy()
+    corners[:, direction.axis] *= 1 + strain
+    return corners
+
+
+def parse_direction(direction: Direction | str) -> Direction:
+    """A direction by name.
+
+    Raises
+    ------
+    InputError
+        If it is neither course nor wale.
+    """
+    try:
+        return Direction(direction)
+    except ValueError:
+        raise InputError(
+            "direction", f"{direction!r} is not known.", "Use course or wale."
+        ) from None
+
+
+def homogeneous_sheet(
+    law: ConstitutiveLaw,
+    width_mm: float,
+    length_mm: float,
+    *,
+    columns: int = 60,
+    rows: int = 40,
+    model: SheetModel | None = None,
+) -> Sheet:
+    """A sheet of one law, ``width_mm`` course-wise and ``length_mm`` wale-wise."""
+    grid = QuarterGrid.uniform(columns, rows, width_mm, length_mm)
+    return Sheet(grid, [law], model or SheetModel())
+
+
+def _along_across(grid: QuarterGrid, direction: Direction) -> tuple[float, float]:
+    sizes = (grid.width_mm, grid.length_mm)
+    return sizes[direction.axis], sizes[direction.other.axis]
+
+
+def _waist(grid: QuarterGrid, corners: Array, direction: Direction) -> float:
+    """Relative change of width half-way between the clamps."""
+    across = direction.other.axis
+    first, last = ("bottom", "top") if direction is Direction.COURSE else ("left", "right")
+    width = corners[grid.edge(last), across] - corners[grid.edge(first), across]
+    lines = grid.column_lines if direction is Direction.COURSE else grid.row_lines
+    middle = float(np.interp((lines[0] + lines[-1]) / 2, lines, width))
+    return middle / _along_across(grid, direction)[1] - 1
