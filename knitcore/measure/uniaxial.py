@@ -204,13 +204,13 @@ def _poisson_ratio(test: StretchTest, reduction: Reduction) -> float:
     return float(-np.sum(weight * along * across) / np.sum(weight * along**2))
 
 
-def _poisson_line(test: StretchTest) -> Array:
+def _poisson_line(test: StretchTest) -> tuple[float, float]:
     """Slope and intercept of the strain across over the strain along, through all points."""
     points = test.pooled()
     along, across = points.strain_along, points.strain_across
     centred = along - along.mean()
-    slope = np.sum(centred * across) / np.sum(centred**2)
-    return np.array([slope, across.mean() - slope * along.mean()])
+    slope = float(np.sum(centred * across) / np.sum(centred**2))
+    return slope, float(across.mean() - slope * along.mean())
 
 
 def _points(test: StretchTest, reduction: Reduction) -> tuple[Array, Array, Array, Array]:
@@ -219,7 +219,8 @@ def _points(test: StretchTest, reduction: Reduction) -> tuple[Array, Array, Arra
         points = test.pooled()
         inside = _shared_range(test, points.strain_along)
         along = points.strain_along[inside]
-        across = np.polyval(_poisson_line(test), along)
+        slope, intercept = _poisson_line(test)
+        across = intercept + slope * along
         return along, across, points.stress[inside], np.ones(len(along))
     columns = [np.concatenate(parts) for parts in zip(*map(_binned, test.runs), strict=True)]
     return columns[0], columns[1], columns[2], columns[3]

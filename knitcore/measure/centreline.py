@@ -1,0 +1,257 @@
+"""Trace the centreline of one yarn in a photo."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageOps, UnidentifiedImageError
+from scipy.ndimage import gaussian_filter1d
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import dijkstra
+from skimage.filters import gaussian, threshold_otsu
+from skimage.measure import label, regionprops
+from skimage.morphology import isotropic_opening, skeletonize
+from skimage.transform import rescale
+
+from knitcore.errors import InputError
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+MAXIMUM_PIXELS = 60_000_000
+MAXIMUM_BYTES = 100 * 2**20
+WORKING_PIXELS = 1400
+"""Long side of the image that is traced; a yarn is then 10 to 60 pixels wide."""
+MINIMUM_CONTRAST = 0.12
+"""Of full scale, between the yarn and its background."""
+MINIMUM_SLENDERNESS = 6.0
+"""Length over width below which a bright spot is no yarn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Centreline:
+    """A yarn from its clamp to its free end, in pixels of the photo.
+
+    Attributes
+    ----------
+    x_px : (n,) horizontal distance from the clamp, positive away from it.
+    y_px : (n,) distance below the clamp.
+    arc_px : (n,) arc length from the clamp, evenly spaced.
+    width_px : median width of the yarn.
+    tip_in_photo : whether the free end ends inside the photo.
+    """
+
+    x_px: Array
+    y_px: Array
+    arc_px: Array
+    width_px: float
+    tip_in_photo: bool
+
+    @property
+    def length_px(self) -> float:
+        """Arc length from the clamp to the free end."""
+        return float(self.arc_px[-1])
+
+
+def load_grey(path: Path) -> Array:
+    """A photo as grey levels between 0 and 1, upright.
+
+    Raises
+    ------
+    InputError
+        If the file is no image, or larger than what a camera makes.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(str(path), "is not a file.", "Give the path of a photo.")
+    if path.stat().st_size > MAXIMUM_BYTES:
+        raise InputError(path.name, "is larger than 100 MB.", "Give a JPEG or PNG photo.")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(path, formats=("JPEG", "PNG", "TIFF", "BMP", "WEBP")) as image:
+                if image.width * image.height > MAXIMUM_PIXELS:
+                    raise InputError(
+                        path.name,
+                        f"has {image.width} x {image.height} pixels.",
+                        "Give a photo of up to 60 megapixels.",
+                    )
+                upright = ImageOps.exif_transpose(image).convert("L")
+                return np.asarray(upright, dtype=float) / 255.0
+    except UnidentifiedImageError:
+        raise InputError(path.name, "is not an image.", "Give a JPEG or PNG photo.") from None
+    except (
+        OSError,
+        SyntaxError,
+        Image.DecompressionBombError,
+        Image.DecompressionBombWarning,
+    ) as e:
+        raise InputError(
+            path.name, f"cannot be read as an image ({e}).", "The file may be cut off."
+        ) from None
+
+
+def trace_centreline(grey: Array, *, name: str = "photo") -> Centreline:
+    """The centreline of the one yarn in a photo.
+
+    The yarn is what stands out from the border's grey level, without its stray fibres; its
+    centreline is the longest path of its skeleton, extended to both ends and smoothed over one
+    yarn width.
+
+    Parameters
+    ----------
+    grey : (rows, columns) grey levels between 0 and 1, the yarn lighter or darker than the rest.
+    name : for messages.
+
+    Raises
+    ------
+    InputError
+        If no yarn stands out.
+    """
+    if grey.ndim != 2 or min(grey.shape) < 40:
+        raise InputError(
+            name, f"is too small ({grey.shape}).", "Give a photo of 40 pixels or more."
+        )
+    factor = min(1.0, WORKING_PIXELS / max(grey.shape))
+    small = rescale(grey, factor, anti_aliasing=True) if factor < 1 else grey
+    mask = _yarn_mask(small, name)
+    # A frame of background lets the skeleton end at the border like anywhere else.
+    path, width = _longest_path(np.pad(mask, 1))
+    path -= 1
+    if len(path) < MINIMUM_SLENDERNESS * width:
+        raise _no_yarn(name, "what stands out is a spot, not a yarn")
+    path = _extended(path, mask, width)
+    if path[0, 0] > path[-1, 0]:
+        path = path[::-1]
+    path = _smooth(path, width)
+    row, column = path[:, 0], path[:, 1]
+    away = np.sign(np.mean(column[: max(len(column) // 4, 2)]) - column[0]) or 1.0
+    x, y = away * (column - column[0]), row - row[0]
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    end = path[-1]
+    edge = 0.5 * width
+    inside = edge < end[0] < mask.shape[0] - 1 - edge and 2 < end[1] < mask.shape[1] - 3
+    return Centreline(x / factor, y / factor, arc / factor, width / factor, bool(inside))
+
+
+def _yarn_mask(grey: Array, name: str) -> Mask:
+    border = np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
+    ground = float(np.median(border))
+    low, high = np.percentile(grey, [0.5, 99.5])
+    lighter = high - ground >= ground - low
+    signal = gaussian(grey - ground if lighter else ground - grey, sigma=1.0)
+    if max(high - ground, ground - low) < MINIMUM_CONTRAST:
+        raise _no_yarn(name, "nothing stands out from the background")
+    mask: Mask = signal > threshold_otsu(signal)
+    if mask.mean() > 0.6:
+        raise _no_yarn(name, f"{mask.mean():.0%} of the photo stands out")
+    mask = _largest(mask, name)
+    # Fibres are thinner than half a yarn: opening removes them and leaves the yarn.
+    area, length = float(mask.sum()), float(skeletonize(mask).sum())
+    mask = _largest(isotropic_opening(mask, max(1.0, 0.3 * area / length)), name)
+    return mask
+
+
+def _largest(mask: Mask, name: str) -> Mask:
+    regions = regionprops(label(mask, connectivity=2))
+    if not regions:
+        raise _no_yarn(name, "nothing stands out from the background")
+    best = max(regions, key=lambda region: region.area)
+    alone = np.zeros_like(mask)
+    alone[tuple(best.coords.T)] = True
+    return alone
+
+
+def _no_yarn(name: str, why: str) -> InputError:
+    return InputError(
+        name,
+        f"no yarn was found: {why}.",
+        "Photograph one yarn against a plain background of another brightness, level, and crop to"
+        " the hanging part with the clamp at one side.",
+    )
+
+
+def _longest_path(mask: Mask) -> tuple[Array, float]:
+    """(n, 2) rows and columns of the skeleton's longest shortest path, and the yarn's width."""
+    skeleton = skeletonize(mask)
+    points = np.argwhere(skeleton)
+    index = np.full(mask.shape, -1)
+    index[tuple(points.T)] = np.arange(len(points))
+    first, second, weight = [], [], []
+    for step in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        shifted = points + step
+        inside = np.all((shifted >= 0) & (shifted < mask.shape), axis=1)
+        other = index[tuple(shifted[inside].T)]
+        linked = other >= 0
+        first.append(np.flatnonzero(inside)[linked])
+        second.append(other[linked])
+        weight.append(np.full(int(linked.sum()), np.hypot(*step)))
+    graph = csr_array(
+        coo_array(
+            (np.concatenate(weight), (np.concatenate(first), np.concatenate(second))),
+            shape=(len(points), len(points)),
+        )
+    )
+    start = _farthest(graph, 0)[0]
+    end, before = _farthest(graph, start)
+    order = [end]
+    while before[order[-1]] >= 0:
+        order.append(int(before[order[-1]]))
+    path = points[order].astype(float)
+    length = float(np.sum(np.hypot(*np.diff(path, axis=0).T))) if len(path) > 1 else 1.0
+    return path, float(mask.sum()) / max(length, 1.0)
+
+
+def _farthest(graph: csr_array, start: int) -> tuple[int, NDArray[np.int32]]:
+    """The reachable point farthest from a start, and each point's predecessor on the way."""
+    distance, before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    along = np.asarray(distance).ravel()
+    return int(np.argmax(np.where(np.isfinite(along), along, -1.0))), np.asarray(before).ravel()
+
+
+def _extended(path: Array, mask: Mask, width: float) -> Array:
+    """The path with its forked ends replaced by straight ones, up to the end of the yarn."""
+    cut = round(width)
+    core = path[cut:-cut]
+    return np.concatenate(
+        [_straight_end(core[::-1], mask, width)[::-1], core, _straight_end(core, mask, width)]
+    )
+
+
+def _straight_end(path: Array, mask: Mask, width: float) -> Array:
+    """Points that continue a path along its last tangent while they are in the yarn."""
+    reach = min(len(path) - 1, max(3, round(1.5 * width)))
+    tangent = path[-1] - path[-1 - reach]
+    tangent = tangent / np.hypot(*tangent)
+    steps = np.arange(1.0, 2.5 * width + 2.0)[:, None]
+    points = path[-1] + steps * tangent
+    nearest = np.rint(points).astype(int)
+    within = np.all((nearest >= 0) & (nearest < mask.shape), axis=1)
+    within[within] = mask[tuple(nearest[within].T)]
+    count = len(points) if within.all() else int(np.argmin(within))
+    return np.asarray(points[:count])
+
+
+def _smooth(path: Array, width: float) -> Array:
+    """The path, evenly spaced (one pixel), smoothed over one yarn width; its ends stay."""
+    smooth = path
+    for sigma in (2.0, 0.5 * width):
+        step = np.hypot(*np.diff(smooth, axis=0).T)
+        arc = np.concatenate([[0.0], np.cumsum(step)])
+        even = np.linspace(0.0, arc[-1], max(int(arc[-1]), 20))
+        smooth = np.stack([np.interp(even, arc, smooth[:, i]) for i in (0, 1)], axis=1)
+        smooth = np.stack([_odd_smooth(smooth[:, i], sigma) for i in (0, 1)], axis=1)
+    return smooth
+
+
+def _odd_smooth(values: Array, sigma: float) -> Array:
+    """Gaussian smoothing with point reflection at the ends, which keeps position and slope."""
+    pad = min(len(values) - 1, int(4 * sigma) + 1)
+    head = 2 * values[0] - values[pad:0:-1]
+    tail = 2 * values[-1] - values[-2 : -2 - pad : -1]
+    padded = gaussian_filter1d(np.concatenate([head, values, tail]), sigma)
+    return np.asarray(padded[pad : pad + len(values)])

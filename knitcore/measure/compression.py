@@ -1,0 +1,206 @@
+"""Compressibility of a yarn, k and p, from squeezing it under a flat probe (the paper's Note 3).
+
+    F = A k (rho_0 / p) ((rho_0 / rho)**p - 1),   rho = depth_core - depth
+
+with A the probe's width times the yarn's diameter, depth_core the depth at 3 N (the yarn's
+incompressible core) and rho_0 = depth_core - depth_0, where depth_0 is the depth at which the force
+leaves 1 mN for good. k and p by least squares over the readings from 1 mN to 1 N.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import curve_fit
+
+from knitcore.errors import InputError
+from knitcore.measure.compression_files import CompressionTest
+
+Array = NDArray[np.float64]
+
+PROBE_WIDTH_MM = 5.0
+TOUCH_N = 1e-3
+FIT_LIMIT_N = 1.0
+CORE_N = 3.0
+CORE_TOLERANCE = 0.02
+MINIMUM_READINGS = 15
+
+
+@dataclass(frozen=True, eq=False)
+class CompressionSample:
+    """What one test gave.
+
+    Attributes
+    ----------
+    name, yarn : of the sample.
+    k_n_per_mm3, p : constants of the force law, with their standard errors of the fit.
+    thickness_mm : rho_0, the compressible thickness.
+    diameter_mm : used for the area.
+    rms_n : of the residuals.
+    depth_mm, force_n, fitted_n : the readings fitted, for plots.
+    """
+
+    name: str
+    yarn: str
+    k_n_per_mm3: float
+    k_error_n_per_mm3: float
+    p: float
+    p_error: float
+    thickness_mm: float
+    diameter_mm: float
+    rms_n: float
+    depth_mm: Array
+    force_n: Array
+    fitted_n: Array
+
+
+@dataclass(frozen=True)
+class CompressionMean:
+    """Mean and standard deviation over the samples of one yarn (None for a single sample)."""
+
+    yarn: str
+    samples: int
+    k_n_per_mm3: float
+    k_standard_deviation_n_per_mm3: float | None
+    p: float
+    p_standard_deviation: float | None
+
+
+def fit_compression(
+    test: CompressionTest,
+    *,
+    diameter_mm: float | None = None,
+    probe_width_mm: float = PROBE_WIDTH_MM,
+) -> CompressionSample:
+    """k and p of one test.
+
+    Parameters
+    ----------
+    test : the readings.
+    diameter_mm : of the yarn; needed if the test does not carry it.
+    probe_width_mm : of the flat probe.
+
+    Raises
+    ------
+    InputError
+        If the diameter is missing or the test is cut off, in other units, or starts in contact.
+    """
+    diameter = diameter_mm if diameter_mm is not None else test.diameter_mm
+    if diameter is None:
+        raise InputError(
+            f"{test.name}, diameter_mm",
+            "the yarn's diameter is unknown.",
+            "Give it, or a sheet 'Yarn Diameters' with a column that names the yarn.",
+        )
+    for name, value in (("diameter_mm", diameter), ("probe_width_mm", probe_width_mm)):
+        if not (np.isfinite(value) and 0.01 <= value <= 50):
+            raise InputError(f"{test.name}, {name}", f"{value:g} cannot be used.", "Give mm.")
+    touch, core = _touch_and_core(test)
+    depth_core, depth_0 = float(test.depth_mm[core]), float(test.depth_mm[touch])
+    thickness = depth_core - depth_0
+    if thickness <= 0:
+        raise InputError(
+            f"{test.name}, depth",
+            "does not grow while the force does.",
+            "Depth must increase towards the yarn, in mm.",
+        )
+    part = slice(touch, core)
+    used = (test.force_n[part] <= FIT_LIMIT_N) & (test.depth_mm[part] < depth_core)
+    depth, force = test.depth_mm[part][used], test.force_n[part][used]
+    if len(depth) < MINIMUM_READINGS:
+        raise InputError(
+            test.name,
+            f"has {len(depth)} readings between 1 mN and 1 N.",
+            f"Record at least {MINIMUM_READINGS}.",
+        )
+    area = probe_width_mm * diameter
+
+    def law(at: Array, k: float, p: float) -> Array:
+        ratio = thickness / (depth_core - at)
+        return np.asarray(area * k * thickness / p * (ratio**p - 1))
+
+    try:
+        best, covariance = curve_fit(
+            law,
+            depth,
+            force,
+            p0=(1e-3, 2.5),
+            bounds=((1e-9, 0.05), (10.0, 20.0)),
+            x_scale=(1e-3, 1),
+        )
+    except RuntimeError:
+        raise InputError(
+            test.name, "the force law does not fit.", "Check that the columns are depth and force."
+        ) from None
+    errors = np.sqrt(np.diag(covariance))
+    fitted = law(depth, *best)
+    return CompressionSample(
+        name=test.name,
+        yarn=test.yarn,
+        k_n_per_mm3=float(best[0]),
+        k_error_n_per_mm3=float(errors[0]),
+        p=float(best[1]),
+        p_error=float(errors[1]),
+        thickness_mm=thickness,
+        diameter_mm=float(diameter),
+        rms_n=float(np.sqrt(np.mean((fitted - force) ** 2))),
+        depth_mm=depth,
+        force_n=force,
+        fitted_n=fitted,
+    )
+
+
+def average_compression(samples: Sequence[CompressionSample]) -> list[CompressionMean]:
+    """Means by yarn, in the order of their first sample."""
+    means = []
+    for yarn in dict.fromkeys(sample.yarn for sample in samples):
+        k = np.array([s.k_n_per_mm3 for s in samples if s.yarn == yarn])
+        p = np.array([s.p for s in samples if s.yarn == yarn])
+        several = len(k) > 1
+        means.append(
+            CompressionMean(
+                yarn=yarn,
+                samples=len(k),
+                k_n_per_mm3=float(k.mean()),
+                k_standard_deviation_n_per_mm3=float(k.std(ddof=1)) if several else None,
+                p=float(p.mean()),
+                p_standard_deviation=float(p.std(ddof=1)) if several else None,
+            )
+        )
+    return means
+
+
+def _touch_and_core(test: CompressionTest) -> tuple[int, int]:
+    """Indices of the first reading in contact for good, and of the one at the core's depth."""
+    force, depth = test.force_n, test.depth_mm
+    if len(force) < MINIMUM_READINGS or len(force) != len(depth):
+        raise InputError(
+            test.name, f"has {len(force)} readings.", f"Record at least {MINIMUM_READINGS}."
+        )
+    if not (np.all(np.isfinite(force)) and np.all(np.isfinite(depth))):
+        row = int(np.argmax(~(np.isfinite(force) & np.isfinite(depth))))
+        raise InputError(test.name, f"reading {row + 1} is not a number.", "Remove it.")
+    peak = float(force.max())
+    if peak > 100:
+        raise InputError(
+            f"{test.name}, force", f"reaches {peak:.4g} N.", "Give newton; the readings may be mN."
+        )
+    if peak < CORE_N * (1 - CORE_TOLERANCE):
+        raise InputError(
+            test.name,
+            f"is cut off: the force ends at {peak:.3g} N.",
+            f"The test must reach {CORE_N:g} N, where the yarn's core is taken to be.",
+        )
+    beyond = peak > CORE_N * (1 + CORE_TOLERANCE)
+    core = int(np.argmax(force >= CORE_N)) if beyond else int(np.argmax(force))
+    below = np.flatnonzero(force[:core] < TOUCH_N)
+    if below.size == 0:
+        raise InputError(
+            test.name,
+            f"starts in contact, at {force[0]:.3g} N.",
+            "Record from before the probe touches the yarn (below 1 mN).",
+        )
+    return int(below[-1]) + 1, core
