@@ -1,0 +1,150 @@
+"""Contact of the yarn with itself and with its images in the neighbouring stitches.
+
+A midpoint rule with ten points a curve (as the authors ran it) turns the double integral into a sum
+over pairs. Image (m, n) is shifted by m cells along the course and n along the wale, and mirrored
+in z when ``m course_odd + n wale_odd`` is odd. Within a course (n = 0) a pair counts only if the
+yarn between its points is longer than 2.1 r.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from knitcore.fabric import Fabric
+from knitcore.yarnlevel.potential import potential, potential_slope
+from knitcore.yarnlevel.published.elastic import bernstein
+
+FloatArray = npt.NDArray[np.float64]
+
+POINTS_A_CURVE = 10
+EXCLUSION = 2.1
+"""Arclength, in radii, within which the yarn does not feel itself."""
+WALE_IMAGES = 3
+
+
+def course_images(fabric: Fabric) -> int:
+    """How many neighbours along the course are looked at, each way (authors' code)."""
+    return 2 if fabric is Fabric.RIB else 1
+
+
+@cache
+def midpoint_tables() -> tuple[FloatArray, FloatArray]:
+    """Bernstein weights (10, 6) of position and of its derivative at the contact points."""
+    t = (np.arange(POINTS_A_CURVE) + 0.5) / POINTS_A_CURVE
+    return bernstein(t), bernstein(t, 1)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def sample(
+    controls: FloatArray, places: FloatArray, slopes: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Contact points (N, 3), unit tangents (N, 3), lengths and arclengths (N,)."""
+    per = places.shape[0]
+    count = controls.shape[0] * per
+    points, tangents = np.zeros((count, 3)), np.zeros((count, 3))
+    lengths, arclengths = np.empty(count), np.empty(count)
+    run = 0.0
+    for i in range(count):
+        curve, q = i // per, i % per
+        norm = 0.0
+        for d in range(3):
+            for k in range(6):
+                points[i, d] += places[q, k] * controls[curve, k, d]
+                tangents[i, d] += slopes[q, k] * controls[curve, k, d]
+            norm += tangents[i, d] ** 2
+        norm = np.sqrt(norm)
+        for d in range(3):
+            tangents[i, d] /= norm
+        lengths[i] = norm / per
+        arclengths[i] = run + 0.5 * lengths[i]
+        run += lengths[i]
+    return points, tangents, lengths, arclengths
+
+
+@numba.njit(cache=True, error_model="numpy")
+def contact_energy(
+    controls: FloatArray,
+    cell_course: float,
+    cell_wale: float,
+    course_odd: bool,
+    wale_odd: bool,
+    images: int,
+    factor: float,
+    k: float,
+    p: float,
+    radius: float,
+    core: float,
+    places: FloatArray,
+    slopes: FloatArray,
+    gradient: FloatArray,
+    cell_gradient: FloatArray,
+) -> tuple[float, float]:
+    """Contact energy, N·mm, and the smallest distance (mm) of two points that feel each other.
+
+    ``factor`` is that of an ordered pair. Adds the derivatives to ``gradient`` (curves, 6, 3) and
+    ``cell_gradient`` (2,), the latter at fixed control points.
+    """
+    points, tangents, lengths, arclengths = sample(controls, places, slopes)
+    per = places.shape[0]
+    count = points.shape[0]
+    total_length = lengths.sum()
+    forces, weights_bar = np.zeros((count, 3)), np.zeros(count)
+    reach, limit = 2.0 * radius, EXCLUSION * radius
+    reach2 = reach * reach
+    energy, closest = 0.0, 1e300
+    low = np.array([points[:, d].min() for d in range(3)])
+    high = np.array([points[:, d].max() for d in range(3)])
+    # Images (m, n) and (-m, -n) hold the same pairs, so half of them are enough.
+    for n in range(WALE_IMAGES + 1):
+        for m in range(-images if n > 0 else 0, images + 1):
+            odd = (m * course_odd + n * wale_odd) % 2 == 1
+            mirror = -1.0 if odd else 1.0
+            own = n == 0 and m == 0
+            shift_x, shift_y = m * cell_course, n * cell_wale
+            if shift_x + low[0] - high[0] > reach or low[0] - high[0] - shift_x > reach:
+                continue
+            if shift_y + low[1] - high[1] > reach:
+                continue
+            for i in range(count):
+                xi, yi, zi = points[i, 0], points[i, 1], points[i, 2]
+                for j in range(i + 1 if own else 0, count):
+                    dy = points[j, 1] + shift_y - yi
+                    if dy > reach or dy < -reach:
+                        continue
+                    dx = points[j, 0] + shift_x - xi
+                    dz = mirror * points[j, 2] - zi
+                    square = dx * dx + dy * dy + dz * dz
+                    if square >= reach2:
+                        continue
+                    if n == 0 and abs(arclengths[i] - arclengths[j] - m * total_length) <= limit:
+                        continue
+                    distance = max(np.sqrt(square), 1e-12)
+                    closest = min(closest, distance)
+                    value = 2.0 * factor * potential(distance, k, p, radius, core)
+                    slope = 2.0 * factor * potential_slope(distance, k, p, radius, core)
+                    pair = lengths[i] * lengths[j]
+                    energy += value * pair
+                    weights_bar[i] += value * lengths[j]
+                    weights_bar[j] += value * lengths[i]
+                    pull = slope * pair / distance
+                    forces[i, 0] -= pull * dx
+                    forces[i, 1] -= pull * dy
+                    forces[i, 2] -= pull * dz
+                    forces[j, 0] += pull * dx
+                    forces[j, 1] += pull * dy
+                    forces[j, 2] += pull * dz * mirror
+                    cell_gradient[0] += pull * dx * m
+                    cell_gradient[1] += pull * dy * n
+    for i in range(count):
+        curve, q = i // per, i % per
+        stretch = weights_bar[i] / per
+        for d in range(3):
+            for kk in range(6):
+                gradient[curve, kk, d] += (
+                    forces[i, d] * places[q, kk] + stretch * tangents[i, d] * slopes[q, kk]
+                )
+    return energy, closest

@@ -1,0 +1,220 @@
+"""Relax one stitch in the published description."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.fabric import Fabric
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.published.elastic import bernstein
+from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
+from knitcore.yarnlevel.published.starts import first_shapes
+from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.results import FloatArray, RelaxedCell
+from knitcore.yarnlevel.yarn import YarnModel
+
+BRANCH = "published"
+STARTS = 4
+"""Number of starts; the authors used four."""
+SEGMENT_FLOOR = 0.014
+"""Shortest curve, in loop lengths: .15 mm in the paper's acrylic garter; others stay longer."""
+MIN_LENGTH_PER_RADIUS = 10.0
+MIN_LENGTH_PER_CORE = 27.0
+"""A shorter stitch has no room for its own yarn (the paper's tightest: 13 radii, 34 core radii)."""
+MAX_LENGTH_PER_RADIUS = 120.0
+_CLEAR = 1.02
+"""A start with cores nearer than this (in 2 r_core) is first relaxed with thinner cores."""
+
+
+def relax_published(
+    fabric: Fabric | str,
+    yarn: YarnModel,
+    loop_length_mm: float,
+    cell_course_mm: float | None = None,
+    cell_wale_mm: float | None = None,
+    convention: Convention = Convention.PUBLISHED,
+    *,
+    starts: int = STARTS,
+) -> RelaxedCell:
+    """Shape of least energy of one stitch of a pure fabric.
+
+    Parameters
+    ----------
+    fabric : stockinette, garter, rib or seed.
+    yarn : its yarn.
+    loop_length_mm : length of yarn in the stitch, mm.
+    cell_course_mm, cell_wale_mm : sizes of the stitch to hold, mm; None leaves one free of force.
+    convention : factors of the energy.
+    starts : how many starts to try; the lowest result is kept.
+
+    Raises
+    ------
+    InputError
+        If the yarn does not fit into the loop, or a size is out of reach.
+    ConvergenceError
+        If no start converged.
+    UnravelledError
+        If the strands of the lowest shape are no longer clasped.
+    """
+    stitch = Stitch(Fabric.parse(fabric), yarn, Convention(convention))
+    check_loop(yarn, loop_length_mm)
+    for name, size in (("cell_course_mm", cell_course_mm), ("cell_wale_mm", cell_wale_mm)):
+        check_size(name, size, loop_length_mm)
+    if starts < 1:
+        raise InputError("starts", f"{starts} is too few.", "Give 1 or more.")
+    constraints = free_constraints(loop_length_mm, cell_course_mm, cell_wale_mm)
+    shapes = first_shapes(stitch, loop_length_mm, starts)
+    stitch.evaluate(shapes[0])  # compiles; not part of the time
+    began = time.process_time()
+    found = [_settle(stitch, shape, loop_length_mm, constraints) for shape in shapes]
+    best = lowest(stitch, found)
+    evaluations = sum(m.evaluations for m in found)
+    seconds = time.process_time() - began
+    others = sum(
+        m.converged and m.energy_n_mm > best.energy_n_mm * 1.001 and is_knitted(stitch, m)
+        for m in found
+    )
+    notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
+    return relaxed_cell(stitch, best, seconds, evaluations, notes)
+
+
+def free_constraints(
+    loop_length_mm: float, cell_course_mm: float | None = None, cell_wale_mm: float | None = None
+) -> Constraints:
+    """Constraints of a relaxation without slide quenching."""
+    return Constraints(cell_course_mm, cell_wale_mm, SEGMENT_FLOOR * loop_length_mm)
+
+
+def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
+    """The lowest converged and knitted minimum.
+
+    Raises
+    ------
+    ConvergenceError, UnravelledError
+        If there is none.
+    """
+    converged = [m for m in found if m.converged]
+    if not converged:
+        raise ConvergenceError(
+            f"None of {len(found)} starts of {stitch.fabric} converged; give the stitch more yarn "
+            "or a size nearer to its natural one."
+        )
+    knitted = [m for m in converged if is_knitted(stitch, m)]
+    if not knitted:
+        raise UnravelledError(f"Every minimum found of {stitch.fabric} has lost its clasps.")
+    return min(knitted, key=lambda m: m.energy_n_mm)
+
+
+def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
+    """Whether the two strands of the crossover still hold each other, core outside core.
+
+    In their common frame the strands make half a turn about each other, A bulging towards E1 (see
+    :mod:`~knitcore.yarnlevel.published.shape`); passing through each other would turn that around.
+    """
+    controls = stitch.controls(minimum.unknowns)
+    strand_b, strand_a = controls[0], controls[2].copy()
+    strand_a[:, 1] -= minimum.unknowns[-1]
+    if stitch.fabric.wale_odd:
+        strand_a[:, 2] *= -1.0
+    apart = bernstein(np.array([0.0, 0.5, 1.0])) @ (strand_a - strand_b)
+    middle, turn = apart[1], apart[2] - apart[0]
+    along = strand_a[-1] + strand_b[-1] - strand_a[0] - strand_b[0]
+    clasped = float(np.cross(middle, turn) @ along) > 0.0
+    return clasped and minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
+
+
+def relaxed_cell(
+    stitch: Stitch,
+    minimum: Minimum,
+    seconds: float,
+    evaluations: int,
+    notes: tuple[str, ...] = (),
+) -> RelaxedCell:
+    """A minimum as the result that all branches share."""
+    evaluation, unknowns = minimum.evaluation, minimum.unknowns
+    energy = evaluation.energy_n_mm
+    return RelaxedCell(
+        branch=BRANCH,
+        convention=stitch.convention,
+        cell_course_mm=float(unknowns[-2]),
+        cell_wale_mm=float(unknowns[-1]),
+        energy_n_mm=energy,
+        bending_share=evaluation.bending_n_mm / energy,
+        contact_share=evaluation.contact_n_mm / energy,
+        yarn_length_mm=float(evaluation.lengths_mm.sum()),
+        seconds=seconds,
+        evaluations=evaluations,
+        converged=minimum.converged,
+        centre_lines=stitch.centre_line(unknowns)[None],
+        state=unknowns.copy(),
+        notes=notes,
+    )
+
+
+def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
+    """Refuse a loop that the yarn cannot make.
+
+    Raises
+    ------
+    InputError
+        Naming a usable bound.
+    """
+    if not (math.isfinite(loop_length_mm) and loop_length_mm > 0):
+        raise InputError("loop_length_mm", f"{loop_length_mm} is no length.", "Give it in mm.")
+    least = max(MIN_LENGTH_PER_RADIUS * yarn.radius_mm, MIN_LENGTH_PER_CORE * yarn.core_radius_mm)
+    if loop_length_mm < least:
+        raise InputError(
+            "loop_length_mm",
+            f"{loop_length_mm:g} mm of yarn is too short for a stitch of its thickness.",
+            f"Give at least {least:.2f} mm, or a thinner yarn.",
+        )
+    most = MAX_LENGTH_PER_RADIUS * yarn.radius_mm
+    if loop_length_mm > most:
+        raise InputError(
+            "loop_length_mm",
+            f"{loop_length_mm:g} mm is too long: the loops would not touch.",
+            f"Give at most {most:.2f} mm, or a thicker yarn.",
+        )
+
+
+def check_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
+    """Refuse a size of the stitch that its yarn cannot span.
+
+    Raises
+    ------
+    InputError
+        Naming a usable range.
+    """
+    low, high = 0.05 * loop_length_mm, 0.9 * loop_length_mm
+    if size_mm is not None and not low <= size_mm <= high:
+        raise InputError(
+            name,
+            f"{size_mm:g} mm cannot be reached with {loop_length_mm:g} mm of yarn.",
+            f"Give a size from {low:.2f} to {high:.2f} mm.",
+        )
+
+
+def _settle(
+    stitch: Stitch, start: FloatArray, loop_length_mm: float, constraints: Constraints
+) -> Minimum:
+    """Minimise from a start whose yarns may overlap: grow the core, then the rest."""
+    closest = stitch.evaluate(start).closest_mm
+    core = stitch.yarn.core_radius_mm
+    if closest < 2.0 * _CLEAR * core:
+        room = 0.45 * closest
+        for share in (0.0, 0.5, 0.8):
+            thinner = replace(stitch.yarn, core_radius_mm=room + share * max(core - room, 0.0))
+            start = minimise(
+                replace(stitch, yarn=thinner),
+                start,
+                loop_length_mm,
+                constraints,
+                tolerance=1e-6,
+                max_iterations=60,
+            ).unknowns
+    return minimise(stitch, start, loop_length_mm, constraints)

@@ -1,0 +1,124 @@
+"""The energy of one stitch as a function of its fabric's unknowns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from knitcore.fabric import Fabric
+from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
+from knitcore.yarnlevel.published import contact, elastic, shape
+from knitcore.yarnlevel.results import FloatArray
+from knitcore.yarnlevel.yarn import YarnModel
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Energy terms of a stitch and their derivatives by its unknowns.
+
+    Parameters
+    ----------
+    bending_n_mm : bending with regularisation, N·mm.
+    contact_n_mm : contact, N·mm.
+    gradient : derivative of the sum, N or N·mm by unknown, shape (unknowns,).
+    lengths_mm : lengths of the eight curves in yarn order, mm.
+    length_gradient : their derivatives, shape (8, unknowns).
+    closest_mm : smallest distance of two points of yarn that feel each other, mm (huge if none do).
+    """
+
+    bending_n_mm: float
+    contact_n_mm: float
+    gradient: FloatArray
+    lengths_mm: FloatArray
+    length_gradient: FloatArray
+    closest_mm: float
+
+    @property
+    def energy_n_mm(self) -> float:
+        """Energy of the stitch, N·mm."""
+        return self.bending_n_mm + self.contact_n_mm
+
+
+@dataclass(frozen=True, eq=False)
+class Stitch:
+    """One stitch of a pure fabric in the published description.
+
+    Parameters
+    ----------
+    fabric : the fabric.
+    yarn : its yarn.
+    convention : factors of the energy.
+    """
+
+    fabric: Fabric
+    yarn: YarnModel
+    convention: Convention = Convention.PUBLISHED
+    ties: FloatArray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ties", shape.ties(self.fabric))
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns; the last two are the cell's sizes, mm."""
+        return int(self.ties.shape[1])
+
+    def controls(self, unknowns: FloatArray) -> FloatArray:
+        """Control points, mm, shape (8, 6, 3), in yarn order."""
+        p = (self.ties @ unknowns).astype(np.complex128)
+        points = shape.control_points(p, self.fabric.course_odd, self.fabric.wale_odd)
+        return np.ascontiguousarray(points.real)
+
+    def centre_line(self, unknowns: FloatArray, points_a_curve: int = 12) -> FloatArray:
+        """Centre line of the stitch, mm, shape (8 * points_a_curve + 1, 3)."""
+        t = np.arange(points_a_curve) / points_a_curve
+        controls = self.controls(unknowns)
+        line = np.einsum("tk,ckd->ctd", elastic.bernstein(t), controls).reshape(-1, 3)
+        return np.vstack([line, controls[-1, -1]])
+
+    def evaluate(self, unknowns: FloatArray) -> Evaluation:
+        """Energy, lengths and their gradients."""
+        course_odd, wale_odd = self.fabric.course_odd, self.fabric.wale_odd
+        parameters = self.ties @ unknowns
+        controls, jacobian = shape.control_points_and_jacobian(parameters, course_odd, wale_odd)
+        gradient = np.zeros_like(controls)
+        lengths, length_gradient = np.empty(len(controls)), np.empty_like(controls)
+        yarn, convention = self.yarn, self.convention
+        bending = elastic.elastic_energy(
+            controls,
+            convention.bending_factor * yarn.bending_modulus_n_mm2,
+            convention.regularisation_factor * REGULARISATION_N_MM4,
+            *elastic.gauss_tables(),
+            gradient,
+            lengths,
+            length_gradient,
+        )
+        cell_gradient = np.zeros(2)
+        touch, closest = contact.contact_energy(
+            controls,
+            parameters[shape.CELL_COURSE],
+            parameters[shape.CELL_WALE],
+            course_odd,
+            wale_odd,
+            contact.course_images(self.fabric),
+            convention.ordered_pair_factor,
+            yarn.contact_stiffness_n_per_mm3,
+            yarn.contact_exponent,
+            yarn.radius_mm,
+            yarn.core_radius_mm,
+            *contact.midpoint_tables(),
+            gradient,
+            cell_gradient,
+        )
+        by_parameter = jacobian.reshape(shape.COUNT, -1) @ gradient.ravel()
+        by_parameter[shape.CELL_COURSE :] += cell_gradient
+        lengths_by_parameter = np.einsum("pckd,ckd->cp", jacobian, length_gradient)
+        return Evaluation(
+            bending,
+            touch,
+            by_parameter @ self.ties,
+            lengths,
+            lengths_by_parameter @ self.ties,
+            closest,
+        )
