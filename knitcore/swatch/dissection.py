@@ -6,19 +6,24 @@ order with the least fill, and because the grid is known beforehand no ordering 
 Each box of the tree owns a dense front: the unknowns that only it holds (eliminated here) and
 those on its border with other boxes (handed on to the parent as a Schur complement). The dense
 work is LAPACK's. General sparse solvers were measured beside it; see ``docs/swatch.md``.
+
+The factor serves as a preconditioner of conjugate gradients in double precision, so single
+precision is enough for it: half the memory and half the time. Only where single precision cannot
+tell whether the matrix is positive definite is it factorised again in double precision.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.linalg.blas import dsyrk, dtrsm
-from scipy.linalg.lapack import dpotrf
+from scipy.linalg import blas, lapack
 
 Array = NDArray[np.float64]
+Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
 
 LEAF_CELLS = 8
@@ -30,13 +35,35 @@ class IndefiniteTangentError(Exception):
 
 
 @dataclass(frozen=True)
-class _Box:
-    """One node of the tree, children first. All index arrays count unknowns (2 per corner)."""
+class _Half:
+    """A child's border in its parent's front: positions there, and where they go, ascending."""
 
+    inner: Indices
+    inner_places: Indices  # among the parent's eliminated unknowns
+    outer: Indices
+    outer_places: Indices  # among the parent's border
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """What boxes of one shape have in common. Index arrays count unknowns (2 per corner) from the
+    lower left corner of the box.
+    """
+
+    halves: tuple[_Half, ...]  # empty for a leaf
     cells: Indices  # of a leaf, else empty
     local: Indices  # (cells, 8) position of each cell unknown in the front of a leaf
+    eliminated: Indices
+    border: Indices
+
+
+@dataclass(frozen=True)
+class _Box:
+    """One node of the tree; the children come before it."""
+
+    shape: _Shape
     children: tuple[int, ...]
-    child_places: tuple[Indices, ...]  # where the borders of the children go in this front
+    cells: Indices
     eliminated: Indices
     border: Indices
     offset: int  # of its columns in the factor
@@ -66,7 +93,8 @@ class GridFactor:
         self._boxes: list[_Box] = []
         self._size = 0
         self._build(columns, rows)
-        self._factor: Array = np.empty(0)
+        self._factor: Block = np.empty(0)
+        self._single = True
         # The tree flattened for the compiled substitution.
         self._eliminated = _concatenate([box.eliminated for box in self._boxes])
         self._border = _concatenate([box.border for box in self._boxes])
@@ -88,38 +116,63 @@ class GridFactor:
         IndefiniteTangentError
             If the sum is not positive definite.
         """
-        if self._factor.size == 0:
-            self._factor = np.empty(self._size)
-        pending: dict[int, Array] = {}
+        if self._single:
+            try:
+                self._eliminate(cell_matrices, np.dtype(np.float32))
+            except IndefiniteTangentError:
+                self._single = False
+            else:
+                return
+        self._eliminate(cell_matrices, np.dtype(np.float64))
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Solution (2 * corners,) to the factor's precision; 0 at the fixed unknowns."""
+        x = right_hand_side.ravel().astype(self._factor.dtype)
+        x[self._fixed_numbers] = 0.0
+        v = np.empty(int(self._tree[:, 1:].sum(axis=1).max()), x.dtype)
+        _forward(self._factor, self._tree, self._eliminated, self._border, v, x)
+        _backward(self._factor, self._tree, self._eliminated, self._border, v, x)
+        return x.astype(np.float64)
+
+    def _eliminate(self, cell_matrices: Array, dtype: np.dtype[np.floating]) -> None:
+        if self._factor.dtype != dtype or self._factor.size == 0:
+            self._factor = np.empty(self._size, dtype)
+        single = dtype == np.float32
+        potrf = lapack.spotrf if single else lapack.dpotrf
+        trsm = blas.strsm if single else blas.dtrsm
+        syrk = blas.ssyrk if single else blas.dsyrk
+        pending: dict[int, Block] = {}
         for number, box in enumerate(self._boxes):
             s, b = len(box.eliminated), len(box.border)
             pivot, below = self._columns_of(box)
             pivot[:] = 0.0
             below[:] = 0.0
-            schur = np.zeros((b, b), order="F")
+            schur = np.zeros((b, b), dtype, order="F")
             if box.children:
-                for child, places in zip(box.children, box.child_places, strict=True):
-                    _extend_add(pending.pop(child), places, pivot, below, schur)
+                for child, half in zip(box.children, box.shape.halves, strict=True):
+                    _extend_add(
+                        pending.pop(child),
+                        half.inner,
+                        half.inner_places,
+                        half.outer,
+                        half.outer_places,
+                        pivot,
+                        below,
+                        schur,
+                    )
             else:
-                _add_cells(cell_matrices, box.cells, box.local, pivot, below, schur)
+                _add_cells(cell_matrices, box.cells, box.shape.local, pivot, below, schur)
                 _fix(self.fixed, box.eliminated, box.border, pivot, below, schur)
             if s:
-                _, info = dpotrf(pivot, lower=1, clean=0, overwrite_a=1)
+                _, info = potrf(pivot, lower=1, clean=0, overwrite_a=1)
                 if info != 0:
                     raise IndefiniteTangentError
                 if b:
-                    dtrsm(1.0, pivot, below, side=1, lower=1, trans_a=1, overwrite_b=1)
-                    schur = dsyrk(-1.0, below, beta=1.0, c=schur, lower=1, overwrite_c=1)
+                    trsm(1.0, pivot, below, side=1, lower=1, trans_a=1, overwrite_b=1)
+                    schur = syrk(-1.0, below, beta=1.0, c=schur, lower=1, overwrite_c=1)
             pending[number] = schur
 
-    def solve(self, right_hand_side: Array) -> Array:
-        """Solution (2 * corners,); 0 at the fixed unknowns."""
-        x = right_hand_side.ravel().copy()
-        x[self._fixed_numbers] = 0.0
-        _substitute(self._factor, self._tree, self._eliminated, self._border, x)
-        return x
-
-    def _columns_of(self, box: _Box) -> tuple[Array, Array]:
+    def _columns_of(self, box: _Box) -> tuple[Block, Block]:
         s, b = len(box.eliminated), len(box.border)
         middle = box.offset + s * s
         return (
@@ -130,61 +183,74 @@ class GridFactor:
     def _build(self, columns: int, rows: int) -> None:
         """Append the boxes of the tree in the order of their elimination."""
 
-        def border_of(x0: int, x1: int, y0: int, y1: int) -> tuple[Indices, Indices]:
-            """Corners of a box: (those only it holds or its children do, those on the border)."""
-            y, x = np.mgrid[y0 : y1 + 1, x0 : x1 + 1]
-            shared = (
-                ((x == x0) & (x0 > 0))
-                | ((x == x1) & (x1 < columns))
-                | ((y == y0) & (y0 > 0))
-                | ((y == y1) & (y1 < rows))
-            )
-            corner = y * (columns + 1) + x
-            return corner[~shared], corner[shared]
-
         def visit(x0: int, x1: int, y0: int, y1: int) -> int:
-            width, height = x1 - x0, y1 - y0
-            own, border = border_of(x0, x1, y0, y1)
-            if max(width, height) <= LEAF_CELLS:
-                cy, cx = np.mgrid[y0:y1, x0:x1]
-                cells = (cy * columns + cx).ravel()
-                first = (cy * (columns + 1) + cx).ravel()
-                above = first + columns + 1
-                corners = np.column_stack([first, first + 1, above + 1, above])
-                front = _unknowns(np.concatenate([own, border]))
-                local = _positions(front, _unknowns(corners.ravel())).reshape(-1, 8)
-                return self._append(own, border, cells, local, (), ())
-            if width >= height:
-                middle = x0 + width // 2
-                children = (visit(x0, middle, y0, y1), visit(middle, x1, y0, y1))
-            else:
-                middle = y0 + height // 2
-                children = (visit(x0, x1, y0, middle), visit(x0, x1, middle, y1))
-            borders = [self._boxes[child].border for child in children]
-            mine = _unknowns(border)
-            eliminated = np.setdiff1d(np.concatenate(borders), mine)
-            front = np.concatenate([eliminated, mine])
-            places = tuple(_positions(front, b) for b in borders)
-            none = np.empty(0, dtype=np.int64)
-            return self._append(
-                eliminated[::2] // 2, border, none, none.reshape(0, 8), children, places
+            sides = (x0 > 0, x1 < columns, y0 > 0, y1 < rows)
+            shape = _shape(x1 - x0, y1 - y0, sides, columns)
+            children = []
+            if shape.halves:
+                if x1 - x0 >= y1 - y0:
+                    middle = (x0 + x1) // 2
+                    children = [visit(x0, middle, y0, y1), visit(middle, x1, y0, y1)]
+                else:
+                    middle = (y0 + y1) // 2
+                    children = [visit(x0, x1, y0, middle), visit(x0, x1, middle, y1)]
+            first = 2 * (y0 * (columns + 1) + x0)
+            box = _Box(
+                shape,
+                tuple(children),
+                shape.cells + y0 * columns + x0,
+                shape.eliminated + first,
+                shape.border + first,
+                self._size,
             )
+            self._size += len(box.eliminated) * (len(box.eliminated) + len(box.border))
+            self._boxes.append(box)
+            return len(self._boxes) - 1
 
         visit(0, columns, 0, rows)
 
-    def _append(
-        self,
-        own: Indices,
-        border: Indices,
-        cells: Indices,
-        local: Indices,
-        children: tuple[int, ...],
-        places: tuple[Indices, ...],
-    ) -> int:
-        box = _Box(cells, local, children, places, _unknowns(own), _unknowns(border), self._size)
-        self._size += len(box.eliminated) * (len(box.eliminated) + len(box.border))
-        self._boxes.append(box)
-        return len(self._boxes) - 1
+
+@cache
+def _shape(width: int, height: int, sides: tuple[bool, bool, bool, bool], columns: int) -> _Shape:
+    """The front of a box of a size, by which of its sides (left, right, below, above) are shared
+    with other boxes. Boxes alike in this differ by an offset only.
+    """
+    y, x = np.mgrid[0 : height + 1, 0 : width + 1]
+    shared = (
+        (sides[0] & (x == 0))
+        | (sides[1] & (x == width))
+        | (sides[2] & (y == 0))
+        | (sides[3] & (y == height))
+    )
+    corner = y * (columns + 1) + x
+    border = _unknowns(corner[shared])
+    none = np.empty(0, dtype=np.int64)
+    if max(width, height) <= LEAF_CELLS:
+        own = _unknowns(corner[~shared])
+        cy, cx = np.mgrid[0:height, 0:width]
+        first = (cy * (columns + 1) + cx).ravel()
+        above = first + columns + 1
+        corners = np.column_stack([first, first + 1, above + 1, above])
+        local = _positions(np.concatenate([own, border]), _unknowns(corners.ravel()))
+        cells = (cy * columns + cx).ravel()
+        return _Shape((), cells, local.reshape(-1, 8), own, border)
+    left, right, below, above_ = sides
+    if width >= height:
+        half = width // 2
+        parts = [
+            _shape(half, height, (left, True, below, above_), columns).border,
+            _shape(width - half, height, (True, right, below, above_), columns).border + 2 * half,
+        ]
+    else:
+        half = height // 2
+        parts = [
+            _shape(width, half, (left, right, below, True), columns).border,
+            _shape(width, height - half, (left, right, True, above_), columns).border
+            + 2 * half * (columns + 1),
+        ]
+    eliminated = np.setdiff1d(np.concatenate(parts), border)
+    halves = tuple(_half(part, eliminated, border) for part in parts)
+    return _Shape(halves, none, none.reshape(0, 8), eliminated, border)
 
 
 def _unknowns(corners: Indices) -> Indices:
@@ -196,12 +262,24 @@ def _positions(front: Indices, numbers: Indices) -> Indices:
     return order[np.searchsorted(front, numbers, sorter=order)].astype(np.int64)
 
 
+def _half(theirs: Indices, eliminated: Indices, border: Indices) -> _Half:
+    """How a child's border spreads over its parent's front (all arrays ascending)."""
+    is_inner = np.isin(theirs, eliminated, assume_unique=True)
+    inner, outer = np.flatnonzero(is_inner), np.flatnonzero(~is_inner)
+    return _Half(
+        inner,
+        np.searchsorted(eliminated, theirs[inner]),
+        outer,
+        np.searchsorted(border, theirs[outer]),
+    )
+
+
 def _concatenate(arrays: list[Indices]) -> Indices:
     return np.concatenate(arrays).astype(np.int64)
 
 
 @njit(cache=True)
-def _place(r: int, c: int, value: float, s: int, pivot: Array, below: Array, schur: Array) -> None:
+def _place(r: int, c: int, value: float, s: int, pivot: Block, below: Block, schur: Block) -> None:
     """Add to the lower triangle of the front made of pivot, below and schur."""
     if r < c:
         r, c = c, r
@@ -214,17 +292,33 @@ def _place(r: int, c: int, value: float, s: int, pivot: Array, below: Array, sch
 
 
 @njit(cache=True)
-def _extend_add(child: Array, places: Indices, pivot: Array, below: Array, schur: Array) -> None:
+def _extend_add(
+    child: Block,
+    inner: Indices,
+    inner_places: Indices,
+    outer: Indices,
+    outer_places: Indices,
+    pivot: Block,
+    below: Block,
+    schur: Block,
+) -> None:
     """Add the lower triangle of a child's Schur complement to its parent's front."""
-    s = pivot.shape[0]
-    for c in range(child.shape[1]):
-        for r in range(c, child.shape[0]):
-            _place(places[r], places[c], child[r, c], s, pivot, below, schur)
+    for c in range(inner.size):
+        column, place = inner[c], inner_places[c]
+        for r in range(c, inner.size):
+            pivot[inner_places[r], place] += child[inner[r], column]
+        for r in range(outer.size):
+            row = outer[r]
+            below[outer_places[r], place] += child[max(row, column), min(row, column)]
+    for c in range(outer.size):
+        column, place = outer[c], outer_places[c]
+        for r in range(c, outer.size):
+            schur[outer_places[r], place] += child[outer[r], column]
 
 
 @njit(cache=True)
 def _add_cells(
-    matrices: Array, cells: Indices, local: Indices, pivot: Array, below: Array, schur: Array
+    matrices: Array, cells: Indices, local: Indices, pivot: Block, below: Block, schur: Block
 ) -> None:
     """Add the lower triangles of cell matrices to the front of a leaf."""
     s = pivot.shape[0]
@@ -240,9 +334,9 @@ def _fix(
     fixed: NDArray[np.bool_],
     eliminated: Indices,
     border: Indices,
-    pivot: Array,
-    below: Array,
-    schur: Array,
+    pivot: Block,
+    below: Block,
+    schur: Block,
 ) -> None:
     """Replace the rows and columns of fixed unknowns by those of the identity."""
     s, b = eliminated.size, border.size
@@ -260,34 +354,58 @@ def _fix(
             schur[i, i] = 1.0
 
 
-@njit(cache=True)
-def _substitute(
-    factor: Array, tree: Indices, eliminated: Indices, border: Indices, x: Array
+@njit(cache=True, fastmath={"reassoc", "contract"})
+def _forward(
+    factor: Block, tree: Indices, eliminated: Indices, border: Indices, v: Block, x: Block
 ) -> None:
-    """Forward and backward substitution in place."""
-    boxes = tree.shape[0]
+    """Forward substitution in place; ``v`` has room for the unknowns of one front."""
     e0 = b0 = 0
-    for box in range(boxes):
+    for box in range(tree.shape[0]):
         offset, s, b = tree[box]
         below = offset + s * s
         for i in range(s):
-            y = x[eliminated[e0 + i]] / factor[offset + i * s + i]
-            x[eliminated[e0 + i]] = y
+            v[i] = x[eliminated[e0 + i]]
+        v[s : s + b] = 0.0
+        for i in range(s):
+            column = factor[offset + i * s : offset + i * s + s]
+            y = v[i] / column[i]
+            v[i] = y
             for r in range(i + 1, s):
-                x[eliminated[e0 + r]] -= factor[offset + i * s + r] * y
+                v[r] -= column[r] * y
+            column = factor[below + i * b : below + i * b + b]
             for r in range(b):
-                x[border[b0 + r]] -= factor[below + i * b + r] * y
+                v[s + r] -= column[r] * y
+        for i in range(s):
+            x[eliminated[e0 + i]] = v[i]
+        for r in range(b):
+            x[border[b0 + r]] += v[s + r]
         e0 += s
         b0 += b
-    for box in range(boxes - 1, -1, -1):
+
+
+@njit(cache=True, fastmath={"reassoc", "contract"})
+def _backward(
+    factor: Block, tree: Indices, eliminated: Indices, border: Indices, v: Block, x: Block
+) -> None:
+    """Backward substitution in place."""
+    e0, b0 = eliminated.size, border.size
+    for box in range(tree.shape[0] - 1, -1, -1):
         offset, s, b = tree[box]
         below = offset + s * s
         e0 -= s
         b0 -= b
+        for i in range(s):
+            v[i] = x[eliminated[e0 + i]]
+        for r in range(b):
+            v[s + r] = x[border[b0 + r]]
         for i in range(s - 1, -1, -1):
-            y = x[eliminated[e0 + i]]
+            y = v[i]
+            column = factor[below + i * b : below + i * b + b]
             for r in range(b):
-                y -= factor[below + i * b + r] * x[border[b0 + r]]
+                y -= column[r] * v[s + r]
+            column = factor[offset + i * s : offset + i * s + s]
             for r in range(i + 1, s):
-                y -= factor[offset + i * s + r] * x[eliminated[e0 + r]]
-            x[eliminated[e0 + i]] = y / factor[offset + i * s + i]
+                y -= column[r] * v[r]
+            v[i] = y / column[i]
+        for i in range(s):
+            x[eliminated[e0 + i]] = v[i]

@@ -24,6 +24,10 @@ Array = NDArray[np.float64]
 
 MAX_NEWTON_STEPS = 30
 MAX_HALVINGS = 7
+FORCING = 1e-2
+"""Relative accuracy of the linear systems far from balance."""
+PATIENCE = 3
+"""Conjugate gradient steps before the tangent is factorised anew."""
 HISTORY = 4
 """Equilibria used by the extrapolation."""
 
@@ -38,7 +42,7 @@ class Tolerance:
     absolute_n : N, floor below which a residual is none.
     """
 
-    relative: float = 1e-9
+    relative: float = 1e-8
     absolute_n: float = 1e-12
 
 
@@ -162,7 +166,7 @@ class PathSolver:
             if residual <= limit:
                 return self._accept(state, lin, level, iterations)
             force = lin.condensed_force() * self.free
-            step = self._solve(lin, -force, max(0.3 * limit / residual, 1e-4))
+            step = self._solve(lin, -force, max(0.3 * limit / residual, FORCING))
             iterations += 1
             state, lin = self._line_search(state, lin, step)
         raise StepError(
@@ -265,7 +269,7 @@ class PathSolver:
             r = r - a * q
             if float(np.linalg.norm(r)) <= goal:
                 return x
-            if count == 8 and not self._factor_is_current:
+            if count == PATIENCE and not self._factor_is_current:
                 try:
                     self._factorise(lin)
                 except IndefiniteTangentError:
