@@ -1,0 +1,21 @@
+/**
+ * What an action is. Shortcuts, the command palette and help read the registry.
+ *
+ * @import {ChartView} from "../chart/view.js"
+ * @import {Studio} from "../studio.js"
+ * @import {IconName} from "../icons.js"
+ *
+ * @typedef {{studio: Studio, view: ChartView, open: (dialog: "help" | "palette" | "import" | "resize") => void,
+ *   toggleTheme: () => void}} ActionContext
+ *
+ * @typedef {object} Action
+ * @property {string} id
+ * @property {string} label
+ * @property {string} group heading in help
+ * @property {IconName} [icon]
+ * @property {string[]} keys such as "Mod+Z"; Mod is Ctrl, or ⌘ on a Mac
+ * @property {(studio: Studio) => boolean} [enabled]
+ * @property {(context: ActionContext) => void} perform
+ */
+
+export {};

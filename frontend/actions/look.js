@@ -1,0 +1,73 @@
+/**
+ * How the chart is seen and painted.
+ *
+ * @import {Action} from "./action.js"
+ * @import {Symmetry} from "../core/ink.js"
+ */
+
+/** @type {Symmetry[]} */
+const SYMMETRIES = ["none", "across", "up", "both"];
+export const SIZES = [1, 2, 3, 5, 8];
+
+/**
+ * @param {string} id
+ * @param {string} label
+ * @param {string[]} keys
+ * @param {Action["perform"]} perform
+ * @param {Partial<Action>} [more]
+ * @returns {Action}
+ */
+const action = (id, label, keys, perform, more = {}) => ({
+  id,
+  label,
+  group: "View",
+  keys,
+  perform,
+  ...more,
+});
+
+/** @type {Action[]} */
+export const LOOK = [
+  action("fit", "Show the whole chart", ["0"], ({ view }) => view.fit(), { icon: "fit" }),
+  action("zoom-in", "Zoom in", ["+", "="], ({ view }) => view.zoom(1.25), { icon: "plus" }),
+  action("zoom-out", "Zoom out", ["-"], ({ view }) => view.zoom(0.8), { icon: "minus" }),
+  action(
+    "symmetry",
+    "Symmetry: off, left–right, top–bottom, both",
+    ["Y"],
+    ({ studio }) => {
+      const next = (SYMMETRIES.indexOf(studio.symmetry.value) + 1) % SYMMETRIES.length;
+      studio.symmetry.value = SYMMETRIES[next];
+    },
+    { icon: "mirror" },
+  ),
+  action("size-down", "Smaller brush", ["["], ({ studio }) => {
+    studio.size.value = SIZES[Math.max(0, SIZES.indexOf(studio.size.value) - 1)];
+  }),
+  action("size-up", "Larger brush", ["]"], ({ studio }) => {
+    studio.size.value = SIZES[Math.min(SIZES.length - 1, SIZES.indexOf(studio.size.value) + 1)];
+  }),
+  action(
+    "symbols",
+    "Symbols: dots or loops",
+    ["V"],
+    ({ studio }) => {
+      studio.symbols.value = studio.symbols.value === "symbols" ? "loops" : "symbols";
+    },
+    { icon: "symbols" },
+  ),
+  action("rectangles", "Extensibility rectangles", ["E"], ({ studio }) => {
+    studio.rectangles.value = !studio.rectangles.value;
+  }),
+  action("theme", "Light or dark", ["D"], ({ toggleTheme }) => toggleTheme(), { icon: "theme" }),
+  action("resize", "Size and new chart …", ["N"], ({ open }) => open("resize"), {
+    group: "Edit",
+    icon: "resize",
+  }),
+  action("import", "Import a chart …", ["I"], ({ open }) => open("import"), {
+    group: "Edit",
+    icon: "import",
+  }),
+  action("palette", "Find a command …", ["Mod+K", "/"], ({ open }) => open("palette")),
+  action("help", "Keys and tools", ["?"], ({ open }) => open("help"), { icon: "help" }),
+];

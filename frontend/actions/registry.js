@@ -1,0 +1,87 @@
+/**
+ * All actions, and the keys that start them and the tools.
+ *
+ * @import {Action, ActionContext} from "./action.js"
+ */
+
+import { TOOLS } from "../tools/registry.js";
+import { redo, undo } from "./history.js";
+import { LOOK } from "./look.js";
+import { copy, deselect, selectAll } from "./selection.js";
+import { fillPart, flip, mirror, swap, turnOver } from "./transform.js";
+
+/** @type {Action[]} */
+const CHOOSE = TOOLS.map((tool) => ({
+  id: `tool-${tool.id}`,
+  label: tool.label,
+  group: "Tools",
+  icon: tool.icon,
+  keys: [tool.key.toUpperCase()],
+  perform: ({ studio }) => (studio.tool.value = tool),
+}));
+
+/** @type {Action[]} */
+export const ACTIONS = [
+  ...CHOOSE,
+  undo,
+  redo,
+  selectAll,
+  deselect,
+  copy,
+  fillPart,
+  mirror,
+  flip,
+  swap,
+  turnOver,
+  ...LOOK,
+];
+
+/** @param {string} id */
+export function action(id) {
+  const found = ACTIONS.find((candidate) => candidate.id === id);
+  if (!found) throw new Error(`There is no action ${id}.`);
+  return found;
+}
+
+/**
+ * Whether a key press is this shortcut.
+ *
+ * @param {string} shortcut
+ * @param {{key: string, ctrlKey: boolean, metaKey: boolean, shiftKey: boolean, altKey: boolean}} event
+ */
+export function matches(shortcut, event) {
+  const parts = shortcut.split("+").filter(Boolean);
+  const key = shortcut === "+" ? "+" : parts[parts.length - 1];
+  const letter = /^[A-Z]$/.test(key);
+  return (
+    event.key.toLowerCase() === key.toLowerCase() &&
+    (event.ctrlKey || event.metaKey) === parts.includes("Mod") &&
+    // ? and + need Shift on some keyboards; only letters and names tell it apart.
+    (!letter || event.shiftKey === parts.includes("Shift")) &&
+    !event.altKey
+  );
+}
+
+/**
+ * Shortcut as this computer's keys are called.
+ *
+ * @param {string} shortcut
+ */
+export function shown(shortcut) {
+  const mac = navigator.platform.startsWith("Mac");
+  return shortcut.replace("Mod+", mac ? "⌘" : "Ctrl+").replace("Escape", "Esc");
+}
+
+/**
+ * @param {ActionContext} context
+ * @param {() => boolean} isTyping
+ */
+export function listenToKeys(context, isTyping) {
+  window.addEventListener("keydown", (event) => {
+    if (isTyping() || document.querySelector("dialog[open]") || event.defaultPrevented) return;
+    const found = ACTIONS.find(({ keys }) => keys.some((key) => matches(key, event)));
+    if (!found) return;
+    event.preventDefault();
+    if (found.enabled?.(context.studio) !== false) found.perform(context);
+  });
+}

@@ -1,0 +1,122 @@
+/**
+ * The service's REST API, typed. Every failure is an {@link ApiError} that says what, why and what
+ * to do, or the browser's own AbortError if the call was given up.
+ *
+ * @import {Material, ParsedChart, Prediction, Problem, Stretch, StretchRequest, View,
+ *   ViewRequest} from "./types.js"
+ */
+
+/** A refused or failed call. */
+export class ApiError extends Error {
+  /** @param {Problem} problem */
+  constructor(problem) {
+    super(problem.detail || problem.title);
+    this.name = "ApiError";
+    this.problem = problem;
+  }
+
+  /** Whether the service could not be reached at all. */
+  get offline() {
+    return this.problem.status === 0;
+  }
+}
+
+/** @param {unknown} error */
+export function isAbort(error) {
+  return error instanceof DOMException && error.name === "AbortError";
+}
+
+/** @type {Problem} */
+const UNREACHABLE = {
+  type: "offline",
+  title: "The service cannot be reached",
+  status: 0,
+  detail: "No answer came from the service.",
+  remedy: "Your chart is kept in this browser. Painting goes on; the numbers come back by themselves.",
+};
+
+/**
+ * @param {Response} response
+ * @returns {Promise<Problem>}
+ */
+async function problemOf(response) {
+  /** @type {Problem} */
+  const plain = {
+    type: "http",
+    title: `The service answered ${response.status}`,
+    status: response.status,
+    detail: response.statusText,
+  };
+  try {
+    return { ...plain, .../** @type {Partial<Problem>} */ (await response.json()) };
+  } catch {
+    return plain; // not JSON: the status has to do
+  }
+}
+
+/**
+ * @template T
+ * @param {string} path below /api/v1
+ * @param {{method?: string, body?: unknown, signal?: AbortSignal}} [options]
+ * @returns {Promise<T>}
+ */
+async function call(path, { method = "GET", body, signal } = {}) {
+  /** @type {Response} */
+  let response;
+  try {
+    response = await fetch(`/api/v1${path}`, {
+      method,
+      signal,
+      headers: body === undefined ? {} : { "Content-Type": "application/json" },
+      body: body === undefined ? undefined : JSON.stringify(body),
+    });
+  } catch (error) {
+    if (isAbort(error)) throw error;
+    throw new ApiError(UNREACHABLE);
+  }
+  if (!response.ok) throw new ApiError(await problemOf(response));
+  return /** @type {Promise<T>} */ (response.json());
+}
+
+export const api = {
+  /** @type {() => Promise<{materials: import("./types.js").MaterialSummary[]}>} */
+  materials: () => call("/materials"),
+
+  /**
+   * @param {string} id
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<Material>}
+   */
+  material: (id, signal) => call(`/materials/${encodeURIComponent(id)}`, { signal }),
+
+  /** @type {() => Promise<{patterns: import("./types.js").Pattern[]}>} */
+  patterns: () => call("/patterns"),
+
+  /**
+   * @param {string} text
+   * @returns {Promise<ParsedChart>}
+   */
+  parse: (text) => call("/charts/parse", { method: "POST", body: { text } }),
+
+  /**
+   * @param {{chart: string, material: string}} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<Prediction>}
+   */
+  predict: (body, signal) => call("/predict", { method: "POST", body, signal }),
+
+  /**
+   * @param {StretchRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<Stretch>}
+   */
+  stretch: (body, signal) => call("/stretch", { method: "POST", body, signal }),
+
+  /**
+   * @param {string} design
+   * @param {ViewRequest} body
+   * @returns {Promise<View>}
+   */
+  view: (design, body) =>
+    call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
+};

@@ -1,0 +1,143 @@
+/** Puts the page together. */
+
+import { listenToKeys } from "./actions/registry.js";
+import { ApiError, api, isAbort } from "./api.js";
+import { Painter } from "./chart/painter.js";
+import { ChartView } from "./chart/view.js";
+import { ChartDocument } from "./core/document.js";
+import { exampleGrid } from "./core/example.js";
+import { Grid, isChartText } from "./core/grid.js";
+import { Ink } from "./core/ink.js";
+import { Latest } from "./core/latest.js";
+import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/store.js";
+import { byId, isTyping } from "./dom.js";
+import { helpDialog, importDialog, paletteDialog, resizeDialog } from "./panels/dialogs.js";
+import { fabricview } from "./panels/fabricview.js";
+import { inspector } from "./panels/inspector.js";
+import { messages } from "./panels/messages.js";
+import { overlaybar } from "./panels/overlaybar.js";
+import { rail } from "./panels/rail.js";
+import { shelf } from "./panels/shelf.js";
+import { split } from "./panels/split.js";
+import { stretchdrawer } from "./panels/stretchdrawer.js";
+import { topbar } from "./panels/topbar.js";
+import { startAutosave } from "./services/autosave.js";
+import { watchConnection } from "./services/connection.js";
+import { listenToImports } from "./services/importer.js";
+import { startPredictor } from "./services/predictor.js";
+import { Stretcher } from "./services/stretcher.js";
+import { Studio } from "./studio.js";
+
+const FIRST_MATERIAL = "acrylic";
+/** How far the example is stretched on a first visit. */
+const FIRST_STRAIN = 0.3;
+
+const kept = loadDesign();
+const chart = kept
+  ? new ChartDocument(Grid.fromText(kept.chart), loadHistory())
+  : new ChartDocument(exampleGrid());
+const studio = new Studio(
+  chart,
+  kept ?? { id: newIdentifier(), name: "First swatch", material: FIRST_MATERIAL },
+);
+
+const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"), studio);
+new Painter(view, studio);
+
+/** @type {Record<string, () => void>} */
+const dialogs = {};
+/** @type {(() => void)[]} */
+const themed = [];
+const dark = matchMedia("(prefers-color-scheme: dark)");
+
+/** @type {import("./actions/action.js").ActionContext} */
+const context = {
+  studio,
+  view,
+  open: (name) => dialogs[name](),
+  toggleTheme: () => {
+    const root = document.documentElement;
+    const now = root.dataset.theme ?? (dark.matches ? "dark" : "light");
+    root.dataset.theme = now === "dark" ? "light" : "dark";
+    saveSettings({ theme: root.dataset.theme });
+    retheme();
+  },
+};
+const retheme = () => {
+  view.retheme();
+  for (const redraw of themed) redraw();
+};
+dark.addEventListener("change", retheme);
+
+const stretcher = new Stretcher(studio);
+topbar(byId("topbar"), studio, context);
+rail(byId("rail"), studio, context);
+messages(byId("messages"), byId("offline"), studio);
+themed.push(
+  overlaybar(byId("overlays"), studio, view),
+  shelf(byId("shelf"), studio, context),
+  inspector(byId("inspector"), studio),
+);
+stretchdrawer(byId("stretch"), studio, stretcher);
+Object.assign(dialogs, {
+  resize: resizeDialog(studio),
+  import: importDialog(studio),
+  palette: paletteDialog(context),
+  help: helpDialog(),
+});
+split(byId("split-columns"), "--side-width", {
+  axis: "x",
+  least: 380,
+  size: () => byId("inspector").offsetWidth,
+  most: () => innerWidth - 480,
+});
+split(byId("split-rows"), "--inspector-height", {
+  axis: "y",
+  least: 160,
+  size: () => byId("inspector").offsetHeight,
+  most: () => innerHeight - 320,
+});
+listenToKeys(context, isTyping);
+listenToImports(studio, isTyping);
+startAutosave(studio);
+
+const predictAgain = startPredictor(studio);
+const showAgain = fabricview(byId("fabric"), studio);
+
+const material = new Latest(0);
+const loadMaterial = () =>
+  material.run(async (signal) => {
+    try {
+      studio.material.value = await api.material(studio.materialId.value, signal);
+    } catch (error) {
+      if (isAbort(error)) return;
+      if (!(error instanceof ApiError)) throw error;
+      if (error.offline) studio.online.value = false;
+      else studio.tellProblem(error.problem);
+    }
+  });
+studio.materialId.watch(loadMaterial);
+
+const loadLists = async () => {
+  try {
+    const [{ materials }, { patterns }] = await Promise.all([api.materials(), api.patterns()]);
+    studio.materials.value = materials;
+    studio.shelf.value = patterns
+      .filter(({ chart: text }) => isChartText(text))
+      .map(({ id, name, chart: text, note }) => new Ink(id, name, Grid.fromText(text), note));
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (error.offline) studio.online.value = false;
+    else studio.tellProblem(error.problem);
+  }
+};
+void loadLists();
+
+watchConnection(studio, () => {
+  void loadLists();
+  loadMaterial();
+  predictAgain();
+  showAgain();
+});
+
+if (!kept) void stretcher.run("wale", FIRST_STRAIN);

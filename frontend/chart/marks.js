@@ -1,0 +1,195 @@
+/**
+ * What is drawn over the cells' colours: symbols, the grid, segments, extensibility rectangles.
+ *
+ * @import {Box, Grid} from "../core/grid.js"
+ * @import {Viewport} from "./viewport.js"
+ * @import {ColourLayer} from "./layer.js"
+ * @import {Palette} from "./palette.js"
+ * @import {StitchKind} from "../types.js"
+ */
+
+import { lightness } from "./palette.js";
+
+/** Symbols are left out on cells narrower than this. */
+const SMALLEST_SYMBOL = 7;
+
+/**
+ * A dot on every purl (the chart's symbol), or every stitch as it looks in the cloth.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {ColourLayer} layer
+ * @param {Box} box
+ * @param {"symbols" | "loops"} style
+ */
+export function drawSymbols(context, view, grid, layer, box, style) {
+  const { cellWidth: w, cellHeight: h } = view;
+  if (Math.min(w, h) < SMALLEST_SYMBOL) return;
+  const onLight = new Path2D();
+  const onDark = new Path2D();
+  const radius = Math.min(w, h) * 0.15;
+  for (let row = box.row0; row < box.row1; row++) {
+    const y = view.y + (grid.rows - 1 - row) * h;
+    for (let column = box.column0; column < box.column1; column++) {
+      const purl = grid.purl[row * grid.columns + column];
+      if (!purl && style === "symbols") continue;
+      const x = view.x + column * w;
+      const path = lightness(layer.pixelAt(grid, row, column)) > 0.5 ? onLight : onDark;
+      if (style === "symbols") {
+        path.moveTo(x + w / 2 + radius, y + h / 2);
+        path.arc(x + w / 2, y + h / 2, radius, 0, 2 * Math.PI);
+      } else if (purl) {
+        path.moveTo(x + 0.12 * w, y + 0.62 * h);
+        path.bezierCurveTo(x + 0.2 * w, y + 0.2 * h, x + 0.8 * w, y + 0.2 * h, x + 0.88 * w, y + 0.62 * h);
+        path.moveTo(x + 0.3 * w, y + 0.78 * h);
+        path.quadraticCurveTo(x + 0.5 * w, y + 0.6 * h, x + 0.7 * w, y + 0.78 * h);
+      } else {
+        path.moveTo(x + 0.16 * w, y + 0.14 * h);
+        path.quadraticCurveTo(x + 0.3 * w, y + 0.6 * h, x + 0.47 * w, y + 0.86 * h);
+        path.moveTo(x + 0.84 * w, y + 0.14 * h);
+        path.quadraticCurveTo(x + 0.7 * w, y + 0.6 * h, x + 0.53 * w, y + 0.86 * h);
+      }
+    }
+  }
+  if (style === "symbols") {
+    context.fillStyle = "rgb(20 16 12 / 0.62)";
+    context.fill(onLight);
+    context.fillStyle = "rgb(255 252 246 / 0.8)";
+    context.fill(onDark);
+    return;
+  }
+  context.lineCap = "round";
+  context.lineWidth = Math.max(1, Math.min(w, h) * 0.11);
+  context.strokeStyle = "rgb(20 16 12 / 0.5)";
+  context.stroke(onLight);
+  context.strokeStyle = "rgb(255 252 246 / 0.6)";
+  context.stroke(onDark);
+}
+
+/**
+ * Fine lines between stitches, stronger ones every ten (counted from the right and the bottom).
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {Box} box
+ * @param {Palette} palette
+ */
+export function drawGrid(context, view, grid, box, palette) {
+  const { cellWidth: w, cellHeight: h } = view;
+  const tone = palette.dark ? "0 0 0" : "60 45 30";
+  const fine = new Path2D();
+  const strong = new Path2D();
+  const left = view.x + box.column0 * w;
+  const right = view.x + box.column1 * w;
+  const top = view.y + (grid.rows - box.row1) * h;
+  const bottom = view.y + (grid.rows - box.row0) * h;
+  const half = 0.5 / view.dpr;
+  for (let column = box.column0; column <= box.column1; column++) {
+    const ten = (grid.columns - column) % 10 === 0;
+    if (!ten && w < 5) continue;
+    const path = ten ? strong : fine;
+    path.moveTo(view.x + column * w - half, top);
+    path.lineTo(view.x + column * w - half, bottom);
+  }
+  for (let row = box.row0; row <= box.row1; row++) {
+    const ten = row % 10 === 0;
+    if (!ten && h < 5) continue;
+    const path = ten ? strong : fine;
+    path.moveTo(left, view.y + (grid.rows - row) * h - half);
+    path.lineTo(right, view.y + (grid.rows - row) * h - half);
+  }
+  context.lineWidth = 1 / view.dpr;
+  context.strokeStyle = `rgb(${tone} / ${palette.dark ? 0.35 : 0.16})`;
+  context.stroke(fine);
+  context.strokeStyle = `rgb(${tone} / ${palette.dark ? 0.6 : 0.38})`;
+  context.stroke(strong);
+}
+
+/**
+ * Every segment as a short bar across the border of the two stitches that it joins.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {Box} box
+ * @param {Palette} palette
+ */
+export function drawSegments(context, view, grid, box, palette) {
+  const { cellWidth: w, cellHeight: h } = view;
+  const even = new Path2D();
+  const odd = new Path2D();
+  const thick = Math.max(1.2, Math.min(w, h) * 0.2);
+  const along = 0.5 * w;
+  const up = 0.5 * h;
+  for (let row = box.row0; row < box.row1; row++) {
+    const y = view.y + (grid.rows - 1 - row) * h;
+    for (let column = box.column0; column < box.column1; column++) {
+      const i = row * grid.columns + column;
+      const x = view.x + column * w;
+      if (column + 1 < grid.columns) {
+        const path = grid.purl[i] === grid.purl[i + 1] ? even : odd;
+        path.rect(x + w - along / 2, y + h / 2 - thick / 2, along, thick);
+      }
+      if (row + 1 < grid.rows) {
+        const path = grid.purl[i] === grid.purl[i + grid.columns] ? even : odd;
+        path.rect(x + w / 2 - thick / 2, y - up / 2, thick, up);
+      }
+    }
+  }
+  context.fillStyle = palette.even;
+  context.fill(even);
+  context.fillStyle = palette.odd;
+  context.fill(odd);
+}
+
+/**
+ * Extensibility rectangles: as wide as the stitch yields along the course, as high as along the
+ * wale, all on one scale. Stitches are averaged in blocks where single ones would be too small.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {Uint8Array} codes
+ * @param {Box} box
+ * @param {StitchKind[]} kinds by code
+ */
+export function drawRectangles(context, view, grid, codes, box, kinds) {
+  const { cellWidth: w, cellHeight: h } = view;
+  const block = Math.max(1, Math.ceil(12 / Math.min(w, h)));
+  const largest = Math.max(
+    ...kinds.flatMap((k) => [k.extensibility_course_mm_per_n, k.extensibility_wale_mm_per_n]),
+  );
+  // The square root keeps stiff fabrics visible beside ribs that give fifty times as much.
+  const room = 0.94 * block * Math.min(w, h);
+  /** @param {number} extensibility */
+  const side = (extensibility) => Math.sqrt(extensibility / largest) * room;
+  const path = new Path2D();
+  for (let row = box.row0 - (box.row0 % block); row < box.row1; row += block) {
+    const rowEnd = Math.min(row + block, grid.rows);
+    for (let column = box.column0 - (box.column0 % block); column < box.column1; column += block) {
+      const columnEnd = Math.min(column + block, grid.columns);
+      let course = 0;
+      let wale = 0;
+      for (let r = row; r < rowEnd; r++) {
+        for (let c = column; c < columnEnd; c++) {
+          const kind = kinds[codes[r * grid.columns + c]];
+          course += kind.extensibility_course_mm_per_n;
+          wale += kind.extensibility_wale_mm_per_n;
+        }
+      }
+      const count = (rowEnd - row) * (columnEnd - column);
+      const wide = side(course / count);
+      const high = side(wale / count);
+      const x = view.x + ((column + columnEnd) / 2) * w;
+      const y = view.y + (grid.rows - (row + rowEnd) / 2) * h;
+      path.rect(x - wide / 2, y - high / 2, wide, high);
+    }
+  }
+  context.fillStyle = "rgb(255 252 246 / 0.5)";
+  context.fill(path);
+  context.lineWidth = Math.max(1, Math.min(1.6, w / 14));
+  context.strokeStyle = "rgb(24 18 14 / 0.85)";
+  context.stroke(path);
+}

@@ -1,0 +1,63 @@
+/**
+ * Row numbers at the side where the row is begun, with the reading direction, and stitch numbers
+ * counted from the right, as a knitter reads a right-side row.
+ *
+ * @import {Grid} from "../core/grid.js"
+ * @import {Viewport} from "./viewport.js"
+ * @import {Palette} from "./palette.js"
+ */
+
+import { MARGIN } from "./viewport.js";
+
+const FONT = "13px system-ui, sans-serif";
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {Palette} palette
+ */
+export function drawRulers(context, view, grid, palette) {
+  context.font = FONT;
+  context.fillStyle = palette.muted;
+  context.textBaseline = "middle";
+  const top = MARGIN.top - 2;
+  const bottom = view.height - MARGIN.bottom + 2;
+  const left = Math.max(MARGIN.left, view.x) - 8;
+  const right = Math.min(view.width - MARGIN.right, view.x + grid.columns * view.cellWidth) + 8;
+
+  const every = rowStep(view.cellHeight);
+  for (let number = 1; number <= grid.rows; number++) {
+    const wrong = number % 2 === 0;
+    if (every > 1 && (wrong ? number % (2 * every) !== 0 : (number - 1) % (2 * every) !== 0)) continue;
+    const y = view.y + (grid.rows - number + 0.5) * view.cellHeight;
+    if (y < top || y > bottom) continue;
+    context.textAlign = wrong ? "right" : "left";
+    context.fillText(wrong ? `${number} →` : `← ${number}`, wrong ? left : right, y);
+  }
+
+  const base = Math.min(view.height - MARGIN.bottom, view.y + grid.rows * view.cellHeight) + 15;
+  const step = columnStep(view.cellWidth);
+  context.textAlign = "center";
+  for (let number = 1; number <= grid.columns; number++) {
+    if (number !== 1 && number % step !== 0) continue;
+    const x = view.x + (grid.columns - number + 0.5) * view.cellWidth;
+    if (x < MARGIN.left - 4 || x > view.width - MARGIN.right + 4) continue;
+    context.fillText(String(number), x, base);
+  }
+  context.textAlign = "right";
+  context.fillText("WS", left, base);
+  context.textAlign = "left";
+  context.fillText("RS", right, base);
+}
+
+/** Label every n-th right-side and wrong-side row. @param {number} height */
+function rowStep(height) {
+  return [1, 5, 10, 25, 50].find((n) => n * 2 * height >= 17) ?? 100;
+}
+
+/** @param {number} width */
+function columnStep(width) {
+  if (width >= 22) return 1;
+  return [5, 10, 20, 50].find((n) => n * width >= 36) ?? 100;
+}

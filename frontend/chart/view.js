@@ -1,0 +1,312 @@
+/**
+ * The chart on its canvas. Two canvases lie over each other: the chart itself, of which only what
+ * changed is drawn anew, and what follows the pointer.
+ *
+ * @import {Box} from "../core/grid.js"
+ * @import {Cell} from "../core/raster.js"
+ * @import {Colouring} from "./overlays.js"
+ * @import {Studio} from "../studio.js"
+ */
+
+import { Signal } from "../core/signal.js";
+import { ColourLayer } from "./layer.js";
+import { drawGrid, drawRectangles, drawSegments, drawSymbols } from "./marks.js";
+import { OVERLAYS } from "./overlays.js";
+import { readPalette } from "./palette.js";
+import { drawRulers } from "./rulers.js";
+import { MARGIN, Viewport } from "./viewport.js";
+
+export class ChartView {
+  viewport = new Viewport();
+  palette = readPalette();
+  /** Stitch under the pointer or the keyboard's cursor. */
+  hover = new Signal(/** @type {Cell | null} */ (null));
+  #layer = new ColourLayer();
+  /** @type {Colouring | null} */ #colouring = null;
+  /** Stitches to draw anew: all, some, none. @type {Box | "all" | null} */ #dirty = "all";
+  #topDirty = true;
+  #frame = 0;
+
+  /**
+   * @param {HTMLElement} host
+   * @param {HTMLCanvasElement} canvas
+   * @param {HTMLCanvasElement} top
+   * @param {Studio} studio
+   */
+  constructor(host, canvas, top, studio) {
+    this.canvas = canvas;
+    this.top = top;
+    this.studio = studio;
+    this.context = /** @type {CanvasRenderingContext2D} */ (
+      canvas.getContext("2d", { alpha: false })
+    );
+    this.topContext = /** @type {CanvasRenderingContext2D} */ (top.getContext("2d"));
+
+    new ResizeObserver(() => this.#resize(host)).observe(host);
+    this.#resize(host);
+    studio.document.onChange(({ box, resized }) => {
+      if (resized) {
+        this.studio.selection.value = null;
+        if (this.viewport.fitted) this.viewport.fit(studio.document.grid);
+        this.recolour();
+      } else this.#mark(box);
+    });
+    for (const signal of [studio.overlay, studio.stretch, studio.step, studio.material]) {
+      signal.listen(() => this.recolour());
+    }
+    for (const signal of [studio.rectangles, studio.symbols]) signal.listen(() => this.redraw());
+    for (const signal of [studio.selection, studio.symmetry, studio.size, studio.tool, this.hover]) {
+      signal.listen(() => this.#schedule(true));
+    }
+    studio.material.listen((material) => {
+      const gauge = material?.fabrics.stockinette ?? Object.values(material?.fabrics ?? {})[0];
+      const ratio = (gauge?.stitch_wale_mm ?? NaN) / (gauge?.stitch_course_mm ?? NaN);
+      this.viewport.aspect = Number.isFinite(ratio) ? Math.min(1.5, Math.max(0.5, ratio)) : 0.8;
+      this.fit();
+    });
+  }
+
+  /** Show the whole chart. */
+  fit() {
+    this.viewport.fit(this.studio.document.grid);
+    this.redraw();
+  }
+
+  /**
+   * @param {number} factor
+   * @param {number} [x] CSS pixels; the middle if left out
+   * @param {number} [y]
+   */
+  zoom(factor, x = this.viewport.width / 2, y = this.viewport.height / 2) {
+    this.viewport.zoom(factor, x, y, this.studio.document.grid);
+    this.redraw();
+  }
+
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   */
+  pan(dx, dy) {
+    this.viewport.pan(dx, dy, this.studio.document.grid);
+    this.redraw();
+  }
+
+  /** @param {{offsetX: number, offsetY: number}} point @returns {Cell} */
+  cellAt({ offsetX, offsetY }) {
+    return this.viewport.cellAt(offsetX, offsetY, this.studio.document.grid);
+  }
+
+  /** Colours mean something else now. */
+  recolour() {
+    this.#colouring = null;
+    this.redraw();
+  }
+
+  /** The theme changed. */
+  retheme() {
+    this.palette = readPalette();
+    this.recolour();
+  }
+
+  redraw() {
+    this.#dirty = "all";
+    this.#schedule(true);
+  }
+
+  /** @param {Box} box */
+  #mark(box) {
+    if (this.#colouring) {
+      const { grid, codes } = this.studio.document;
+      this.#layer.update(grid, codes, this.#colouring, box);
+    }
+    const dirty = this.#dirty;
+    if (dirty === null) this.#dirty = box;
+    else if (dirty !== "all") {
+      this.#dirty = {
+        row0: Math.min(dirty.row0, box.row0),
+        column0: Math.min(dirty.column0, box.column0),
+        row1: Math.max(dirty.row1, box.row1),
+        column1: Math.max(dirty.column1, box.column1),
+      };
+    }
+    this.#schedule(false);
+  }
+
+  /** @param {boolean} top */
+  #schedule(top) {
+    this.#topDirty ||= top;
+    this.#frame ||= requestAnimationFrame(() => {
+      this.#frame = 0;
+      this.#draw();
+      if (this.#topDirty) this.#drawTop();
+      this.#topDirty = false;
+    });
+  }
+
+  /** @param {HTMLElement} host */
+  #resize(host) {
+    const dpr = window.devicePixelRatio || 1;
+    const { clientWidth, clientHeight } = host;
+    if (!clientWidth || !clientHeight) return;
+    for (const canvas of [this.canvas, this.top]) {
+      canvas.width = Math.round(clientWidth * dpr);
+      canvas.height = Math.round(clientHeight * dpr);
+    }
+    Object.assign(this.viewport, { width: clientWidth, height: clientHeight, dpr });
+    if (this.viewport.fitted) this.viewport.fit(this.studio.document.grid);
+    this.#dirty = "all";
+    this.#topDirty = true;
+    // At once: a resized canvas is empty until it is drawn.
+    this.#draw();
+    this.#drawTop();
+  }
+
+  #draw() {
+    const dirty = this.#dirty;
+    if (!dirty) return;
+    this.#dirty = null;
+    const { context, viewport, palette, studio } = this;
+    const { grid, codes } = studio.document;
+    const overlay = studio.overlay.value.available(studio) ? studio.overlay.value : null;
+    if (!this.#colouring) {
+      const shown = overlay ?? FALLBACK;
+      this.#colouring = shown.colouring(studio, palette);
+      this.#layer.update(grid, codes, this.#colouring, grid.box);
+    }
+    context.setTransform(viewport.dpr, 0, 0, viewport.dpr, 0, 0);
+    const { x, y, cellWidth: w, cellHeight: h } = viewport;
+    if (dirty === "all") {
+      context.fillStyle = palette.pane;
+      context.fillRect(0, 0, viewport.width, viewport.height);
+      drawRulers(context, viewport, grid, palette);
+    }
+    const seen = viewport.visible(grid);
+    const box = dirty === "all" ? seen : intersection(dirty, seen);
+    if (box.row0 >= box.row1 || box.column0 >= box.column1) return;
+
+    context.save();
+    context.beginPath();
+    const plot = { x: MARGIN.left - 1, y: MARGIN.top - 1 };
+    context.rect(
+      plot.x,
+      plot.y,
+      viewport.width - MARGIN.left - MARGIN.right + 2,
+      viewport.height - MARGIN.top - MARGIN.bottom + 2,
+    );
+    context.clip();
+    const left = x + box.column0 * w;
+    const top = y + (grid.rows - box.row1) * h;
+    context.beginPath();
+    context.rect(left, top, (box.column1 - box.column0) * w, (box.row1 - box.row0) * h);
+    if (dirty !== "all") context.clip();
+    context.imageSmoothingEnabled = false;
+    context.drawImage(
+      this.#layer.canvas,
+      2 * box.column0,
+      2 * (grid.rows - box.row1),
+      2 * (box.column1 - box.column0),
+      2 * (box.row1 - box.row0),
+      left,
+      top,
+      (box.column1 - box.column0) * w,
+      (box.row1 - box.row0) * h,
+    );
+    const around = {
+      row0: Math.max(seen.row0, box.row0 - 1),
+      column0: Math.max(seen.column0, box.column0 - 1),
+      row1: Math.min(seen.row1, box.row1 + 1),
+      column1: Math.min(seen.column1, box.column1 + 1),
+    };
+    drawGrid(context, viewport, grid, around, palette);
+    if (overlay?.id === "segments") drawSegments(context, viewport, grid, around, palette);
+    else if (!studio.rectangles.value) {
+      drawSymbols(context, viewport, grid, this.#layer, around, studio.symbols.value);
+    }
+    const kinds = studio.kinds();
+    if (studio.rectangles.value && kinds.length) {
+      drawRectangles(context, viewport, grid, codes, around, kinds);
+    }
+    context.restore();
+  }
+
+  #drawTop() {
+    const { topContext: context, viewport, palette, studio } = this;
+    const { grid } = studio.document;
+    const { x, y, cellWidth: w, cellHeight: h } = viewport;
+    context.setTransform(viewport.dpr, 0, 0, viewport.dpr, 0, 0);
+    context.clearRect(0, 0, viewport.width, viewport.height);
+    context.beginPath();
+    context.rect(MARGIN.left - 3, MARGIN.top - 3, viewport.width - MARGIN.left - MARGIN.right + 6, viewport.height - MARGIN.top - MARGIN.bottom + 6);
+    context.save();
+    context.clip();
+    const symmetry = studio.symmetry.value;
+    context.strokeStyle = palette.accent;
+    context.lineWidth = 1.5;
+    context.setLineDash([6, 5]);
+    context.beginPath();
+    if (symmetry === "across" || symmetry === "both") {
+      context.moveTo(x + (grid.columns * w) / 2, y);
+      context.lineTo(x + (grid.columns * w) / 2, y + grid.rows * h);
+    }
+    if (symmetry === "up" || symmetry === "both") {
+      context.moveTo(x, y + (grid.rows * h) / 2);
+      context.lineTo(x + grid.columns * w, y + (grid.rows * h) / 2);
+    }
+    context.stroke();
+    context.setLineDash([]);
+    const selection = studio.selection.value;
+    if (selection) this.#outline(selection, 2.5);
+    const cell = this.hover.value;
+    const tool = studio.tool.value;
+    if (cell && grid.has(...cell) && tool.mode !== "pan") {
+      const size = tool.sized ? studio.size.value : 1;
+      const before = Math.floor((size - 1) / 2);
+      const stamp = tool.id === "stamp" ? studio.ink.value.repeat : null;
+      this.#outline(
+        {
+          row0: cell[0] - before,
+          column0: cell[1] - before,
+          row1: cell[0] - before + (stamp?.rows ?? size),
+          column1: cell[1] - before + (stamp?.columns ?? size),
+        },
+        2,
+      );
+    }
+    context.restore();
+  }
+
+  /**
+   * @param {Box} box
+   * @param {number} width
+   */
+  #outline({ row0, column0, row1, column1 }, width) {
+    const { topContext: context, viewport, palette, studio } = this;
+    const { x, y, cellWidth: w, cellHeight: h } = viewport;
+    const top = y + (studio.document.grid.rows - row1) * h;
+    /** @type {[number, number, number, number]} */
+    const rectangle = [x + column0 * w, top, (column1 - column0) * w, (row1 - row0) * h];
+    context.strokeStyle = palette.pane;
+    context.lineWidth = width + 2;
+    context.strokeRect(...rectangle);
+    context.strokeStyle = palette.accent;
+    context.lineWidth = width;
+    context.strokeRect(...rectangle);
+  }
+}
+
+/** Shown where the chosen overlay has no values (yet). */
+const FALLBACK = OVERLAYS[1];
+
+/**
+ * @param {Box} a
+ * @param {Box} b
+ * @returns {Box}
+ */
+function intersection(a, b) {
+  return {
+    row0: Math.max(a.row0, b.row0),
+    column0: Math.max(a.column0, b.column0),
+    row1: Math.min(a.row1, b.row1),
+    column1: Math.min(a.column1, b.column1),
+  };
+}

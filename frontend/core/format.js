@@ -1,0 +1,32 @@
+/** Numbers for people: three significant figures, a unit beside each. */
+
+/**
+ * @param {number | null | undefined} value
+ * @param {number} [digits] significant figures
+ */
+export function figure(value, digits = 3) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  const decimals = Math.min(6, Math.max(0, digits - 1 - magnitude));
+  return value.toFixed(decimals).replace("-", "−");
+}
+
+/**
+ * Both ends with as many decimals as the larger one needs.
+ *
+ * @param {readonly [number, number] | null | undefined} interval
+ */
+export function range(interval) {
+  if (!interval || !interval.every(Number.isFinite)) return "";
+  const [low, high] = interval;
+  return `${figure(low, 2)} – ${figure(high, 2)}`;
+}
+
+/**
+ * @param {number} share
+ * @param {number} [decimals]
+ */
+export function percent(share, decimals = 0) {
+  return `${(100 * share).toFixed(decimals).replace("-", "−")} %`;
+}

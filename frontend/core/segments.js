@@ -1,0 +1,98 @@
+/**
+ * Even and odd segments, and the 16 kinds of stitch they make.
+ *
+ * A segment between two neighbours is odd if one is a knit and the other a purl. The four segments
+ * around a stitch are all that the composite knows of it; a segment that would cross an edge takes
+ * the parity of the one on the opposite side. The same definition as in the Python library.
+ *
+ * @import {Box, Grid} from "./grid.js"
+ * @import {Direction, FabricName, SegmentCounts} from "../types.js"
+ */
+
+export const LEFT = 1;
+export const RIGHT = 2;
+export const BELOW = 4;
+export const ABOVE = 8;
+
+/** Fabrics by phase: 2 × course-wise odd + wale-wise odd. @type {FabricName[]} */
+export const FABRICS = ["stockinette", "garter", "rib", "seed"];
+
+/** Phases of the quarters of each code: below left, below right, above left, above right. */
+export const QUARTERS = Array.from({ length: 16 }, (_, code) => {
+  const left = code & LEFT ? 2 : 0;
+  const right = code & RIGHT ? 2 : 0;
+  const below = code & BELOW ? 1 : 0;
+  const above = code & ABOVE ? 1 : 0;
+  return [left + below, right + below, left + above, right + above];
+});
+
+/**
+ * Write the codes of the stitches in a box.
+ *
+ * @param {Grid} grid
+ * @param {Uint8Array} codes one for each stitch
+ * @param {Box} [box]
+ */
+export function updateSurroundings(grid, codes, { row0, column0, row1, column1 } = grid.box) {
+  const { rows, columns, purl } = grid;
+  for (let row = row0; row < row1; row++) {
+    for (let column = column0; column < column1; column++) {
+      const i = row * columns + column;
+      const own = purl[i];
+      const right = column + 1 < columns ? purl[i + 1] ^ own : -1;
+      const left = column > 0 ? purl[i - 1] ^ own : Math.max(right, 0);
+      const above = row + 1 < rows ? purl[i + columns] ^ own : -1;
+      const below = row > 0 ? purl[i - columns] ^ own : Math.max(above, 0);
+      codes[i] =
+        left * LEFT +
+        (right < 0 ? left : right) * RIGHT +
+        below * BELOW +
+        (above < 0 ? below : above) * ABOVE;
+    }
+  }
+}
+
+/**
+ * @param {Grid} grid
+ * @returns {Uint8Array}
+ */
+export function surroundings(grid) {
+  const codes = new Uint8Array(grid.purl.length);
+  updateSurroundings(grid, codes);
+  return codes;
+}
+
+/**
+ * @param {Grid} grid
+ * @returns {Record<Direction, SegmentCounts>}
+ */
+export function countSegments({ rows, columns, purl }) {
+  let course = 0;
+  let wale = 0;
+  for (let row = 0, i = 0; row < rows; row++) {
+    for (let column = 0; column < columns; column++, i++) {
+      if (column + 1 < columns) course += purl[i] ^ purl[i + 1];
+      if (row + 1 < rows) wale += purl[i] ^ purl[i + columns];
+    }
+  }
+  return {
+    course: { even: rows * (columns - 1) - course, odd: course },
+    wale: { even: (rows - 1) * columns - wale, odd: wale },
+  };
+}
+
+/**
+ * Shares of the four fabrics, by quarters.
+ *
+ * @param {Uint8Array} codes
+ * @returns {number[]} by phase, summing to 1
+ */
+export function fabricShares(codes) {
+  const kinds = new Uint32Array(16);
+  for (const code of codes) kinds[code]++;
+  const shares = [0, 0, 0, 0];
+  kinds.forEach((count, code) => {
+    for (const phase of QUARTERS[code]) shares[phase] += count / (4 * codes.length);
+  });
+  return shares;
+}

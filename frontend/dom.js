@@ -1,0 +1,63 @@
+/** Building elements. */
+
+/**
+ * @typedef {Node | string | number | null | undefined | false} Child
+ */
+
+/**
+ * An element with properties (`class`, `onclick`, `aria-…`, `data-…`, any other property) and children.
+ *
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag
+ * @param {Record<string, unknown>} [properties]
+ * @param {...Child} children
+ * @returns {HTMLElementTagNameMap[K]}
+ */
+export function h(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name === "class") element.className = String(value);
+    else if (name.includes("-") || name === "role" || name === "for" || name === "list") {
+      element.setAttribute(name, String(value));
+    } else Reflect.set(element, name, value);
+  }
+  element.append(...children.filter(isShown).map(asNode));
+  return element;
+}
+
+/**
+ * @param {Child} child
+ * @returns {child is Node | string | number}
+ */
+function isShown(child) {
+  return child !== null && child !== undefined && child !== false;
+}
+
+/** @param {Node | string | number} child */
+function asNode(child) {
+  return typeof child === "number" ? String(child) : child;
+}
+
+/**
+ * The element with this id, which the page has.
+ *
+ * @template {HTMLElement} [T=HTMLElement]
+ * @param {string} id
+ * @returns {T}
+ */
+export function byId(id) {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`The page has no element #${id}.`);
+  return /** @type {T} */ (element);
+}
+
+/** Whether keys are for a text field and not for the page. */
+export function isTyping() {
+  const active = document.activeElement;
+  return (
+    active instanceof HTMLTextAreaElement ||
+    active instanceof HTMLSelectElement ||
+    (active instanceof HTMLInputElement && !["range", "checkbox", "radio"].includes(active.type))
+  );
+}

@@ -1,0 +1,190 @@
+/**
+ * The numbers of the chart or the selection, with interval and source, and two plots.
+ *
+ * @import {Studio} from "../studio.js"
+ * @import {Direction, Prediction} from "../types.js"
+ */
+
+import { figure, percent, range } from "../core/format.js";
+import { FABRICS, countSegments, fabricShares, surroundings } from "../core/segments.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+import { curvePlot } from "../plots/curve.js";
+import { rigidityPlot } from "../plots/rigidity.js";
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @returns {() => void} draws the plots anew, for another theme
+ */
+export function inspector(host, studio) {
+  const title = h("h2", {});
+  const source = h("details", { class: "source" });
+  const problem = h("div", { class: "problem", hidden: true });
+  const table = h("table", { class: "numbers" });
+  const shares = h("div", { class: "shares" });
+  const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
+  const curve = h("div", { class: "plot", id: "plot-curve" });
+  const drawRigidity = rigidityPlot(rigidity, studio);
+  const drawCurve = curvePlot(curve, studio);
+
+  /** @param {"rigidity" | "curve"} id @param {string} label */
+  const tab = (id, label) =>
+    h(
+      "button",
+      {
+        class: "tab",
+        type: "button",
+        role: "tab",
+        id: `tab-${id}`,
+        "aria-controls": `plot-${id}`,
+        onclick: () => choose(id),
+      },
+      label,
+    );
+  const tabs = { rigidity: tab("rigidity", "Stiffness map"), curve: tab("curve", "Stress–strain") };
+  /** @param {"rigidity" | "curve"} id */
+  const choose = (id) => {
+    rigidity.hidden = id !== "rigidity";
+    curve.hidden = id !== "curve";
+    tabs.rigidity.setAttribute("aria-selected", String(id === "rigidity"));
+    tabs.curve.setAttribute("aria-selected", String(id === "curve"));
+    if (id === "curve") drawCurve();
+    else drawRigidity();
+  };
+
+  host.append(
+    h("div", { class: "inspector-numbers" },
+      h("div", { class: "inspector-head" }, title, source),
+      problem,
+      table,
+      shares),
+    h("div", { class: "inspector-plots" },
+      h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, tabs.rigidity, tabs.curve),
+      rigidity,
+      curve),
+  );
+  choose("rigidity");
+
+  const show = () => {
+    const { value, busy, problem: wrong, scope } = studio.prediction.value;
+    const box = studio.selection.value;
+    const { grid } = studio.document;
+    const [rows, columns] = box ? [box.row1 - box.row0, box.column1 - box.column0] : [grid.rows, grid.columns];
+    title.replaceChildren(box ? "Selection" : "Whole chart", h("span", { class: "muted figures" }, ` ${columns} × ${rows}`));
+    host.classList.toggle("busy", busy);
+    problem.hidden = !wrong;
+    if (wrong) {
+      problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
+    }
+    // Numbers of another scope would be mistaken for this one's.
+    fill(table, scope === (box ? "selection" : "chart") ? value : null);
+    source.hidden = !value;
+    if (value) {
+      const open = source.open;
+      source.replaceChildren(
+        h("summary", { id: "provenance", title: "Where these numbers come from" }, value.provenance),
+        h("ul", { class: "notes" }, ...(value.notes?.length ? value.notes : ["Interval: 90 %."]).map((note) => h("li", {}, note))),
+      );
+      source.open = open;
+    }
+  };
+  const count = () => {
+    const box = studio.selection.value;
+    const part = box ? studio.document.grid.region(box) : studio.document.grid;
+    const codes = box ? surroundings(part) : studio.document.codes;
+    const segments = countSegments(part);
+    shares.replaceChildren(
+      shareBar("Fabrics", fabricShares(codes).map((share, i) => ({
+        share, colour: `var(--${FABRICS[i]})`, label: FABRICS[i], text: percent(share),
+      }))),
+      ...(/** @type {Direction[]} */ (["course", "wale"])).map((direction) => {
+        const { even, odd } = segments[direction];
+        const all = even + odd || 1;
+        return shareBar(`Segments ${direction}-wise`, [
+          { share: even / all, colour: "var(--even)", label: "even", text: `${even} even` },
+          { share: odd / all, colour: "var(--odd)", label: "odd", text: `${odd} odd` },
+        ], `segments-${direction}`);
+      }),
+    );
+  };
+  let frame = 0;
+  const countSoon = () => {
+    frame ||= requestAnimationFrame(() => {
+      frame = 0;
+      count();
+    });
+  };
+  studio.prediction.watch(show);
+  studio.selection.listen(() => {
+    show();
+    countSoon();
+  });
+  studio.document.onChange(countSoon);
+  count();
+  studio.stretch.listen(({ value, stale }) => {
+    if (value && !stale) choose("curve");
+  });
+  return () => {
+    drawRigidity();
+    if (!curve.hidden) drawCurve();
+  };
+}
+
+/**
+ * @param {HTMLTableElement} table
+ * @param {Prediction | null} value
+ */
+function fill(table, value) {
+  /** @param {string} id @param {number | undefined} number @param {string} unit @param {string} [interval] */
+  const cell = (id, number, unit, interval) =>
+    h(
+      "td",
+      { id },
+      h("span", { class: "value" }, figure(number)),
+      unit && h("span", { class: "unit" }, ` ${unit}`),
+      interval && h("span", { class: "interval", title: "90 % interval" }, interval),
+    );
+  /** @param {string} label @param {string} hint @param {HTMLElement[]} cells */
+  const row = (label, hint, ...cells) => h("tr", {}, h("th", { scope: "row", title: hint }, label), ...cells);
+  table.replaceChildren(
+    h("thead", {}, h("tr", {},
+      h("td", {}),
+      h("th", { scope: "col" }, icon("course"), "Course"),
+      h("th", { scope: "col" }, icon("wale"), "Wale"))),
+    h("tbody", {},
+      row("Modulus", "Initial Young's modulus: force per width",
+        cell("modulus-course", value?.modulus_course_n_per_mm, "N/mm", range(value?.modulus_course_interval_n_per_mm)),
+        cell("modulus-wale", value?.modulus_wale_n_per_mm, "N/mm", range(value?.modulus_wale_interval_n_per_mm))),
+      row("Gives", "Extensibility: one over the modulus",
+        cell("extensibility-course", value?.extensibility_course_mm_per_n, "mm/N"),
+        cell("extensibility-wale", value?.extensibility_wale_mm_per_n, "mm/N")),
+      row("Poisson", "Contraction across when pulled along",
+        cell("poisson-yx", value?.poisson_yx, ""),
+        cell("poisson-xy", value?.poisson_xy, ""))),
+  );
+}
+
+/**
+ * @param {string} label
+ * @param {{share: number, colour: string, label: string, text: string}[]} parts
+ * @param {string} [id]
+ */
+function shareBar(label, parts, id) {
+  const bar = h("div", { class: "bar", "aria-hidden": "true" });
+  for (const { share, colour } of parts) {
+    const piece = h("span", {});
+    piece.style.flexGrow = String(share);
+    piece.style.backgroundColor = colour;
+    if (share > 0) bar.append(piece);
+  }
+  const named = parts.filter(({ share }) => share >= 0.005);
+  return h(
+    "div",
+    { class: "share", id },
+    h("div", { class: "share-text" },
+      h("span", { class: "muted" }, label),
+      h("span", { class: "figures" }, named.map(({ label: name, text }) => (text.includes(name) ? text : `${name} ${text}`)).join(" · "))),
+    bar,
+  );
+}

@@ -1,0 +1,44 @@
+/**
+ * Messages at the foot of the page, and the banner while the service is away.
+ *
+ * @import {Studio} from "../studio.js"
+ */
+
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+
+const INFO_MS = 5000;
+
+/**
+ * @param {HTMLElement} host
+ * @param {HTMLElement} banner
+ * @param {Studio} studio
+ */
+export function messages(host, banner, studio) {
+  studio.message.listen((message) => {
+    if (!message) return;
+    const { kind, title, detail, remedy } = message;
+    const close = () => box.remove();
+    const box = h(
+      "div",
+      { class: `message ${kind}` },
+      icon(kind === "error" ? "warning" : "info"),
+      h("div", {}, h("strong", {}, title), detail && h("p", {}, detail), remedy && h("p", {}, remedy)),
+      h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Close this message", onclick: close }, icon("close")),
+    );
+    host.replaceChildren(box);
+    if (kind === "info") setTimeout(close, INFO_MS);
+    studio.message.value = null;
+  });
+
+  studio.online.watch((online) => {
+    banner.hidden = online;
+    if (!online) {
+      banner.replaceChildren(
+        icon("warning"),
+        h("strong", {}, "The service cannot be reached."),
+        "Your chart is safe in this browser and you can go on painting. Numbers and 3D return by themselves; if not, start the service again.",
+      );
+    }
+  });
+}

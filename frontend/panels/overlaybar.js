@@ -1,0 +1,135 @@
+/**
+ * What the chart's colours show: chips, the legend, and a read-out of the stitch under the pointer.
+ *
+ * @import {ChartView} from "../chart/view.js"
+ * @import {ScaleLegend} from "../chart/overlays.js"
+ * @import {Cell} from "../core/raster.js"
+ * @import {Studio} from "../studio.js"
+ */
+
+import { OVERLAYS } from "../chart/overlays.js";
+import { percent, figure, range } from "../core/format.js";
+import { h } from "../dom.js";
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @param {ChartView} view
+ * @returns {() => void} draws the legend anew, for another theme
+ */
+export function overlaybar(host, studio, view) {
+  const chips = OVERLAYS.map((overlay) =>
+    h(
+      "button",
+      {
+        class: "chip",
+        type: "button",
+        role: "radio",
+        id: `overlay-${overlay.id}`,
+        title: overlay.hint,
+        onclick: () => (studio.overlay.value = overlay),
+      },
+      overlay.label,
+    ),
+  );
+  const rectangles = h(
+    "button",
+    {
+      class: "chip",
+      type: "button",
+      id: "overlay-rectangles",
+      title: "Extensibility rectangles: as wide and as high as a stitch gives along course and wale (E)",
+      onclick: () => (studio.rectangles.value = !studio.rectangles.value),
+    },
+    h("span", { class: "chip-rectangle", "aria-hidden": "true" }),
+    "Rectangles",
+  );
+  const legend = h("div", { class: "legend" });
+  const readout = h("output", { class: "readout figures", id: "readout" });
+
+  const show = () => {
+    OVERLAYS.forEach((overlay, i) => {
+      chips[i].setAttribute("aria-checked", String(overlay === studio.overlay.value));
+      const available = overlay.available(studio);
+      chips[i].disabled = !available;
+      chips[i].title = available ? overlay.hint : `${overlay.hint}. Needs a stretch test of this chart.`;
+    });
+    const shown = studio.overlay.value.available(studio) ? studio.overlay.value : OVERLAYS[1];
+    const content = shown.legend(studio, view.palette);
+    legend.replaceChildren(
+      ...(content.kind === "scale"
+        ? scale(content)
+        : content.items.map(({ label, colour, dot }) => {
+            const key = h("span", { class: dot ? "key dot" : "key" });
+            key.style.backgroundColor = colour;
+            return h("span", { class: "legend-item" }, key, label);
+          })),
+    );
+    if (studio.rectangles.value) {
+      legend.append(h("span", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), "give per N (square-root scale)"));
+    }
+  };
+  for (const signal of [studio.overlay, studio.material, studio.rectangles]) signal.listen(show);
+  studio.stretch.watch(show);
+  studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
+
+  const read = () => (readout.textContent = describe(studio, view.hover.value));
+  view.hover.listen(read);
+  studio.document.onChange(read);
+  studio.step.listen(read);
+
+  host.append(
+    h("div", { class: "chips" },
+      h("div", { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" }, ...chips),
+      rectangles),
+    h("div", { class: "legend-row" }, legend, readout),
+  );
+  return show;
+}
+
+/** @param {ScaleLegend} scale */
+function scale({ map, low, high, unit, log, label }) {
+  const canvas = h("canvas", { width: 160, height: 10, class: "gradient" });
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  for (let x = 0; x < 160; x++) {
+    context.fillStyle = map.css(x / 159);
+    context.fillRect(x, 0, 1, 10);
+  }
+  return [
+    h("span", {}, label),
+    h("span", { class: "figures" }, figure(low, 2)),
+    canvas,
+    h("span", { class: "figures" }, `${figure(high, 2)}${unit ? ` ${unit}` : ""}`),
+    log && h("span", { class: "muted" }, "log"),
+  ].filter((part) => part instanceof Node);
+}
+
+/**
+ * @param {Studio} studio
+ * @param {Cell | null} cell
+ */
+function describe(studio, cell) {
+  const { grid, codes } = studio.document;
+  if (!cell || !grid.has(...cell)) return "";
+  const [row, column] = cell;
+  const i = grid.index(row, column);
+  const side = row % 2 === 0 ? "RS" : "WS";
+  const parts = [
+    `Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`,
+  ];
+  const kind = studio.kinds()[codes[i]];
+  const strain = studio.field("strain")?.[i];
+  const used = studio.field("utilisation")?.[i];
+  if (studio.overlay.value.id === "strain" && strain !== undefined) {
+    parts.push(`strain ${percent(strain, 1)}`);
+  } else if (studio.overlay.value.id === "utilisation" && used !== undefined) {
+    parts.push(`${percent(used)} of lock-up`);
+  } else if (kind) {
+    const value = (/** @type {"course" | "wale"} */ direction) => {
+      const interval = range(kind[`modulus_${direction}_interval`]);
+      return `${direction} ${figure(kind[`modulus_${direction}_n_per_mm`])}${interval && ` (${interval})`}`;
+    };
+    parts.push(`${value("course")}, ${value("wale")} N/mm`);
+  }
+  return parts.join(" · ");
+}

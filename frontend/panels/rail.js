@@ -1,0 +1,96 @@
+/**
+ * The tools at the left, brush size and symmetry.
+ *
+ * @import {ActionContext} from "../actions/action.js"
+ * @import {Studio} from "../studio.js"
+ */
+
+import { SIZES } from "../actions/look.js";
+import { action, shown } from "../actions/registry.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+import { TOOLS } from "../tools/registry.js";
+
+const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function rail(host, studio, context) {
+  const tools = TOOLS.map((tool) =>
+    h(
+      "button",
+      {
+        class: "tool",
+        type: "button",
+        id: `tool-${tool.id}`,
+        title: `${tool.label} (${tool.key.toUpperCase()})\n${tool.hint}`,
+        "aria-label": tool.label,
+        "aria-keyshortcuts": tool.key.toUpperCase(),
+        onclick: () => (studio.tool.value = tool),
+      },
+      icon(tool.icon),
+    ),
+  );
+  studio.tool.watch((chosen) =>
+    TOOLS.forEach((tool, i) => tools[i].setAttribute("aria-pressed", String(tool === chosen))),
+  );
+
+  const size = h("button", {
+    class: "tool size",
+    type: "button",
+    id: "brush-size",
+    onclick: () => {
+      studio.size.value = SIZES[(SIZES.indexOf(studio.size.value) + 1) % SIZES.length];
+    },
+  });
+  studio.size.watch((value) => {
+    const dot = h("span", { class: "size-dot" });
+    dot.style.width = dot.style.height = `${4 + 1.4 * value}px`;
+    size.replaceChildren(dot, h("span", { class: "figures" }, value));
+    size.title = `Brush: ${value} × ${value} stitches ([ and ])`;
+    size.setAttribute("aria-label", `Brush size ${value}; next size`);
+  });
+  studio.tool.watch(({ sized }) => (size.disabled = !sized));
+
+  /** @param {string} id */
+  const small = (id) => {
+    const { label, icon: picture, keys, perform } = action(id);
+    return h(
+      "button",
+      {
+        class: "tool",
+        type: "button",
+        id: `action-${id}`,
+        title: `${label} (${shown(keys[0])})`,
+        "aria-label": label,
+        onclick: () => perform(context),
+      },
+      picture && icon(picture),
+    );
+  };
+  const symmetry = small("symmetry");
+  studio.symmetry.watch((value) => {
+    symmetry.setAttribute("aria-pressed", String(value !== "none"));
+    symmetry.setAttribute("aria-label", `Symmetry: ${SYMMETRY_NAMES[value]}`);
+    symmetry.title = `Symmetry: ${SYMMETRY_NAMES[value]} (Y)`;
+    symmetry.replaceChildren(icon(value === "up" ? "flip" : "mirror"), value === "both" ? h("span", { class: "badge" }, "2") : "");
+  });
+
+  host.append(
+    ...tools,
+    h("hr"),
+    size,
+    symmetry,
+    h("hr"),
+    small("swap"),
+    small("turn-over"),
+    h("div", { class: "spacer" }),
+    small("symbols"),
+    small("zoom-in"),
+    small("zoom-out"),
+    small("fit"),
+  );
+}

@@ -1,0 +1,158 @@
+/**
+ * The stretch test: pull the chart between two clamps, then go through the steps.
+ *
+ * @import {Studio} from "../studio.js"
+ * @import {Stretcher} from "../services/stretcher.js"
+ * @import {Direction} from "../types.js"
+ */
+
+import { figure, percent } from "../core/format.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @param {Stretcher} stretcher
+ */
+export function stretchdrawer(host, studio, stretcher) {
+  /** @type {Direction} */
+  let direction = "wale";
+  /** @param {Direction} which @param {string} label */
+  const choice = (which, label) =>
+    h(
+      "button",
+      {
+        class: "segment",
+        type: "button",
+        role: "radio",
+        id: `stretch-${which}`,
+        title: `Pull ${which}-wise: ${which === "course" ? "along the rows" : "along the columns"}`,
+        onclick: () => choose(which),
+      },
+      icon(which),
+      label,
+    );
+  const choices = { course: choice("course", "Course"), wale: choice("wale", "Wale") };
+  /** @param {Direction} which */
+  const choose = (which) => {
+    direction = which;
+    choices.course.setAttribute("aria-checked", String(which === "course"));
+    choices.wale.setAttribute("aria-checked", String(which === "wale"));
+  };
+  choose("wale");
+
+  const amount = h("input", {
+    type: "number",
+    id: "stretch-amount",
+    class: "number figures",
+    min: "1",
+    max: "400",
+    step: "1",
+    value: "30",
+    "aria-label": "Amount of stretch in percent",
+    onkeydown: (/** @type {KeyboardEvent} */ { key }) => key === "Enter" && start(),
+  });
+  const start = () => {
+    const strain = Number(amount.value) / 100;
+    if (!(strain > 0)) {
+      studio.tellProblem({
+        type: "input",
+        status: 422,
+        title: "The amount of stretch cannot be used",
+        detail: `“${amount.value}” is not a percentage above 0.`,
+        remedy: "Enter for example 30.",
+      });
+      amount.focus();
+      return;
+    }
+    void stretcher.run(direction, strain);
+  };
+  const run = h("button", { class: "button primary", type: "button", id: "stretch-run", onclick: () => (studio.stretch.value.busy ? stretcher.cancel() : start()) });
+  const progress = h("div", { class: "progress", hidden: true }, h("span"));
+  const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
+
+  const play = h("button", {
+    class: "button icon-only",
+    type: "button",
+    id: "stretch-play",
+    onclick: () => (stretcher.playing ? stretcher.pause() : stretcher.play()),
+  });
+  const slider = h("input", {
+    type: "range",
+    class: "slider",
+    id: "stretch-slider",
+    min: "0",
+    max: "0",
+    value: "0",
+    "aria-label": "Step of the stretch",
+    oninput: () => {
+      stretcher.pause();
+      studio.step.value = Number(slider.value);
+    },
+  });
+  const figures = h("dl", { class: "stretch-figures figures", id: "stretch-figures" });
+  const player = h("div", { class: "player" }, play, slider, figures);
+
+  host.append(
+    h("div", { class: "stretch-set" },
+      h("h2", {}, "Stretch test"),
+      h("div", { class: "segmented", role: "radiogroup", "aria-label": "Direction of the pull" }, choices.course, choices.wale),
+      h("label", { class: "amount" }, h("span", { class: "muted" }, "by"), amount, h("span", { class: "muted" }, "%")),
+      run),
+    progress,
+    note,
+    player,
+  );
+
+  const showStep = () => {
+    const { value } = studio.stretch.value;
+    const i = studio.step.value;
+    slider.value = String(i);
+    if (!value) return;
+    slider.setAttribute("aria-valuetext", `${percent(value.strain[i])} strain`);
+    /** @param {string} term @param {string} text @param {string} hint */
+    const pair = (term, text, hint) => h("div", { title: hint }, h("dt", {}, term), h("dd", {}, text));
+    figures.replaceChildren(
+      pair("Strain", percent(value.strain[i]), "Clamp to clamp, along the pull"),
+      pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches"),
+      pair("Stress", `${figure(value.stress_n_per_mm[i])} N/mm`, "Force per relaxed width"),
+      pair("Waist", percent(value.waist_strain[i]), "Change of width half way between the clamps"),
+    );
+  };
+  const show = () => {
+    const { value, busy, stale, problem } = studio.stretch.value;
+    run.replaceChildren(...(busy ? [icon("stop"), "Cancel"] : [icon(direction), "Stretch"]));
+    run.classList.toggle("primary", !busy);
+    progress.hidden = !busy;
+    const current = value !== null && !stale;
+    player.classList.toggle("empty", !current);
+    slider.disabled = play.disabled = !current;
+    if (value) {
+      slider.max = String(value.strain.length - 1);
+      showStep();
+    }
+    note.className = problem ? "stretch-note error" : "stretch-note";
+    note.replaceChildren();
+    if (problem) {
+      note.append(icon("warning"), h("span", {}, h("strong", {}, problem.title), `: ${problem.detail} ${problem.remedy ?? ""}`));
+    } else if (busy) note.append("Pulling the cloth between two clamps …");
+    else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
+    else if (value) {
+      note.append(
+        value.converged
+          ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`
+          : `Stopped early at ${percent(value.strain[value.strain.length - 1] ?? 0)}. ${(value.messages ?? []).join(" ")}`,
+      );
+    } else note.append("Pull the chart along its rows or columns and see where it gives.");
+    host.classList.toggle("busy", busy);
+  };
+  studio.stretch.watch(show);
+  studio.step.listen(showStep);
+  stretcher.onPlay(() => {
+    play.replaceChildren(icon(stretcher.playing ? "pause" : "play"));
+    play.setAttribute("aria-label", stretcher.playing ? "Pause" : "Play the stretch");
+    play.title = stretcher.playing ? "Pause" : "Play the stretch";
+  });
+  stretcher.pause();
+}

@@ -1,0 +1,133 @@
+/**
+ * Stiffness along the course against stiffness along the wale, of all fabrics of all materials, and
+ * where this chart lies among them (as in the paper's Fig. 2c).
+ *
+ * @import {Studio} from "../studio.js"
+ */
+
+import { figure } from "../core/format.js";
+import { FABRICS } from "../core/segments.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const PAD = { left: 50, right: 10, top: 8, bottom: 40 };
+
+/**
+ * @param {HTMLElement} host
+ * @param {Studio} studio
+ * @returns {() => void} draws anew
+ */
+export function rigidityPlot(host, studio) {
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("role", "img");
+  host.append(svg);
+
+  /**
+   * @param {string} tag
+   * @param {Record<string, string | number>} attributes
+   * @param {string} [text]
+   */
+  const add = (tag, attributes, text) => {
+    const element = document.createElementNS(SVG, tag);
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+    if (text) element.textContent = text;
+    svg.append(element);
+    return element;
+  };
+
+  const draw = () => {
+    const { clientWidth: width, clientHeight: height } = host;
+    if (width < 60 || height < 60) return;
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    svg.replaceChildren();
+    const points = studio.materials.value.flatMap(({ id, name, fabrics }) =>
+      FABRICS.flatMap((fabric) => {
+        const one = fabrics[fabric];
+        return one
+          ? [{ id, name, fabric, x: one.modulus_course_n_per_mm, y: one.modulus_wale_n_per_mm }]
+          : [];
+      }),
+    );
+    const { value, scope } = studio.prediction.value;
+    const own = value && { x: value.modulus_course_n_per_mm, y: value.modulus_wale_n_per_mm };
+    const all = own ? [...points, own] : points;
+    if (!all.length) return;
+    const x = axis(all.map((p) => p.x), PAD.left, width - PAD.right);
+    const y = axis(all.map((p) => p.y), height - PAD.bottom, PAD.top);
+
+    for (const tick of x.ticks) {
+      add("line", { x1: x.at(tick), x2: x.at(tick), y1: PAD.top, y2: height - PAD.bottom, class: "grid-line" });
+      add("text", { x: x.at(tick), y: height - PAD.bottom + 16, class: "tick middle" }, String(tick));
+    }
+    for (const tick of y.ticks) {
+      add("line", { x1: PAD.left, x2: width - PAD.right, y1: y.at(tick), y2: y.at(tick), class: "grid-line" });
+      add("text", { x: PAD.left - 6, y: y.at(tick) + 4, class: "tick end" }, String(tick));
+    }
+    add("text", { x: (PAD.left + width - PAD.right) / 2, y: height - 6, class: "axis middle" }, "Course modulus (N/mm)");
+    add("text", { transform: `translate(11 ${(PAD.top + height - PAD.bottom) / 2}) rotate(-90)`, class: "axis middle" }, "Wale modulus (N/mm)");
+    for (const point of points) {
+      const chosen = point.id === studio.materialId.value;
+      const dot = add("circle", {
+        cx: x.at(point.x),
+        cy: y.at(point.y),
+        r: chosen ? 6 : 3.2,
+        class: `fabric-dot ${point.fabric}${chosen ? " chosen" : ""}`,
+      });
+      const tip = document.createElementNS(SVG, "title");
+      tip.textContent = `${point.name}, ${point.fabric}: ${figure(point.x)} and ${figure(point.y)} N/mm`;
+      dot.append(tip);
+    }
+    if (own && value) {
+      const intervals = [value.modulus_course_interval_n_per_mm, value.modulus_wale_interval_n_per_mm];
+      const [across, up] = intervals;
+      /** @param {number} v */
+      const clampX = (v) => Math.min(width - PAD.right, Math.max(PAD.left, x.at(v)));
+      /** @param {number} v */
+      const clampY = (v) => Math.min(height - PAD.bottom, Math.max(PAD.top, y.at(v)));
+      if (across && across[0] > 0) {
+        add("line", { x1: clampX(across[0]), x2: clampX(across[1]), y1: y.at(own.y), y2: y.at(own.y), class: "own-interval" });
+      }
+      if (up && up[0] > 0) {
+        add("line", { x1: x.at(own.x), x2: x.at(own.x), y1: clampY(up[0]), y2: clampY(up[1]), class: "own-interval" });
+      }
+      add("path", { d: "M0-8L8 0 0 8-8 0z", transform: `translate(${x.at(own.x)} ${y.at(own.y)})`, class: "own-dot" });
+      const right = x.at(own.x) > width * 0.62;
+      add("text", { x: x.at(own.x) + (right ? -13 : 13), y: y.at(own.y) - 9, class: `own-label ${right ? "end" : ""}` }, scope === "selection" ? "this selection" : "this chart");
+    }
+    svg.setAttribute(
+      "aria-label",
+      own
+        ? `This ${scope}: ${figure(own.x)} N/mm course-wise, ${figure(own.y)} N/mm wale-wise, among the fabrics of all materials.`
+        : "Stiffness of the fabrics of all materials.",
+    );
+  };
+  studio.prediction.listen(({ busy }) => {
+    if (!busy) draw();
+  });
+  studio.materials.listen(draw);
+  studio.material.listen(draw);
+  new ResizeObserver(draw).observe(host);
+  return draw;
+}
+
+/**
+ * Logarithmic axis with room at both ends.
+ *
+ * @param {number[]} values positive
+ * @param {number} from pixel of the low end
+ * @param {number} to
+ */
+function axis(values, from, to) {
+  const low = Math.log10(Math.min(...values)) - 0.12;
+  const high = Math.log10(Math.max(...values)) + 0.12;
+  const ticks = [];
+  for (let power = Math.floor(low); power <= high; power++) {
+    for (const step of [1, 3]) {
+      const tick = Number((step * 10 ** power).toPrecision(2));
+      if (Math.log10(tick) >= low && Math.log10(tick) <= high) ticks.push(tick);
+    }
+  }
+  /** @param {number} value */
+  const at = (value) => from + ((Math.log10(value) - low) / (high - low)) * (to - from);
+  const crowded = ticks.length * 38 > Math.abs(to - from);
+  return { at, ticks: crowded ? ticks.filter((t) => Number.isInteger(Math.round(Math.log10(t) * 1e6) / 1e6)) : ticks };
+}

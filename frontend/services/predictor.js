@@ -1,0 +1,44 @@
+/**
+ * Asks the service for the mechanics of the chart, or of the selection, a moment after each change.
+ *
+ * @import {Studio} from "../studio.js"
+ */
+
+import { ApiError, api, isAbort } from "../api.js";
+import { Latest } from "../core/latest.js";
+
+const DELAY_MS = 80;
+
+/**
+ * @param {Studio} studio
+ * @returns {() => void} asks anew
+ */
+export function startPredictor(studio) {
+  const latest = new Latest(DELAY_MS);
+  const ask = () => {
+    const { prediction } = studio;
+    if (!prediction.value.busy) prediction.value = { ...prediction.value, busy: true };
+    latest.run(async (signal) => {
+      const box = studio.selection.value;
+      const { grid } = studio.document;
+      const part = box ? grid.region(box) : grid;
+      const scope = box ? "selection" : "chart";
+      try {
+        const body = { chart: part.text, material: studio.materialId.value };
+        const value = await api.predict(body, signal);
+        if (signal.aborted) return;
+        prediction.value = { value, busy: false, problem: null, scope };
+        studio.online.value = true;
+      } catch (error) {
+        if (isAbort(error) || signal.aborted) return;
+        if (!(error instanceof ApiError)) throw error;
+        prediction.value = { value: null, busy: false, problem: error.problem, scope };
+        if (error.offline) studio.online.value = false;
+      }
+    });
+  };
+  studio.document.onChange(ask);
+  studio.selection.listen(ask);
+  studio.materialId.watch(ask);
+  return ask;
+}

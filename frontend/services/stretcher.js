@@ -1,0 +1,101 @@
+/**
+ * Runs stretch tests and plays them.
+ *
+ * @import {Studio} from "../studio.js"
+ * @import {Direction} from "../types.js"
+ */
+
+import { ApiError, api, isAbort } from "../api.js";
+import { OVERLAYS } from "../chart/overlays.js";
+
+const STEPS = 20;
+const FRAME_MS = 140;
+
+export class Stretcher {
+  /** @type {AbortController | null} */ #running = null;
+  /** @type {ReturnType<typeof setInterval> | undefined} */ #timer;
+  /** @type {Set<() => void>} */ #played = new Set();
+
+  /** @param {Studio} studio */
+  constructor(studio) {
+    this.studio = studio;
+    const outdate = () => {
+      this.cancel();
+      const { stretch } = studio;
+      if (stretch.value.value && !stretch.value.stale) {
+        this.pause();
+        stretch.value = { ...stretch.value, stale: true };
+      }
+    };
+    studio.document.onSettle(outdate);
+    studio.materialId.listen(outdate);
+  }
+
+  get playing() {
+    return this.#timer !== undefined;
+  }
+
+  /** @param {() => void} listener hears when playing starts or stops */
+  onPlay(listener) {
+    this.#played.add(listener);
+  }
+
+  /**
+   * @param {Direction} direction
+   * @param {number} strain
+   */
+  async run(direction, strain) {
+    const { studio } = this;
+    this.cancel();
+    this.pause();
+    const controller = new AbortController();
+    this.#running = controller;
+    studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
+    try {
+      const value = await api.stretch(
+        { ...studio.request, direction, strain, steps: STEPS },
+        controller.signal,
+      );
+      if (controller.signal.aborted) return;
+      studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };
+      studio.online.value = true;
+      studio.step.value = value.strain.length - 1;
+      const overlay = OVERLAYS.find(({ id }) => id === "strain");
+      if (overlay) studio.overlay.value = overlay;
+    } catch (error) {
+      if (isAbort(error) || controller.signal.aborted) return;
+      if (!(error instanceof ApiError)) throw error;
+      studio.stretch.value = { ...studio.stretch.value, busy: false, problem: error.problem };
+      if (error.offline) studio.online.value = false;
+    } finally {
+      if (this.#running === controller) this.#running = null;
+    }
+  }
+
+  /** Give up the test under way; the service stops it too. */
+  cancel() {
+    if (!this.#running) return;
+    this.#running.abort();
+    this.#running = null;
+    this.studio.stretch.value = { ...this.studio.stretch.value, busy: false };
+  }
+
+  play() {
+    const { studio } = this;
+    const steps = studio.currentStretch()?.strain.length ?? 0;
+    if (steps < 2) return;
+    if (studio.step.value >= steps - 1) studio.step.value = 0;
+    clearInterval(this.#timer);
+    this.#timer = setInterval(() => {
+      if (studio.step.value >= steps - 1) this.pause();
+      else studio.step.value += 1;
+    }, FRAME_MS);
+    for (const listener of this.#played) listener();
+  }
+
+  pause() {
+    clearInterval(this.#timer);
+    this.#timer = undefined;
+    for (const listener of this.#played) listener();
+  }
+}

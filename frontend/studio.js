@@ -1,0 +1,150 @@
+/**
+ * The state that the panels share: the chart, how it is shown and painted, what the service says of
+ * it. Panels watch the signals and change them; none knows another.
+ *
+ * @import {Box} from "./core/grid.js"
+ * @import {Symmetry} from "./core/ink.js"
+ * @import {Overlay} from "./chart/overlays.js"
+ * @import {Tool} from "./tools/tool.js"
+ * @import {Direction, Material, MaterialSummary, Prediction, Problem, StitchKind, Stretch} from "./types.js"
+ *
+ * @typedef {{value: Prediction | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
+ * @typedef {{value: Stretch | null, direction: Direction, busy: boolean, stale: boolean,
+ *   problem: Problem | null}} StretchState
+ * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
+ */
+
+import { FLIP, Ink } from "./core/ink.js";
+import { Signal } from "./core/signal.js";
+import { loadSettings, saveSettings } from "./core/store.js";
+import { ChartDocument } from "./core/document.js";
+import { OVERLAYS } from "./chart/overlays.js";
+import { TOOLS } from "./tools/registry.js";
+
+const SETTINGS = {
+  overlay: "fabrics",
+  rectangles: false,
+  symbols: /** @type {"symbols" | "loops"} */ ("symbols"),
+  tool: "pencil",
+  size: 1,
+};
+
+export class Studio {
+  /**
+   * @param {ChartDocument} document
+   * @param {{id: string, name: string, material: string}} design
+   */
+  constructor(document, design) {
+    const settings = loadSettings(SETTINGS);
+    this.document = document;
+    this.designId = design.id;
+    this.name = new Signal(design.name);
+
+    /** @type {Signal<string>} */
+    this.materialId = new Signal(design.material);
+    this.material = new Signal(/** @type {Material | null} */ (null));
+    this.materials = new Signal(/** @type {MaterialSummary[]} */ ([]));
+
+    /** @type {Signal<Tool>} */
+    this.tool = new Signal(TOOLS.find(({ id }) => id === settings.tool) ?? TOOLS[0]);
+    this.ink = new Signal(/** @type {Ink} */ (FLIP));
+    this.shelf = new Signal(/** @type {Ink[]} */ ([]));
+    this.size = new Signal(settings.size);
+    this.symmetry = new Signal(/** @type {Symmetry} */ ("none"));
+    this.selection = new Signal(/** @type {Box | null} */ (null));
+
+    /** @type {Signal<Overlay>} */
+    this.overlay = new Signal(
+      OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1],
+    );
+    this.rectangles = new Signal(settings.rectangles);
+    /** @type {Signal<"symbols" | "loops">} */
+    this.symbols = new Signal(settings.symbols);
+
+    this.prediction = new Signal(
+      /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),
+    );
+    this.stretch = new Signal(
+      /** @type {StretchState} */ ({
+        value: null,
+        direction: "wale",
+        busy: false,
+        stale: false,
+        problem: null,
+      }),
+    );
+    this.step = new Signal(0);
+    this.online = new Signal(true);
+    this.message = new Signal(/** @type {Message | null} */ (null));
+
+    this.overlay.listen(({ id }) => {
+      // A stretch is gone after a reload, so its overlays are not remembered.
+      if (id !== "strain" && id !== "utilisation") saveSettings({ overlay: id });
+    });
+    this.rectangles.listen((rectangles) => saveSettings({ rectangles }));
+    this.symbols.listen((symbols) => saveSettings({ symbols }));
+    this.tool.listen(({ id }) => saveSettings({ tool: id }));
+    this.size.listen((size) => saveSettings({ size }));
+  }
+
+  /** What the service has to know of the design. */
+  get request() {
+    return { chart: this.document.grid.text, material: this.materialId.value };
+  }
+
+  /** The 16 kinds of stitch in the chosen material; none until it is loaded. @returns {StitchKind[]} */
+  kinds() {
+    return this.material.value?.stitch_table?.codes ?? [];
+  }
+
+  /** The stretch on show, if it is of this very chart. @returns {Stretch | null} */
+  currentStretch() {
+    const { value, stale } = this.stretch.value;
+    const { rows, columns } = this.document.grid;
+    return value && !stale && value.rows === rows && value.columns === columns ? value : null;
+  }
+
+  /** @returns {Direction} */
+  stretchDirection() {
+    return this.stretch.value.direction;
+  }
+
+  /**
+   * Values of all stitches at the step on show.
+   *
+   * @param {"strain" | "utilisation"} name strain is the one along the pull
+   * @returns {number[] | null}
+   */
+  field(name) {
+    return this.#steps(name)?.[this.step.value] ?? null;
+  }
+
+  /** Largest size of strain along the pull in the whole test. */
+  largestStrain() {
+    let most = 0;
+    for (const step of this.#steps("strain") ?? []) {
+      for (const value of step) most = Math.max(most, Math.abs(value));
+    }
+    return most;
+  }
+
+  /** @param {"strain" | "utilisation"} name */
+  #steps(name) {
+    const fields = this.currentStretch()?.stitch_fields;
+    return fields?.[name === "strain" ? `strain_${this.stretchDirection()}` : name];
+  }
+
+  /**
+   * Show a message to the user.
+   *
+   * @param {Problem} problem
+   */
+  tellProblem({ title, detail, remedy }) {
+    this.message.value = { kind: "error", title, detail: detail === title ? "" : detail, remedy };
+  }
+
+  /** @param {string} title */
+  tell(title) {
+    this.message.value = { kind: "info", title };
+  }
+}

@@ -1,0 +1,7 @@
+// Before the first paint, so that a chosen theme does not flash. A plain script: modules run later.
+try {
+  const theme = JSON.parse(localStorage.getItem("knitcore.settings") ?? "{}").theme;
+  if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
+} catch {
+  // No stored choice: the system's theme holds.
+}

@@ -1,0 +1,12 @@
+import { rectangle as filled } from "../core/raster.js";
+
+/** @type {import("./tool.js").Tool} */
+export const rectangle = {
+  id: "rectangle",
+  label: "Rectangle",
+  icon: "rectangle",
+  key: "r",
+  hint: "Drag a filled rectangle; paint a panel with a pattern",
+  mode: "shape",
+  cells: ({ start, current }) => filled(start, current),
+};

@@ -1,0 +1,35 @@
+/**
+ * What a tool is. A tool says which stitches a gesture covers; ink, symmetry, live drawing and undo
+ * are the same for all and live in the painter.
+ *
+ * @import {Grid} from "../core/grid.js"
+ * @import {Cell} from "../core/raster.js"
+ * @import {Ink} from "../core/ink.js"
+ * @import {IconName} from "../icons.js"
+ *
+ * @typedef {object} Gesture
+ * @property {Cell} start stitch where the pointer went down
+ * @property {Cell} previous stitch at the last event
+ * @property {Cell} current stitch under the pointer; may lie outside the chart
+ * @property {boolean} constrain Shift is held
+ *
+ * @typedef {object} ToolContext
+ * @property {Grid} grid
+ * @property {Uint8Array} codes
+ * @property {number} size of the brush
+ * @property {Ink} ink
+ *
+ * @typedef {object} Tool
+ * @property {string} id
+ * @property {string} label
+ * @property {IconName} icon
+ * @property {string} key
+ * @property {string} hint
+ * @property {"stroke" | "shape" | "once" | "select" | "pan"} mode how a drag adds up: each move adds,
+ *   the last position counts, only the press counts; or it selects or moves the view
+ * @property {boolean} [sized] whether the brush size matters
+ * @property {(gesture: Gesture, context: ToolContext) => Cell[]} cells
+ * @property {(gesture: Gesture) => Cell} [origin] where the ink's repeat begins; else the chart's corner
+ */
+
+export {};

@@ -1,0 +1,126 @@
+/** What the service sends and takes; the same names as its OpenAPI document. */
+
+export type Direction = "course" | "wale";
+export type FabricName = "stockinette" | "garter" | "rib" | "seed";
+export type Interval = [number, number];
+
+export interface FabricSummary {
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  stitch_course_mm: number | null;
+  stitch_wale_mm: number | null;
+  loop_length_mm: number | null;
+}
+
+export interface MaterialSummary {
+  id: string;
+  name: string;
+  description: string;
+  fabrics: Partial<Record<FabricName, FabricSummary>>;
+}
+
+/** One of the 16 kinds of stitch. */
+export interface StitchKind {
+  code: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
+  modulus_course_interval?: Interval | null;
+  modulus_wale_interval?: Interval | null;
+  fractions: Partial<Record<FabricName, number>>;
+}
+
+export interface Curve {
+  strain: number[];
+  stress_n_per_mm: number[];
+}
+
+export interface Material extends MaterialSummary {
+  notes?: string[];
+  stitch_table: { codes: StitchKind[] };
+  curves: Partial<Record<FabricName, Partial<Record<Direction, Curve>>>>;
+}
+
+export interface Pattern {
+  id: string;
+  name: string;
+  chart: string;
+  note?: string;
+}
+
+export interface ParsedChart {
+  rows: number;
+  columns: number;
+  text: string;
+}
+
+export interface SegmentCounts {
+  even: number;
+  odd: number;
+}
+
+export interface Prediction {
+  rows: number;
+  columns: number;
+  segments: Record<Direction, SegmentCounts>;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  poisson_yx: number;
+  poisson_xy: number;
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
+  modulus_course_interval_n_per_mm?: Interval | null;
+  modulus_wale_interval_n_per_mm?: Interval | null;
+  provenance: string;
+  notes?: string[];
+}
+
+export interface StretchRequest {
+  chart: string;
+  material: string;
+  direction: Direction;
+  strain: number;
+  steps: number;
+}
+
+export interface Stretch {
+  id: string;
+  strain: number[];
+  force_n: number[];
+  stress_n_per_mm: number[];
+  waist_strain: number[];
+  iterations: number[];
+  converged: boolean;
+  seconds: number;
+  dofs: number;
+  rows: number;
+  columns: number;
+  messages?: string[];
+  /** Values of every stitch, rows bottom first, one list for each step. */
+  stitch_fields: Record<string, number[][]>;
+  notes?: string[];
+}
+
+export interface ViewRequest {
+  chart: string;
+  material: string;
+  colour: string;
+  rectangles: boolean;
+  stretch: { id: string; step: number } | null;
+}
+
+export interface View {
+  stitches: number;
+  url: string;
+}
+
+/** Problem details (RFC 9457). */
+export interface Problem {
+  type: string;
+  title: string;
+  status: number;
+  detail: string;
+  field?: string | null;
+  remedy?: string | null;
+}
