@@ -208,7 +208,9 @@ def _longest_path(mask: Mask) -> tuple[Array, float]:
 
 def _farthest(graph: csr_array, start: int) -> tuple[int, NDArray[np.int32]]:
     """The reachable point farthest from a start, and each point's predecessor on the way."""
-    distance, before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    distance, before = dijkstra(
+        graph, directed=False, indices=np.array([start]), return_predecessors=True
+    )
     along = np.asarray(distance).ravel()
     return int(np.argmax(np.where(np.isfinite(along), along, -1.0))), np.asarray(before).ravel()
 

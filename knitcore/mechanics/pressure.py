@@ -1,0 +1,207 @@
+"""Pressure of a knitted tube on a limb, by Laplace's law.
+
+A tube of rest circumference C0 worn at C is strained by e = C / C0 - 1 around the limb. Its hoop
+tension per worn length is T = sigma(e) / (1 + e_axial), because sigma is force per width at rest.
+Over any convex section the mean pressure is
+
+    P = 2 pi T / C
+
+(Laplace's P = T / R for a circle). How much the tube may shorten along the limb is unknown, so the
+result is an interval: from axially free (it shortens as in a strip test) to axially fixed (held by
+friction or by its ends). No medical class is reported: such classes are defined by standardised
+measurements.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from scipy.optimize import brentq
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.mechanics.constitutive import ConstitutiveLaw, Transverse
+from knitcore.mechanics.uniaxial import uniaxial_response
+
+MMHG_PER_KPA = 760.0 / 101.325
+NEAR_LOCK_UP = 0.8
+"""Share of the lock-up strain above which small errors of size change the pressure much."""
+TESTED_SHARE = 0.7
+"""Share of the lock-up strain that stretch tests typically reach (0.6 to 0.8 in the study's)."""
+MAXIMUM_CIRCUMFERENCE_MM = 5000.0
+
+
+@dataclass(frozen=True)
+class Interval:
+    """From axially free to axially fixed, whichever is lower first."""
+
+    low: float
+    high: float
+
+    def scaled(self, factor: float) -> Interval:
+        """In another unit."""
+        return Interval(self.low * factor, self.high * factor)
+
+
+@dataclass(frozen=True)
+class LimbPressure:
+    """Mean pressure of a tube on a limb.
+
+    Attributes
+    ----------
+    strain : around the limb.
+    kpa, mmhg : pressure.
+    tension_n_per_mm : hoop tension per worn length.
+    axial_strain_free : along the limb if nothing holds the tube.
+    utilisation : strain over lock-up strain.
+    warnings : in sentences.
+    """
+
+    strain: float
+    kpa: Interval
+    mmhg: Interval
+    tension_n_per_mm: Interval
+    axial_strain_free: float
+    utilisation: float
+    warnings: tuple[str, ...]
+
+
+def limb_pressure(
+    law: ConstitutiveLaw,
+    direction: Direction,
+    rest_mm: float,
+    worn_mm: float,
+    *,
+    tested_strain: float | None = None,
+) -> LimbPressure:
+    """Pressure of a tube whose given direction runs around the limb.
+
+    Parameters
+    ----------
+    law : of the fabric.
+    direction : which material direction runs around the limb.
+    rest_mm, worn_mm : circumferences of the tube, unworn and on the limb.
+    tested_strain : largest strain of the stretch tests behind the law; 0.7 of the lock-up strain
+        if it is not known.
+
+    Raises
+    ------
+    InputError
+        If a circumference is impossible, or the worn one is at or beyond the lock-up.
+    """
+    for name, value in (("rest_mm", rest_mm), ("worn_mm", worn_mm)):
+        if not (math.isfinite(value) and 0 < value <= MAXIMUM_CIRCUMFERENCE_MM):
+            raise InputError(
+                name,
+                f"{value:g} mm is no circumference.",
+                f"Give up to {MAXIMUM_CIRCUMFERENCE_MM:g} mm.",
+            )
+    strain = worn_mm / rest_mm - 1
+    if strain < 0:
+        raise InputError(
+            "worn_mm",
+            f"{worn_mm:g} mm is smaller than the unworn {rest_mm:g} mm: the tube is loose.",
+            "Give a tube that is smaller than the limb.",
+        )
+    if strain >= law.lock_up_strain(direction):
+        raise InputError(
+            "worn_mm",
+            f"a strain of {strain:.2f} is at or beyond the lock-up of this fabric"
+            f" ({law.lock_up_strain(direction):.2f}).",
+            f"Use a rest circumference above {worn_mm / (1 + law.lock_up_strain(direction)):.0f}"
+            " mm.",
+        )
+    tensions, axial = _tensions(law, direction, strain)
+    kpa = tensions.scaled(2 * math.pi / worn_mm * 1000.0)
+    utilisation = strain / law.lock_up_strain(direction)
+    return LimbPressure(
+        strain=strain,
+        kpa=kpa,
+        mmhg=kpa.scaled(MMHG_PER_KPA),
+        tension_n_per_mm=tensions,
+        axial_strain_free=axial,
+        utilisation=utilisation,
+        warnings=tuple(_warnings(law, direction, strain, tested_strain)),
+    )
+
+
+def rest_circumference(
+    law: ConstitutiveLaw, direction: Direction, worn_mm: float, mmhg: float
+) -> Interval:
+    """Rest circumference (mm) of a tube that presses a limb by a target, from loose to tight.
+
+    ``high`` presses by the target if the tube is axially fixed, ``low`` if it is axially free.
+
+    Parameters
+    ----------
+    law : of the fabric.
+    direction : which material direction runs around the limb.
+    worn_mm : circumference of the limb.
+    mmhg : target pressure.
+
+    Raises
+    ------
+    InputError
+        If the target or the circumference cannot be used.
+    """
+    if not (math.isfinite(mmhg) and 0 < mmhg <= 300):
+        raise InputError("mmhg", f"{mmhg:g} mmHg cannot be used.", "Give above 0 to 300 mmHg.")
+    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAXIMUM_CIRCUMFERENCE_MM):
+        raise InputError("worn_mm", f"{worn_mm:g} mm is no circumference.", "Give it in mm.")
+    tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
+    found = []
+    for transverse in Transverse:
+        lock_up = law.lock_up_strain(direction)
+        upper = lock_up * (1 - 1e-9) if math.isfinite(lock_up) else 1.0
+        while not math.isfinite(lock_up) and _tension(law, direction, upper, transverse) < tension:
+            upper *= 2
+        strain = brentq(
+            lambda e, t=transverse: _tension(law, direction, e, t) - tension, 0.0, upper, xtol=1e-10
+        )
+        found.append(worn_mm / (1 + float(strain)))
+    return Interval(min(found), max(found))
+
+
+def _tension(
+    law: ConstitutiveLaw, direction: Direction, strain: float, transverse: Transverse
+) -> float:
+    """Hoop tension per worn length (N/mm)."""
+    curve = uniaxial_response(law, direction, strain, transverse=transverse)
+    return float(curve.stress[0] / (1 + curve.transverse_strain[0]))
+
+
+def _tensions(law: ConstitutiveLaw, direction: Direction, strain: float) -> tuple[Interval, float]:
+    free = uniaxial_response(law, direction, strain)
+    both = [_tension(law, direction, strain, t) for t in Transverse]
+    return Interval(min(both), max(both)), float(free.transverse_strain[0])
+
+
+def _warnings(
+    law: ConstitutiveLaw, direction: Direction, strain: float, tested_strain: float | None
+) -> list[str]:
+    lock_up = law.lock_up_strain(direction)
+    found = []
+    if strain > NEAR_LOCK_UP * lock_up:
+        found.append(
+            f"The strain {strain:.2f} is {strain / lock_up:.0%} of the lock-up {lock_up:.2f}: the"
+            " pressure rises steeply here, and a slightly larger limb is pressed far more."
+        )
+    limit = TESTED_SHARE * lock_up if tested_strain is None else tested_strain
+    if strain > limit:
+        known = "stretch tests typically reach" if tested_strain is None else "the tests reached"
+        found.append(
+            f"The strain {strain:.2f} is beyond the {limit:.2f} that {known}: the pressure is"
+            " extrapolated."
+        )
+    axial = float(uniaxial_response(law, direction, strain).transverse_strain[0])
+    if axial <= -0.5:
+        found.append(
+            f"Axially free, the tube would shorten by {-axial:.0%}: the linear Poisson ratio does"
+            " not hold so far."
+        )
+    found.append(
+        "A mean over the circumference from an elastic law: pressure is higher where the limb"
+        " curves more, and no relaxation, friction or posture is included."
+    )
+    return found
