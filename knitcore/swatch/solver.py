@@ -42,7 +42,7 @@ class Tolerance:
     absolute_n : N, floor below which a residual is none.
     """
 
-    relative: float = 1e-8
+    relative: float = 1e-7
     absolute_n: float = 1e-12
 
 
@@ -98,12 +98,11 @@ class PathSolver:
         self.conjugate_steps = 0
         self._has_factor = False
         self._factor_is_current = False
+        self._refresh_early = False
         self._history: list[tuple[float, State]] = []
         self._spare: Linearisation | None = None
 
-    def follow(
-        self, start: State, targets: list[Array], position: Callable[[float], Array] | None = None
-    ) -> Iterator[Equilibrium]:
+    def follow(self, start: State, targets: list[Array]) -> Iterator[Equilibrium]:
         """Equilibria at each target, the corner positions (corners, 2) of the prescribed unknowns.
 
         The first target is approached from ``start``. Between targets the prescribed positions
@@ -152,7 +151,7 @@ class PathSolver:
             move = np.where(self.fixed, prescribed - state.corners, 0.0)
             force = lin.condensed_force() + lin.apply(move)
             if not self._has_factor:
-                self._factorise(lin)
+                self._try_factorise(lin)
             step = move + self._solve(lin, -force * self.free, 1e-3)
             guess = state.moved(step, lin.centre_step(step))
             guess.corners[self.fixed] = prescribed[self.fixed]
@@ -161,13 +160,20 @@ class PathSolver:
         if not np.isfinite(lin.energy):
             raise StepError("A predicted fibre collapsed to a point.")
         state = guess
+        first = True
         for _ in range(MAX_NEWTON_STEPS):
             residual, limit = self._residual(lin)
             if residual <= limit:
                 return self._accept(state, lin, level, iterations)
             force = lin.condensed_force() * self.free
+            if first and self._refresh_early:
+                self._try_factorise(lin)
+            before = self.factorisations
             step = self._solve(lin, -force, max(0.3 * limit / residual, FORCING))
             iterations += 1
+            if first:  # whether the last step's tangent was of use tells about the next step
+                self._refresh_early |= self.factorisations > before
+                first = False
             state, lin = self._line_search(state, lin, step)
         raise StepError(
             f"Newton's method did not balance the forces in {MAX_NEWTON_STEPS} steps "
@@ -247,6 +253,19 @@ class PathSolver:
         self._has_factor = True
         self._factor_is_current = True
 
+    def _try_factorise(self, lin: Linearisation) -> None:
+        """Factorise a tangent on the way, where it may be indefinite; else start from the rest
+        state's, which never is.
+        """
+        try:
+            self._factorise(lin)
+        except IndefiniteTangentError:
+            try:
+                self._factorise(self.sheet.linearise(self.sheet.reference))
+            except IndefiniteTangentError:
+                raise StepError("The sheet is unstable even as laid out.") from None
+            self._factor_is_current = False
+
     def _solve(self, lin: Linearisation, force: Array, relative: float) -> Array:
         """Step (corners, 2) with K step = force on the free unknowns, by preconditioned CG.
 
@@ -270,10 +289,7 @@ class PathSolver:
             if float(np.linalg.norm(r)) <= goal:
                 return x
             if count == PATIENCE and not self._factor_is_current:
-                try:
-                    self._factorise(lin)
-                except IndefiniteTangentError:
-                    self._has_factor = False
+                self._try_factorise(lin)
             z = self.factor.solve(r).reshape(r.shape)
             new = float(np.sum(r * z))
             p = z + (new / rz) * p
