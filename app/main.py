@@ -17,6 +17,7 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from app.api import routers
 from app.compute import Compute
+from app.operations.stretch import warm_up
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.recent import RecentResults
 from app.security import Guard
@@ -49,6 +50,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.viewer_page = relay.viewer_page()
+        app.state.compute.warm_up(warm_up)
         janitor = asyncio.create_task(_close_idle_views(app.state.views))
         yield
         janitor.cancel()

@@ -30,6 +30,9 @@ class InputError(KnitcoreError, ValueError):
         self.problem = problem
         self.remedy = remedy
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str]]:
+        return type(self), (self.field, self.problem, self.remedy)  # survives between processes
+
 
 class ConvergenceError(KnitcoreError):
     """A solver stopped before it reached its tolerance."""

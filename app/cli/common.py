@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from pydantic import BaseModel
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.formats.chart_files import read_chart
 
 Decorated = Callable[..., Any]
@@ -20,6 +21,16 @@ Decorated = Callable[..., Any]
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 material_option = click.option(
     "--material", required=True, help="Library id (see `knitcore materials`) or a material file."
+)
+
+
+def choice(names: type[StrEnum]) -> click.Choice[str]:
+    """The values of an enumeration as a choice (click would offer its Python names)."""
+    return click.Choice([member.value for member in names])
+
+
+direction_option = click.option(
+    "--direction", required=True, type=choice(Direction), help="Along rows, or along columns."
 )
 
 

@@ -7,6 +7,7 @@ import pkgutil
 from typing import Any
 
 import click
+from pydantic import ValidationError
 
 import app.cli as commands
 from knitcore.errors import KnitcoreError
@@ -45,6 +46,10 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except KnitcoreError as error:
             raise Failure(str(error)) from error
+        except ValidationError as error:
+            first = error.errors()[0]
+            field = ".".join(str(part) for part in first["loc"])
+            raise Failure(f"{field}: {first['msg']} (given: {first['input']!r}).") from error
 
 
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from pydantic import BaseModel, Field
 
-from knitcore.fabric import Direction, Fabric
+from knitcore.fabric import PHASES, Direction, Fabric
 from knitcore.materials import FabricRecord, Material, load_library, load_variants
 from knitcore.materials import material as find_material
 from knitcore.mechanics.constitutive import ConstitutiveLaw
@@ -234,5 +234,26 @@ def _curve(law: ConstitutiveLaw, direction: Direction) -> CurveResult:
     end = CURVE_END * min(law.lock_up_strain(direction), 10.0)
     curve = uniaxial_response(law, direction, np.linspace(0.0, end, CURVE_POINTS))
     return CurveResult(
-        strain=np.round(curve.strain, 5).tolist(), stress_n_per_mm=np.round(curve.stress, 6).tolist()
+        strain=np.round(curve.strain, 5).tolist(),
+        stress_n_per_mm=np.round(curve.stress, 6).tolist(),
+    )
+
+
+def _table(table: StitchTable) -> StitchTableResult:
+    low_x, high_x = table.modulus_interval_n_per_mm(Direction.COURSE)
+    low_y, high_y = table.modulus_interval_n_per_mm(Direction.WALE)
+    return StitchTableResult(
+        codes=[
+            StitchKind(
+                code=code,
+                modulus_course_n_per_mm=table.modulus_course_n_per_mm[code],
+                modulus_wale_n_per_mm=table.modulus_wale_n_per_mm[code],
+                extensibility_course_mm_per_n=1 / table.modulus_course_n_per_mm[code],
+                extensibility_wale_mm_per_n=1 / table.modulus_wale_n_per_mm[code],
+                modulus_course_interval=(low_x[code], high_x[code]),
+                modulus_wale_interval=(low_y[code], high_y[code]),
+                fractions=dict(zip(PHASES, table.fractions[code].tolist(), strict=True)),
+            )
+            for code in range(len(table.fractions))
+        ]
     )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
+from app.operations.stretch import StretchRun
 from app.viewer.colours import diverging, fabric_mix, sequential
 from app.viewer.scene import FabricScene
 from knitcore.chart import StitchChart
@@ -19,7 +20,6 @@ from knitcore.materials import Material
 from knitcore.materials import material as find_material
 from knitcore.mechanics.local import stitch_table
 from knitcore.phases import surroundings
-from knitcore.swatch.strip import StripTest
 
 RADIUS_SHARE = 0.17
 """Tubes are never thicker than this share of a stitch's smaller side: yarn in cloth is squeezed,
@@ -65,7 +65,7 @@ class ViewResult(BaseModel):
     url: str
 
 
-def build_scene(request: ViewRequest, stretch: StripTest | None) -> FabricScene:
+def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene:
     """The scene of a design, relaxed or at one step of its stretch test.
 
     Raises
@@ -78,7 +78,7 @@ def build_scene(request: ViewRequest, stretch: StripTest | None) -> FabricScene:
     centres, sizes = lattice.centres_mm, lattice.sizes_mm
     step = _checked_step(request, stretch, chart)
     if stretch is not None:
-        centres = stretch.stitch_positions_mm[step]
+        centres = stretch.positions_mm[step].astype(float)
         sizes = stretched_sizes_mm(centres, lattice)
     return FabricScene(
         chart=chart,
@@ -90,16 +90,14 @@ def build_scene(request: ViewRequest, stretch: StripTest | None) -> FabricScene:
     )
 
 
-def _checked_step(request: ViewRequest, stretch: StripTest | None, chart: StitchChart) -> int:
+def _checked_step(request: ViewRequest, stretch: StretchRun | None, chart: StitchChart) -> int:
     if request.stretch is None:
         if request.colour in (Colour.STRAIN, Colour.UTILISATION):
             raise InputError("colour", "needs a stretch test.", "Run one and name its step.")
         return 0
     if stretch is None:
-        raise InputError(
-            "stretch.id", "is not known any more.", "Run the stretch test again."
-        )
-    steps, rows, columns = stretch.stitch_positions_mm.shape[:3]
+        raise InputError("stretch.id", "is not known any more.", "Run the stretch test again.")
+    steps, rows, columns = stretch.positions_mm.shape[:3]
     if (rows, columns) != (chart.rows, chart.columns):
         raise InputError("stretch.id", "belongs to another chart.", "Run the test for this one.")
     if request.stretch.step >= steps:
@@ -118,7 +116,7 @@ def _colours(
     colour: Colour,
     chart: StitchChart,
     material: Material,
-    stretch: StripTest | None,
+    stretch: StretchRun | None,
     step: int,
 ) -> NDArray[np.uint8]:
     table, codes = stitch_table(material), surroundings(chart)
@@ -135,9 +133,9 @@ def _colours(
         return diverging(ratio, float(np.abs(ratio).max()))[codes]
     assert stretch is not None  # noqa: S101 - checked with the step
     if colour is Colour.UTILISATION:
-        return sequential(stretch.stitch_utilisation[step], 0.0, 1.0)
-    strain = stretch.stitch_strain[step][..., stretch.direction.axis]
-    most = float(np.abs(stretch.stitch_strain[..., stretch.direction.axis]).max())
+        return sequential(stretch.utilisation[step], 0.0, 1.0)
+    strain = stretch.strain[step][..., stretch.direction.axis]
+    most = float(np.abs(stretch.strain[..., stretch.direction.axis]).max())
     return diverging(strain, most)
 
 
@@ -145,7 +143,10 @@ def _rectangles_mm(chart: StitchChart, material: Material) -> NDArray[np.float64
     """Extensibility rectangles (Fig. 4d) scaled so that the largest side fills 90 % of a stitch."""
     table = stitch_table(material)
     sides = np.stack(
-        [table.extensibility_mm_per_n(Direction.COURSE), table.extensibility_mm_per_n(Direction.WALE)],
+        [
+            table.extensibility_mm_per_n(Direction.COURSE),
+            table.extensibility_mm_per_n(Direction.WALE),
+        ],
         axis=-1,
     )[surroundings(chart)]
     smallest = min(

@@ -37,7 +37,8 @@ def stitch_sizes_mm(material: Material) -> Array:
             for fabric in PHASES
         ]
     )
-    return sizes[QUARTERS_OF_CODE].mean(axis=(1, 2))
+    of_code: Array = sizes[QUARTERS_OF_CODE].mean(axis=(1, 2))
+    return of_code
 
 
 def flat_lattice(chart: StitchChart, material: Material) -> Lattice:

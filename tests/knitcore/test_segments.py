@@ -32,9 +32,7 @@ def test_around_a_repeat_the_number_of_odd_segments_is_even(chart: StitchChart) 
 @given(stitch_charts())
 def test_the_maps_determine_the_chart_up_to_one_stitch(chart: StitchChart) -> None:
     segments = segment_map(chart)
-    row = np.logical_xor.accumulate(
-        np.concatenate([chart.purl[0, :1], segments.course_odd[0]])
-    )
+    row = np.logical_xor.accumulate(np.concatenate([chart.purl[0, :1], segments.course_odd[0]]))
     grid = np.logical_xor.accumulate(np.concatenate([row[None], segments.wale_odd]), axis=0)
     assert StitchChart(grid) == chart
 

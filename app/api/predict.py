@@ -1,0 +1,15 @@
+"""Predictions over REST."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from app.operations.predict import PredictRequest, PredictResult, predict_request
+
+router = APIRouter(tags=["mechanics"])
+
+
+@router.post("/predict", summary="Moduli and extensibility of a chart")
+def post_predict(request: PredictRequest) -> PredictResult:
+    """Effective constants with their 90 % intervals and where they come from."""
+    return predict_request(request)

@@ -1,0 +1,255 @@
+"""The stretch test of a chart: what is asked, what comes back, and what the 3D view needs of it."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.operations.charts import ChartInput, PureFabricChart, to_chart
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.materials import Material
+from knitcore.materials import material as find_material
+from knitcore.swatch import EnergyModel, StripTest, strip_test
+
+Array = NDArray[np.float32]
+
+MAX_STITCHES = 40_000
+"""Largest chart of a test over REST; the command line takes larger ones."""
+MAX_STEPS = 60
+
+
+class StretchOptions(BaseModel):
+    """How a swatch is pulled."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    direction: Direction
+    strain: float = Field(
+        gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
+    )
+    steps: int = Field(12, ge=1, le=1000)
+    model: EnergyModel = EnergyModel.FULL
+    shear_modulus_n_per_mm: float | None = Field(
+        None, gt=0, le=10, allow_inf_nan=False, description="Replaces the assumed C_xyxy."
+    )
+    width_mm: float | None = Field(None, gt=0, le=10_000, description="Size course-wise.")
+    length_mm: float | None = Field(None, gt=0, le=10_000, description="Size wale-wise.")
+
+
+class StretchRequest(StretchOptions):
+    """A chart between two clamps."""
+
+    chart: ChartInput
+    material: str
+    steps: int = Field(12, ge=1, le=MAX_STEPS)
+
+
+class StitchFields(BaseModel):
+    """Values at the stitches: [step][row * columns + column], bottom row first."""
+
+    strain_course: list[list[float]]
+    strain_wale: list[list[float]]
+    utilisation: list[list[float]] = Field(description="alpha * strain; 1 is the lock-up.")
+
+
+class NearestLockUp(BaseModel):
+    """Where the swatch is nearest to its lock-up at the last step."""
+
+    utilisation: float
+    row: int = Field(description="From 1, bottom row first.")
+    column: int = Field(description="From 1, left wale first.")
+    direction: Direction
+    fabric: str
+
+
+class StretchCurve(BaseModel):
+    """A simulated strip test (geometry after ISO 20932-1), not a certified test."""
+
+    strain: list[float]
+    force_n: list[float]
+    stress_n_per_mm: list[float]
+    waist_strain: list[float]
+    iterations: list[int]
+    converged: bool
+    seconds: float
+    dofs: int
+    width_mm: float
+    length_mm: float
+    shear_modulus_assumed: bool = Field(
+        description="Whether C_xyxy is the paper's assumption; nobody measured it."
+    )
+    nearest_lock_up: NearestLockUp | None
+    messages: list[str]
+
+
+class StretchResult(StretchCurve):
+    """The curve of a test and the fields at its stitches."""
+
+    id: str = Field(description="Names this test for the 3D view.")
+    rows: int
+    columns: int
+    stitch_fields: StitchFields
+
+
+@dataclass(frozen=True, eq=False)
+class StretchRun:
+    """A test as the service keeps it for the 3D view.
+
+    Attributes
+    ----------
+    result : what the caller gets.
+    direction : of the pull.
+    positions_mm : (steps, rows, columns, 2) stitch centres.
+    strain : (steps, rows, columns, 2) course-wise and wale-wise.
+    utilisation : (steps, rows, columns).
+    """
+
+    result: StretchResult
+    direction: Direction
+    positions_mm: Array
+    strain: Array
+    utilisation: Array
+
+    @property
+    def size_bytes(self) -> int:
+        """About how much memory it takes, the lists of the result included."""
+        arrays = self.positions_mm.nbytes + self.strain.nbytes + self.utilisation.nbytes
+        return arrays + 32 * 3 * self.utilisation.size
+
+
+def stretch_key(request: StretchRequest) -> str:
+    """A name made of everything that decides the result."""
+    return hashlib.sha256(request.model_dump_json().encode()).hexdigest()[:32]
+
+
+def run_stretch(request: StretchRequest, *, cancelled: Callable[[], bool]) -> StretchRun:
+    """Run a test for the service.
+
+    Raises
+    ------
+    InputError, CancelledError
+    """
+    chart = to_chart(request.chart)
+    if chart.rows * chart.columns > MAX_STITCHES:
+        side = math.isqrt(MAX_STITCHES)
+        raise InputError(
+            "chart",
+            f"{chart.columns}x{chart.rows} stitches are too many for a stretch test here.",
+            f"Use at most {MAX_STITCHES} stitches, such as {side}x{side}, or the command line.",
+        )
+    test = stretch_chart(chart, find_material(request.material), request, cancelled=cancelled)
+    return _stitches(chart, request, test)
+
+
+def stretch_chart(
+    chart: StitchChart,
+    material: Material,
+    options: StretchOptions,
+    *,
+    cancelled: Callable[[], bool] | None = None,
+) -> StripTest:
+    """The strip test of any chart and material."""
+    return strip_test(
+        chart,
+        material,
+        options.direction,
+        options.strain,
+        steps=options.steps,
+        model=options.model,
+        shear_modulus=options.shear_modulus_n_per_mm,
+        width_mm=options.width_mm,
+        length_mm=options.length_mm,
+        cancelled=cancelled,
+    )
+
+
+def stretch_curve(chart: StitchChart, options: StretchOptions, test: StripTest) -> StretchCurve:
+    """The numbers of a test."""
+    return StretchCurve(
+        strain=test.strain.tolist(),
+        force_n=test.force_n.tolist(),
+        stress_n_per_mm=test.stress_n_per_mm.tolist(),
+        waist_strain=test.waist_strain.tolist(),
+        iterations=list(test.iterations),
+        converged=test.converged,
+        seconds=test.seconds,
+        dofs=test.dofs,
+        width_mm=test.sheet.grid.width_mm,
+        length_mm=test.sheet.grid.length_mm,
+        shear_modulus_assumed=options.shear_modulus_n_per_mm is None,
+        nearest_lock_up=_nearest(chart, test),
+        messages=[test.problem] if test.problem else [],
+    )
+
+
+def warm_up(*, cancelled: Callable[[], bool]) -> None:
+    """Load (and on the very first start compile) what a test needs."""
+    request = StretchRequest(
+        chart=PureFabricChart(fabric="garter", columns=3, rows=3),
+        material="acrylic",
+        direction=Direction.WALE,
+        strain=0.1,
+        steps=1,
+    )
+    run_stretch(request, cancelled=cancelled)
+
+
+def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> StretchRun:
+    shape = (test.steps, chart.rows, chart.columns)
+    x, y, xx, yy, used = np.zeros((5, *shape))
+    for step in range(test.steps):
+        at = test.fields(step)
+        for values, nodes in (
+            (x, at.x_mm + at.ux_mm),
+            (y, at.y_mm + at.uy_mm),
+            (xx, at.strain_xx),
+            (yy, at.strain_yy),
+            (used, at.utilisation),
+        ):
+            values[step] = nodes[1::2, 1::2]  # nodes lie on the quarter grid
+    result = StretchResult(
+        **stretch_curve(chart, request, test).model_dump(),
+        id=stretch_key(request),
+        rows=chart.rows,
+        columns=chart.columns,
+        stitch_fields=StitchFields(
+            strain_course=_rounded(xx), strain_wale=_rounded(yy), utilisation=_rounded(used)
+        ),
+    )
+    return StretchRun(
+        result=result,
+        direction=request.direction,
+        positions_mm=np.stack([x, y], axis=-1).astype(np.float32),
+        strain=np.stack([xx, yy], axis=-1).astype(np.float32),
+        utilisation=used.astype(np.float32),
+    )
+
+
+def _rounded(values: NDArray[np.float64]) -> list[list[float]]:
+    """A list per step; four digits are finer than any colour."""
+    lists: list[list[float]] = np.round(values.reshape(len(values), -1), 4).tolist()
+    return lists
+
+
+def _nearest(chart: StitchChart, test: StripTest) -> NearestLockUp | None:
+    spot = test.nearest_lock_up
+    if spot is None:
+        return None
+    grid = test.sheet.grid
+    column = int(np.searchsorted(grid.column_lines[::2], spot.x_mm))
+    row = int(np.searchsorted(grid.row_lines[::2], spot.y_mm))
+    return NearestLockUp(
+        utilisation=spot.utilisation,
+        row=min(max(row, 1), chart.rows),
+        column=min(max(column, 1), chart.columns),
+        direction=spot.direction,
+        fabric=spot.fabric,
+    )

@@ -1,0 +1,124 @@
+"""The prediction over REST and on the command line: the same numbers under the same names."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from knitcore import Fabric
+from knitcore.materials import load_library
+
+FIELDS = {
+    "rows",
+    "columns",
+    "segments",
+    "modulus_course_n_per_mm",
+    "modulus_wale_n_per_mm",
+    "poisson_yx",
+    "poisson_xy",
+    "extensibility_course_mm_per_n",
+    "extensibility_wale_mm_per_n",
+    "provenance",
+}
+
+
+def run(*arguments: str) -> dict[str, object]:
+    result = CliRunner().invoke(main, [*arguments, "--json"])
+    assert result.exit_code == 0, result.output
+    answer = json.loads(result.stdout)
+    assert isinstance(answer, dict)
+    return answer
+
+
+def test_garter_is_the_papers(client: TestClient) -> None:
+    """Table 10: 0.223 and 0.056 N/mm, nu 0.481 and 0.150."""
+    told = run("predict", "garter", "--size", "31x31", "--material", "acrylic")
+    assert set(told) >= FIELDS
+    assert told["modulus_course_n_per_mm"] == pytest.approx(0.223, rel=0.01)
+    assert told["modulus_wale_n_per_mm"] == pytest.approx(0.056, rel=0.01)
+    assert told["poisson_yx"] == pytest.approx(0.481, rel=0.01)
+    assert told["poisson_xy"] == pytest.approx(0.150, rel=0.01)
+    assert told["segments"] == {"course": {"even": 930, "odd": 0}, "wale": {"even": 0, "odd": 930}}
+    assert told["provenance"] == "measured"
+
+    chart = {"fabric": "garter", "columns": 31, "rows": 31}
+    asked = client.post("/api/v1/predict", json={"chart": chart, "material": "acrylic"})
+    assert asked.json() == told
+
+
+@pytest.mark.parametrize("material", list(load_library()))
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_every_pure_fabric_has_its_table_values(material: str, fabric: Fabric) -> None:
+    told = run("predict", fabric, "--size", "31x31", "--material", material)
+    printed = load_library()[material].record(fabric).printed
+    for name, direction in (("Y_x", "course"), ("Y_y", "wale")):
+        modulus = told[f"modulus_{direction}_n_per_mm"]
+        assert isinstance(modulus, float)
+        assert modulus == pytest.approx(printed[name].corrected, rel=0.01)
+        assert told[f"extensibility_{direction}_mm_per_n"] == pytest.approx(1 / modulus)
+
+
+def test_a_chart_file_and_a_material_file_work(tmp_path: Path) -> None:
+    from knitcore.materials import material
+    from knitcore.materials.document import save_material_file
+
+    chart, yarn = tmp_path / "rib.txt", tmp_path / "mine.json"
+    chart.write_text("KPKP\n" * 4)
+    save_material_file(material("cotton"), yarn)
+    told = run("predict", str(chart), "--material", str(yarn))
+    own = run("predict", "rib", "--size", "4x4", "--material", "cotton")
+    assert told["modulus_course_n_per_mm"] == pytest.approx(own["modulus_course_n_per_mm"])
+
+
+def test_a_small_mixed_repeat_is_labelled_with_care(client: TestClient) -> None:
+    rows = "\n".join(["KKPP" * 5] * 10)
+    told = client.post("/api/v1/predict", json={"chart": rows, "material": "acrylic"}).json()
+    assert told["provenance"] in (
+        "yarn level",
+        "composite, corrected",
+        "composite, stretched state only",
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["garter", "--material", "acrylic"], "size"),
+        (["garter", "--size", "0x5", "--material", "acrylic"], "no stitches"),
+        (["garter", "--size", "5000x5000", "--material", "acrylic"], "too large"),
+        (["garter", "--size", "big", "--material", "acrylic"], "COLUMNSxROWS"),
+        (["velvet", "--size", "5x5", "--material", "acrylic"], "size"),
+        (["nothing.txt", "--material", "acrylic"], "no file"),
+        (["garter", "--size", "5x5", "--material", "steel"], "not in the library"),
+        (["garter", "--size", "5x5", "--material", "none.yaml"], "material"),
+        (["garter", "--size", "5x5"], "--material"),
+    ],
+)
+def test_bad_input_ends_with_code_2_and_a_word_on_stderr(arguments: list[str], says: str) -> None:
+    result = CliRunner().invoke(main, ["predict", *arguments, "--json"])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert says in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("body", "field"),
+    [
+        ({"chart": "KX", "material": "acrylic"}, "chart"),
+        ({"chart": "K", "material": "steel"}, "material"),
+        ({"chart": {"fabric": "garter", "columns": 0, "rows": 1}, "material": "acrylic"}, "chart"),
+        ({"chart": "K"}, "material"),
+    ],
+)
+def test_bad_requests_name_the_field(
+    client: TestClient, body: dict[str, object], field: str
+) -> None:
+    problem = client.post("/api/v1/predict", json=body).json()
+    assert problem["status"] == 422
+    assert problem["field"].split(".")[0] == field
+    assert problem["remedy"]

@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+
+GARTER = {"fabric": "garter", "columns": 9, "rows": 6}
+ASKED = {"chart": GARTER, "material": "acrylic", "direction": "wale", "strain": 0.4, "steps": 4}
+
+
+def test_the_service_pulls_a_swatch(client: TestClient) -> None:
+    answer = client.post("/api/v1/stretch", json=ASKED).json()
+    assert answer["converged"]
+    assert answer["strain"] == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert np.all(np.diff(answer["force_n"]) > 0)
+    assert answer["waist_strain"][-1] < 0
+    assert (answer["rows"], answer["columns"]) == (6, 9)
+    for name in ("strain_course", "strain_wale", "utilisation"):
+        assert np.shape(answer["stitch_fields"][name]) == (4, 54)
+    assert np.mean(answer["stitch_fields"]["strain_wale"][-1]) == pytest.approx(0.4, rel=0.1)
+
+
+def test_the_command_line_gives_the_same_curve(client: TestClient, tmp_path: Path) -> None:
+    out = tmp_path / "fields.npz"
+    arguments = ["garter", "--size", "9x6", "--material", "acrylic", "--direction", "wale"]
+    arguments += ["--strain", "0.4", "--steps", "4", "--out", str(out), "--json"]
+    result = CliRunner().invoke(main, ["stretch", *arguments])
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    asked = client.post("/api/v1/stretch", json=ASKED).json()
+    for name in ("strain", "force_n", "stress_n_per_mm", "waist_strain", "iterations", "dofs"):
+        assert told[name] == pytest.approx(asked[name])
+    with np.load(out) as fields:
+        assert set(fields) >= {
+            *("x_mm", "y_mm", "ux_mm", "uy_mm", "strain_xx", "strain_yy", "strain_xy")
+        }
+        assert fields["uy_mm"].shape == (4, 13, 19)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"strain": 5}, "strain"),
+        ({"strain": -0.1}, "strain"),
+        ({"strain": "much"}, "strain"),
+        ({"direction": "up"}, "direction"),
+        ({"steps": 0}, "steps"),
+        ({"material": "steel"}, "material"),
+        ({"chart": "K?"}, "chart"),
+        ({"chart": {"fabric": "rib", "columns": 900, "rows": 900}}, "chart"),
+        ({"width_mm": 0}, "width_mm"),
+    ],
+)
+def test_what_cannot_be_pulled_names_field_and_remedy(
+    client: TestClient, change: dict[str, object], field: str
+) -> None:
+    response = client.post("/api/v1/stretch", json=ASKED | change)
+    assert response.status_code == 422
+    assert response.json()["field"].split(".")[0] == field
+    assert response.json()["remedy"]
+
+
+def test_beyond_the_lock_up_the_limit_is_named() -> None:
+    arguments = ["stockinette", "--size", "8x8", "--material", "acrylic", "--direction", "wale"]
+    result = CliRunner().invoke(main, ["stretch", *arguments, "--strain", "0.9", "--json"])
+    assert result.exit_code == 2
+    assert "lock-up" in result.stderr
+    assert "Use at most 0.3" in result.stderr

@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+import viser
+import zstandard
+from fastapi.testclient import TestClient
+
+from app.viewer.colours import diverging, fabric_mix, sequential
+from app.viewer.relay import _asks_for_a_tunnel
+from app.viewer.views import Views
+from tests.app.test_stretch import ASKED, GARTER
+
+DESIGN = "a-design-of-mine"
+SUBPROTOCOL = f"viser-v{viser.__version__}"
+
+
+def _messages(client: TestClient, design: str, enough: bytes) -> bytes:
+    """What a browser gets when it opens the view, until ``enough`` is among it."""
+    seen = b""
+    with client.websocket_connect(
+        f"ws://127.0.0.1/view/{design}", subprotocols=[SUBPROTOCOL]
+    ) as socket:
+        while enough not in seen:
+            frame = socket.receive_bytes()
+            size = int.from_bytes(frame[8:16], "little")
+            seen += zstandard.decompress(frame[16 : 16 + size])
+    return seen
+
+
+def test_a_design_is_drawn_and_reaches_the_browser(client: TestClient) -> None:
+    body = {"chart": GARTER, "material": "acrylic", "colour": "course", "rectangles": True}
+    answer = client.put(f"/api/v1/views/{DESIGN}", json=body)
+    assert answer.json() == {"stitches": 54, "url": f"/view/{DESIGN}/"}
+    seen = _messages(client, DESIGN, b"/rectangles")
+    assert b"/fabric/" in seen
+    assert b"/rectangles" in seen
+
+
+def test_two_designs_are_two_scenes(client: TestClient) -> None:
+    for design, columns in (("first-design", 3), ("second-design", 5)):
+        chart = {"fabric": "rib", "columns": columns, "rows": 2}
+        body = {"chart": chart, "material": "cotton"}
+        assert client.put(f"/api/v1/views/{design}", json=body).json()["stitches"] == 2 * columns
+    views = client.app.state.views  # type: ignore[attr-defined]
+    assert views.open("first-design").port != views.open("second-design").port
+
+
+def test_a_stretched_state_can_be_shown(client: TestClient) -> None:
+    run = client.post("/api/v1/stretch", json=ASKED).json()
+    body = {
+        "chart": GARTER,
+        "material": "acrylic",
+        "colour": "strain",
+        "stretch": {"id": run["id"], "step": 3},
+    }
+    assert client.put(f"/api/v1/views/{DESIGN}", json=body).status_code == 200
+    for stretch, field in (
+        ({"id": run["id"], "step": 9}, "stretch.step"),
+        ({"id": "gone", "step": 0}, "stretch.id"),
+    ):
+        problem = client.put(f"/api/v1/views/{DESIGN}", json=body | {"stretch": stretch}).json()
+        assert problem["field"] == field
+        assert problem["remedy"]
+
+
+def test_the_view_page_comes_from_here(client: TestClient) -> None:
+    page = client.get(f"/view/{DESIGN}")
+    assert page.url.path == f"/view/{DESIGN}/"
+    assert "<html" in page.text
+    assert client.get("/view/..%2f..%2fetc/").status_code == 404
+    assert client.get("/view/a b/").status_code == 422
+
+
+def test_requests_for_a_public_tunnel_are_dropped() -> None:
+    import msgspec
+
+    assert _asks_for_a_tunnel(msgspec.msgpack.encode({"type": "ShareUrlRequest"}))
+    assert _asks_for_a_tunnel(b"\xc1")
+    assert not _asks_for_a_tunnel(msgspec.msgpack.encode({"type": "ViewerCameraMessage"}))
+
+
+def test_views_make_room_and_leave_nothing_behind() -> None:
+    before = threading.active_count()
+    views = Views(most=2, idle_s=0.0)
+    first = views.open("design-1")
+    views.open("design-2")
+    views.watch("design-1", +1)
+    views.open("design-3")
+    assert views.get("design-2") is None
+    assert views.open("design-1") is first
+    views.watch("design-1", -1)
+    time.sleep(0.01)
+    assert views.close_idle() == 2
+    deadline = time.monotonic() + 10
+    while threading.active_count() > before and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert threading.active_count() <= before
+    assert len(views) == 0
+
+
+def test_colours_mean_what_the_maps_say() -> None:
+    low, high = sequential([1.0, 100.0], 1.0, 100.0)
+    middle = sequential([10.0], 1.0, 100.0, log=True)[0]
+    assert low.tolist() == [0x01, 0x19, 0x59]
+    assert high.tolist() == [0xFA, 0xCC, 0xFA]
+    np.testing.assert_array_equal(middle, sequential([50.5], 1.0, 100.0)[0])
+    assert diverging([0.0], 1.0)[0].tolist() == [0xEC, 0xE5, 0xE0]
+    assert fabric_mix(np.eye(4))[0].tolist() == [0x3F, 0x74, 0xB5]
+
+
+@pytest.mark.parametrize("colour", ["fabric", "course", "wale", "anisotropy"])
+def test_every_colour_can_be_asked_for(client: TestClient, colour: str) -> None:
+    body = {"chart": "KKP\nPPK", "material": "glove-wool", "colour": colour}
+    assert client.put(f"/api/v1/views/{DESIGN}", json=body).status_code == 200
+
+
+def test_strain_needs_a_test(client: TestClient) -> None:
+    body = {"chart": "KKP", "material": "acrylic", "colour": "strain"}
+    assert client.put(f"/api/v1/views/{DESIGN}", json=body).json()["field"] == "colour"
