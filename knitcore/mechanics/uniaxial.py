@@ -11,9 +11,12 @@ from scipy.optimize import brentq
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.mechanics.constitutive import ConstitutiveLaw, Transverse
-from knitcore.mechanics.stiffening import StiffeningForm
+from knitcore.mechanics.stiffening import StiffeningForm, stiffening
 
 Array = NDArray[np.float64]
+
+_BISECTIONS = 52
+"""Halvings that bring an interval to the rounding of a double."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +91,39 @@ def strain_at_stress(
     # Without coupling the linear part alone bounds the strain; free contraction only softens it.
     upper = min(stress / law.modulus(direction), lock_up * (1 - 1e-12))
     return upper if excess(upper) <= 0 else float(brentq(excess, 0.0, upper, xtol=1e-12))
+
+
+def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
+    """Axial strains of the full law at many stresses (N/mm, at least 0), transversely free.
+
+    The same as :func:`strain_at_stress`, all at once.
+
+    Raises
+    ------
+    InputError
+        If a stress is negative or not a number.
+    """
+    wanted = np.asarray(stress, dtype=float)
+    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
+        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+    if min(law.poisson_yx, law.poisson_xy) < 0:
+        # The transverse direction widens and stiffens too: no closed form.
+        flat = [strain_at_stress(law, direction, float(s)) for s in wanted.ravel()]
+        return np.array(flat).reshape(wanted.shape)
+    modulus, course = law.modulus(direction), direction is Direction.COURSE
+    alpha, beta = (law.alpha_xx, law.beta_xx) if course else (law.alpha_yy, law.beta_yy)
+    low = np.zeros_like(wanted)
+    high = np.minimum(wanted / modulus, law.lock_up_strain(direction))
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        _, slope, _ = stiffening(alpha * middle)
+        carried = modulus * middle + beta * slope
+        low, high = (
+            np.where(carried < wanted, middle, low),
+            np.where(carried < wanted, high, middle),
+        )
+    result: Array = (low + high) / 2
+    return result
 
 
 def check_below_lock_up(

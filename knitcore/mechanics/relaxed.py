@@ -1,0 +1,171 @@
+"""Relaxed sizes of repeats: what the flat composite does not know.
+
+Ribs draw in and welts shorten, because they fold. Their relaxed size comes from the yarn level,
+from a user's gauge, or from a packaged table of common repeats. The table is a yarn-level study
+at one set of parameters (loop length 11.28 mm, yarn radius 0.74 mm, bending modulus
+0.045 N·mm²). It is carried to a material by ratio: to the pure fabric that it resembles (1x1 rib
+for ribs, garter for welts), at equal loop length, because lengths scale with the loop.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Fabric
+from knitcore.materials import Material
+from knitcore.phases import quarter_phases
+
+MOST_STITCHES = 64
+"""Largest repeat that is looked for in the table."""
+
+
+class SizeSource(StrEnum):
+    """Where a relaxed size comes from."""
+
+    TABLE = "packaged table"
+    YARN_LEVEL = "yarn level"
+    GAUGE = "gauge"
+
+
+@dataclass(frozen=True)
+class RelaxedSize:
+    """Relaxed size of one mean stitch of a repeat.
+
+    Raises
+    ------
+    InputError
+        If a size is not a positive number.
+    """
+
+    course_mm: float
+    wale_mm: float
+    source: SizeSource
+
+    def __post_init__(self) -> None:
+        for name in ("course_mm", "wale_mm"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and 0 < value < 500):
+                raise InputError(name, f"{value} mm is no stitch size.", "Give mm per stitch.")
+
+    @classmethod
+    def from_gauge(cls, stitches_per_10_cm: float, rows_per_10_cm: float) -> RelaxedSize:
+        """From a swatch's gauge.
+
+        Examples
+        --------
+        >>> RelaxedSize.from_gauge(25, 40).course_mm
+        4.0
+        """
+        for name, value in (
+            ("stitches_per_10_cm", stitches_per_10_cm),
+            ("rows_per_10_cm", rows_per_10_cm),
+        ):
+            if not (np.isfinite(value) and value > 0):
+                raise InputError(name, f"{value} is no gauge.", "Count over 10 cm.")
+        return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm, SizeSource.GAUGE)
+
+
+def canonical_repeat(repeat: StitchChart) -> StitchChart:
+    """One chart for all that are the same cloth: shifted, mirrored, or seen from the back.
+
+    Examples
+    --------
+    >>> print(canonical_repeat(StitchChart.parse("PPKK")))
+    KKPP
+    """
+    best: tuple[bytes, StitchChart] | None = None
+    for chart in (repeat, repeat.mirror()):
+        for upright in (chart, chart.mirror_vertical()):
+            for side in (upright, upright.swap()):
+                for down in range(side.rows):
+                    for across in range(side.columns):
+                        purl = np.roll(side.purl, (down, across), axis=(0, 1))
+                        key = purl[::-1].tobytes()
+                        if best is None or key < best[0]:
+                            best = key, StitchChart(purl)
+    assert best is not None  # noqa: S101 - a chart has at least one stitch
+    return best[1]
+
+
+def tabled_size(repeat: StitchChart, material: Material) -> RelaxedSize | None:
+    """Relaxed size of a common repeat in a material, or None if the table lacks it.
+
+    Parameters
+    ----------
+    repeat : the smallest repeat of a chart.
+
+    Examples
+    --------
+    >>> from knitcore.materials import material
+    >>> size = tabled_size(StitchChart.parse("KKPP"), material("acrylic"))
+    >>> round(size.course_mm, 2)  # 1x1 rib is 2.64 mm wide
+    1.8
+    """
+    if repeat.rows * repeat.columns > MOST_STITCHES:
+        return None
+    chart = canonical_repeat(repeat)
+    entry = _table().get(chart.text)
+    if entry is None:
+        return None
+    reference = _reference(chart)
+    record = material.fabrics.get(reference)
+    if record is None:
+        return None
+    pure = _table()[_PURE_CHARTS[reference]]
+    scale = _loop_length_ratio(chart, material, reference)
+    return RelaxedSize(
+        course_mm=entry[0] / pure[0] * record.stitch_course_mm * scale,
+        wale_mm=entry[1] / pure[1] * record.stitch_wale_mm * scale,
+        source=SizeSource.TABLE,
+    )
+
+
+_PURE_CHARTS = {
+    Fabric.STOCKINETTE: "K",
+    Fabric.GARTER: "K\nP",
+    Fabric.RIB: "KP",
+    Fabric.SEED: "KP\nPK",
+}
+
+
+def _reference(chart: StitchChart) -> Fabric:
+    """The pure fabric with odd segments where the repeat has any."""
+    phases = quarter_phases(chart, periodic=True)
+    course_odd, wale_odd = bool((phases >= 2).any()), bool((phases % 2).any())
+    return PHASES[2 * course_odd + wale_odd]
+
+
+def _loop_length_ratio(chart: StitchChart, material: Material, reference: Fabric) -> float:
+    """Loop length of the repeat (the mean of its phases) over that of the reference fabric."""
+    shares = np.bincount(quarter_phases(chart, periodic=True).ravel(), minlength=4)
+    lengths = []
+    for phase in np.flatnonzero(shares):
+        record = material.fabrics.get(PHASES[phase])
+        if record is None or record.loop_length_mm is None:
+            return 1.0
+        lengths.append(float(shares[phase] / shares.sum()) * record.loop_length_mm)
+    own = material.record(reference).loop_length_mm
+    return 1.0 if own is None else sum(lengths) / own
+
+
+@cache
+def _table() -> Mapping[str, tuple[float, float]]:
+    """(course, wale) sizes in mm by the text of the canonical chart."""
+    resource = files("knitcore.mechanics").joinpath("data", "relaxed_sizes.csv")
+    found: dict[str, tuple[float, float]] = {}
+    for row in csv.DictReader(resource.read_text(encoding="utf-8").splitlines()):
+        chart = StitchChart.parse(row["chart"].replace("/", "\n"))
+        # The free branch stands first; a mirrored one fills in where there is no other.
+        found.setdefault(
+            canonical_repeat(chart).text, (float(row["course_mm"]), float(row["wale_mm"]))
+        )
+    return found

@@ -1,0 +1,193 @@
+"""Homogenisation against exact laminates, bounds and the laws themselves."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import load_library, material
+from knitcore.mechanics.homogenisation import MOST_CELLS, homogenise, modulus_of, phase_grid
+from knitcore.mechanics.lamination import SheetGrid, coarsened
+from knitcore.mechanics.repeat_curve import repeat_curve
+from knitcore.mechanics.uniaxial import uniaxial_response
+
+repeats = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=5))
+
+
+@pytest.mark.parametrize("identifier", load_library())
+@pytest.mark.parametrize("fabric", Fabric)
+def test_pure_fabrics_come_out_exactly(identifier, fabric):
+    yarn = material(identifier)
+    law = yarn.law(fabric)
+    sheet = homogenise(StitchChart.of_fabric(fabric, 2, 2), yarn)
+    for direction in Direction:
+        assert sheet.modulus_n_per_mm(direction) == pytest.approx(law.modulus(direction))
+        np.testing.assert_allclose(
+            sheet.bounds_n_per_mm(direction), law.modulus(direction), rtol=1e-9
+        )
+    assert sheet.poisson_yx == pytest.approx(law.poisson_yx)
+    assert sheet.poisson_xy == pytest.approx(law.poisson_xy)
+    assert sheet.shear_modulus_n_per_mm == pytest.approx(law.shear_modulus)
+
+
+def test_a_rib_is_an_exact_laminate():
+    """Columns of two sheets: Backus' formulas, here by the laminate code on a 1 x 2 grid."""
+    acrylic = material("acrylic")
+    laws = [acrylic.law(f).symmetrised() for f in (Fabric.STOCKINETTE, Fabric.RIB)]
+    widths = [acrylic.record(f).stitch_course_mm for f in (Fabric.STOCKINETTE, Fabric.RIB)]
+
+    def row(name):
+        return np.array([[getattr(law, name) for law in laws]])
+
+    grid = SheetGrid(
+        row("stiffness_xxxx"),
+        row("stiffness_yyyy"),
+        row("stiffness_xxyy"),
+        row("shear_modulus"),
+        np.array(widths),
+        np.array([1.0]),
+    ).merged_along_x()
+    sheet = homogenise(StitchChart.parse("KKPP"), acrylic)
+    np.testing.assert_allclose(
+        sheet.stiffness_n_per_mm, grid.stiffness()[0, 0], rtol=1e-9, atol=1e-12
+    )
+
+
+@settings(deadline=None, max_examples=25)
+@given(repeats, st.sampled_from([*load_library()]))
+def test_effective_stiffness_lies_between_the_bounds(grid, identifier):
+    sheet = homogenise(StitchChart(grid), material(identifier))
+    for upper, lower in (
+        (sheet.voigt_n_per_mm, sheet.stiffness_n_per_mm),
+        (sheet.stiffness_n_per_mm, sheet.reuss_n_per_mm),
+    ):
+        assert np.linalg.eigvalsh(upper - lower).min() > -1e-9
+    np.testing.assert_allclose(sheet.energy_shares.sum(axis=1), 1)
+
+
+@settings(deadline=None, max_examples=25)
+@given(repeats, st.data())
+def test_the_same_cloth_has_the_same_tensor(grid, data):
+    chart, yarn = StitchChart(grid), material("cotton")
+    shift = data.draw(st.tuples(st.integers(0, 4), st.integers(0, 4)))
+    reference = homogenise(chart, yarn).stiffness_n_per_mm
+    shifted = homogenise(StitchChart(np.roll(grid, shift, axis=(0, 1))), yarn).stiffness_n_per_mm
+    np.testing.assert_allclose(shifted, reference, rtol=1e-8, atol=1e-11)
+    np.testing.assert_allclose(
+        homogenise(chart.swap(), yarn).stiffness_n_per_mm, reference, rtol=1e-12, atol=1e-15
+    )
+    mirrored = homogenise(chart.mirror(), yarn).stiffness_n_per_mm
+    sign = np.array([[1, 1, -1], [1, 1, -1], [-1, -1, 1]])
+    np.testing.assert_allclose(mirrored * sign, reference, rtol=1e-8, atol=1e-11)
+
+
+def test_energy_shares_are_the_derivatives_of_the_modulus():
+    from dataclasses import replace
+
+    yarn = material("acrylic")
+    chart = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
+    sheet = homogenise(chart, yarn)
+    step = 1e-4
+    for phase, fabric in enumerate(Fabric):
+        law = yarn.law(fabric)
+        stiffer = replace(
+            law,
+            **{
+                name: getattr(law, name) * (1 + step)
+                for name in (
+                    "stiffness_xxxx",
+                    "stiffness_yyyy",
+                    "stiffness_xxyy",
+                    "stiffness_yyxx",
+                    "shear_modulus",
+                )
+            },
+        )
+        changed = replace(
+            yarn, fabrics={**yarn.fabrics, fabric: replace(yarn.record(fabric), law=stiffer)}
+        )
+        for direction in Direction:
+            ratio = homogenise(chart, changed).modulus_n_per_mm(direction) / (
+                sheet.modulus_n_per_mm(direction)
+            )
+            assert np.log(ratio) / step == pytest.approx(
+                sheet.energy_shares[direction.axis, phase], abs=2e-4
+            )
+
+
+def test_coarsening_keeps_layers_exactly():
+    yarn = material("lace-acrylic")
+    stripes = StitchChart.parse("KKPP").tile(1, 150)
+    assert 4 * stripes.rows * stripes.columns > MOST_CELLS
+    np.testing.assert_allclose(
+        homogenise(stripes, yarn).stiffness_n_per_mm,
+        homogenise(StitchChart.parse("KKPP"), yarn).stiffness_n_per_mm,
+        rtol=1e-6,
+        atol=1e-9,
+    )
+
+
+def test_coarsening_is_close_for_noise():
+    """32 x 32 random stitches: the coarsened grid against all 4096 quarter cells."""
+    yarn = material("acrylic")
+    chart = StitchChart(np.random.default_rng(0).random((32, 32)) < 0.5)
+    coarse, full = homogenise(chart, yarn), homogenise(chart, yarn, most_cells=10**6)
+    for direction in Direction:
+        assert coarse.modulus_n_per_mm(direction) == pytest.approx(
+            full.modulus_n_per_mm(direction), rel=0.10
+        )
+
+
+def test_laminates_lie_between_the_bounds():
+    rng = np.random.default_rng(1)
+    stiff = rng.uniform(0.01, 1, (8, 6))
+    grid = SheetGrid(stiff, 2 * stiff, 0.3 * stiff, 0.1 * stiff, np.ones(6), np.ones(8))
+    small = coarsened(grid, 1).stiffness()[0, 0]
+    for axis in Direction:
+        low, high = modulus_of(grid.reuss(), axis), modulus_of(grid.voigt(), axis)
+        assert low < modulus_of(small, axis) < high
+
+
+def test_columns_of_one_phase_keep_its_size():
+    acrylic = material("acrylic")
+    grid = phase_grid(StitchChart.parse("KKPP"), acrylic)
+    rib, plain = (acrylic.record(f).stitch_course_mm / 2 for f in (Fabric.RIB, Fabric.STOCKINETTE))
+    np.testing.assert_allclose(grid.width_mm, [rib, plain, plain, rib, rib, plain, plain, rib])
+    assert grid.shares.sum() == pytest.approx(1)
+
+
+@pytest.mark.parametrize("fabric", Fabric)
+@pytest.mark.parametrize("direction", Direction)
+def test_the_nonlinear_repeat_of_a_pure_fabric_is_its_law(fabric, direction):
+    yarn = material("cotton")
+    law = yarn.law(fabric)
+    strain = np.linspace(0, 0.6 * law.lock_up_strain(direction), 5)
+    curve = repeat_curve(StitchChart.of_fabric(fabric, 2, 2), yarn, direction, strain)
+    expected = uniaxial_response(law, direction, strain)
+    np.testing.assert_allclose(curve.stress, expected.stress, rtol=1e-7, atol=1e-10)
+    np.testing.assert_allclose(
+        curve.transverse_strain, expected.transverse_strain, rtol=1e-6, atol=1e-9
+    )
+
+
+def test_the_nonlinear_repeat_starts_with_the_linear_modulus():
+    yarn, chart = material("acrylic"), StitchChart.parse("KKPP\nPPKK")
+    curve = repeat_curve(chart, yarn, Direction.WALE, [1e-5])
+    linear = homogenise(chart, yarn).modulus_n_per_mm(Direction.WALE)
+    assert curve.stress[0] / 1e-5 == pytest.approx(linear, rel=1e-3)
+
+
+def test_strains_beyond_the_lock_up_of_a_repeat_are_refused():
+    with pytest.raises(InputError, match="lock-up"):
+        repeat_curve(StitchChart.parse("KKPP"), material("acrylic"), Direction.COURSE, [0.5, 3.0])
+    for bad in ([0.2, 0.1], [float("nan")], [-0.1]):
+        with pytest.raises(InputError, match="increasing"):
+            repeat_curve(StitchChart.parse("KKPP"), material("acrylic"), Direction.COURSE, bad)
+    with pytest.raises(InputError, match="too large"):
+        repeat_curve(
+            StitchChart.of_fabric("rib", 40, 40), material("acrylic"), Direction.COURSE, [0.1]
+        )
