@@ -6,23 +6,19 @@ import math
 import time
 from dataclasses import replace
 
-import numpy as np
-
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.published.elastic import bernstein
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.published.walk import Walk, free_constraints, is_knitted
 from knitcore.yarnlevel.results import FloatArray, RelaxedCell
 from knitcore.yarnlevel.yarn import YarnModel
 
 BRANCH = "published"
 STARTS = 4
 """Number of starts; the authors used four."""
-SEGMENT_FLOOR = 0.014
-"""Shortest curve, in loop lengths: .15 mm in the paper's acrylic garter; others stay longer."""
 MIN_LENGTH_PER_RADIUS = 10.0
 MIN_LENGTH_PER_CORE = 27.0
 """A shorter stitch has no room for its own yarn (the paper's tightest: 13 radii, 34 core radii)."""
@@ -57,7 +53,7 @@ def relax_published(
     InputError
         If the yarn does not fit into the loop, or a size is out of reach.
     ConvergenceError
-        If no start converged.
+        If no start converged, or the yarn locks before it gets to a size asked for.
     UnravelledError
         If the strands of the lowest shape are no longer clasped.
     """
@@ -67,27 +63,31 @@ def relax_published(
         check_size(name, size, loop_length_mm)
     if starts < 1:
         raise InputError("starts", f"{starts} is too few.", "Give 1 or more.")
-    constraints = free_constraints(loop_length_mm, cell_course_mm, cell_wale_mm)
+    constraints = free_constraints(loop_length_mm)
     shapes = first_shapes(stitch, loop_length_mm, starts)
     stitch.evaluate(shapes[0])  # compiles; not part of the time
     began = time.process_time()
     found = [_settle(stitch, shape, loop_length_mm, constraints) for shape in shapes]
     best = lowest(stitch, found)
     evaluations = sum(m.evaluations for m in found)
+    if cell_course_mm is not None or cell_wale_mm is not None:
+        walk = Walk(stitch, loop_length_mm)
+        held = walk.go([best], cell_course_mm, cell_wale_mm)
+        if held is None:
+            raise ConvergenceError(
+                "No equilibrium at this size of the stitch: its yarn locks, or its loops jam, on "
+                "the way there. Give a size nearer to its natural "
+                f"{best.unknowns[-2]:.2f} x {best.unknowns[-1]:.2f} mm."
+            )
+        best, more = held
+        evaluations += more
     seconds = time.process_time() - began
+    least = min(m.energy_n_mm for m in found if m.converged and is_knitted(stitch, m))
     others = sum(
-        m.converged and m.energy_n_mm > best.energy_n_mm * 1.001 and is_knitted(stitch, m)
-        for m in found
+        m.converged and m.energy_n_mm > least * 1.001 and is_knitted(stitch, m) for m in found
     )
     notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
     return relaxed_cell(stitch, best, seconds, evaluations, notes)
-
-
-def free_constraints(
-    loop_length_mm: float, cell_course_mm: float | None = None, cell_wale_mm: float | None = None
-) -> Constraints:
-    """Constraints of a relaxation without slide quenching."""
-    return Constraints(cell_course_mm, cell_wale_mm, SEGMENT_FLOOR * loop_length_mm)
 
 
 def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
@@ -108,24 +108,6 @@ def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
     if not knitted:
         raise UnravelledError(f"Every minimum found of {stitch.fabric} has lost its clasps.")
     return min(knitted, key=lambda m: m.energy_n_mm)
-
-
-def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
-    """Whether the two strands of the crossover still hold each other, core outside core.
-
-    In their common frame the strands make half a turn about each other, A bulging towards E1 (see
-    :mod:`~knitcore.yarnlevel.published.shape`); passing through each other would turn that around.
-    """
-    controls = stitch.controls(minimum.unknowns)
-    strand_b, strand_a = controls[0], controls[2].copy()
-    strand_a[:, 1] -= minimum.unknowns[-1]
-    if stitch.fabric.wale_odd:
-        strand_a[:, 2] *= -1.0
-    apart = bernstein(np.array([0.0, 0.5, 1.0])) @ (strand_a - strand_b)
-    middle, turn = apart[1], apart[2] - apart[0]
-    along = strand_a[-1] + strand_b[-1] - strand_a[0] - strand_b[0]
-    clasped = float(np.cross(middle, turn) @ along) > 0.0
-    return clasped and minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
 
 
 def relaxed_cell(

@@ -13,24 +13,17 @@ import numpy as np
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
-from knitcore.yarnlevel.published.relax import (
-    STARTS,
-    free_constraints,
-    is_knitted,
-    relax_published,
-    relaxed_cell,
-)
+from knitcore.yarnlevel.published.minimise import Minimum
+from knitcore.yarnlevel.published.relax import STARTS, relax_published, relaxed_cell
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.published.walk import Walk
 from knitcore.yarnlevel.results import FloatArray, RelaxedCell, Sweep
 from knitcore.yarnlevel.yarn import YarnModel
 
-_STEP = 0.012
-"""Longest step of the continuation, in loop lengths (the authors' are .003 to .016)."""
 _LOWER = 1e-6
 """How much lower, relatively, the way back must be to replace the way out."""
-_JUMP = 6.0
+_JUMP = 4.0
 """A step whose shape changes this much more than the steps around it is a jump."""
 _JUMP_FLOOR = 0.004
 """And by at least this much, root mean square over the stitch, in loop lengths."""
@@ -86,17 +79,17 @@ def sweep_published(
     stitch = Stitch(kind, yarn, Convention(convention))
     if slide_quenching is None:
         slide_quenching = SlideQuenching.default(kind, along)
-    walk = _Walk.begin(stitch, loop_length_mm, along, zero, slide_quenching)
+    held = slide_quenching.weights
+    walk = Walk(stitch, loop_length_mm, held, held @ stitch.evaluate(zero.state).lengths_mm)
     sizes = zero.cell_mm(along) * (1.0 + np.linspace(0.0, max_strain, points))
     notes = (
         [] if slide_quenching is SlideQuenching.NONE else [f"Slide quenching: {slide_quenching}."]
     )
 
-    first = _Point(walk.minimise_at(float(sizes[0]), zero.state), 0.0, 0)
-    out = [first]
+    out = [_Point(walk.minimise_at(*_held(along, float(sizes[0])), zero.state), 0.0, 0)]
     width = zero.cell_mm(along.other)
     for i, size in enumerate(sizes[1:], start=1):
-        point = walk.go(out, float(size))
+        point = _go(walk, along, out, float(size))
         if point is None:
             strain = max_strain * (i - 1) / (points - 1)
             notes.append(f"The yarn locks: no equilibrium found beyond a strain of {strain:.3g}.")
@@ -108,7 +101,7 @@ def sweep_published(
             break
     replaced = 0
     for i in range(len(out) - 2, 0, -1):
-        back = walk.go([out[i + 1]], float(sizes[i]))
+        back = _go(walk, along, out[i + 1 : i + 2], float(sizes[i]))
         if back is not None and back.minimum.energy_n_mm < out[i].minimum.energy_n_mm * (
             1 - _LOWER
         ):
@@ -161,75 +154,16 @@ class _Point:
     evaluations: int
 
 
-@dataclass(frozen=True, eq=False)
-class _Walk:
-    """Continuation of one stitch along one size of its cell."""
+def _held(direction: Direction, size_mm: float) -> tuple[float | None, float | None]:
+    return (size_mm, None) if direction is Direction.COURSE else (None, size_mm)
 
-    stitch: Stitch
-    loop_length_mm: float
-    direction: Direction
-    held: FloatArray
-    held_mm: FloatArray
 
-    @classmethod
-    def begin(
-        cls,
-        stitch: Stitch,
-        loop_length_mm: float,
-        direction: Direction,
-        zero: RelaxedCell,
-        slide_quenching: SlideQuenching,
-    ) -> _Walk:
-        held = slide_quenching.weights
-        held_mm = held @ stitch.evaluate(zero.state).lengths_mm
-        return cls(stitch, loop_length_mm, direction, held, held_mm)
-
-    def constraints(self, size_mm: float) -> Constraints:
-        course = size_mm if self.direction is Direction.COURSE else None
-        wale = size_mm if self.direction is Direction.WALE else None
-        free = free_constraints(self.loop_length_mm, course, wale)
-        return replace(free, held=self.held, held_mm=self.held_mm)
-
-    def minimise_at(self, size_mm: float, start: FloatArray) -> Minimum:
-        start = start.copy()
-        start[self.direction.axis - 2] = size_mm
-        return minimise(self.stitch, start, self.loop_length_mm, self.constraints(size_mm))
-
-    def go(self, path: list[_Point], size_mm: float) -> _Point | None:
-        """From the last point of a path to a size; None if there is no equilibrium on the way."""
-        began = time.process_time()
-        axis = self.direction.axis - 2
-        known = [p.minimum for p in path[-2:]]
-        evaluations = 0
-        while True:
-            here = float(known[-1].unknowns[axis])
-            left = size_mm - here
-            count = max(1, math.ceil(abs(left) / (_STEP * self.loop_length_mm) - 1e-9))
-            step = self._step(known, here + left / count)
-            if step is None:
-                step = self._step(known[-1:], here + 0.25 * left / count)
-            if step is None:
-                return None
-            known = [known[-1], step]
-            evaluations += step.evaluations
-            if abs(step.unknowns[axis] - size_mm) < 1e-9:
-                return _Point(step, time.process_time() - began, evaluations)
-
-    def _step(self, known: list[Minimum], size_mm: float) -> Minimum | None:
-        """One minimisation, started on the line through the last two states."""
-        axis = self.direction.axis - 2
-        start = known[-1].unknowns
-        starts = [start]
-        if len(known) == 2:
-            before = known[0].unknowns
-            if abs(start[axis] - before[axis]) > 1e-9:
-                ratio = (size_mm - start[axis]) / (start[axis] - before[axis])
-                starts.insert(0, start + np.clip(ratio, -2.0, 2.0) * (start - before))
-        for first in starts:
-            found = self.minimise_at(size_mm, first)
-            if found.converged and is_knitted(self.stitch, found):
-                return found
+def _go(walk: Walk, direction: Direction, path: list[_Point], size_mm: float) -> _Point | None:
+    began = time.process_time()
+    found = walk.go([p.minimum for p in path[-2:]], *_held(direction, size_mm))
+    if found is None:
         return None
+    return _Point(found[0], time.process_time() - began, found[1])
 
 
 def _change(before: FloatArray, after: FloatArray) -> float:

@@ -1,0 +1,138 @@
+"""Walk a stitch from one size to another in small steps, always in equilibrium."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from knitcore.yarnlevel.published.elastic import bernstein
+from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
+from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.results import FloatArray
+
+SEGMENT_FLOOR = 0.014
+"""Shortest curve, in loop lengths: .15 mm in the paper's acrylic garter; others stay longer."""
+STEP = 0.012
+"""Longest step, in loop lengths (the authors' are .003 to .016)."""
+_SHORTER = (1.0, 0.25)
+"""Shares of a step that are tried before giving up."""
+
+
+def free_constraints(
+    loop_length_mm: float, cell_course_mm: float | None = None, cell_wale_mm: float | None = None
+) -> Constraints:
+    """Constraints of a relaxation without slide quenching."""
+    return Constraints(cell_course_mm, cell_wale_mm, SEGMENT_FLOOR * loop_length_mm)
+
+
+def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
+    """Whether the two strands of the crossover still hold each other, core outside core.
+
+    In their common frame the strands make half a turn about each other, A bulging towards E1 (see
+    :mod:`~knitcore.yarnlevel.published.shape`); passing through each other would turn that around.
+    """
+    controls = stitch.controls(minimum.unknowns)
+    strand_b, strand_a = controls[0], controls[2].copy()
+    strand_a[:, 1] -= minimum.unknowns[-1]
+    if stitch.fabric.wale_odd:
+        strand_a[:, 2] *= -1.0
+    apart = bernstein(np.array([0.0, 0.5, 1.0])) @ (strand_a - strand_b)
+    middle, turn = apart[1], apart[2] - apart[0]
+    along = strand_a[-1] + strand_b[-1] - strand_a[0] - strand_b[0]
+    clasped = float(np.cross(middle, turn) @ along) > 0.0
+    return clasped and minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """Continuation of one stitch.
+
+    Parameters
+    ----------
+    stitch : the stitch.
+    loop_length_mm : length of its yarn, mm.
+    held, held_mm : stretches of yarn that keep their length, as in
+        :class:`~knitcore.yarnlevel.published.minimise.Constraints`.
+    """
+
+    stitch: Stitch
+    loop_length_mm: float
+    held: FloatArray = field(default_factory=lambda: np.empty((0, 8)))
+    held_mm: FloatArray = field(default_factory=lambda: np.empty(0))
+
+    def minimise_at(
+        self, course_mm: float | None, wale_mm: float | None, start: FloatArray
+    ) -> Minimum:
+        """Minimise at given sizes (None: free) from a start, whose sizes are replaced."""
+        free = free_constraints(self.loop_length_mm, course_mm, wale_mm)
+        rules = replace(free, held=self.held, held_mm=self.held_mm)
+        return minimise(
+            self.stitch, _resized(start, course_mm, wale_mm), self.loop_length_mm, rules
+        )
+
+    def go(
+        self, path: Sequence[Minimum], course_mm: float | None, wale_mm: float | None
+    ) -> tuple[Minimum, int] | None:
+        """Go from the last state of a path to given sizes (None: free).
+
+        Returns
+        -------
+        The state there and the evaluations it took; None if an equilibrium was missing on the way.
+        """
+        known = list(path[-2:])
+        target = [math.nan if size is None else size for size in (course_mm, wale_mm)]
+        evaluations = 0
+        while True:
+            here = known[-1].unknowns[-2:]
+            left = np.nan_to_num(np.array(target) - here)
+            count = max(1, math.ceil(np.abs(left).max() / (STEP * self.loop_length_mm) - 1e-9))
+            step = None
+            for share in _SHORTER:
+                next_sizes = here + share * left / count
+                step = self._step(
+                    known,
+                    *(
+                        None if math.isnan(t) else float(s)
+                        for t, s in zip(target, next_sizes, strict=True)
+                    ),
+                )
+                if step is not None:
+                    break
+                known = known[-1:]
+            if step is None:
+                return None
+            evaluations += step.evaluations
+            known = [known[-1], step]
+            if np.nanmax(np.abs(np.array(target) - step.unknowns[-2:])) < 1e-9:
+                return step, evaluations
+
+    def _step(
+        self, known: list[Minimum], course_mm: float | None, wale_mm: float | None
+    ) -> Minimum | None:
+        """One minimisation, started on the line through the last two states if there are two."""
+        last = known[-1].unknowns
+        starts = [last]
+        if len(known) == 2:
+            change = last - known[0].unknowns
+            goal = _resized(last, course_mm, wale_mm)[-2:] - last[-2:]
+            held = [size is not None for size in (course_mm, wale_mm)]
+            moved = change[-2:][held]
+            if np.any(np.abs(moved) > 1e-9):
+                ratio = float(goal[held] @ moved / (moved @ moved))
+                starts.insert(0, last + np.clip(ratio, -2.0, 2.0) * change)
+        for start in starts:
+            found = self.minimise_at(course_mm, wale_mm, start)
+            if found.converged and is_knitted(self.stitch, found):
+                return found
+        return None
+
+
+def _resized(start: FloatArray, course_mm: float | None, wale_mm: float | None) -> FloatArray:
+    out = start.copy()
+    for i, size in ((-2, course_mm), (-1, wale_mm)):
+        if size is not None:
+            out[i] = size
+    return out

@@ -1,0 +1,137 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.published.minimise import minimise
+from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.published.shape import unknown_names
+from knitcore.yarnlevel.published.starts import first_shapes
+from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.published.walk import free_constraints, is_knitted
+from knitcore.yarnlevel.samples import load_samples, sample
+
+SAMPLES = load_samples()
+NAMES = [f"{s.yarn_id}-{s.fabric}" for s in SAMPLES]
+
+
+@pytest.mark.parametrize("known", SAMPLES, ids=NAMES)
+def test_published_energies_and_shares(known):
+    # Supplementary Table 8 (printed in J, meant in mJ = N mm)
+    cell = relax_published(known.fabric, known.yarn, known.loop_length_mm, starts=2)
+    assert cell.converged
+    assert cell.energy_n_mm == pytest.approx(known.energy_n_mm, rel=0.03)
+    assert cell.contact_share == pytest.approx(known.contact_share, abs=0.015)
+    assert cell.bending_share + cell.contact_share == pytest.approx(1.0)
+    assert cell.yarn_length_mm == pytest.approx(known.loop_length_mm, rel=1e-5)
+
+
+@pytest.mark.parametrize(("course_mm", "energy"), [(2.80, 0.40451), (5.32, 0.89431)])
+def test_authors_example_curve(course_mm, energy):
+    # their sample results for stockinette, core300x, first and last point
+    yarn, loop_length_mm = sample("acrylic", "stockinette").as_configured()
+    cell = relax_published(
+        "stockinette",
+        replace(yarn, core_radius_mm=0.300),
+        loop_length_mm,
+        cell_course_mm=course_mm,
+        convention=Convention.AUTHORS_CODE,
+        starts=1,
+    )
+    assert cell.cell_course_mm == course_mm
+    assert cell.energy_n_mm == pytest.approx(energy, rel=1e-3)
+
+
+@pytest.mark.parametrize("known", SAMPLES, ids=NAMES)
+def test_packaged_shapes_are_stationary(known):
+    stitch = Stitch(known.fabric, known.yarn)
+    start = first_shapes(stitch, known.loop_length_mm, 2)[known.yarn_id == "cotton"]
+    before = stitch.evaluate(start)
+    after = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
+    assert before.lengths_mm.sum() == pytest.approx(known.loop_length_mm, rel=1e-5)
+    assert before.energy_n_mm == pytest.approx(after.energy_n_mm, rel=1e-3)
+    assert np.abs(after.force_n).max() < 1e-4
+
+
+def test_random_starts_end_in_one_minimum():
+    known = sample("cotton", Fabric.SEED)
+    stitch = Stitch(known.fabric, known.yarn)
+    energies = [
+        minimise(
+            stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm)
+        ).energy_n_mm
+        for start in first_shapes(stitch, known.loop_length_mm, 5)[2:]
+    ]
+    assert np.ptp(energies) < 1e-4
+
+
+def test_conventions_weigh_the_same_stitch_differently():
+    known = sample("cotton", "stockinette")
+    energies = [
+        relax_published("stockinette", known.yarn, 12.28, convention=c, starts=1).energy_n_mm
+        for c in (Convention.PAPER, Convention.PUBLISHED, Convention.AUTHORS_CODE)
+    ]
+    assert energies == sorted(energies)
+    assert energies[0] < 0.9 * energies[1]
+
+
+def test_holding_a_size_costs_energy():
+    known = sample("cotton", "rib")
+    free = relax_published("rib", known.yarn, known.loop_length_mm, starts=1)
+    wider = relax_published(
+        "rib", known.yarn, known.loop_length_mm, 1.2 * free.cell_course_mm, starts=1
+    )
+    both = relax_published(
+        "rib",
+        known.yarn,
+        known.loop_length_mm,
+        1.2 * free.cell_course_mm,
+        1.1 * wider.cell_wale_mm,
+        starts=1,
+    )
+    assert free.energy_n_mm < wider.energy_n_mm < both.energy_n_mm
+    assert both.cell_wale_mm == pytest.approx(1.1 * wider.cell_wale_mm)
+
+
+def test_thicker_core_grows_into_place():
+    # the packaged shape overlaps with this core, so the core has to grow first
+    known = sample("cotton", "stockinette")
+    thick = replace(known.yarn, core_radius_mm=0.42)
+    cell = relax_published("stockinette", thick, known.loop_length_mm, starts=2)
+    assert cell.converged
+    assert cell.energy_n_mm > known.energy_n_mm
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [
+        ("loop_length_mm", {"loop_length_mm": 6.0}),
+        ("loop_length_mm", {"loop_length_mm": 600.0}),
+        ("loop_length_mm", {"loop_length_mm": float("nan")}),
+        ("cell_course_mm", {"cell_course_mm": 40.0}),
+        ("cell_wale_mm", {"cell_wale_mm": 0.01}),
+        ("starts", {"starts": 0}),
+        ("fabric", {"fabric": "lace"}),
+    ],
+)
+def test_impossible_stitches_are_refused(field, arguments):
+    known = sample("acrylic", "stockinette")
+    asked = {"fabric": "stockinette", "yarn": known.yarn, "loop_length_mm": 11.3} | arguments
+    with pytest.raises(InputError) as refusal:
+        relax_published(**asked)
+    assert refusal.value.field == field
+
+
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_strands_that_passed_through_each_other_are_noticed(fabric):
+    known = sample("acrylic", fabric)
+    stitch = Stitch(fabric, known.yarn)
+    start = first_shapes(stitch, known.loop_length_mm, 1)[0]
+    minimum = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
+    assert is_knitted(stitch, minimum)
+    swapped = minimum.unknowns.copy()
+    swapped[unknown_names(fabric).index("tilt")] *= -1.0
+    assert not is_knitted(stitch, replace(minimum, unknowns=swapped))

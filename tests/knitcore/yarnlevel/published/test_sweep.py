@@ -1,0 +1,134 @@
+import numpy as np
+import pytest
+
+from knitcore.errors import CancelledError, InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.yarnlevel.buckling import find_buckling
+from knitcore.yarnlevel.lawfit import fit_law
+from knitcore.yarnlevel.published.slide import SlideQuenching
+from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.published.sweep import find_jumps, stress_from_energies, sweep_published
+from knitcore.yarnlevel.samples import sample
+from knitcore.yarnlevel.shares import overtaking_strain
+
+
+def stretch(yarn_id, fabric, direction, max_strain, points, **options):
+    known = sample(yarn_id, fabric)
+    return sweep_published(
+        fabric,
+        known.yarn,
+        known.loop_length_mm,
+        direction,
+        max_strain,
+        points,
+        starts=1,
+        **options,
+    )
+
+
+@pytest.fixture(scope="module")
+def cotton_stockinette():
+    return tuple(
+        stretch("cotton", "stockinette", direction, top, 15, max_stress_n_per_mm=0.35)
+        for direction, top in ((Direction.COURSE, 0.84), (Direction.WALE, 0.42))
+    )
+
+
+def test_stress_is_the_slope_of_the_energy(cotton_stockinette):
+    for sweep in cotton_stockinette:
+        assert sweep.converged
+        middle, slope = stress_from_energies(sweep)
+        inside = slice(0, 8)
+        exact = np.interp(middle, sweep.strain, sweep.stress_n_per_mm)
+        assert slope[inside] == pytest.approx(exact[inside], rel=0.05, abs=2e-3)
+        assert abs(sweep.stress_n_per_mm[0]) < 1e-4
+
+
+def test_published_moduli_of_cotton_stockinette(cotton_stockinette):
+    # Supplementary Table 12, simulation
+    law = fit_law(*cotton_stockinette).law
+    assert law.modulus_course == pytest.approx(0.298, rel=0.15)
+    assert law.modulus_wale == pytest.approx(0.536, rel=0.15)
+    assert law.poisson_yx == pytest.approx(0.441, abs=0.05)
+    assert law.poisson_xy == pytest.approx(0.359, abs=0.05)
+
+
+def test_a_stretch_ends_beyond_the_stress_asked_for(cotton_stockinette):
+    course, _ = cotton_stockinette
+    assert course.stress_n_per_mm[-1] > 0.35 > course.stress_n_per_mm[-2]
+    assert len(course.cells) < 15
+
+
+def test_contact_takes_over_along_the_wale_of_cotton_garter():
+    # Supplementary Fig. 7b: bending leads at rest, contact at high strain
+    sweep = stretch("cotton", "garter", "wale", 1.0, 11)
+    assert sweep.contact_share[0] < 0.25
+    assert np.all(np.diff(sweep.contact_share) > 0)
+    assert 0.6 < overtaking_strain(sweep) < 1.0
+
+
+def test_acrylic_seed_buckles_along_the_wale():
+    # paper, "Instability in acrylic seed": at a strain of about 0.8
+    sweep = stretch("acrylic", "seed", "wale", 0.98, 15)
+    (event,) = find_buckling(sweep)
+    assert 0.7 <= event.strain[0] < event.strain[1] <= 0.9
+    assert event.transverse_strain[1] < event.transverse_strain[0] - 0.05
+    assert event.contact_share[1] < event.contact_share[0]
+
+
+def test_quenched_slides_keep_their_lengths_and_stiffen_seed():
+    known = sample("acrylic", "seed")
+    stitch = Stitch(known.fabric, known.yarn)
+    stresses = {}
+    for variant in SlideQuenching:
+        sweep = stretch("acrylic", "seed", "course", 0.2, 5, slide_quenching=variant)
+        stresses[variant] = sweep.stress_n_per_mm[-1]
+        held = [variant.weights @ stitch.evaluate(cell.state).lengths_mm for cell in sweep.cells]
+        assert np.ptp(held, axis=0) == pytest.approx(0.0, abs=1e-4)
+    assert stresses[SlideQuenching.NONE] < 0.7 * stresses[SlideQuenching.PAPER]
+    assert stresses[SlideQuenching.PAPER] < stresses[SlideQuenching.AS_CODED]
+
+
+def test_only_seed_along_the_course_is_quenched_by_default():
+    quenched = {
+        (fabric, direction)
+        for fabric in Fabric
+        for direction in Direction
+        if SlideQuenching.default(fabric, direction) is not SlideQuenching.NONE
+    }
+    assert quenched == {(Fabric.SEED, Direction.COURSE)}
+
+
+def test_a_locked_yarn_ends_the_stretch_and_says_so():
+    sweep = stretch("cotton", "stockinette", "course", 4.0, 9)
+    assert len(sweep.cells) < 9
+    assert any("locks" in note for note in sweep.notes)
+
+
+def test_a_stretch_can_be_stopped():
+    seen = []
+
+    def stop(share):
+        seen.append(share)
+        raise CancelledError("enough")
+
+    with pytest.raises(CancelledError):
+        stretch("cotton", "rib", "course", 0.2, 5, progress=stop)
+    assert len(seen) == 1
+
+
+def test_impossible_stretches_are_refused():
+    with pytest.raises(InputError, match="positive strain"):
+        stretch("cotton", "rib", "course", 0.0, 5)
+    with pytest.raises(InputError, match="2 or more"):
+        stretch("cotton", "rib", "course", 0.5, 1)
+
+
+def test_jumps_are_found_where_the_shape_changes_abruptly():
+    line = np.linspace(0, 1, 50)
+    lines = [
+        np.stack([line, np.sin((3 + 0.05 * i + (2 if i > 5 else 0)) * line), 0 * line], 1)[None]
+        for i in range(12)
+    ]
+    assert find_jumps(lines, 3.0) == (6,)
+    assert find_jumps(lines[:5], 3.0) == ()

@@ -1,0 +1,15 @@
+import numpy as np
+import pytest
+
+from knitcore.fabric import Direction
+from tests.knitcore.yarnlevel.synthetic import sweep
+
+
+def test_strains_refer_to_the_force_free_cell():
+    stretched = sweep(Direction.WALE, [0.0, 0.5], [0.0, -0.1], [0.0, 0.3])
+    assert stretched.strain == pytest.approx([0.0, 0.5])
+    assert stretched.transverse_strain == pytest.approx([0.0, -0.1])
+    assert stretched.cells[1].cell_mm(Direction.WALE) == pytest.approx(3.0)
+    assert stretched.seconds == pytest.approx(1.0)
+    assert stretched.converged
+    assert np.all(stretched.bending_share + stretched.contact_share == 1.0)
