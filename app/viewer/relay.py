@@ -92,7 +92,7 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection) -> None:
             asyncio.CancelledError, WebSocketDisconnect, websockets.ConnectionClosed, RuntimeError
         ):
             await task
-    with contextlib.suppress(RuntimeError):  # the browser closed first
+    with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # the browser closed first
         await socket.close()
 
 

@@ -141,14 +141,14 @@ class SceneWriter:
             return
         self._framed = size
         extent = np.ptp(scene.centres_mm.reshape(-1, 2), axis=0) + scene.sizes_mm[0, 0]
-        distance = 0.8 * float(max(extent[1], extent[0] * 0.9))
+        distance = 0.76 * float(max(extent[1], extent[0] * 0.9))
         camera = self._server.initial_camera
         camera.up = (0.0, 1.0, 0.0)
         camera.look_at = (0.0, 0.0, 0.0)
-        camera.position = (0.0, -0.2 * distance, distance)
+        camera.position = (0.0, -0.05 * distance, distance)
         for client in self._server.get_clients().values():
             client.camera.up_direction = (0.0, 1.0, 0.0)
-            client.camera.position = (0.0, -0.2 * distance, distance)
+            client.camera.position = (0.0, -0.05 * distance, distance)
             client.camera.look_at = (0.0, 0.0, 0.0)
 
 
