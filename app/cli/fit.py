@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import emit, json_option
+from app.cli.common import choice, emit, json_option
 from app.operations.fit import FileFormat, FitResult, fit_paths, fit_result
 from knitcore.formats.law_files import LawFile, save_law
 from knitcore.measure.uniaxial import LawFit, Reduction
@@ -21,7 +21,7 @@ from knitcore.measure.uniaxial import LawFit, Reduction
 )
 @click.option(
     "--reduction",
-    type=click.Choice(list(Reduction)),
+    type=choice(Reduction),
     default=Reduction.RECOMMENDED,
     show_default=True,
     help="published: as in the paper; recommended: clamp to clamp, every pull counts the same.",
