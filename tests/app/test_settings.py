@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.settings import Settings
+
+SERVING = Path(__file__).resolve().parents[2] / "docs" / "serving.md"
+
+
+@pytest.mark.parametrize("name", list(Settings.model_fields))
+def test_every_setting_is_documented(name: str) -> None:
+    assert f"`KNITCORE_{name.upper()}`" in SERVING.read_text()
+
+
+def test_settings_come_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KNITCORE_PORT", "9001")
+    monkeypatch.setenv("KNITCORE_ALLOWED_HOSTS", '["knit.example"]')
+    settings = Settings()
+    assert settings.port == 9001
+    assert settings.allowed_hosts == ("knit.example",)
+
+
+@pytest.mark.parametrize(
+    ("host", "loopback"),
+    [("127.0.0.1", True), ("::1", True), ("localhost", True), ("0.0.0.0", False), ("::", False)],
+)
+def test_loopback_is_known(host: str, loopback: bool) -> None:
+    assert Settings(host=host).is_loopback is loopback
+
+
+def test_no_token_in_what_is_logged() -> None:
+    assert "a-long-enough-token" not in repr(Settings(token="a-long-enough-token"))
