@@ -140,4 +140,8 @@ watchConnection(studio, () => {
   showAgain();
 });
 
-if (!kept) void stretcher.run("wale", FIRST_STRAIN);
+if (!kept) {
+  void stretcher.run("wale", FIRST_STRAIN).then(() => {
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) stretcher.play();
+  });
+}

@@ -18,6 +18,7 @@
  * @typedef {object} Overlay
  * @property {string} id
  * @property {string} label
+ * @property {string} short as its chip says it, beside its neighbours
  * @property {string} hint
  * @property {string} view name of the 3D view's colouring
  * @property {(studio: Studio) => boolean} available
@@ -48,6 +49,7 @@ function byKind(rule) {
 const stitches = {
   id: "stitches",
   label: "Stitches",
+  short: "Stitches",
   hint: "Knits and purls alone",
   view: "fabric",
   available: always,
@@ -65,6 +67,7 @@ const stitches = {
 const fabrics = {
   id: "fabrics",
   label: "Fabrics",
+  short: "Fabrics",
   hint: "Which of the four fabrics each quarter of a stitch behaves like",
   view: "fabric",
   available: always,
@@ -88,6 +91,7 @@ const fabrics = {
 const segments = {
   id: "segments",
   label: "Segments",
+  short: "Segments",
   hint: "Symmetry of the yarn between neighbours: even joins like stitches, odd unlike ones",
   view: "fabric",
   available: always,
@@ -114,6 +118,7 @@ function modulus(direction, label) {
   return {
     id: `modulus-${direction}`,
     label,
+    short: direction === "course" ? "Course" : "Wale",
     hint: `Initial Young's modulus ${direction}-wise of each stitch, on a logarithmic scale`,
     view: direction,
     available: (studio) => studio.kinds().length === 16,
@@ -132,7 +137,8 @@ function modulus(direction, label) {
 /** How far a stitch is stiffer one way than the other. @type {Overlay} */
 const anisotropy = {
   id: "anisotropy",
-  label: "Anisotropy",
+  label: "Ratio of the moduli",
+  short: "Ratio",
   hint: "Course modulus over wale modulus of each stitch, on a logarithmic scale",
   view: "anisotropy",
   available: (studio) => studio.kinds().length === 16,
@@ -165,6 +171,7 @@ function ratio(kind) {
 const strain = {
   id: "strain",
   label: "Strain",
+  short: "Strain",
   hint: "Strain of each stitch along the pull, at the step on the slider",
   view: "strain",
   available: (studio) => studio.field("strain") !== null,
@@ -191,6 +198,7 @@ const strain = {
 const utilisation = {
   id: "utilisation",
   label: "Lock-up",
+  short: "Lock-up",
   hint: "How much of its stretch each stitch has used; at 100 % its yarn is taut",
   view: "utilisation",
   available: (studio) => studio.field("utilisation") !== null,

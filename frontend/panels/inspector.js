@@ -94,17 +94,23 @@ export function inspector(host, studio) {
     const part = box ? studio.document.grid.region(box) : studio.document.grid;
     const codes = box ? surroundings(part) : studio.document.codes;
     const segments = countSegments(part);
+    const mix = fabricShares(codes);
     shares.replaceChildren(
-      shareBar("Fabrics", fabricShares(codes).map((share, i) => ({
-        share, colour: `var(--${FABRICS[i]})`, label: FABRICS[i], text: percent(share),
-      }))),
+      shareBar(
+        "share-fabrics",
+        FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${percent(mix[i])}` })),
+      ),
       ...(/** @type {Direction[]} */ (["course", "wale"])).map((direction) => {
         const { even, odd } = segments[direction];
         const all = even + odd || 1;
-        return shareBar(`Segments ${direction}-wise`, [
-          { share: even / all, colour: "var(--even)", label: "even", text: `${even} even` },
-          { share: odd / all, colour: "var(--odd)", label: "odd", text: `${odd} odd` },
-        ], `segments-${direction}`);
+        return shareBar(
+          `segments-${direction}`,
+          [
+            { share: even / all, colour: "var(--even)", text: `${even} even` },
+            { share: odd / all, colour: "var(--odd)", text: `${odd} odd` },
+          ],
+          direction,
+        );
       }),
     );
   };
@@ -166,25 +172,29 @@ function fill(table, value) {
 }
 
 /**
- * @param {string} label
- * @param {{share: number, colour: string, label: string, text: string}[]} parts
- * @param {string} [id]
+ * A bar in parts, and below it their key.
+ *
+ * @param {string} id
+ * @param {{share: number, colour: string, text: string}[]} parts
+ * @param {Direction} [direction] of what is counted
  */
-function shareBar(label, parts, id) {
+function shareBar(id, parts, direction) {
+  const present = parts.filter(({ share }) => share > 0);
   const bar = h("div", { class: "bar", "aria-hidden": "true" });
-  for (const { share, colour } of parts) {
+  const keys = present.map(({ share, colour, text }) => {
     const piece = h("span", {});
     piece.style.flexGrow = String(share);
     piece.style.backgroundColor = colour;
-    if (share > 0) bar.append(piece);
-  }
-  const named = parts.filter(({ share }) => share >= 0.005);
+    bar.append(piece);
+    const key = h("span", { class: "key" });
+    key.style.backgroundColor = colour;
+    return h("span", { class: "legend-item" }, key, text);
+  });
+  const title = direction ? `Segments ${direction}-wise` : "Shares of the four fabrics, by quarters of stitches";
   return h(
     "div",
-    { class: "share", id },
-    h("div", { class: "share-text" },
-      h("span", { class: "muted" }, label),
-      h("span", { class: "figures" }, named.map(({ label: name, text }) => (text.includes(name) ? text : `${name} ${text}`)).join(" · "))),
+    { class: direction ? "share counts" : "share", id, title },
     bar,
+    h("div", { class: "share-text figures" }, direction && icon(direction), ...keys),
   );
 }

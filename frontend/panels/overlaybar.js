@@ -11,6 +11,8 @@ import { OVERLAYS } from "../chart/overlays.js";
 import { percent, figure, range } from "../core/format.js";
 import { h } from "../dom.js";
 
+const IDLE = "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
+
 /**
  * @param {HTMLElement} host
  * @param {Studio} studio
@@ -27,9 +29,10 @@ export function overlaybar(host, studio, view) {
         role: "radio",
         id: `overlay-${overlay.id}`,
         title: overlay.hint,
+        "aria-label": overlay.label,
         onclick: () => (studio.overlay.value = overlay),
       },
-      overlay.label,
+      overlay.short,
     ),
   );
   const rectangles = h(
@@ -66,7 +69,7 @@ export function overlaybar(host, studio, view) {
           })),
     );
     if (studio.rectangles.value) {
-      legend.append(h("span", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), "give per N (square-root scale)"));
+      legend.append(h("span", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), "give, √ scale"));
     }
   };
   for (const signal of [studio.overlay, studio.material, studio.rectangles]) signal.listen(show);
@@ -74,15 +77,22 @@ export function overlaybar(host, studio, view) {
   studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
 
   const read = () => (readout.textContent = describe(studio, view.hover.value));
+  read();
   view.hover.listen(read);
   studio.document.onChange(read);
   studio.step.listen(read);
 
   host.append(
     h("div", { class: "chips" },
-      h("div", { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" }, ...chips),
+      h("div", { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
+        ...chips.slice(0, 3),
+        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Modulus"),
+        ...chips.slice(3, 6),
+        h("span", { class: "chip-divider", "aria-hidden": "true" }),
+        ...chips.slice(6)),
       rectangles),
-    h("div", { class: "legend-row" }, legend, readout),
+    legend,
+    readout,
   );
   return show;
 }
@@ -110,7 +120,7 @@ function scale({ map, low, high, unit, log, label }) {
  */
 function describe(studio, cell) {
   const { grid, codes } = studio.document;
-  if (!cell || !grid.has(...cell)) return "";
+  if (!cell || !grid.has(...cell)) return IDLE;
   const [row, column] = cell;
   const i = grid.index(row, column);
   const side = row % 2 === 0 ? "RS" : "WS";

@@ -97,7 +97,7 @@ function thumbnail(ink, palette) {
     context.fill();
     return canvas;
   }
-  const single = ink.repeat.purl.length === 1;
+  const single = ink === KNIT || ink === PURL;
   const tiles = ink.repeat.tiled(2 * count, 2 * count);
   const codes = surroundings(tiles);
   for (let row = 0; row < count; row++) {

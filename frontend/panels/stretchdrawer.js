@@ -3,7 +3,7 @@
  *
  * @import {Studio} from "../studio.js"
  * @import {Stretcher} from "../services/stretcher.js"
- * @import {Direction} from "../types.js"
+ * @import {Direction, Problem} from "../types.js"
  */
 
 import { figure, percent } from "../core/format.js";
@@ -135,7 +135,7 @@ export function stretchdrawer(host, studio, stretcher) {
     note.className = problem ? "stretch-note error" : "stretch-note";
     note.replaceChildren();
     if (problem) {
-      note.append(icon("warning"), h("span", {}, h("strong", {}, problem.title), `: ${problem.detail} ${problem.remedy ?? ""}`));
+      note.append(icon("warning"), h("span", {}, h("strong", {}, problem.title), `: ${inPercent(problem)}`));
     } else if (busy) note.append("Pulling the cloth between two clamps …");
     else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
     else if (value) {
@@ -155,4 +155,15 @@ export function stretchdrawer(host, studio, stretcher) {
     play.title = stretcher.playing ? "Pause" : "Play the stretch";
   });
   stretcher.pause();
+}
+
+/**
+ * The service speaks of strains as shares, this panel in percent.
+ *
+ * @param {Problem} problem
+ */
+function inPercent({ detail, remedy, field }) {
+  const text = `${detail} ${remedy ?? ""}`;
+  if (field !== "strain") return text;
+  return text.replace(/\d+(\.\d+)?/g, (share) => `${Math.floor(100 * Number(share) + 1e-9)} %`);
 }

@@ -90,7 +90,7 @@ export function rigidityPlot(host, studio) {
         add("line", { x1: x.at(own.x), x2: x.at(own.x), y1: clampY(up[0]), y2: clampY(up[1]), class: "own-interval" });
       }
       add("path", { d: "M0-8L8 0 0 8-8 0z", transform: `translate(${x.at(own.x)} ${y.at(own.y)})`, class: "own-dot" });
-      const right = x.at(own.x) > width * 0.62;
+      const right = x.at(own.x) + 118 > width;
       add("text", { x: x.at(own.x) + (right ? -13 : 13), y: y.at(own.y) - 9, class: `own-label ${right ? "end" : ""}` }, scope === "selection" ? "this selection" : "this chart");
     }
     svg.setAttribute(

@@ -1,0 +1,49 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Grid } from "../core/grid.js";
+import { QUARTERS, countSegments, fabricShares, surroundings } from "../core/segments.js";
+import { random } from "./random.js";
+
+test("the codes agree with the Python library's examples", () => {
+  assert.deepEqual([...surroundings(Grid.fromText("KKP"))], [0, 2, 3]);
+  assert.deepEqual([...surroundings(Grid.fromText("K"))], [0]);
+  assert.deepEqual([...surroundings(Grid.fromText("KP\nKP"))], [3, 3, 3, 3]);
+});
+
+test("pure fabrics are pure up to their edges", () => {
+  /** @type {[string, number[]][]} */
+  const fabrics = [
+    ["K", [1, 0, 0, 0]],
+    ["P\nK", [0, 1, 0, 0]],
+    ["KP", [0, 0, 1, 0]],
+    ["PK\nKP", [0, 0, 0, 1]],
+  ];
+  for (const [repeat, shares] of fabrics) {
+    assert.deepEqual(fabricShares(surroundings(Grid.fromText(repeat).tiled(7, 5))), shares);
+  }
+});
+
+test("counts of a rib: all course-wise segments odd, all wale-wise ones even", () => {
+  assert.deepEqual(countSegments(Grid.fromText("KPKP\nKPKP\nKPKP")), {
+    course: { even: 0, odd: 9 },
+    wale: { even: 8, odd: 0 },
+  });
+});
+
+test("turning over keeps the numbers of segments and the shares of fabrics", () => {
+  for (let seed = 1; seed < 30; seed++) {
+    const grid = random(seed);
+    const turned = grid.turnedOver();
+    assert.deepEqual(countSegments(turned), countSegments(grid));
+    assert.deepEqual(
+      fabricShares(surroundings(turned)).map((share) => share.toFixed(9)),
+      fabricShares(surroundings(grid)).map((share) => share.toFixed(9)),
+    );
+  }
+});
+
+test("quarters: a stitch between odd segments left and below is half of everything", () => {
+  assert.deepEqual(QUARTERS[0], [0, 0, 0, 0]);
+  assert.deepEqual(QUARTERS[15], [3, 3, 3, 3]);
+  assert.deepEqual(QUARTERS[1 + 4], [3, 1, 2, 0]);
+});
