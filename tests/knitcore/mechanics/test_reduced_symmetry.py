@@ -1,0 +1,114 @@
+"""The RS model against its 16 published values (tables 17 and 18)."""
+
+import math
+
+import pytest
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.mechanics.elastica import Parity
+from knitcore.mechanics.reduced_symmetry import (
+    SegmentGeometry,
+    rs_fabric,
+    rs_fabrics,
+    stitch_modulus_n_per_mm,
+)
+
+ROWS = [(m, f, d) for m in ("acrylic", "cotton") for f in Fabric for d in Direction]
+EVEN = [r for r in ROWS if not (r[1].course_odd if r[2] is Direction.COURSE else r[1].wale_odd)]
+ODD = [r for r in ROWS if r not in EVEN]
+
+ODD_RATIOS = {
+    ("acrylic", "garter", "wale"): 0.834,
+    ("acrylic", "rib", "course"): 1.026,
+    ("acrylic", "seed", "course"): 1.240,
+    ("acrylic", "seed", "wale"): 1.582,
+    ("cotton", "garter", "wale"): 0.852,
+    ("cotton", "rib", "course"): 1.015,
+    ("cotton", "seed", "course"): 1.310,
+    ("cotton", "seed", "wale"): 1.409,
+}
+
+
+@pytest.mark.parametrize(("material", "fabric", "direction"), EVEN)
+def test_even_values_are_reproduced(material, fabric, direction):
+    segment = rs_fabrics(material)[fabric].segment(direction)
+    assert segment.modulus_n_per_mm == pytest.approx(segment.published_n_per_mm, rel=0.006)
+
+
+@pytest.mark.parametrize(("material", "fabric", "direction"), ODD)
+def test_odd_values_are_derived_and_stand_beside_the_published(material, fabric, direction):
+    segment = rs_fabrics(material)[fabric].segment(direction)
+    ratio = segment.modulus_n_per_mm / segment.published_n_per_mm
+    assert ratio == pytest.approx(ODD_RATIOS[material, fabric, direction], rel=2e-3)
+
+
+def test_there_are_eight_of_each():
+    assert (len(EVEN), len(ODD)) == (8, 8)
+
+
+def test_the_misprinted_separation_is_corrected():
+    geometry = rs_fabrics("acrylic")[Fabric.STOCKINETTE].wale.geometry
+    assert geometry.separation_mm == 3.550
+    assert geometry.length_mm == pytest.approx(5.289, rel=2e-4)
+
+
+def test_odd_rigidity_is_the_curvature_of_the_rotational_energy():
+    """E = 6 B v²/lambda with v = sin(psi - phi); d²E/d(lambda cos phi)² at fixed lambda, to lowest
+    order in v, with L in place of lambda as in the paper."""
+    lam, phi, psi, bending = 4.0, 0.8, 0.81, 0.045
+
+    def energy(angle):
+        return 6 * bending * math.sin(psi - angle) ** 2 / lam
+
+    def angle(reach):
+        return math.acos(reach / lam)
+
+    reach, step = lam * math.cos(phi), 1e-4
+    curvature = (
+        energy(angle(reach + step)) - 2 * energy(phi) + energy(angle(reach - step))
+    ) / step**2
+    segment = SegmentGeometry(Parity.ODD, lam, lam, math.sin(psi - phi), phi)
+    assert segment.rigidity_n_per_mm(bending) == pytest.approx(curvature, rel=1e-3)
+
+
+def test_assembly():
+    assert stitch_modulus_n_per_mm(Direction.COURSE, Parity.EVEN, 3.0) == 1.5
+    assert stitch_modulus_n_per_mm(Direction.COURSE, Parity.ODD, 3.0) == 3.0
+    assert stitch_modulus_n_per_mm(Direction.COURSE, Parity.ODD, 3.0, 6.0) == pytest.approx(2.0)
+    assert stitch_modulus_n_per_mm(Direction.WALE, Parity.ODD, 3.0) == 6.0
+
+
+def test_geometry_of_one_s_own():
+    even = SegmentGeometry(Parity.EVEN, 2.2, 4.1, 1.0)
+    odd = SegmentGeometry(Parity.ODD, 3.5, 4.0, 0.7, 0.75)
+    garter = rs_fabric(Fabric.GARTER, even, odd, 0.045)
+    assert garter.modulus_course_n_per_mm == pytest.approx(90 * 0.045 / (4.1 * 2.2**2))
+    assert garter.wale.published_n_per_mm is None
+    doubled = rs_fabric(Fabric.GARTER, even, odd, 0.09)
+    assert doubled.modulus_wale_n_per_mm == pytest.approx(2 * garter.modulus_wale_n_per_mm)
+    with pytest.raises(InputError, match="has even segments"):
+        rs_fabric(Fabric.STOCKINETTE, even, odd, 0.045)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        ((Parity.EVEN, 0.0, 4.0, 1.0), "separation_mm"),
+        ((Parity.EVEN, 2.0, float("nan"), 1.0), "length_mm"),
+        ((Parity.EVEN, 2.0, 4.0, 0.0), "slope"),
+        ((Parity.ODD, 2.0, 4.0, 1.0), "angle_rad"),
+        ((Parity.ODD, 2.0, 4.0, 1.0, 0.0), "angle_rad"),
+    ],
+)
+def test_impossible_geometry_is_refused(arguments, field):
+    with pytest.raises(InputError) as caught:
+        SegmentGeometry(*arguments)
+    assert caught.value.field == field
+
+
+def test_other_yarns_and_bending_moduli_are_refused():
+    with pytest.raises(InputError, match="acrylic or cotton"):
+        rs_fabrics("lace-bamboo")
+    with pytest.raises(InputError, match="B > 0"):
+        SegmentGeometry(Parity.EVEN, 2.2, 4.1, 1.0).rigidity_n_per_mm(0.0)
