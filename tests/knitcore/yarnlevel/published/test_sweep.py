@@ -5,6 +5,7 @@ from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.buckling import find_buckling
 from knitcore.yarnlevel.lawfit import fit_law
+from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.published.sweep import find_jumps, stress_from_energies, sweep_published
@@ -69,7 +70,7 @@ def test_contact_takes_over_along_the_wale_of_cotton_garter():
 
 def test_acrylic_seed_buckles_along_the_wale():
     # paper, "Instability in acrylic seed": at a strain of about 0.8
-    sweep = stretch("acrylic", "seed", "wale", 0.98, 15)
+    sweep = stretch("acrylic", "seed", "wale", 0.91, 14)
     (event,) = find_buckling(sweep)
     assert 0.7 <= event.strain[0] < event.strain[1] <= 0.9
     assert event.transverse_strain[1] < event.transverse_strain[0] - 0.05
@@ -79,9 +80,10 @@ def test_acrylic_seed_buckles_along_the_wale():
 def test_quenched_slides_keep_their_lengths_and_stiffen_seed():
     known = sample("acrylic", "seed")
     stitch = Stitch(known.fabric, known.yarn)
+    zero = relax_published("seed", known.yarn, known.loop_length_mm, starts=1)
     stresses = {}
     for variant in SlideQuenching:
-        sweep = stretch("acrylic", "seed", "course", 0.2, 5, slide_quenching=variant)
+        sweep = stretch("acrylic", "seed", "course", 0.1, 3, slide_quenching=variant, zero=zero)
         stresses[variant] = sweep.stress_n_per_mm[-1]
         held = [variant.weights @ stitch.evaluate(cell.state).lengths_mm for cell in sweep.cells]
         assert np.ptp(held, axis=0) == pytest.approx(0.0, abs=1e-4)
@@ -100,8 +102,8 @@ def test_only_seed_along_the_course_is_quenched_by_default():
 
 
 def test_a_locked_yarn_ends_the_stretch_and_says_so():
-    sweep = stretch("cotton", "stockinette", "course", 4.0, 9)
-    assert len(sweep.cells) < 9
+    sweep = stretch("cotton", "stockinette", "course", 1.2, 3)
+    assert len(sweep.cells) == 2
     assert any("locks" in note for note in sweep.notes)
 
 
