@@ -1,0 +1,33 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+
+
+@pytest.mark.parametrize("material", ["acrylic", "cotton"])
+def test_even_values_are_the_papers(client: TestClient, material: str) -> None:
+    """Tables 17 and 18 print three digits: within 0.6 %."""
+    result = CliRunner().invoke(main, ["rs", "--material", material, "--json"])
+    told = json.loads(result.stdout)
+    assert told == client.get(f"/api/v1/rs/{material}").json()
+    even = [
+        segment
+        for fabric in told["fabrics"].values()
+        for segment in fabric["segments"].values()
+        if segment["parity"] == "even"
+    ]
+    assert len(even) == 4
+    for segment in even:
+        assert segment["modulus_n_per_mm"] == pytest.approx(segment["published_n_per_mm"], rel=6e-3)
+
+
+def test_other_yarns_have_no_geometry(client: TestClient) -> None:
+    result = CliRunner().invoke(main, ["rs", "--material", "glove-wool", "--json"])
+    assert result.exit_code == 2
+    assert "acrylic or cotton" in result.stderr
+    assert client.get("/api/v1/rs/glove-wool").json()["field"] == "material"
