@@ -50,10 +50,10 @@ UNFOLDING_STRESS_N_PER_MM = {Direction.COURSE: 0.015, Direction.WALE: 0.020}
 STUDY_BENDING_STRESS_N_PER_MM = 0.045 / 1.48**3
 """B / d³ of the study's yarn."""
 
-WIDE_RIB_RATIO = 1.35
-"""A k x k rib (k > 1) stretches at least so much more than 1x1 rib: the study's 35-50 %. A wider
-fold has longer levers, so it cannot be the stiffer one at rest."""
-
+WIDE_RIB_RATIOS = (1.35, 1.50)
+"""A k x k rib (k > 1) is 35-50 % more extensible than 1x1 rib in the study. sigma_c is moved just
+as far as its first stretch needs to lie in that range: the ratio carries over to other yarns
+better than a stress does."""
 
 _WIDEST_BALANCED = 8
 
@@ -260,7 +260,7 @@ def folded_repeat(repeat: StitchChart, material: Material, relaxed: RelaxedSize)
         raise InputError("chart", "is neither a rib nor a welt.", "Give a 1-D repeat.")
     if layout is Layout.RIB:
         along = _series(repeat, material, Direction.COURSE, relaxed.course_mm, relaxed.wale_mm)
-        along = _no_stiffer_than_the_pure_rib(along, repeat, material)
+        along = _anchored_to_the_pure_rib(along, repeat, material)
         across = _rib_wale_wise(repeat, along.parts, relaxed.course_mm)
         return FoldedRepeat(layout, relaxed, along, across)
     along = _series(repeat, material, Direction.WALE, relaxed.wale_mm, relaxed.course_mm)
@@ -329,15 +329,17 @@ def _is_balanced(repeat: StitchChart) -> bool:
     return changes == 2 and 2 * int(purl.sum()) == purl.size and 2 < purl.size <= _WIDEST_BALANCED
 
 
-def _no_stiffer_than_the_pure_rib(along: Series, repeat: StitchChart, material: Material) -> Series:
+def _anchored_to_the_pure_rib(along: Series, repeat: StitchChart, material: Material) -> Series:
     if not (_is_balanced(repeat) and along.gap_mm):
         return along
     parts, fold = along.compliances()
+    flat = float(parts.sum())
     pure = 1.0 / material.law(Fabric.RIB).modulus(Direction.COURSE)
-    needed = WIDE_RIB_RATIO * pure - float(parts.sum())
-    if fold >= needed:
+    least, most = (ratio * pure for ratio in WIDE_RIB_RATIOS)
+    wanted = min(max(flat + fold, least), most)
+    if wanted <= flat:
         return along
-    stress = along.unfolding_stress_n_per_mm * fold / needed
+    stress = along.unfolding_stress_n_per_mm * fold / (wanted - flat)
     return replace(along, unfolding_stress_n_per_mm=stress)
 
 
