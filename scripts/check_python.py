@@ -3,7 +3,9 @@
 import sys
 
 if sys.version_info < (3, 11):
-    sys.exit(f"Python 3.11 or newer is needed; this is {sys.version.split()[0]}. Set PYTHON=python3.11.")
+    sys.exit(
+        f"Python 3.11 or newer is needed, not {sys.version.split()[0]}: set PYTHON=python3.11."
+    )
 try:
     import ensurepip  # noqa: F401 - Debian packs it apart
 except ImportError:

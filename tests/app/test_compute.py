@@ -15,19 +15,20 @@ from knitcore import InputError
 from tests.app import jobs
 
 
-@pytest.fixture
-def compute() -> Iterator[Compute]:
-    pool = Compute(workers=1, timeout_s=30.0)
-    yield pool
-    pool.close()
-
-
 async def never() -> bool:
     return False
 
 
 async def at_once() -> bool:
     return True
+
+
+@pytest.fixture
+def compute() -> Iterator[Compute]:
+    pool = Compute(workers=1, timeout_s=60.0)
+    asyncio.run(pool.run(never, jobs.add, 0, 0))  # its process is up
+    yield pool
+    pool.close()
 
 
 def test_results_and_errors_come_back(compute: Compute) -> None:

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,7 +15,7 @@ from tests.knitcore.charts import stitch_charts
 def test_neighbouring_loops_join(chart: StitchChart) -> None:
     kinds = loop_kinds(chart)
     for row in kinds:
-        for left, right in zip(row[:-1], row[1:], strict=True):
+        for left, right in pairwise(row):
             end, start = loop_centre_line(int(left))[-1], loop_centre_line(int(right))[0]
             np.testing.assert_allclose(end[1:], start[1:], atol=1e-12)
             np.testing.assert_allclose(end[0] - start[0], 1.0)
