@@ -105,14 +105,15 @@ class StretchRun:
 
     Attributes
     ----------
-    result : what the caller gets.
+    result_json : what the caller gets, written where the test ran: a megabyte of numbers would
+        hold up the event loop.
     direction : of the pull.
     positions_mm : (steps, rows, columns, 2) stitch centres.
     strain : (steps, rows, columns, 2) course-wise and wale-wise.
     utilisation : (steps, rows, columns).
     """
 
-    result: StretchResult
+    result_json: bytes
     direction: Direction
     positions_mm: Array
     strain: Array
@@ -120,9 +121,9 @@ class StretchRun:
 
     @property
     def size_bytes(self) -> int:
-        """About how much memory it takes, the lists of the result included."""
-        arrays = self.positions_mm.nbytes + self.strain.nbytes + self.utilisation.nbytes
-        return arrays + 32 * 3 * self.utilisation.size
+        """About how much memory it takes."""
+        arrays = (self.positions_mm, self.strain, self.utilisation)
+        return len(self.result_json) + sum(array.nbytes for array in arrays)
 
 
 def stretch_key(request: StretchRequest) -> str:
@@ -225,7 +226,7 @@ def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> S
         ),
     )
     return StretchRun(
-        result=result,
+        result_json=result.model_dump_json().encode(),
         direction=request.direction,
         positions_mm=np.stack([x, y], axis=-1).astype(np.float32),
         strain=np.stack([xx, yy], axis=-1).astype(np.float32),
