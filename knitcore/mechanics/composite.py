@@ -268,10 +268,10 @@ def folded_repeat(repeat: StitchChart, material: Material, relaxed: RelaxedSize)
     return FoldedRepeat(layout, relaxed, along, Parallel(Direction.COURSE, parts, relaxed.wale_mm))
 
 
-def rib_modulus_wale(repeat: StitchChart, material: Material) -> float:
-    """Wale-wise modulus (N/mm) of a rib whose relaxed size is unknown, at its flat width."""
+def flat_rib_wale_wise(repeat: StitchChart, material: Material) -> Series:
+    """Wale-wise response of a rib whose relaxed size is unknown, at its flat width."""
     parts = _parts(repeat, material, Direction.COURSE)
-    return _rib_wale_wise(repeat, parts, _flat_mm(parts)).modulus_n_per_mm
+    return _rib_wale_wise(repeat, parts, _flat_mm(parts))
 
 
 def _parts(repeat: StitchChart, material: Material, direction: Direction) -> tuple[Part, ...]:

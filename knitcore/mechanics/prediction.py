@@ -22,15 +22,15 @@ import numpy as np
 
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction, Fabric
-from knitcore.materials import Interval, Material, Origin
+from knitcore.materials import FabricRecord, Interval, Material, Origin
 from knitcore.materials.uncertainty import log_interval, normal_interval
 from knitcore.mechanics.composite import (
     FoldedRepeat,
     Layout,
     Series,
+    flat_rib_wale_wise,
     folded_repeat,
     layout_of,
-    rib_modulus_wale,
 )
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.mechanics.homogenisation import EffectiveSheet, homogenise
@@ -175,10 +175,16 @@ def predict(
     return _flat(sheet, repeat, material, size)
 
 
+def pure_provenance(record: FabricRecord) -> Provenance:
+    """Label of a pure fabric's law."""
+    if record.origin is Origin.SIMULATED:
+        return Provenance.YARN_LEVEL
+    return Provenance.ESTIMATED if record.origin is Origin.ESTIMATED else Provenance.MEASURED
+
+
 def _pure(fabric: Fabric, material: Material, relaxed: RelaxedSize | None) -> Prediction:
     record = material.record(fabric)
     law, spread = record.law, record.uncertainty
-    source = {Origin.SIMULATED: Provenance.YARN_LEVEL, Origin.ESTIMATED: Provenance.ESTIMATED}
     size = (record.stitch_course_mm, record.stitch_wale_mm, record.stitch_size_source)
     if relaxed is not None:
         size = (relaxed.course_mm, relaxed.wale_mm, relaxed.source)
@@ -186,7 +192,7 @@ def _pure(fabric: Fabric, material: Material, relaxed: RelaxedSize | None) -> Pr
         law,
         log_sd=(spread.log_modulus_course, spread.log_modulus_wale),
         poisson_sd=(spread.poisson_yx, spread.poisson_xy),
-        provenance=source.get(record.origin, Provenance.MEASURED),
+        provenance=pure_provenance(record),
         method=f"law of {fabric}, {record.origin}; uncertainty: {spread.source}",
         size=size,
         notes=fabric_notes(fabric, material),
@@ -252,7 +258,7 @@ def _flat(
     kind = "patchwork" if patchwork else "repeat"
     course, wale = (sheet.modulus_n_per_mm(d) for d in Direction)
     if layout_of(repeat) is Layout.RIB and not patchwork:
-        wale = rib_modulus_wale(repeat, material)
+        wale = flat_rib_wale_wise(repeat, material).modulus_n_per_mm
     return _composite(
         sheet,
         moduli=(course, wale),

@@ -68,22 +68,12 @@ def repeat_curve(
     >>> [round(float(s), 4) for s in curve.stress]
     [0.0, 0.0197, 0.1083]
     """
-    axial = np.atleast_1d(np.asarray(strain, dtype=float))
-    if not np.all(np.isfinite(axial)) or np.any(np.diff(axial) <= 0) or axial.min() < 0:
-        raise InputError(
-            "strain", "must be finite, increasing and at least 0.", "Give, say, 0, 0.1, 0.2."
-        )
-    if chart.rows * chart.columns > MOST_STITCHES:
-        raise InputError(
-            "chart",
-            f"{chart.columns}x{chart.rows} is too large for a nonlinear repeat.",
-            f"Give one repeat of at most {MOST_STITCHES} stitches.",
-        )
-    cell = _Cell(chart, material, form)
+    axial = _checked(strain, "strain")
+    cell = _Cell(_small(chart), material, form)
     state = np.zeros(cell.unknowns)
     rows: list[tuple[float, float]] = []
     for value in axial:
-        state = cell.solve(state, direction, float(value))
+        state = cell.solve(state, direction, strain=float(value))
         if form is StiffeningForm.FULL and cell.locked_share(state) > _MOST_LOCKED:
             raise InputError(
                 "strain",
@@ -93,6 +83,52 @@ def repeat_curve(
         rows.append((cell.transverse_strain(state, direction), cell.stress(state, direction)))
     transverse, stress = np.array(rows).T
     return UniaxialCurve(strain=axial, transverse_strain=transverse, stress=stress)
+
+
+def repeat_curve_at_stress(
+    chart: StitchChart, material: Material, direction: Direction, stress: ArrayLike
+) -> UniaxialCurve:
+    """The same with the full law, at given mean stresses instead of strains.
+
+    Parameters
+    ----------
+    stress : increasing, at least 0, N/mm.
+
+    Raises
+    ------
+    InputError
+        If the repeat is too large, or the stresses are not finite, increasing and at least 0.
+    ConvergenceError
+        If Newton's method stops short.
+    """
+    sigma = _checked(stress, "stress")
+    cell = _Cell(_small(chart), material, StiffeningForm.FULL)
+    state = np.zeros(cell.unknowns)
+    rows: list[tuple[float, float]] = []
+    for value in sigma:
+        state = cell.solve(state, direction, stress=float(value))
+        rows.append((cell.strain(state, direction), cell.transverse_strain(state, direction)))
+    strain, transverse = np.array(rows).T
+    return UniaxialCurve(strain=strain, transverse_strain=transverse, stress=sigma)
+
+
+def _checked(values: ArrayLike, field: str) -> Array:
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if not np.all(np.isfinite(array)) or np.any(np.diff(array) <= 0) or np.any(array < 0):
+        raise InputError(
+            field, "must be finite, increasing and at least 0.", "Give, say, 0, 0.1, 0.2."
+        )
+    return array
+
+
+def _small(chart: StitchChart) -> StitchChart:
+    if chart.rows * chart.columns > MOST_STITCHES:
+        raise InputError(
+            "chart",
+            f"{chart.columns}x{chart.rows} is too large for a nonlinear repeat.",
+            f"Give one repeat of at most {MOST_STITCHES} stitches.",
+        )
+    return chart
 
 
 def _internal_work(v: Any, w: Any) -> Any:
@@ -132,6 +168,10 @@ class _Cell:
         self._alpha_x, self._alpha_y, self._beta_x, self._beta_y = fields[4:]
         self.unknowns = int(self._mesh.map.shape[1])
 
+    def strain(self, state: Array, direction: Direction) -> float:
+        """Mean strain along the pull."""
+        return float(state[self._mesh.macro[direction.axis]])
+
     def transverse_strain(self, state: Array, direction: Direction) -> float:
         """Mean strain across the pull, with the phases' own asymmetry of the Poisson ratios."""
         strain = float(state[self._mesh.macro[direction.other.axis]])
@@ -149,20 +189,33 @@ class _Cell:
         residual = self._residual(*self._gradient(state))
         return float(residual[self._mesh.macro[direction.axis]] / self._mesh.area_mm2)
 
-    def solve(self, start: Array, direction: Direction, strain: float) -> Array:
-        """Equilibrium at a mean strain, from the equilibrium at a smaller one."""
-        held = self._mesh.macro[direction.axis]
-        free = np.append(self._mesh.free, np.delete(self._mesh.macro, direction.axis))
+    def solve(
+        self,
+        start: Array,
+        direction: Direction,
+        *,
+        strain: float | None = None,
+        stress: float = 0.0,
+    ) -> Array:
+        """Equilibrium at a mean strain, or at a mean stress, from that at a smaller one."""
+        pulled = self._mesh.macro[direction.axis]
+        load = np.zeros(self.unknowns)
         state = start.copy()
-        if start[held] > 0:
-            state *= strain / start[held]
-        state[held] = strain
+        if strain is None:
+            load[pulled] = stress * self._mesh.area_mm2
+            free = np.append(self._mesh.free, self._mesh.macro)
+        else:
+            free = np.append(self._mesh.free, np.delete(self._mesh.macro, direction.axis))
+            if start[pulled] > 0:
+                state *= strain / start[pulled]
+            state[pulled] = strain
         scale = self._mesh.area_mm2 * max(float(self._xxxx.max()), float(self._yyyy.max()))
-        energy = self._energy(state)
+        tolerance = _TOLERANCE * scale * max(strain or 0.0, 1e-3)
+        energy = self._energy(state) - float(load @ state)
         for _ in range(_MOST_ITERATIONS):
             gradient = self._gradient(state)
-            residual = self._residual(*gradient)[free]
-            if float(np.abs(residual).max()) <= _TOLERANCE * scale * max(strain, 1e-3):
+            residual = (self._residual(*gradient) - load)[free]
+            if float(np.abs(residual).max()) <= tolerance:
                 return state
             tangent = self._tangent(*gradient)[free][:, free].tocsc()
             step = np.zeros(self.unknowns)
@@ -171,12 +224,14 @@ class _Cell:
             length, lowest = 1.0, energy
             # The energy is convex, so a shorter step always gets lower.
             while length > 1e-6:
-                lowest = self._energy(state + length * step)
+                trial = state + length * step
+                lowest = self._energy(trial) - float(load @ trial)
                 if lowest <= energy + 1e-4 * length * slope + 1e-14 * abs(energy):
                     break
                 length /= 2
             state, energy = state + length * step, lowest
-        raise ConvergenceError(f"The repeat found no equilibrium at a strain of {strain:.3g}.")
+        held = f"a strain of {strain:.3g}" if strain is not None else f"{stress:.3g} N/mm"
+        raise ConvergenceError(f"The repeat found no equilibrium at {held}.")
 
     def _gradient(self, state: Array) -> tuple[Array, Array, Array]:
         gradient = self._mesh.basis.interpolate(self._mesh.map @ state).grad
