@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import socket
 
 import click
 
+from app.cli.common import json_option
 from app.settings import Settings
 from knitcore.errors import InputError
 
@@ -14,7 +16,8 @@ from knitcore.errors import InputError
 @click.command("serve")
 @click.option("--host", help="Address to listen on (default: loopback, or KNITCORE_HOST).")
 @click.option("--port", type=click.IntRange(0, 65535), help="Port; 0 takes a free one.")
-def command(host: str | None, port: int | None) -> None:
+@json_option
+def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(Settings().model_dump() | given).check()
@@ -27,7 +30,10 @@ def command(host: str | None, port: int | None) -> None:
     listener = _listen(settings)
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
     name = f"[{shown}]" if ":" in shown else shown
-    click.echo(f"Knitcore is at http://{name}:{listener.getsockname()[1]}/  (Ctrl+C stops it)")
+    address = f"http://{name}:{listener.getsockname()[1]}/"
+    click.echo(
+        json.dumps({"url": address}) if as_json else f"Knitcore is at {address}  (Ctrl+C stops it)"
+    )
     server = uvicorn.Server(
         uvicorn.Config(
             create_app(settings),
@@ -45,6 +51,7 @@ def _listen(settings: Settings) -> socket.socket:
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listener.bind((settings.host, settings.port))
+        listener.listen(128)  # from now on browsers wait instead of being turned away
     except OSError as error:
         listener.close()
         raise InputError(

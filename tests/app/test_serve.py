@@ -1,0 +1,46 @@
+"""The service as a process: it starts, tells its address, answers and stops."""
+
+from __future__ import annotations
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+
+import httpx2
+
+
+def test_it_starts_on_a_free_port_and_stops_when_told() -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app.cli.main", "serve", "--port", "0", "--json"],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        url = json.loads(process.stdout.readline())["url"]
+        assert url.startswith("http://127.0.0.1:")
+        assert httpx2.get(f"{url}healthz", timeout=60).json()["status"] == "ok"
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) in (0, -signal.SIGINT)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_a_port_in_use_is_told() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        result = subprocess.run(
+            [sys.executable, "-m", "app.cli.main", "serve", "--port", port],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert result.returncode == 2, result.stderr
+    assert "cannot be used" in result.stderr
+    assert "--port" in result.stderr
