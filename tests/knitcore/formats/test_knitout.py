@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from knitcore import InputError, StitchChart
+from knitcore.fabric import Fabric
+from knitcore.formats.knitout import Finish, knitout_program
+from knitcore.formats.knitout_reader import KnitoutMismatchError, knitted_chart, verified
+from tests.knitcore.charts import stitch_charts
+
+
+@settings(max_examples=8, deadline=None)
+@given(chart=stitch_charts(most=7))
+@pytest.mark.parametrize("finish", list(Finish))
+def test_the_machine_knits_the_chart(finish: Finish, chart: StitchChart) -> None:
+    assert knitted_chart(verified(chart, finish=finish).text).chart == chart
+
+
+@pytest.mark.parametrize(
+    ("fabric", "transfers"), list(zip(Fabric, (0, 18, 0, 18), strict=True)), ids=list(Fabric)
+)
+def test_transfers_only_where_the_kind_changes_in_a_wale(fabric: Fabric, transfers: int) -> None:
+    program = knitout_program(StitchChart.of_fabric(fabric, rows=4, columns=6))
+    assert program.transfers == transfers
+    assert program.finishing_transfers == 0
+    assert program.text.count("xfer") == transfers
+
+
+def test_32_x_32_is_exported_and_verified() -> None:
+    chart = StitchChart(np.random.default_rng(1).random((32, 32)) < 0.5)
+    assert verified(chart).text.count("\nknit") == 32 * 32 + 6 * 32
+
+
+def test_a_chart_that_is_not_knitted_is_never_exported(monkeypatch: pytest.MonkeyPatch) -> None:
+    other = knitout_program(StitchChart.parse("KP\nPP"))
+    monkeypatch.setattr("knitcore.formats.knitout_reader.knitout_program", lambda *_, **__: other)
+    with pytest.raises(KnitoutMismatchError, match="another chart"):
+        verified(StitchChart.parse("KP\nPK"))
+
+
+def test_a_chart_wider_than_the_machine_is_refused() -> None:
+    with pytest.raises(InputError, match="needles"):
+        knitout_program(StitchChart.of_fabric("rib", rows=2, columns=31), needles=30)
+
+
+def _without(line: str) -> str:
+    text = knitout_program(StitchChart.of_fabric("stockinette", rows=3, columns=4)).text
+    assert line in text
+    return text.replace(line + "\n", "", 1)
+
+
+@pytest.mark.parametrize(
+    ("program", "says"),
+    [
+        ("", "no loops"),
+        (";!knitout-2\n;;Carriers: 1\nfly f1\n", "knitout"),
+        (";!knitout-2\n;;Carriers: 1\nknit - f1 1\n", "knitout"),
+        (_without("tuck - f2 1"), "needle 2 has 2 stitches"),
+        ("x" * 5_000_000, "too long"),
+    ],
+    ids=["empty", "no instruction", "carrier not in", "gap", "long"],
+)
+def test_programs_that_cannot_be_read(program: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        knitted_chart(program)
+
+
+def test_a_missed_stitch_is_no_rectangle() -> None:
+    text = knitout_program(StitchChart.of_fabric("stockinette", rows=3, columns=4)).text
+    head, course = text.split("; course 2\n")
+    with pytest.raises(InputError, match="needle 2 has 2 stitches"):
+        knitted_chart(head + "; course 2\n" + course.replace("f2 1\n", "f3 1\n", 1))
