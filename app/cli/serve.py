@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import socket
@@ -42,7 +43,8 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
             timeout_graceful_shutdown=3,
         )
     )
-    server.run(sockets=[listener])
+    with contextlib.suppress(KeyboardInterrupt):  # uvicorn passes it on after a clean shutdown
+        server.run(sockets=[listener])
 
 
 def _listen(settings: Settings) -> socket.socket:
