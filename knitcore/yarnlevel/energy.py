@@ -183,8 +183,8 @@ class CellEnergy:
             position, position_speed, matrix,
         )  # fmt: skip
         kernels.scatter_local(local, position, position_speed, *layout, matrix)
-        for row in self.length_gradients(curve):
-            matrix += self.penalty * np.outer(row, row)
+        stretch = self.length_gradients(curve)
+        matrix += (self.penalty * stretch.T) @ stretch
         return gradient, matrix
 
     def length_gradients(self, curve: Array) -> Array:

@@ -125,7 +125,9 @@ def contact(
 
 
 @numba.njit(cache=True)
-def rod_sample(d: Array, bend: float, regular: float, order: int, slope: Array, curvature: Array) -> float:
+def rod_sample(
+    d: Array, bend: float, regular: float, order: int, slope: Array, curvature: Array
+) -> float:
     """Bending and regularisation of one sample, with slope (6) and curvature (6, 6) in a … f."""
     a = d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2
     b = d[1, 0] * d[2, 0] + d[1, 1] * d[2, 1] + d[1, 2] * d[2, 2]

@@ -34,13 +34,14 @@ class Options:
     ----------
     pair_cap : longest change of the vector between near samples in one step, in radii.
     skin : how much farther than 2r the list of pairs reaches, in radii.
-    tolerance : stop when a Newton step would lower the energy by less than this part of B / L per
-        stitch.
+    relief : by how much a step that went as predicted lessens the damping.
+    tolerance : stop when a Newton step would lower the energy by less than this part of it.
     iterations : most Newton steps.
     """
 
     pair_cap: float = 0.3
     skin: float = 0.8
+    relief: float = 6.0
     tolerance: float = 1e-7
     iterations: int = 400
 
@@ -109,7 +110,6 @@ def minimise(
     held = np.flatnonzero(~free)
     goal = state[held] if target is None else target[held - size + 2]
     all_free = bool(free.all())
-    stop = opts.tolerance * energy.unit * cell.stitches
     natural = 100.0 * energy.unit / energy.mean_loop_mm**2
     damping_floor = 1e-6 * natural
     damping = natural
@@ -132,10 +132,11 @@ def minimise(
             raise CancelledError("The relaxation was cancelled.")
         remaining = goal - state[held]
         moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
-        accepted = False
+        accepted = indefinite = False
         for _ in range(60):
             step = _step(gradient, hessian, free, all_free, held, remaining, damping)
             if step is None:
+                indefinite = True
                 damping = max(4.0 * damping, damping_floor)
                 continue
             trial = state + step
@@ -156,8 +157,8 @@ def minimise(
             tiny = abs(predicted) < 1e-11 * abs(merit)
             if moving or ratio > 1e-3 or tiny:
                 accepted = True
-                if ratio > 0.5:
-                    damping = max(damping / (10.0 if ratio > 0.9 else 4.0), damping_floor)
+                if ratio > 0.5 and not indefinite:
+                    damping = max(damping / opts.relief, damping_floor)
                 elif ratio < 0.2 and not moving:
                     damping *= 2.0
                 break
@@ -168,12 +169,16 @@ def minimise(
             raise UnravelledError("No step from here keeps the strands apart.")
         state, curve, terms = trial, trial_curve, trial_terms
         steps += 1
-        settled = scale == 1.0 and not moving and predicted < 1e4 * stop
+        settled = scale == 1.0 and not moving and predicted < 2e-3 * abs(terms.energy)
         if settled:
             excess = terms.excess_mm
             pull = pull + energy.penalty * excess
             exact = bool(np.abs(excess).max() < 1e-7 * energy.mean_loop_mm)
-            if predicted < stop and damping <= 1e-1 * natural and exact:
+            if (
+                predicted < opts.tolerance * abs(terms.energy)
+                and damping <= 1e-1 * natural
+                and exact
+            ):
                 converged = True
                 opts = replace(opts, iterations=steps)
     return Minimum(

@@ -94,11 +94,12 @@ class SplineGrid:
         return controls
 
     def refine(self, finer: SplineGrid, controls: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Control values of the same periodic curve on a finer grid (resampled, periodic axis 0)."""
+        """Control points (n, 3) of the same periodic curve on a finer grid (interpolated)."""
         ratio = finer.controls / self.controls
         n_fine = round(len(controls) * ratio)
         place = np.arange(n_fine) / ratio
         span = np.floor(place + 1e-12).astype(int)
         weights = quintic_basis(place - span, 0)
         index = (span[:, None] - 2 + np.arange(SUPPORT)) % len(controls)
-        return finer.interpolate((weights * controls[index]).sum(axis=1))
+        values = np.einsum("ia,ia...->i...", weights, controls[index])
+        return np.stack([finer.interpolate(v) for v in values.T], axis=-1)

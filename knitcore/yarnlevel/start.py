@@ -42,9 +42,7 @@ def start_state(
     swing_y = 0.78 * size[1] * np.cos(2.0 * np.pi * (u - 0.5))
     points = np.zeros((cell.rows, cell.controls_per_course, 3))
     for row in range(cell.rows):
-        height = np.concatenate(
-            [_height(cell, row, wale, u) for wale in range(cell.wales)]
-        )
+        height = np.concatenate([_height(cell, row, wale, u) for wale in range(cell.wales)])
         points[row, :, 0] = grid.interpolate(np.tile(swing_x, cell.wales))
         points[row, :, 1] = grid.interpolate(np.tile(swing_y, cell.wales))
         points[row, :, 2] = radius_mm * grid.interpolate(height, antiperiodic=cell.mirror_course)

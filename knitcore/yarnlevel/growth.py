@@ -1,0 +1,138 @@
+"""From the first shape to a relaxed one: the yarn grows stiff from the inside.
+
+The first shape brings strands nearer than two hard cores. Its yarn begins with the thickest core
+that fits, at a fixed size of the cell and with a stiffened shell, so that the strands push each
+other apart; the core then grows as far as the distances allow until it is the real one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.errors import ConvergenceError
+from knitcore.yarnlevel.cell import YarnCell
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.start import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
+from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.yarn import YarnModel
+
+Array = NDArray[np.float64]
+
+_FIRST_OPENING = 0.2
+"""Opening of the nearest contact (in shells) with the first core: enough room for smooth steps."""
+_OPENING = 0.02
+"""The same for later cores."""
+_STIFFENED = 20.0
+"""Factor on the contact stiffness while the core grows."""
+_STAGES = 40
+_STAGE = Options(tolerance=1e-3, iterations=12)
+_START_HEIGHT = 0.8
+
+
+@dataclass(frozen=True)
+class Start:
+    """One way to begin.
+
+    Parameters
+    ----------
+    name : how a report calls it.
+    course, wale : size of the first cell relative to the usual one.
+    noise : random displacement of the control points, in radii.
+    seed : of that noise.
+    """
+
+    name: str
+    course: float = 1.0
+    wale: float = 1.0
+    noise: float = 0.0
+    seed: int = 0
+
+
+def grow(
+    cell: YarnCell,
+    yarn: YarnModel,
+    loop_length_mm: Array,
+    convention: Convention,
+    start: Start,
+    *,
+    options: Options,
+    cancel: Callable[[], bool] | None = None,
+) -> Minimum:
+    """Relax a cell from a start.
+
+    Raises
+    ------
+    ConvergenceError
+        If the yarn does not fit into its loop, so that the core cannot grow to its size.
+    UnravelledError, CancelledError
+        See :func:`~knitcore.yarnlevel.solver.minimise`.
+    """
+    radius = yarn.radius_mm
+    state = start_state(
+        cell,
+        float(np.mean(loop_length_mm)),
+        _START_HEIGHT * radius,
+        course_per_loop=start.course * COURSE_PER_LOOP,
+        wale_per_loop=start.wale * WALE_PER_LOOP,
+    )
+    state = shaken(cell, state, start.noise * radius, start.seed)
+    energy = CellEnergy(cell, yarn, loop_length_mm, convention)
+    core = _core_that_fits(yarn, _min_distance(energy, state), _FIRST_OPENING)
+    tension: Array | None = None
+    steps = evaluations = 0
+    for stage in range(_STAGES):
+        young = replace(
+            yarn,
+            core_radius_mm=core,
+            contact_stiffness_n_per_mm3=_STIFFENED * yarn.contact_stiffness_n_per_mm3,
+        )
+        found = minimise(
+            replace(energy, yarn=young),
+            state,
+            tension=tension,
+            fixed=(COURSE, WALE) if stage == 0 else (),
+            options=_STAGE,
+            cancel=cancel,
+        )
+        state, tension = found.state, found.tension
+        steps += found.steps
+        evaluations += found.evaluations
+        grown = _core_that_fits(yarn, found.min_distance_mm, _OPENING)
+        if grown >= yarn.core_radius_mm:
+            break
+        core = max(core, grown)
+    else:
+        raise ConvergenceError(
+            f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
+            f"only {core:.3g} mm found room. Give a longer loop or a thinner core."
+        )
+    found = minimise(energy, state, tension=tension, options=options, cancel=cancel)
+    return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)
+
+
+def shaken(cell: YarnCell, state: Array, noise_mm: float, seed: int) -> Array:
+    """The state with its control points displaced at random."""
+    if noise_mm == 0.0:
+        return state
+    moved = state.copy()
+    moved[:-2] += noise_mm * np.random.default_rng(seed).standard_normal(len(state) - 2)
+    return moved
+
+
+def _core_that_fits(yarn: YarnModel, distance_mm: float, opening: float) -> float:
+    """Core radius at which the nearest strands are open by a part of the shell."""
+    core = (distance_mm - 2.0 * opening * yarn.radius_mm) / (2.0 - 2.0 * opening)
+    return float(min(max(core, 0.0), yarn.core_radius_mm))
+
+
+def _min_distance(energy: CellEnergy, state: Array) -> float:
+    touch = 2.0 * energy.yarn.radius_mm
+    curve = energy.curve(state)
+    pairs, _ = energy.pairs(curve, state, touch)
+    return Guard.at(energy.cell, state, curve, pairs, touch, touch).min_distance_mm

@@ -1,0 +1,148 @@
+"""Stretch a relaxed repeat course-wise or wale-wise, there and back.
+
+At every size of the stretched direction the other one is free of force. The force is the partial
+derivative of the energy with respect to the size at the minimum, so no energies are differenced.
+Each point is met twice, on the way out and on the way back; the lower one is kept, and where the
+two differ, or where the energy changes by other than the work done, the sweep has jumped.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.fabric import Direction
+from knitcore.yarnlevel.relax import SAME_ENERGY, Branch, RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.results import Sweep
+from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+
+Cancel = Callable[[], bool]
+
+DEFAULT_POINTS = 25
+STRAIGHT = 0.97
+"""A stitch is pulled straight when its size nears this part of its loop length."""
+_OFF_WORK = 0.1
+"""A change of energy that misses the work done by this part of it is a jump."""
+
+
+def sweep(
+    zero: RelaxedRepeat,
+    direction: Direction | str,
+    max_strain: float,
+    *,
+    points: int = DEFAULT_POINTS,
+    max_stress_n_per_mm: float | None = None,
+    back: bool = True,
+    cancel: Cancel | None = None,
+) -> Sweep:
+    """Stretch in one direction, the other free of force.
+
+    Parameters
+    ----------
+    zero : the relaxed repeat.
+    direction : course or wale.
+    max_strain : largest strain, above 0.
+    points : number of strains, the first of them 0.
+    max_stress_n_per_mm : stop the way out beyond this nominal stress.
+    back : also go back from the end and keep the lower state of each strain.
+
+    Raises
+    ------
+    InputError
+        If the strain or the number of points cannot be used.
+    CancelledError
+        If ``cancel`` says so.
+    """
+    along = Direction(direction)
+    if not (np.isfinite(max_strain) and max_strain > 0.0):
+        raise InputError("max_strain", f"{max_strain} is no stretch.", "Give a strain above 0.")
+    if not 2 <= points <= 1000:
+        raise InputError("points", f"{points} cannot be used.", "Give 2 to 1000.")
+    rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
+    strain = np.linspace(0.0, max_strain, points)
+    notes = list(zero.notes)
+    outward: list[RelaxedRepeat] = []
+    last = _held(zero, along, rest, cancel)
+    for target in rest * (1.0 + strain):
+        try:
+            last = _held(last, along, float(target), cancel)
+        except (ConvergenceError, UnravelledError) as error:
+            notes.append(f"Stopped at strain {target / rest - 1.0:.3g}: {error}")
+            break
+        outward.append(last)
+        stress = last.force_n[along.axis] / width
+        if max_stress_n_per_mm is not None and stress > max_stress_n_per_mm:
+            break
+    best = list(outward)
+    jumps: set[int] = set()
+    if back and len(outward) > 1:
+        last = outward[-1]
+        for i in range(len(outward) - 2, -1, -1):
+            try:
+                last = _held(last, along, outward[i].cell_mm(along), cancel)
+            except (ConvergenceError, UnravelledError) as error:
+                notes.append(f"The way back stopped at point {i}: {error}")
+                break
+            if last.energy_n_mm < outward[i].energy_n_mm * (1.0 - SAME_ENERGY):
+                best[i] = last
+                jumps.add(i + 1)
+    jumps.update(_off_work(best, along))
+    if jumps:
+        notes.append(
+            f"{len(jumps)} jump(s): the shape changes abruptly, or differs on the way back."
+        )
+    stress_n_per_mm = np.array([cell.force_n[along.axis] / width for cell in best])
+    return Sweep(along, zero, tuple(best), stress_n_per_mm, tuple(sorted(jumps)), tuple(notes))
+
+
+def _held(
+    cell: RelaxedRepeat, along: Direction, size_mm: float, cancel: Cancel | None
+) -> RelaxedRepeat:
+    """The relaxed state with one size prescribed, continued from another state."""
+    if size_mm > STRAIGHT * float(cell.loop_lengths_mm.max()):
+        raise ConvergenceError("the yarn is pulled straight.")
+    began = time.process_time()
+    target = np.array([size_mm, size_mm])
+    options = Options(tolerance=1e-8 if cell.cell.stitches <= 4 else 1e-6)
+    found: Minimum = minimise(
+        cell.energy, cell.state, tension=cell.tension_n,
+        fixed=(COURSE if along is Direction.COURSE else WALE,), target=target,
+        options=options, cancel=cancel,
+    )  # fmt: skip
+    if not found.converged and abs(found.state[along.axis - 2] - size_mm) > 1e-9:
+        raise ConvergenceError("the yarn locks before it gets there.")
+    return relaxed_repeat(
+        cell.chart, cell.cell, cell.yarn, cell.loop_lengths_mm, cell.convention,
+        Branch(cell.branch), found,
+        seconds=time.process_time() - began, evaluations=found.evaluations,
+    )  # fmt: skip
+
+
+def _off_work(cells: list[RelaxedRepeat], along: Direction) -> set[int]:
+    jumps = set()
+    scale = max((c.energy_n_mm for c in cells), default=0.0)
+    for i in range(1, len(cells)):
+        before, after = cells[i - 1], cells[i]
+        work = (
+            0.5
+            * (before.force_n[along.axis] + after.force_n[along.axis])
+            * (after.cell_mm(along) - before.cell_mm(along))
+        )
+        missed = abs(after.energy_n_mm - before.energy_n_mm - work)
+        if missed > _OFF_WORK * abs(work) and missed > SAME_ENERGY * scale:
+            jumps.add(i)
+    return jumps
+
+
+def without_jumps(curve: Sweep) -> Sweep:
+    """The sweep up to its first jump."""
+    if not curve.jumps:
+        return curve
+    end = curve.jumps[0]
+    return replace(
+        curve, cells=curve.cells[:end], stress_n_per_mm=curve.stress_n_per_mm[:end], jumps=()
+    )
