@@ -27,7 +27,7 @@ FITTED_SHARE = 0.5
 """Share of the yarn, from the clamp, that is fitted."""
 LOG_LOADS = np.linspace(np.log(0.1), np.log(3e5), 60)
 """Starts of the search for the load."""
-WORST_RMS_SHARE = 0.05
+WORST_RMS_SHARE = 0.02
 """A distance of more of the length means that the line is not that of hanging yarn."""
 DENSITY_RANGE_G_PER_M = (0.005, 20.0)
 

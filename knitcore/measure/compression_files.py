@@ -188,7 +188,7 @@ def _diameter_of(diameters: dict[tuple[str, int], float], yarn: str, number: int
 
 def _read_csv(path: Path) -> list[CompressionTest]:
     try:
-        table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str)
+        table = pd.read_csv(path, skipinitialspace=True, dtype=str)
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
         raise InputError(
             path.name,

@@ -122,7 +122,7 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
         notes.append("video1 conditions the sample and is left out.")
     clamp_px = _numbers(name, file, "clampSize")
     fabric_px = _numbers(name, file, "fabricSize")
-    if clamp_px.size == 0 or fabric_px.size == 0 or min(clamp_px.min(), fabric_px.min()) <= 0:
+    if not all(size.size and size.min() > 0 for size in (clamp_px, fabric_px)):
         raise InputError(
             f"{name}, clampSize and fabricSize",
             "must both hold a positive number of pixels.",
@@ -231,7 +231,7 @@ def _read_csv(path: Path) -> StretchTest:
     if path.stat().st_size > MAXIMUM_CSV_BYTES:
         raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
     try:
-        table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str, engine="c")
+        table = pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
         raise InputError(
             path.name,

@@ -1,0 +1,145 @@
+"""Made measurements of which the truth is known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.ndimage import gaussian_filter
+
+from knitcore.fabric import Direction
+from knitcore.measure.elastica import heavy_elastica
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.mechanics.uniaxial import uniaxial_response
+
+Array = NDArray[np.float64]
+
+LAW = ConstitutiveLaw(
+    stiffness_xxxx=0.241,
+    stiffness_yyyy=0.060,
+    stiffness_xxyy=0.036,
+    stiffness_yyxx=0.029,
+    alpha_xx=1.17,
+    alpha_yy=0.802,
+    beta_xx=0.022,
+    beta_yy=0.022,
+)
+"""Acrylic garter, table 9."""
+
+
+def pull(
+    direction: Direction, *, law: ConstitutiveLaw = LAW, points: int = 400
+) -> tuple[Array, Array, Array]:
+    """(strain along, strain across, stress) of an ideal test up to 0.7 of the lock-up strain."""
+    strain = np.linspace(0.0, 0.7 * law.lock_up_strain(direction), points)
+    curve = uniaxial_response(law, direction, strain)
+    return curve.strain, curve.transverse_strain, curve.stress
+
+
+def write_csv(
+    path: Path,
+    direction: Direction,
+    *,
+    runs: int = 4,
+    noise: float = 0.0,
+    width_mm: float = 70.0,
+    seed: int = 0,
+) -> Path:
+    random = np.random.default_rng(seed)
+    lines = ["run,strain_along,strain_across,force_n,width_mm"]
+    for run in range(runs):
+        along, across, stress = pull(direction)
+        stress = stress * (1 + noise * random.normal()) + noise * stress.max() * random.normal(
+            size=len(stress)
+        ).clip(-3, 3)
+        lines += [
+            f"{run},{a:.6f},{t:.6f},{s * width_mm:.6f},{width_mm}"
+            for a, t, s in zip(along, across, stress, strict=True)
+        ]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def write_h5(
+    path: Path,
+    direction: Direction,
+    *,
+    videos: int = 5,
+    description: str = "Made Yarn Garter {}",
+    px_per_mm: float = 4.0,
+) -> Path:
+    """The authors' layout; the sample strains evenly, so both gauges see the same strain."""
+    along, across, stress = pull(direction)
+    width_mm, length_mm = 70.0, 90.0
+    with h5py.File(path, "w") as file:
+        file["clampSize"] = [35.5 * px_per_mm]
+        file["fabricSize"] = [width_mm * px_per_mm]
+        file.attrs["description"] = description.format(
+            "X" if direction is Direction.COURSE else "Y"
+        )
+        for video in range(1, videos + 1):
+            half_long = 0.5 * length_mm * (1 + along) * px_per_mm
+            half_wide = 0.4 * width_mm * (1 + across) * px_per_mm
+            middle = np.full(len(along), 600.0)
+            points = np.array(
+                [
+                    [middle + half_wide, middle],
+                    [middle - half_wide, middle],
+                    [middle, middle + 0.9 * half_long],
+                    [middle, middle - 0.9 * half_long],
+                    [middle, middle],
+                    [middle, middle + half_long],
+                    [middle, middle - half_long],
+                ]
+            )
+            group = file.create_group(f"video{video}")
+            group["traj"] = points
+            group["forces"] = stress * width_mm
+            group["frames"] = np.arange(len(along), dtype=float)
+    return path
+
+
+def hanging_yarn(
+    load: float,
+    *,
+    length_px: float = 1200.0,
+    width_px: float = 30.0,
+    mirrored: bool = False,
+    dark_on_light: bool = False,
+    fibres: int = 0,
+    seed: int = 0,
+) -> NDArray[np.uint8]:
+    """A grey photo of a yarn of this dimensionless load, clamped at the left border."""
+    s, x, y = heavy_elastica(load)
+    even = np.linspace(0, 1, 4000)
+    px, py = np.interp(even, s, x) * length_px, np.interp(even, s, y) * length_px + 2 * width_px
+    rows, columns = int(py.max() + 3 * width_px), int(px.max() + 4 * width_px)
+    image = np.zeros((rows, columns))
+    across = np.linspace(-width_px / 2, width_px / 2, int(2 * width_px))
+    tx, ty = np.gradient(px), np.gradient(py)
+    norm = np.hypot(tx, ty)
+    for offset in across:
+        r = np.clip(np.rint(py + offset * tx / norm).astype(int), 0, rows - 1)
+        c = np.clip(np.rint(px - offset * ty / norm).astype(int), 0, columns - 1)
+        image[r, c] = 0.8
+    random = np.random.default_rng(seed)
+    for _ in range(fibres):
+        start = random.integers(400, 3600)
+        walk = np.cumsum(random.normal(size=(80, 2)), axis=0)
+        r = np.clip((py[start] + walk[:, 0]).astype(int), 0, rows - 1)
+        c = np.clip((px[start] + walk[:, 1] + np.arange(80)).astype(int), 0, columns - 1)
+        image[r, c] = 0.7
+    image = gaussian_filter(image, 1.0) + 0.08 + 0.01 * random.normal(size=image.shape)
+    if dark_on_light:
+        image = 1 - image
+    if mirrored:
+        image = image[:, ::-1]
+    return np.asarray(np.clip(image, 0, 1) * 255, dtype=np.uint8)
+
+
+def save_photo(path: Path, image: NDArray[np.uint8]) -> Path:
+    Image.fromarray(image).save(path)
+    return path

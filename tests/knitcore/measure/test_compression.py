@@ -1,0 +1,124 @@
+"""k and p come back from made tests, and from the study's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from knitcore.errors import InputError
+from knitcore.measure.compression import average_compression, fit_compression
+from knitcore.measure.compression_files import CompressionTest, read_compression
+
+Array = NDArray[np.float64]
+
+
+def squeeze(
+    k: float, p: float, *, diameter: float = 2.0, thickness: float = 3.0
+) -> CompressionTest:
+    """A test that follows the force law from 1 mN to 1 N and stops at the core at 3 N."""
+    area = 5.0 * diameter
+    rho_end = thickness * (1 + p / (area * k * thickness)) ** (-1 / p)
+    depth = np.linspace(0, thickness - rho_end, 300)
+    force = area * k * thickness / p * ((thickness / (thickness - depth)) ** p - 1)
+    before = np.linspace(-0.5, -0.01, 30)
+    return CompressionTest(
+        name="made-1",
+        yarn="made",
+        depth_mm=1.0 + np.concatenate([before, depth, [thickness]]),
+        force_n=np.concatenate([np.zeros(30), force + 1e-3, [3.0]]),
+        diameter_mm=diameter,
+    )
+
+
+@settings(max_examples=30, deadline=None)
+@given(k=st.floats(2e-4, 2e-2), p=st.floats(1.2, 4.0))
+def test_a_made_test_gives_its_constants(k: float, p: float) -> None:
+    found = fit_compression(squeeze(k, p))
+    assert found.k_n_per_mm3 == pytest.approx(k, rel=0.05)
+    assert found.p == pytest.approx(p, rel=0.05)
+
+
+def test_k_is_inverse_to_the_area() -> None:
+    test = squeeze(1e-3, 2.5)
+    thin, thick = (fit_compression(test, diameter_mm=d) for d in (1.0, 4.0))
+    assert thin.k_n_per_mm3 == pytest.approx(4 * thick.k_n_per_mm3, rel=1e-4)
+
+
+def write(path: Path, depth: Array, force: Array, header: str = "depth_mm,force_n") -> Path:
+    rows = "\n".join(f"{d},{f}" for d, f in zip(depth, force, strict=True))
+    path.write_text(f"{header}\n{rows}\n")
+    return path
+
+
+def test_csv_reads_back(tmp_path: Path) -> None:
+    made = squeeze(1e-3, 2.5)
+    path = write(tmp_path / "mine-1.csv", made.depth_mm, made.force_n)
+    (test,) = read_compression(path)
+    assert (test.name, test.yarn, test.diameter_mm) == ("mine-1", "mine", None)
+    found = fit_compression(test, diameter_mm=2.0)
+    assert found.k_n_per_mm3 == pytest.approx(1e-3, rel=0.05)
+
+
+def test_means_are_by_yarn() -> None:
+    samples = [fit_compression(squeeze(k, 2.5)) for k in (1e-3, 2e-3)]
+    (mean,) = average_compression(samples)
+    assert mean.samples == 2
+    assert mean.k_n_per_mm3 == pytest.approx(1.5e-3, rel=0.05)
+    assert mean.p_standard_deviation == pytest.approx(0, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda d, f: (d[:-10], f[:-10]), "cut off"),
+        (lambda d, f: (d[60:], f[60:]), "starts in contact"),
+        (lambda d, f: (d[::40], f[::40]), "readings"),
+        (lambda d, f: (d, 1000 * f), "mN"),
+        (lambda d, f: (-d, f), "depth"),
+        (lambda d, f: (d, np.where(np.arange(len(f)) == 7, np.nan, f)), "reading 8"),
+    ],
+)
+def test_tests_that_cannot_be_used_are_told(change: Any, says: str) -> None:
+    made = squeeze(1e-3, 2.5)
+    depth, force = change(made.depth_mm, made.force_n)
+    test = CompressionTest("made-1", "made", depth, force, 2.0)
+    with pytest.raises(InputError, match=says) as error:
+        fit_compression(test)
+    assert error.value.field.startswith("made-1")
+
+
+def test_a_missing_diameter_is_told() -> None:
+    made = squeeze(1e-3, 2.5)
+    test = CompressionTest("made-1", "made", made.depth_mm, made.force_n, None)
+    with pytest.raises(InputError, match="diameter"):
+        fit_compression(test)
+
+
+def test_files_that_are_something_else(tmp_path: Path) -> None:
+    made = squeeze(1e-3, 2.5)
+    (tmp_path / "a.xls").write_text("depth_mm,force_n\n1,2\n")
+    (tmp_path / "b.xls").write_bytes(bytes.fromhex("d0cf11e0a1b11ae1") + b"\0" * 3000)
+    (tmp_path / "c.xlsx").write_bytes(b"PK\x03\x04" + b"\0" * 100)
+    write(tmp_path / "d.csv", made.depth_mm, made.force_n, header="depth,force")
+    write(tmp_path / "e.csv", made.depth_mm, np.full(len(made.depth_mm), np.nan))
+    (tmp_path / "f.csv").write_text("")
+    for name in ("a.xls", "b.xls", "c.xlsx", "d.csv", "e.csv", "f.csv", "g.csv"):
+        with pytest.raises(InputError, match=name):
+            read_compression(tmp_path / name)
+
+
+def test_the_studys_workbook(study_data: Path) -> None:
+    """Published: acrylic 0.62 mN/mm³ and 2.42, cotton 11.49 and 2.94."""
+    tests = read_compression(study_data / "compression" / "compressionTests.xls")
+    means = {m.yarn: m for m in average_compression([fit_compression(t) for t in tests])}
+    assert (means["acrylic"].samples, means["cotton"].samples) == (3, 4)
+    assert 1000 * means["acrylic"].k_n_per_mm3 == pytest.approx(0.618, abs=0.005)
+    assert means["acrylic"].p == pytest.approx(2.425, abs=0.005)
+    assert 1000 * means["cotton"].k_n_per_mm3 == pytest.approx(11.8, abs=0.1)
+    assert means["cotton"].p == pytest.approx(2.93, abs=0.01)

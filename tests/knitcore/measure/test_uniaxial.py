@@ -1,0 +1,300 @@
+"""A law comes back from tests made of it, and the paper's constants from the authors' tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.measure.law_fit import fit_direction
+from knitcore.measure.uniaxial import Reduction, fit_files
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+from tests.knitcore.measure.synthetic import LAW, pull, write_csv, write_h5
+
+X, Y = Direction.COURSE, Direction.WALE
+CONSTANTS = (
+    "stiffness_xxxx",
+    "stiffness_yyyy",
+    "stiffness_xxyy",
+    "stiffness_yyxx",
+    "alpha_xx",
+    "alpha_yy",
+    "beta_xx",
+    "beta_yy",
+)
+PERCENT_HEADER = "run,strain_along_%,strain_across_%,force_n,width_mm"
+
+
+def close_to(law: ConstitutiveLaw, expected: ConstitutiveLaw, rel: float) -> None:
+    for name in CONSTANTS:
+        assert getattr(law, name) == pytest.approx(getattr(expected, name), rel=rel), name
+
+
+@pytest.mark.parametrize("reduction", list(Reduction))
+def test_a_law_comes_back_from_csv(tmp_path: Path, reduction: Reduction) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d) for d in (X, Y)]
+    fit = fit_files(files[0], files[1], reduction=reduction)
+    # The recommended reduction averages in 40 strain intervals: the curve bends within them.
+    close_to(fit.law, LAW, 1e-3 if reduction is Reduction.PUBLISHED else 0.02)
+    assert fit.runs == {X: 4, Y: 4}
+    assert fit.rms_n_per_mm < 1e-3
+
+
+@pytest.mark.parametrize("reduction", list(Reduction))
+def test_a_law_comes_back_from_the_authors_layout(tmp_path: Path, reduction: Reduction) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
+    fit = fit_files(files[0], files[1], reduction=reduction)
+    close_to(fit.law, LAW, 1e-3 if reduction is Reduction.PUBLISHED else 0.02)
+    assert fit.runs == {X: 4, Y: 4}
+    assert any("video1" in note for note in fit.notes)
+
+
+def test_standard_errors_tell_the_spread_of_pulls(tmp_path: Path) -> None:
+    """Pulls whose force differs by 5 % each: C is known to 5 % / sqrt(4)."""
+    files = [write_csv(tmp_path / f"{d}.csv", d, noise=0.05, seed=4) for d in (X, Y)]
+    fit = fit_files(files[0], files[1])
+    for name in CONSTANTS:
+        miss = abs(getattr(fit.law, name) - getattr(LAW, name))
+        assert miss < 5 * fit.standard_errors[name], name
+    relative = fit.standard_errors["modulus_course"] / fit.law.modulus_course
+    assert 0.005 < relative < 0.1
+
+
+def test_one_pull_has_errors_too_and_says_what_they_lack(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d, runs=1, noise=0.01) for d in (X, Y)]
+    fit = fit_files(files[0], files[1])
+    assert "without the spread of pulls" in fit.error_method
+    assert all(fit.standard_errors[name] > 0 for name in CONSTANTS)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    stiffness=st.floats(0.01, 2.0),
+    share=st.floats(0.4, 0.9),
+    beta=st.floats(0.005, 0.1),
+    coupling=st.floats(0.05, 0.8),
+)
+def test_a_direction_is_recovered_whatever_its_constants(
+    stiffness: float, share: float, beta: float, coupling: float
+) -> None:
+    along = np.linspace(0, 0.8, 300)
+    across = -0.3 * along
+    alpha = share / 0.8
+    stress = stiffness * (along + coupling * across) + beta * (
+        1 / (1 - alpha * along) ** 2 - 1 - 2 * alpha * along
+    )
+    fit = fit_direction(along, across, stress, np.ones(300), coupling)
+    assert fit.stiffness == pytest.approx(stiffness, rel=1e-3)
+    assert fit.alpha == pytest.approx(alpha, rel=1e-3)
+    assert fit.beta == pytest.approx(beta, rel=0.01)
+
+
+def test_residuals_add_up_to_the_rms(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d, noise=0.02) for d in (X, Y)]
+    fit = fit_files(files[0], files[1], reduction=Reduction.PUBLISHED)
+    r = fit.residuals[X]
+    assert np.sqrt(np.mean((r.stress - r.fitted) ** 2)) == pytest.approx(fit.rms_course_n_per_mm)
+
+
+# -- lost frames -------------------------------------------------------------------------------
+
+
+def test_lost_points_and_unread_forces_are_left_out(tmp_path: Path) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
+    with h5py.File(files[0], "r+") as file:
+        file["video2/forces"][50:60] = np.nan
+        file["video3/traj"][1, :, 100:130] = np.nan
+        file["video4/traj"][6, 1, :] = 0.0  # left the image: sticks to its border
+        file["video5/forces"][200] *= 9  # a digit misread
+    fit = fit_files(files[0], files[1])
+    assert fit.runs[X] == 3
+    assert any("video4 is left out" in note for note in fit.notes)
+    close_to(fit.law, LAW, 0.02)
+    published = fit_files(files[0], files[1], reduction=Reduction.PUBLISHED)
+    assert published.runs[X] == 4  # which does not use the upper clamp
+
+
+@pytest.mark.parametrize("videos", [1, 2, 3, 7])
+def test_any_number_of_videos(tmp_path: Path, videos: int) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d, videos=videos) for d in (X, Y)]
+    assert fit_files(files[0], files[1]).runs[X] == max(1, videos - 1)
+
+
+# -- bad input -----------------------------------------------------------------------------------
+
+
+def _edit(path: Path, change: Callable[[list[str]], None]) -> None:
+    lines = path.read_text().splitlines()
+    change(lines)
+    path.write_text("\n".join(lines) + "\n")
+
+
+def _cell(lines: list[str], row: int, column: int, text: str) -> None:
+    cells = lines[row - 1].split(",")
+    cells[column] = text
+    lines[row - 1] = ",".join(cells)
+
+
+def _percent(lines: list[str]) -> None:
+    for row in range(2, len(lines) + 1):
+        cells = lines[row - 1].split(",")
+        cells[1], cells[2] = str(100 * float(cells[1])), str(100 * float(cells[2]))
+        lines[row - 1] = ",".join(cells)
+
+
+def _exchange(lines: list[str]) -> None:
+    for row in range(2, len(lines) + 1):
+        cells = lines[row - 1].split(",")
+        cells[1], cells[2] = cells[2], cells[1]
+        lines[row - 1] = ",".join(cells)
+
+
+def _unload(lines: list[str]) -> None:
+    lines += lines[:1:-1]
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda lines: _cell(lines, 7, 3, "nan"), ["force_n", "row 7"]),
+        (lambda lines: _cell(lines, 9, 1, "x,y"), ["line 9"]),
+        (lambda lines: _cell(lines, 12, 2, "0,3"), ["line 12"]),
+        (_percent, ["percent", "strain_along", "row"]),
+        (lambda lines: lines.__setitem__(0, PERCENT_HEADER), ["percent", "strain_along_%"]),
+        (_exchange, ["strain"]),
+        (_unload, ["monotone", "row"]),
+        (lambda lines: lines.__delitem__(slice(12, None)), ["11 usable points"]),
+        (lambda lines: lines.__delitem__(slice(1, None)), ["no rows"]),
+        (lambda lines: lines.__setitem__(0, "run,a,b,c,d"), ["no column", "strain_along"]),
+        (lambda lines: _cell(lines, 30, 4, "7.0"), ["width_mm"]),
+        (lambda lines: _cell(lines, 30, 4, "71.5"), ["width_mm", "row 30"]),
+    ],
+)  # fmt: skip
+def test_bad_csv_is_told_by_file_column_and_row(
+    tmp_path: Path, change: Callable[[list[str]], None], says: list[str]
+) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d, runs=1) for d in (X, Y)]
+    _edit(files[0], change)
+    with pytest.raises(InputError) as error:
+        fit_files(files[0], files[1])
+    for word in ["course.csv", *says]:
+        assert word in str(error.value)
+    assert error.value.remedy
+
+
+def test_force_in_another_unit_is_named(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d, runs=1) for d in (X, Y)]
+    text = files[1].read_text().splitlines()
+    rows = [r.split(",") for r in text[1:]]
+    for r in rows:
+        r[3] = str(1000 * float(r[3]))
+    files[1].write_text("\n".join([text[0], *(",".join(r) for r in rows)]))
+    with pytest.raises(InputError, match=r"wale\.csv.*newton \(not mN"):
+        fit_files(files[0], files[1])
+
+
+def test_exchanged_and_equal_tests_are_refused(tmp_path: Path) -> None:
+    course, wale = (write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y))
+    with pytest.raises(InputError, match="pulled wale-wise"):
+        fit_files(wale, course)
+    csv = write_csv(tmp_path / "same.csv", X)
+    with pytest.raises(InputError, match="same points"):
+        fit_files(csv, csv)
+
+
+def test_files_that_are_not_what_they_claim(tmp_path: Path) -> None:
+    good = write_h5(tmp_path / "x.h5", X)
+    cut = tmp_path / "cut.h5"
+    cut.write_bytes(good.read_bytes()[:5000])
+    text = tmp_path / "text.h5"
+    text.write_text("strain_along,strain_across,force_n,width_mm\n")
+    noise = tmp_path / "noise.csv"
+    noise.write_bytes(bytes(range(256)) * 20)
+    for bad in (cut, text, noise, tmp_path / "none.csv", tmp_path):
+        with pytest.raises(InputError, match=bad.name):
+            fit_files(bad, good)
+    with pytest.raises(InputError, match="HDF5 file, not a CSV"):
+        fit_files(good, good, file_format="csv")
+
+
+@pytest.mark.parametrize(
+    ("damage", "says"),
+    [
+        (lambda f: f.__delitem__("clampSize"), "clampSize: is missing"),
+        (lambda f: f.__delitem__("video3/traj"), "video3/traj: is missing"),
+        (lambda f: [f.__delitem__(f"video{i}") for i in range(1, 6)], "0 groups"),
+        (lambda f: f["clampSize"].__setitem__(0, np.nan), "clampSize"),
+    ],
+)
+def test_damaged_hdf5_is_told_by_dataset(
+    tmp_path: Path, damage: Callable[[h5py.File], object], says: str
+) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
+    with h5py.File(files[0], "r+") as file:
+        damage(file)
+    with pytest.raises(InputError, match=says):
+        fit_files(files[0], files[1])
+
+
+def test_hdf5_may_neither_link_out_nor_hold_too_much(tmp_path: Path) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
+    with h5py.File(files[0], "r+") as file:
+        del file["video2/forces"]
+        file["video2/forces"] = h5py.ExternalLink(str(files[1]), "video2/forces")
+    with pytest.raises(InputError, match="is a link"):
+        fit_files(files[0], files[1])
+    with h5py.File(files[0], "r+") as file:
+        del file["video2/forces"]
+        file.create_dataset("video2/forces", shape=(10**9,), chunks=(10**6,), dtype="f8")
+    with pytest.raises(InputError, match="1000000000 numbers"):
+        fit_files(files[0], files[1])
+
+
+# -- the authors' tests ----------------------------------------------------------------------------
+
+PUBLISHED = {
+    "Stockinette": (0.204, 0.930, 1.111, 2.537, 0.046, 0.010, 0.444, 0.430),
+    "Garter": (0.241, 0.060, 1.170, 0.802, 0.022, 0.022, 0.481, 0.150),
+    "Rib": (0.011, 0.126, 0.385, 1.251, 0.011, 0.034, 0.208, 0.294),
+    "Seed": (0.074, 0.020, 1.148, 0.568, 0.027, 0.017, 0.471, 0.138),
+}
+"""Tables 9 and 10: C_xxxx, C_yyyy, alpha_xx, alpha_yy, beta_xx, beta_yy, nu_yx, nu_xy."""
+
+
+@pytest.mark.parametrize("fabric", PUBLISHED)
+def test_published_reduction_gives_the_published_constants(study_data: Path, fabric: str) -> None:
+    files = [study_data / "uniaxial" / f"outputData_Acrylic Yarn {fabric} {d}.h5" for d in "XY"]
+    fit = fit_files(files[0], files[1], reduction=Reduction.PUBLISHED)
+    law, expected = fit.law, PUBLISHED[fabric]
+    assert law.poisson_yx == pytest.approx(expected[6], abs=0.001)
+    assert law.poisson_xy == pytest.approx(expected[7], abs=0.001)
+    assert law.stiffness_xxxx == pytest.approx(expected[0], rel=0.10)
+    assert law.stiffness_yyyy == pytest.approx(expected[1], rel=0.10)
+    assert law.alpha_xx == pytest.approx(expected[2], rel=0.05)
+    assert law.alpha_yy == pytest.approx(expected[3], rel=0.05)
+    assert law.beta_xx == pytest.approx(expected[4], rel=0.25)
+    assert law.beta_yy == pytest.approx(expected[5], rel=0.25)
+    assert fit.rms_n_per_mm < 0.03 * max(fit.residuals[X].stress.max(), 0.1)
+
+
+def test_recommended_reduction_differs_where_the_notes_say(study_data: Path) -> None:
+    """Clamp to clamp, garter's C_yyyy is 0.08 and stockinette's C_xxxx 0.31 to 0.33 N/mm."""
+    folder = study_data / "uniaxial"
+    stiffness = {}
+    for fabric in ("Garter", "Stockinette"):
+        files = [folder / f"outputData_Acrylic Yarn {fabric} {d}.h5" for d in "XY"]
+        stiffness[fabric] = fit_files(files[0], files[1]).law
+    assert stiffness["Garter"].stiffness_yyyy == pytest.approx(0.078, rel=0.08)
+    assert stiffness["Stockinette"].stiffness_xxxx == pytest.approx(0.313, rel=0.08)
+
+
+def test_the_curve_of_a_made_test_is_the_laws() -> None:
+    along, across, stress = pull(X)
+    assert LAW.stress(along, across)[0] == pytest.approx(stress)
