@@ -1,10 +1,11 @@
 """Relaxed sizes of repeats: what the flat composite does not know.
 
 Ribs draw in and welts shorten, because they fold. Their relaxed size comes from the yarn level,
-from a user's gauge, or from a packaged table of common repeats. The table is a yarn-level study
-at one set of parameters (loop length 11.28 mm, yarn radius 0.74 mm, bending modulus
-0.045 N·mm²). It is carried to a material by ratio: to the pure fabric that it resembles (1x1 rib
-for ribs, garter for welts), at equal loop length, because lengths scale with the loop.
+from a user's gauge, or from a packaged table of common repeats. The table is of one yarn (loop
+length 11.28 mm, radius 0.74 mm, core 0.30 mm, B = 0.045 N·mm², k = 6e-4 N/mm³, p = 2.4, convention
+``authors-code``), relaxed freely in a study, or with the chart's mirror symmetries by
+:mod:`knitcore.yarnlevel`. It is carried to a material by ratio: to the pure fabric that the repeat
+resembles (1x1 rib for ribs, garter for welts), at equal loop length, because lengths scale with it.
 """
 
 from __future__ import annotations
@@ -112,22 +113,49 @@ def tabled_size(repeat: StitchChart, material: Material) -> RelaxedSize | None:
     """
     if repeat.rows * repeat.columns > MOST_STITCHES:
         return None
-    chart = canonical_repeat(repeat)
-    entry = _table().get(chart.text)
-    if entry is None:
-        return None
-    reference = _reference(chart)
+    key = canonical_repeat(repeat).text
+    for branch in _BRANCHES:
+        cell = _table().get((branch, key))
+        if cell is not None:
+            pure = {f: _table()[branch, text] for f, text in _PURE_CHARTS.items()}
+            return carried_over(cell, pure, repeat, material, SizeSource.TABLE)
+    return None
+
+
+def carried_over(
+    cell_mm: tuple[float, float],
+    pure_mm: Mapping[Fabric, tuple[float, float]],
+    repeat: StitchChart,
+    material: Material,
+    source: SizeSource = SizeSource.YARN_LEVEL,
+) -> RelaxedSize | None:
+    """A relaxed size of one yarn taken over to a material, by its ratio to a pure fabric.
+
+    Parameters
+    ----------
+    cell_mm : (course, wale) size of the repeat's mean stitch, relaxed on the yarn level.
+    pure_mm : the same of the pure fabrics, of the same yarn, loop length and branch.
+    repeat : the smallest repeat.
+
+    Returns
+    -------
+    RelaxedSize, or None if the material lacks the pure fabric that the repeat resembles.
+    """
+    reference = _reference(repeat)
     record = material.fabrics.get(reference)
     if record is None:
         return None
-    pure = _table()[_PURE_CHARTS[reference]]
-    scale = _loop_length_ratio(chart, material, reference)
+    pure = pure_mm[reference]
+    scale = _loop_length_ratio(repeat, material, reference)
     return RelaxedSize(
-        course_mm=entry[0] / pure[0] * record.stitch_course_mm * scale,
-        wale_mm=entry[1] / pure[1] * record.stitch_wale_mm * scale,
-        source=SizeSource.TABLE,
+        course_mm=cell_mm[0] / pure[0] * record.stitch_course_mm * scale,
+        wale_mm=cell_mm[1] / pure[1] * record.stitch_wale_mm * scale,
+        source=source,
     )
 
+
+_BRANCHES = ("free", "mirrored")
+"""Shape spaces of the yarn level, the preferred one first: ribs fold freely."""
 
 _PURE_CHARTS = {
     Fabric.STOCKINETTE: "K",
@@ -158,14 +186,11 @@ def _loop_length_ratio(chart: StitchChart, material: Material, reference: Fabric
 
 
 @cache
-def _table() -> Mapping[str, tuple[float, float]]:
-    """(course, wale) sizes in mm by the text of the canonical chart."""
+def _table() -> Mapping[tuple[str, str], tuple[float, float]]:
+    """(course, wale) sizes in mm by branch and text of the canonical chart."""
     resource = files("knitcore.mechanics").joinpath("data", "relaxed_sizes.csv")
-    found: dict[str, tuple[float, float]] = {}
+    found = {}
     for row in csv.DictReader(resource.read_text(encoding="utf-8").splitlines()):
-        chart = StitchChart.parse(row["chart"].replace("/", "\n"))
-        # The free branch stands first; a mirrored one fills in where there is no other.
-        found.setdefault(
-            canonical_repeat(chart).text, (float(row["course_mm"]), float(row["wale_mm"]))
-        )
+        chart = canonical_repeat(StitchChart.parse(row["chart"].replace("/", "\n")))
+        found[row["branch"], chart.text] = (float(row["course_mm"]), float(row["wale_mm"]))
     return found

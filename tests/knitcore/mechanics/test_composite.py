@@ -153,3 +153,35 @@ def test_strains_at_many_stresses_are_those_of_one(fabric, direction):
     many = free_strains_at_stress(law, direction, LOADS)
     one = [strain_at_stress(law, direction, s) for s in LOADS]
     np.testing.assert_allclose(many, one, rtol=1e-9)
+
+
+MIRRORED = [
+    "K",
+    "K/P",
+    "KP",
+    "KP/PK",
+    "KKP",
+    "K/K/P",
+    "K/K/K/P",
+    "KP/KP/PK/PK",
+    "KKPP/PPKK",
+]
+
+
+@pytest.mark.parametrize("text", MIRRORED)
+def test_the_mirrored_sizes_are_those_of_our_yarn_level(text):
+    from knitcore.mechanics.relaxed import _table
+    from knitcore.yarnlevel.conventions import Convention
+    from knitcore.yarnlevel.relax import Branch, relax
+    from knitcore.yarnlevel.yarn import YarnModel
+
+    chart = StitchChart.parse(text.replace("/", "\n"))
+    cell = relax(
+        chart,
+        YarnModel(45e-3, 6e-4, 2.4, 0.74, 0.30),
+        11.28,
+        branch=Branch.MIRRORED,
+        convention=Convention.AUTHORS_CODE,
+    )
+    tabled = _table()["mirrored", canonical_repeat(chart).text]
+    assert (cell.cell_course_mm, cell.cell_wale_mm) == pytest.approx(tabled, rel=0.01)
