@@ -95,14 +95,18 @@ def compare(
 
 
 def field_sheet(
-    field: MeasuredField, law: ConstitutiveLaw, direction: Direction, model: SheetModel
+    field: MeasuredField,
+    law: ConstitutiveLaw,
+    direction: Direction,
+    model: SheetModel,
+    cells_across: int = CELLS_ACROSS,
 ) -> Sheet:
     """The measured region as a sheet of one law; lengths in px (the law has no length scale)."""
-    along = max(2, round(CELLS_ACROSS * field.length / field.width))
+    along = max(2, round(cells_across * field.length / field.width))
     if direction is Direction.WALE:
-        grid = QuarterGrid.uniform(CELLS_ACROSS, along, field.width, field.length)
+        grid = QuarterGrid.uniform(cells_across, along, field.width, field.length)
     else:
-        grid = QuarterGrid.uniform(along, CELLS_ACROSS, field.length, field.width)
+        grid = QuarterGrid.uniform(along, cells_across, field.length, field.width)
     return Sheet(grid, [law], model)
 
 

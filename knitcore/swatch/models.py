@@ -54,7 +54,8 @@ class SheetModel:
     Parameters
     ----------
     energy : which energy.
-    coupling : symmetrisation rule; by default the model's own (arithmetic for ``published``).
+    coupling : symmetrisation rule; by default the model's own: ``geometric`` for ``full``,
+        ``script`` for ``published``, because that is what the published figures show.
     shear_modulus : N/mm, replaces the laws' assumed shear modulus if given.
     stiffening_coupling : dimensionless
         kappa in the argument ``e_y + kappa e_x`` of the stiffening (``full`` only): part of the
@@ -105,7 +106,7 @@ class SheetModel:
         """The symmetrisation rule in force."""
         if self.coupling is not None:
             return self.coupling
-        return Coupling.ARITHMETIC if self.energy is EnergyModel.PUBLISHED else Coupling.GEOMETRIC
+        return Coupling.SCRIPT if self.energy is EnergyModel.PUBLISHED else Coupling.GEOMETRIC
 
     def prepare(self, law: ConstitutiveLaw) -> ConstitutiveLaw:
         """The symmetric law, with this model's shear modulus.
@@ -117,13 +118,20 @@ class SheetModel:
         """
         if self.shear_modulus is not None:
             law = replace(law, shear_modulus=self.shear_modulus)
-        match self.rule:
-            case Coupling.GEOMETRIC:
-                return law.symmetrised(Symmetrisation.GEOMETRIC)
-            case Coupling.ARITHMETIC:
-                return law.symmetrised(Symmetrisation.ARITHMETIC)
-            case Coupling.SCRIPT:
-                return replace(law, stiffness_yyxx=law.stiffness_xxyy)
+        try:
+            match self.rule:
+                case Coupling.GEOMETRIC:
+                    return law.symmetrised(Symmetrisation.GEOMETRIC)
+                case Coupling.ARITHMETIC:
+                    return law.symmetrised(Symmetrisation.ARITHMETIC)
+                case Coupling.SCRIPT:
+                    return replace(law, stiffness_yyxx=law.stiffness_xxyy)
+        except InputError:
+            raise InputError(
+                "coupling",
+                f"the {self.rule} rule makes this law's stiffness indefinite.",
+                "Use the geometric rule, which never does, or the full model.",
+            ) from None
 
     def parameters(self, laws: Sequence[ConstitutiveLaw]) -> NDArray[np.float64]:
         """Kernel parameters of symmetric laws, shape (laws, 10)."""
