@@ -22,7 +22,7 @@ from knitcore.measure.uniaxial import LawFit, Reduction
 @click.option(
     "--reduction",
     type=choice(Reduction),
-    default=Reduction.RECOMMENDED,
+    default=Reduction.RECOMMENDED.value,
     show_default=True,
     help="published: as in the paper; recommended: clamp to clamp, every pull counts the same.",
 )
@@ -35,7 +35,7 @@ def command(
     test_course: Path,
     test_wale: Path,
     file_format: FileFormat | None,
-    reduction: Reduction,
+    reduction: str,
     out: Path | None,
     residuals: Path | None,
     as_json: bool,

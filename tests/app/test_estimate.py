@@ -1,0 +1,145 @@
+"""Estimates and pressure over REST and on the command line."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from knitcore.fabric import Fabric
+from knitcore.materials import load_material_file, material
+
+
+def run(*arguments: str | Path) -> dict[str, object]:
+    result = CliRunner().invoke(main, [*map(str, arguments), "--json"])
+    assert result.exit_code == 0, result.output
+    answer = json.loads(result.stdout)
+    assert isinstance(answer, dict)
+    return answer
+
+
+def test_an_estimate_from_one_swatch(client: TestClient) -> None:
+    record = material("cotton").record(Fabric.STOCKINETTE)
+    lengths = {f: material("cotton").record(f).loop_length_mm for f in Fabric}
+    options = [f"--loop-length-mm={f}={length}" for f, length in lengths.items()]
+    told = run(
+        "estimate", "--bending-modulus-n-mm2", "0.0708", *options,
+        "--swatch", "stockinette=cotton", "--swatch-setting", "a", "--product-setting", "a",
+    )  # fmt: skip
+    body = {
+        "bending_modulus_n_mm2": 0.0708,
+        "loop_length_mm": lengths,
+        "swatches": [
+            {
+                "fabric": "stockinette",
+                "law": asdict(record.law),
+                "loop_length_mm": record.loop_length_mm,
+                "setting": "a",
+            }
+        ],
+        "product_setting": "a",
+    }
+    asked = client.post("/api/v1/estimate", json=body).json()
+    assert asked == told
+    assert next(iter(asked["fabrics"]["rib"])) == "strain_at_0_1_n_per_mm"
+    assert asked["left_out"]["modulus_rms_factor"] == pytest.approx(1.60, abs=0.01)
+    assert asked["warnings"] == []
+
+
+def test_an_estimate_becomes_a_material(tmp_path: Path) -> None:
+    out = tmp_path / "mine.json"
+    told = run("estimate", "--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--out", out)
+    saved = load_material_file(out)
+    assert saved.is_complete
+    fabrics = told["fabrics"]
+    assert isinstance(fabrics, dict)
+    assert saved.law(Fabric.SEED).alpha_xx == pytest.approx(fabrics["seed"]["law"]["alpha_xx"])
+    predicted = run("predict", "seed", "--size", "8x8", "--material", out)
+    modulus = fabrics["seed"]["modulus_n_per_mm"]["course"]
+    assert predicted["modulus_course_n_per_mm"] == pytest.approx(modulus["value"], rel=1e-3)
+    low, high = predicted["modulus_course_interval_n_per_mm"]  # type: ignore[misc]
+    assert (low, high) == pytest.approx((modulus["low"], modulus["high"]), rel=0.02)
+
+
+def test_the_report_refits_and_leaves_out(client: TestClient) -> None:
+    told = run("estimate", "--report")
+    assert client.get("/api/v1/estimate/report").json() == told
+    assert told["yarns"] == 8
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ([], "bending modulus"),
+        (["--bending-modulus-n-mm2", "0.02"], "loop length"),
+        (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "long"], "FABRIC=MM"),
+        (["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "rib=9"], "missing"),
+        (
+            ["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--swatch", "cotton"],
+            "FABRIC=",
+        ),
+        (
+            ["--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "9", "--swatch", "rib=none"],
+            "library",
+        ),
+    ],
+)
+def test_bad_estimates_end_with_code_2(arguments: list[str], says: str) -> None:
+    result = CliRunner().invoke(main, ["estimate", *arguments, "--json"])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert says in result.stderr
+
+
+GLOVE = ("--material", "glove-wool:glove", "--fabric", "stockinette", "--direction", "wale")
+
+
+def test_pressure_of_a_material(client: TestClient) -> None:
+    told = run("pressure", *GLOVE, "--rest-mm", "150", "--worn-mm", "180")
+    mmhg, kpa = told["mmhg"], told["kpa"]
+    assert isinstance(mmhg, dict)
+    assert isinstance(kpa, dict)
+    assert 0 < mmhg["low"] < mmhg["high"]
+    assert mmhg["low"] == pytest.approx(7.50062 * kpa["low"], rel=1e-5)
+    assert told["warnings"]
+    body = {
+        "material": "glove-wool:glove",
+        "fabric": "stockinette",
+        "direction": "wale",
+        "rest_mm": 150,
+        "worn_mm": 180,
+    }
+    assert client.post("/api/v1/pressure", json=body).json() == told
+    law = asdict(material("glove-wool:glove").law(Fabric.STOCKINETTE))
+    body = {"law": law, "direction": "wale", "rest_mm": 150, "worn_mm": 180}
+    assert client.post("/api/v1/pressure", json=body).json()["mmhg"] == mmhg
+
+
+def test_a_tube_is_sized_for_a_target() -> None:
+    told = run("pressure", *GLOVE, "--target-mmhg", "20", "--worn-mm", "180")
+    sizes = told["rest_mm_for_target"]
+    assert isinstance(sizes, dict)
+    assert sizes["low"] < told["rest_mm"] < sizes["high"] < 180  # type: ignore[operator]
+    assert told["mmhg"]["low"] < 20 < told["mmhg"]["high"]  # type: ignore[index]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--rest-mm", "200", "--worn-mm", "150"], "loose"),
+        (["--rest-mm", "100", "--worn-mm", "180"], "lock-up"),
+        (["--worn-mm", "150"], "rest_mm"),
+        (["--worn-mm", "150", "--rest-mm", "100", "--target-mmhg", "20"], "rest_mm"),
+        (["--worn-mm", "150", "--rest-mm", "120", "--law", "x.json"], "exactly one"),
+    ],
+)
+def test_bad_pressures_end_with_code_2(arguments: list[str], says: str) -> None:
+    result = CliRunner().invoke(main, ["pressure", *GLOVE, *arguments, "--json"])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert says in result.stderr

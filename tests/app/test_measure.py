@@ -1,0 +1,137 @@
+"""Fits and measurements over REST and on the command line: the same numbers, the same names."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from knitcore.fabric import Direction
+from knitcore.formats.law_files import load_law
+from tests.knitcore.measure.synthetic import LAW, hanging_yarn, save_photo, write_csv, write_h5
+from tests.knitcore.measure.test_compression import squeeze, write
+
+CONSTANTS = {
+    "stiffness_xxxx_n_per_mm",
+    "stiffness_yyyy_n_per_mm",
+    "stiffness_xxyy_n_per_mm",
+    "stiffness_yyxx_n_per_mm",
+    "alpha_xx",
+    "alpha_yy",
+    "beta_xx_n_per_mm",
+    "beta_yy_n_per_mm",
+}
+
+
+def run(*arguments: str | Path) -> dict[str, object]:
+    result = CliRunner().invoke(main, [*map(str, arguments), "--json"])
+    assert result.exit_code == 0, result.output
+    assert result.stderr == ""
+    answer = json.loads(result.stdout)
+    assert isinstance(answer, dict)
+    return answer
+
+
+def upload(path: Path) -> dict[str, str]:
+    return {"name": path.name, "content": base64.b64encode(path.read_bytes()).decode()}
+
+
+@pytest.fixture
+def tests(tmp_path: Path) -> list[Path]:
+    return [write_csv(tmp_path / f"{d}.csv", d, noise=0.01) for d in Direction]
+
+
+def test_fit_gives_eight_constants_with_errors(client: TestClient, tests: list[Path]) -> None:
+    told = run("fit", *tests, "--reduction", "published")
+    assert set(told) >= CONSTANTS | {"poisson_yx", "poisson_xy", "rms_n_per_mm"}
+    assert set(told["standard_errors"]) >= CONSTANTS  # type: ignore[call-overload]
+    assert told["stiffness_xxxx_n_per_mm"] == pytest.approx(LAW.stiffness_xxxx, rel=0.1)
+    body = {"test_course": upload(tests[0]), "test_wale": upload(tests[1])}
+    asked = client.post("/api/v1/fit", json=body | {"reduction": "published"})
+    assert asked.json() == told
+
+
+def test_fit_writes_a_law_and_residuals(tmp_path: Path, tests: list[Path]) -> None:
+    law, residuals = tmp_path / "law.json", tmp_path / "residuals.csv"
+    told = run("fit", *tests, "--out", law, "--residuals", residuals)
+    assert load_law(law).law.alpha_xx == told["alpha_xx"]
+    assert residuals.read_text().startswith("direction,strain_along,strain_across")
+    # what --json prints is a law file too
+    printed = tmp_path / "printed.json"
+    printed.write_text(json.dumps(told))
+    assert load_law(printed).law == load_law(law).law
+    worn = ("--direction", "wale", "--rest-mm", "100", "--worn-mm", "120")
+    assert run("pressure", "--law", law, *worn) == run("pressure", "--law", printed, *worn)
+
+
+def test_fit_reads_the_authors_layout(tmp_path: Path) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in Direction]
+    told = run("fit", *files, "--format", "h5")
+    assert told["runs"] == {"course": 4, "wale": 4}
+
+
+def test_residuals_over_rest_are_bounded(client: TestClient, tests: list[Path]) -> None:
+    body = {"test_course": upload(tests[0]), "test_wale": upload(tests[1]), "residuals": True}
+    told = client.post("/api/v1/fit", json=body).json()
+    points = told["residuals"]["course"]
+    assert 100 < len(points["strain_along"]) <= 2000
+    assert len(points["fitted_n_per_mm"]) == len(points["strain_along"])
+
+
+def test_bad_tests_end_with_code_2_or_422(client: TestClient, tests: list[Path]) -> None:
+    result = CliRunner().invoke(main, ["fit", str(tests[0]), str(tests[0]), "--json"])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "same points" in result.stderr
+    body = {"test_course": upload(tests[0]), "test_wale": upload(tests[0])}
+    problem = client.post("/api/v1/fit", json=body)
+    assert problem.status_code == 422
+    assert problem.json()["field"] == "test_wale"
+    body["test_wale"] = {"name": "../../etc/x.csv", "content": base64.b64encode(b"a,b\n").decode()}
+    problem = client.post("/api/v1/fit", json=body)
+    assert problem.status_code == 422
+    assert problem.json()["field"] == "x.csv"
+
+
+def test_bending_from_photos(client: TestClient, tmp_path: Path) -> None:
+    photos = [save_photo(tmp_path / f"{n}.png", hanging_yarn(n, length_px=700)) for n in (80, 100)]
+    told = run(
+        "measure", "bending", *photos, "--linear-density-g-per-m", "0.5", "--length-mm", "120"
+    )
+    assert set(told) >= {"bending_modulus_n_mm2", "standard_deviation", "photos"}
+    body = {
+        "images": [upload(p) for p in photos],
+        "linear_density_g_per_m": 0.5,
+        "length_mm": 120,
+    }
+    assert client.post("/api/v1/measure/bending", json=body).json() == told
+    del body["length_mm"]
+    problem = client.post("/api/v1/measure/bending", json=body).json()
+    assert problem["field"] == "length_mm"
+
+
+def test_compression_from_csv(client: TestClient, tmp_path: Path) -> None:
+    made = squeeze(1e-3, 2.5)
+    path = write(tmp_path / "mine-1.csv", made.depth_mm, made.force_n)
+    told = run("measure", "compression", path, "--diameter-mm", "2.0")
+    assert told["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.05)
+    assert told["p"] == pytest.approx(2.5, rel=0.05)
+    body = {"file": upload(path), "diameter_mm": 2.0}
+    assert client.post("/api/v1/measure/compression", json=body).json() == told
+    result = CliRunner().invoke(main, ["measure", "compression", str(path), "--yarn", "steel"])
+    assert result.exit_code == 2
+    assert "steel" in result.stderr
+
+
+def test_the_studys_workbook_on_the_command_line(study_data: Path) -> None:
+    book = study_data / "compression" / "compressionTests.xls"
+    told = run("measure", "compression", book)
+    assert told["k_n_per_mm3"] is None  # two yarns have no common mean
+    assert set(told["mean"]) == {"acrylic", "cotton"}  # type: ignore[call-overload]
+    acrylic = run("measure", "compression", book, "--yarn", "acrylic")
+    assert acrylic["k_n_per_mm3"] == pytest.approx(0.618e-3, rel=0.01)

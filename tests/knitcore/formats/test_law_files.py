@@ -1,0 +1,60 @@
+"""Law files read back what was written, and refuse what is no law."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.formats.law_files import LawFile, law_from_mapping, load_law, save_law
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+
+LAW = ConstitutiveLaw(0.24, 0.06, 0.036, 0.029, 1.17, 0.8, 0.022, 0.02, shear_modulus=0.02)
+
+
+def test_what_was_written_reads_back(tmp_path: Path) -> None:
+    file = LawFile(LAW, "made", {"alpha_xx": 0.01}, {Direction.WALE: 0.8})
+    save_law(file, tmp_path / "law.json")
+    assert load_law(tmp_path / "law.json") == file
+
+
+def test_constants_may_carry_their_unit() -> None:
+    constants = {
+        "stiffness_xxxx_n_per_mm": 0.24,
+        "stiffness_yyyy_n_per_mm": 0.06,
+        "stiffness_xxyy_n_per_mm": 0.036,
+        "stiffness_yyxx_n_per_mm": 0.029,
+        "alpha_xx": 1.17,
+        "alpha_yy": 0.8,
+        "beta_xx_n_per_mm": 0.022,
+        "beta_yy_n_per_mm": 0.02,
+        "shear_modulus_n_per_mm": 0.02,
+        "rms_n_per_mm": 0.1,
+    }
+    assert law_from_mapping(constants).law == LAW
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "not json", "[]", "{}", '{"law": 3}', '{"law": {"alpha_xx": "a"}}', "[" * 100_000],
+)
+def test_what_is_no_law_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "law.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match="law"):
+        load_law(path)
+
+
+def test_an_unstable_law_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "law.json"
+    save_law(LawFile(LAW), path)
+    data = json.loads(path.read_text())
+    data["law"]["stiffness_xxyy"] = 5.0
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match="positive definite"):
+        load_law(path)
+    with pytest.raises(InputError, match="not a file"):
+        load_law(tmp_path / "none.json")
