@@ -5,9 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
 
 from knitcore.swatch.sheet import Sheet, State
 from knitcore.swatch.solver import Equilibrium, PathSolver, StepError
@@ -46,6 +48,12 @@ class Path:
         return np.array([e.reaction[nodes, axis].sum() for e in self.found])
 
 
+@cache
+def _blas() -> ThreadpoolController:
+    """The loaded BLAS: its threads cost more than they bring on the small blocks of a front."""
+    return ThreadpoolController()
+
+
 def run_path(
     sheet: Sheet,
     fixed: NDArray[np.bool_],
@@ -67,10 +75,11 @@ def run_path(
     found: list[Equilibrium] = []
     problem = None
     try:
-        for equilibrium in solver.follow(start or sheet.reference, targets):
-            found.append(equilibrium)
-            if progress is not None:
-                progress(len(found), len(targets))
+        with _blas().limit(limits=1, user_api="blas"):
+            for equilibrium in solver.follow(start or sheet.reference, targets):
+                found.append(equilibrium)
+                if progress is not None:
+                    progress(len(found), len(targets))
     except StepError as error:
         problem = f"Step {len(found) + 1} of {len(targets)} did not converge. {error}"
     return Path(tuple(found), problem, time.perf_counter() - begin)
