@@ -50,13 +50,18 @@ class SheetGrid:
 
     def voigt(self) -> Array:
         """Area-weighted mean stiffness (3, 3): an upper bound of the moduli."""
-        mean: Array = np.tensordot(self._area(), self.stiffness(), axes=2)
+        mean: Array = np.einsum("rc,rcij->ij", self._area(), self.stiffness())
         return mean
 
     def reuss(self) -> Array:
         """Inverse of the area-weighted mean compliance (3, 3): a lower bound of the moduli."""
-        mean = np.tensordot(self._area(), np.linalg.inv(self.stiffness()), axes=2)
-        inverse: Array = np.linalg.inv(mean)
+        determinant = self.xxxx * self.yyyy - self.xxyy**2
+        compliance: Array = np.zeros((3, 3))
+        compliance[0, 0] = (self._area() * self.yyyy / determinant).sum()
+        compliance[1, 1] = (self._area() * self.xxxx / determinant).sum()
+        compliance[0, 1] = compliance[1, 0] = -(self._area() * self.xxyy / determinant).sum()
+        compliance[2, 2] = (self._area() / self.xyxy).sum()
+        inverse: Array = np.asarray(np.linalg.inv(compliance), dtype=float)
         return inverse
 
     def _area(self) -> Array:

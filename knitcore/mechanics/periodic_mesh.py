@@ -29,7 +29,8 @@ class PeriodicMesh:
         self._x: Array = np.concatenate([[0.0], np.cumsum(width_mm)])
         self._y: Array = np.concatenate([[0.0], np.cumsum(height_mm)])
         mesh = skfem.MeshQuad.init_tensor(self._x, self._y)
-        self.basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2()))
+        # Three Gauss points a side are exact for the work of biquadratic shapes on rectangles.
+        self.basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2()), intorder=5)
         centre = mesh.p[:, mesh.t].mean(axis=1)
         self._row = np.searchsorted(self._y, centre[1]) - 1
         self._column = np.searchsorted(self._x, centre[0]) - 1
