@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve test lint format types frontend-check bench docs stitches lock clean
+.PHONY: help install serve test test-postgres test-kill lint format types frontend-check bench docs stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -39,6 +39,13 @@ serve: install   ## Run the tool and print its address
 test: $(VENV)/.installed-dev frontend-check ## Run every test (browser tests install Chromium if missing)
 	scripts/ensure-chromium
 	$(BIN)/pytest -n 2 --dist loadgroup
+
+test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real PostgreSQL
+	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql
+	$(BIN)/pytest -m postgres tests/app
+
+test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are edited
+	KNITCORE_KILLS=50 $(BIN)/pytest -s tests/app/designs/test_durability.py
 
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

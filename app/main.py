@@ -16,11 +16,15 @@ from fastapi.staticfiles import StaticFiles
 
 from app.api import routers
 from app.compute import Compute
+from app.designs.idempotency import forget_old_keys
+from app.designs.store import DesignStore
 from app.operations.stretch import warm_up
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.recent import RecentResults
 from app.security import Guard
 from app.settings import Settings
+from app.store.database import Database, StoreError
+from app.store.schema import migrate
 from app.viewer import relay
 from app.viewer.views import Views
 
@@ -29,6 +33,7 @@ log = logging.getLogger("knitcore.app")
 FRONTEND = Path(__file__).resolve().parent.parent / "frontend"
 PLOTLY_SCRIPT = Path(plotly.__file__).parent / "package_data" / "plotly.min.js"
 JANITOR_PERIOD_S = 30.0
+TIDY_PERIOD_S = 3600.0
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -45,16 +50,22 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
+        app.state.database = await asyncio.to_thread(_open_database, chosen)
         app.state.compute = Compute(chosen.workers, chosen.job_timeout_s)
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.viewer_page = relay.viewer_page()
         app.state.compute.warm_up(warm_up)
-        janitor = asyncio.create_task(_close_idle_views(app.state.views))
+        janitors = [
+            asyncio.create_task(_close_idle_views(app.state.views)),
+            asyncio.create_task(_tidy_store(app.state.database)),
+        ]
         yield
-        janitor.cancel()
+        for janitor in janitors:
+            janitor.cancel()
         app.state.compute.close()
         await asyncio.to_thread(app.state.views.close)
+        await asyncio.to_thread(app.state.database.close)
 
     app = FastAPI(
         title="Knitcore",
@@ -95,3 +106,20 @@ async def _close_idle_views(views: Views) -> None:
         closed = await asyncio.to_thread(views.close_idle)
         if closed:
             log.info("closed %d idle 3D views, %d left", closed, len(views))
+
+
+def _open_database(settings: Settings) -> Database:
+    database = Database(settings.store_url)
+    migrate(database)
+    return database
+
+
+async def _tidy_store(database: Database) -> None:
+    """Remove for good what nobody can ask for any more."""
+    while True:
+        try:
+            await asyncio.to_thread(DesignStore(database).forget_deleted)
+            await asyncio.to_thread(forget_old_keys, database)
+        except StoreError as error:
+            log.warning("could not tidy the store: %s", error)
+        await asyncio.sleep(TIDY_PERIOD_S)

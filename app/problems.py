@@ -39,8 +39,51 @@ PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 
 
-class UnavailableError(Exception):
+class ServiceError(Exception):
+    """An error that the service answers with; subclasses name its kind.
+
+    Parameters
+    ----------
+    detail : what is wrong, for people.
+    field : the input to blame.
+    remedy : what would be accepted.
+    """
+
+    status = 500
+    type = "internal"
+    title = "Something went wrong in the service"
+    default_remedy: str | None = None
+
+    def __init__(self, detail: str, *, field: str | None = None, remedy: str | None = None) -> None:
+        super().__init__(detail)
+        self.detail = detail
+        self.field = field
+        self.remedy = remedy or self.default_remedy
+
+    @property
+    def problem(self) -> Problem:
+        """The error as clients see it."""
+        return Problem(
+            type=self.type,
+            title=self.title,
+            status=self.status,
+            detail=self.detail,
+            field=self.field,
+            remedy=self.remedy,
+        )
+
+
+class UnavailableError(ServiceError):
     """The service cannot take this on now; the text says what to do."""
+
+    status, type, title = 503, "busy", "Not now"
+    default_remedy = "Try again in a moment, or ask for less."
+
+
+class NotFoundError(ServiceError):
+    """There is no such thing, or it is somebody else's."""
+
+    status, type, title = 404, "not found", "There is no such thing here"
 
 
 def problem_response(problem: Problem) -> JSONResponse:
@@ -109,17 +152,9 @@ def install_problem_handlers(app: FastAPI) -> None:
             )
         )
 
-    @app.exception_handler(UnavailableError)
-    async def _(_: Request, error: UnavailableError) -> JSONResponse:
-        return problem_response(
-            Problem(
-                type="busy",
-                title="Not now",
-                status=503,
-                detail=str(error),
-                remedy="Try again in a moment, or ask for less.",
-            )
-        )
+    @app.exception_handler(ServiceError)
+    async def _(_: Request, error: ServiceError) -> JSONResponse:
+        return problem_response(error.problem)
 
     @app.exception_handler(Exception)
     async def _(request: Request, error: Exception) -> JSONResponse:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from functools import cached_property
 from ipaddress import ip_address
+from pathlib import Path
 
 from pydantic import Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -25,6 +26,15 @@ class Settings(BaseSettings):
     allowed_hosts: tuple[str, ...] = Field(
         (), description="Host names that a browser may use for this service beyond loopback."
     )
+    data_dir: Path = Field(
+        default_factory=lambda: (
+            Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "knitcore"
+        ),
+        description="Folder where designs and results are kept.",
+    )
+    database_url: SecretStr | None = Field(
+        None, description="postgresql+psycopg://…; an SQLite file in the data folder otherwise."
+    )
     workers: int = Field(
         max(1, min(4, (os.cpu_count() or 2) - 1)), ge=1, description="Processes for heavy work."
     )
@@ -42,6 +52,35 @@ class Settings(BaseSettings):
             return ip_address(self.host).is_loopback
         except ValueError:
             return False
+
+    @property
+    def store_url(self) -> str:
+        """The database's URL; makes the data folder if the database is a file in it.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be made, or the URL is of no database that is supported.
+        """
+        if self.database_url is not None:
+            url = self.database_url.get_secret_value()
+            if not url.startswith(("postgresql+psycopg://", "sqlite:///")):
+                raise InputError(
+                    "database_url",
+                    "is of no database that is supported.",
+                    "Use postgresql+psycopg://user:password@host/name, or leave it out.",
+                )
+            return url
+        folder = self.data_dir.expanduser()
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        except OSError as error:
+            raise InputError(
+                "data_dir",
+                f"{folder} cannot be made ({error.strerror}).",
+                "Set KNITCORE_DATA_DIR to a folder that can be written.",
+            ) from error
+        return f"sqlite:///{folder / 'knitcore.sqlite3'}"
 
     def check(self) -> Settings:
         """The settings themselves, if they are safe to serve with.

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
+import tempfile
 from pathlib import Path
 
 import pytest
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
+
+# No test writes to the user's own data folder, in this process or in one that it starts.
+_DATA = tempfile.mkdtemp(prefix="knitcore-tests-")
+os.environ["KNITCORE_DATA_DIR"] = _DATA
+atexit.register(shutil.rmtree, _DATA, ignore_errors=True)
 
 _CHECKOUT = Path(__file__).resolve().parent.parent
 

@@ -1,0 +1,299 @@
+"""Designs over REST: kept, listed, changed, versioned and shared."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from pydantic import BaseModel
+
+from app.designs.conditions import etag
+from app.designs.document import (
+    Design,
+    DesignDocument,
+    DesignPage,
+    DesignPatch,
+    NewShare,
+    Painted,
+    SharedDesign,
+    ShareRequest,
+    Shares,
+    Strokes,
+    Version,
+    VersionRequest,
+    Versions,
+    VersionSummary,
+)
+from app.designs.idempotency import Retry
+from app.designs.sharing import Sharing
+from app.designs.store import DesignStore
+from app.identity import asking
+from app.problems import Problem
+from app.viewer.design_id import DesignId
+
+Responses = dict[int | str, dict[str, Any]]
+MISSING: Responses = {404: {"model": Problem, "description": "No such thing, or it is not yours."}}
+CONFLICT: Responses = {
+    409: {"model": Problem, "description": "It does not go with the present state."}
+}
+CONDITIONAL: Responses = {
+    412: {"model": Problem, "description": "The design was changed in the meantime."},
+    428: {"model": Problem, "description": "If-Match is missing."},
+}
+
+router = APIRouter(tags=["designs"], responses=MISSING)
+
+Owner = Annotated[str, Depends(asking)]
+IfMatch = Annotated[
+    str | None, Header(description="The ETag of the state that was changed.", max_length=200)
+]
+Key = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        min_length=8,
+        max_length=200,
+        pattern=r"^[\x21-\x7e]+$",
+        description="With the same key and body a request takes effect once.",
+    ),
+]
+Number = Annotated[int, Path(ge=1, le=1_000_000, description="Number of a version.")]
+Token = Annotated[str, Path(min_length=20, max_length=100, pattern=r"^[A-Za-z0-9_-]+$")]
+ShareId = Annotated[str, Path(min_length=8, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")]
+
+
+def _store(request: Request) -> DesignStore:
+    return DesignStore(request.app.state.database)
+
+
+def _sharing(request: Request) -> Sharing:
+    return Sharing(request.app.state.database)
+
+
+Store = Annotated[DesignStore, Depends(_store)]
+Links = Annotated[Sharing, Depends(_sharing)]
+
+
+def retry_of(
+    owner: str, key: str | None, request: Request, body: BaseModel | None = None
+) -> Retry | None:
+    """The idempotency key of a request, if it has one."""
+    if key is None:
+        return None
+    content = "" if body is None else body.model_dump_json()
+    return Retry.of(owner, key, request.method, request.url.path, content)
+
+
+def _tagged(response: Response, design: Design) -> Design:
+    response.headers["ETag"] = etag(design.revision)
+    return design
+
+
+def _created(response: Response, design: Design) -> Design:
+    response.headers["Location"] = f"/api/v1/designs/{design.id}"
+    return _tagged(response, design)
+
+
+@router.get("/designs", summary="Your designs, the latest changes first")
+def get_designs(
+    store: Store,
+    owner: Owner,
+    limit: Annotated[int, Query(ge=1, le=200)] = 50,
+    cursor: Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")] = None,
+    deleted: Annotated[bool, Query(description="List what can be recovered instead.")] = False,
+) -> DesignPage:
+    """A page of summaries; ask with ``next_cursor`` for the next one."""
+    return store.page(owner, limit=limit, cursor=cursor, deleted=deleted)
+
+
+@router.post("/designs", status_code=201, summary="Keep a new design", responses=CONFLICT)
+def post_design(
+    body: DesignDocument,
+    store: Store,
+    owner: Owner,
+    request: Request,
+    response: Response,
+    key: Key = None,
+) -> Design:
+    """The document of a design file; the chart is kept in its canonical text."""
+    return _created(response, store.create(owner, body, retry_of(owner, key, request, body)))
+
+
+@router.get(
+    "/designs/{design}",
+    summary="A design",
+    response_model=Design,
+    responses={304: {"description": "It is still the state of If-None-Match."}},
+)
+def get_design(
+    design: DesignId,
+    store: Store,
+    owner: Owner,
+    response: Response,
+    if_none_match: Annotated[str | None, Header(max_length=200)] = None,
+) -> Design | Response:
+    """The document and its ETag; 304 if the caller has it already."""
+    found = store.get(owner, design)
+    if if_none_match is not None and etag(found.revision) in if_none_match:
+        return Response(status_code=304, headers={"ETag": etag(found.revision)})
+    return _tagged(response, found)
+
+
+@router.put("/designs/{design}", summary="Replace a design", responses=CONDITIONAL)
+def put_design(
+    design: DesignId,
+    body: DesignDocument,
+    store: Store,
+    owner: Owner,
+    response: Response,
+    if_match: IfMatch = None,
+) -> Design:
+    """Refused with 412 if somebody else changed the design meanwhile; nothing is lost then."""
+    return _tagged(response, store.replace(owner, design, body, if_match))
+
+
+@router.patch("/designs/{design}", summary="Rename a design", responses=CONDITIONAL)
+def patch_design(
+    design: DesignId,
+    body: DesignPatch,
+    store: Store,
+    owner: Owner,
+    response: Response,
+    if_match: IfMatch = None,
+) -> Design:
+    """Change its name, material or note, and nothing else."""
+    return _tagged(response, store.patch(owner, design, body, if_match))
+
+
+@router.post("/designs/{design}/strokes", summary="Paint on a design", responses=CONFLICT)
+def post_strokes(
+    design: DesignId, body: Strokes, store: Store, owner: Owner, response: Response
+) -> Painted:
+    """Strokes of several people merge; sending the same strokes again changes nothing more.
+
+    Refused with 409 if the chart has another size by now.
+    """
+    painted = store.paint(owner, design, body)
+    response.headers["ETag"] = etag(painted.revision)
+    return painted
+
+
+@router.post(
+    "/designs/{design}/duplicate", status_code=201, summary="Copy a design", responses=CONFLICT
+)
+def post_duplicate(
+    design: DesignId,
+    store: Store,
+    owner: Owner,
+    request: Request,
+    response: Response,
+    key: Key = None,
+) -> Design:
+    """A new design with the same content."""
+    return _created(response, store.duplicate(owner, design, retry_of(owner, key, request)))
+
+
+@router.delete(
+    "/designs/{design}",
+    status_code=204,
+    summary="Delete a design",
+    responses={412: CONDITIONAL[412]},
+)
+def delete_design(design: DesignId, store: Store, owner: Owner, if_match: IfMatch = None) -> None:
+    """It can be recovered for 30 days."""
+    store.delete(owner, design, if_match)
+
+
+@router.post("/designs/{design}/recover", summary="Bring a deleted design back")
+def post_recover(design: DesignId, store: Store, owner: Owner, response: Response) -> Design:
+    """As it was."""
+    return _tagged(response, store.recover(owner, design))
+
+
+@router.get("/designs/{design}/versions", summary="Kept states of a design")
+def get_versions(design: DesignId, store: Store, owner: Owner) -> Versions:
+    """Oldest first."""
+    return store.versions(owner, design)
+
+
+@router.post(
+    "/designs/{design}/versions",
+    status_code=201,
+    summary="Keep the present state under a name",
+    responses=CONFLICT,
+)
+def post_version(
+    design: DesignId,
+    body: VersionRequest,
+    store: Store,
+    owner: Owner,
+    request: Request,
+    key: Key = None,
+) -> VersionSummary:
+    """Versions are never changed or overwritten."""
+    return store.keep_version(owner, design, body.name, retry_of(owner, key, request, body))
+
+
+@router.get("/designs/{design}/versions/{number}", summary="A kept state")
+def get_version(design: DesignId, number: Number, store: Store, owner: Owner) -> Version:
+    """With its document."""
+    return store.version(owner, design, number)
+
+
+@router.post(
+    "/designs/{design}/versions/{number}/restore",
+    summary="Go back to a kept state",
+    responses=CONDITIONAL | CONFLICT,
+)
+def post_restore(
+    design: DesignId,
+    number: Number,
+    store: Store,
+    owner: Owner,
+    response: Response,
+    if_match: IfMatch = None,
+) -> Design:
+    """The present state is kept as a version first."""
+    return _tagged(response, store.restore(owner, design, number, if_match))
+
+
+@router.get("/designs/{design}/shares", summary="Links to a design")
+def get_shares(design: DesignId, links: Links, owner: Owner) -> Shares:
+    """Without their secrets, which nobody keeps."""
+    return links.given(owner, design)
+
+
+@router.post("/designs/{design}/shares", status_code=201, summary="Share a design")
+def post_share(design: DesignId, body: ShareRequest, links: Links, owner: Owner) -> NewShare:
+    """A link for reading, or for copying; its token is told this once."""
+    return links.give(owner, design, body.mode)
+
+
+@router.delete("/designs/{design}/shares/{share}", status_code=204, summary="Take a link back")
+def delete_share(design: DesignId, share: ShareId, links: Links, owner: Owner) -> None:
+    """At once and for good."""
+    links.revoke(owner, design, share)
+
+
+@router.get("/shared/{token}", summary="What a link shows")
+def get_shared(token: Token, links: Links) -> SharedDesign:
+    """The design's present state, for whoever has the link."""
+    return links.open(token)
+
+
+@router.post(
+    "/shared/{token}/copy",
+    status_code=201,
+    summary="Copy what a link shows",
+    responses=CONFLICT,
+)
+def post_copy(
+    token: Token,
+    links: Links,
+    owner: Owner,
+    request: Request,
+    response: Response,
+    key: Key = None,
+) -> Design:
+    """A design of your own, if the link allows it."""
+    return _created(response, links.copy(owner, token, retry_of(owner, key, request)))

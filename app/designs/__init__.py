@@ -1,0 +1,1 @@
+"""Designs that are kept: edited by several people, versioned, shared and recoverable."""

@@ -1,0 +1,54 @@
+"""Conditional requests: every change says which state it was made on."""
+
+from __future__ import annotations
+
+from app.problems import ServiceError
+
+
+class StaleError(ServiceError):
+    """The design was changed by somebody else in the meantime."""
+
+    status, type, title = 412, "stale", "The design has changed in the meantime"
+
+
+class ConflictError(ServiceError):
+    """The request does not go with the present state."""
+
+    status, type, title = 409, "conflict", "This does not go with the present state"
+
+
+class UnconditionalError(ServiceError):
+    """The request must say which state it was made on."""
+
+    status, type, title = 428, "condition", "Say which state you have changed"
+
+
+def etag(revision: int) -> str:
+    """The ETag of a revision."""
+    return f'"{revision}"'
+
+
+def check_match(if_match: str | None, revision: int) -> None:
+    """Let a change through that was made on the present revision.
+
+    Raises
+    ------
+    UnconditionalError
+        Without If-Match.
+    StaleError
+        If it names another revision.
+    """
+    if if_match is None:
+        raise UnconditionalError(
+            "A change must say which state it was made on.",
+            field="If-Match",
+            remedy='Send the ETag of the design you have changed as If-Match, or "*" to overwrite.',
+        )
+    offered = {tag.strip() for tag in if_match.split(",")}
+    if "*" not in offered and etag(revision) not in offered:
+        raise StaleError(
+            f"The design is at revision {revision} now; your change was made on another one, and "
+            "nothing was overwritten.",
+            field="If-Match",
+            remedy="Read the design again, put your change on top of it, and send that.",
+        )

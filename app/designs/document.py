@@ -1,0 +1,174 @@
+"""A design at the border: the JSON document, what surrounds it, and requests that change it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, Literal
+
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+
+from app.operations.charts import ChartText
+from knitcore.chart import MAX_STITCHES_PER_SIDE
+
+Name = Annotated[
+    str,
+    Field(
+        min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$", examples=["Cuff with a soft rim"]
+    ),
+]
+MaterialId = Annotated[
+    str, Field(min_length=1, max_length=80, pattern=r"^[^\x00-\x1f]+$", examples=["acrylic"])
+]
+Note = Annotated[str, Field(max_length=20_000, pattern=r"^[^\x00]*$")]
+MAX_RUNS = 20_000
+
+
+class DesignDocument(BaseModel):
+    """A design as a file holds it; ``knitcore`` reads the same on the command line."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    format: Literal["knitcore-design"] = "knitcore-design"
+    version: Literal[1] = 1
+    name: Name
+    material: MaterialId
+    chart: ChartText
+    note: Note = ""
+
+
+class DesignSummary(BaseModel):
+    """A design in a list."""
+
+    id: str
+    name: str
+    material: str
+    rows: int
+    columns: int
+    revision: int = Field(description="Grows with every change; the ETag is made of it.")
+    created_at: AwareDatetime
+    changed_at: AwareDatetime
+    deleted_at: AwareDatetime | None = None
+
+
+class Design(DesignSummary):
+    """A design with its document."""
+
+    document: DesignDocument
+
+
+class DesignPage(BaseModel):
+    """A part of a list, latest changes first."""
+
+    designs: list[DesignSummary]
+    next_cursor: str | None = Field(description="Ask with it for what follows; None at the end.")
+
+
+class DesignPatch(BaseModel):
+    """Fields to change; the others stay."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Name | None = None
+    material: MaterialId | None = None
+    note: Note | None = None
+
+
+class Run(BaseModel):
+    """Stitches beside each other in one row, all of one kind."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    row: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="0 is the bottom row.")
+    column: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch, 0 at the left.")
+    stitches: str = Field(pattern=r"^[KP]+$", max_length=MAX_STITCHES_PER_SIDE, examples=["KKP"])
+
+
+class Strokes(BaseModel):
+    """What somebody painted: it says what stitches become, so strokes of several people merge."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    rows: int = Field(ge=1, description="Size of the chart that was painted on.")
+    columns: int = Field(ge=1)
+    runs: list[Run] = Field(min_length=1, max_length=MAX_RUNS)
+
+
+class Painted(BaseModel):
+    """The design's state after strokes were kept."""
+
+    revision: int
+    changed_at: AwareDatetime
+
+
+class VersionRequest(BaseModel):
+    """A name for the design's present state."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Name
+
+
+class VersionSummary(BaseModel):
+    """A kept state of a design."""
+
+    number: int = Field(description="From 1, oldest first.")
+    name: str
+    automatic: bool = Field(description="Kept by the service before a restore replaced it.")
+    revision: int
+    created_at: AwareDatetime
+
+
+class Version(VersionSummary):
+    """A kept state with its document."""
+
+    document: DesignDocument
+
+
+class Versions(BaseModel):
+    """All kept states of a design."""
+
+    versions: list[VersionSummary]
+
+
+class ShareMode(StrEnum):
+    """What a link allows."""
+
+    READ = "read"
+    COPY = "copy"
+
+
+class ShareRequest(BaseModel):
+    """A link to give away."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    mode: ShareMode = ShareMode.READ
+
+
+class Share(BaseModel):
+    """A link that was given away; its secret is shown only once, when it is made."""
+
+    id: str
+    mode: ShareMode
+    created_at: AwareDatetime
+
+
+class NewShare(Share):
+    """A new link with its secret."""
+
+    token: str = Field(description="The design is at /api/v1/shared/{token} for who has this.")
+
+
+class Shares(BaseModel):
+    """The links of a design that are not revoked."""
+
+    shares: list[Share]
+
+
+class SharedDesign(BaseModel):
+    """What a link shows."""
+
+    mode: ShareMode
+    document: DesignDocument
+    revision: int
+    changed_at: AwareDatetime

@@ -1,0 +1,96 @@
+"""Requests that a client may send twice because it did not hear the answer."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from pydantic import BaseModel
+from sqlalchemy import Connection, insert, select
+from sqlalchemy.exc import IntegrityError
+
+from app.problems import ServiceError
+from app.store.database import Database
+from app.store.tables import idempotency_keys
+
+Answer = TypeVar("Answer", bound=BaseModel)
+KEPT_S = 86_400.0
+
+
+class ReusedKeyError(ServiceError):
+    """One key for two different requests."""
+
+    status, type, title = 422, "input", "This idempotency key was used before"
+
+
+@dataclass(frozen=True)
+class Retry:
+    """An Idempotency-Key and the request that it stands for.
+
+    Attributes
+    ----------
+    owner : who asks.
+    key : what the client sent.
+    fingerprint : of method, path and body.
+    """
+
+    owner: str
+    key: str
+    fingerprint: str
+
+    @classmethod
+    def of(cls, owner: str, key: str, *request: str) -> Retry:
+        """A key with the fingerprint of its request."""
+        digest = hashlib.sha256("\0".join(request).encode()).hexdigest()
+        return cls(owner, key, digest)
+
+    def once(
+        self, database: Database, kind: type[Answer], action: Callable[[Connection], Answer]
+    ) -> Answer:
+        """Run an action in a transaction, or return what it returned the first time.
+
+        Raises
+        ------
+        ReusedKeyError
+            If the key came with another request before.
+        """
+
+        def guarded(connection: Connection) -> Answer:
+            known = connection.execute(
+                select(idempotency_keys.c.fingerprint, idempotency_keys.c.answer).where(
+                    idempotency_keys.c.owner == self.owner, idempotency_keys.c.key == self.key
+                )
+            ).one_or_none()
+            if known is not None:
+                if known.fingerprint != self.fingerprint:
+                    raise ReusedKeyError(
+                        "This key came with another request before.",
+                        field="Idempotency-Key",
+                        remedy="Use a new key for every new request.",
+                    )
+                return kind.model_validate_json(known.answer)
+            answer = action(connection)
+            connection.execute(
+                insert(idempotency_keys).values(
+                    owner=self.owner,
+                    key=self.key,
+                    fingerprint=self.fingerprint,
+                    answer=answer.model_dump_json(),
+                    created_at=time.time(),
+                )
+            )
+            return answer
+
+        try:
+            return database.write(guarded)
+        except IntegrityError:
+            return database.write(guarded)  # its twin was faster: now its answer is there
+
+
+def forget_old_keys(database: Database) -> None:
+    """Drop keys after a day."""
+    old = idempotency_keys.c.created_at < time.time() - KEPT_S
+    database.write(lambda connection: connection.execute(idempotency_keys.delete().where(old)))

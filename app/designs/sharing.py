@@ -1,0 +1,146 @@
+"""Links to designs for people who do not own them. A link is a secret; only its hash is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+
+from sqlalchemy import Connection, Row, insert, select, update
+
+from app.designs.document import (
+    Design,
+    NewShare,
+    Share,
+    SharedDesign,
+    ShareMode,
+    Shares,
+)
+from app.designs.idempotency import Retry
+from app.designs.store import add, copied, document_of, find, moment, now
+from app.problems import NotFoundError, ServiceError
+from app.store.database import Database
+from app.store.tables import designs, shares
+
+
+class NotAllowedError(ServiceError):
+    """The link allows less than was asked."""
+
+    status, type, title = 403, "refused", "This link does not allow that"
+
+
+class Sharing:
+    """Share links of all designs."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def give(self, owner: str, design: str, mode: ShareMode) -> NewShare:
+        """Make a link; its token is told this once."""
+        token = secrets.token_urlsafe(32)
+        share, at = secrets.token_urlsafe(12), now()
+
+        def action(connection: Connection) -> None:
+            find(connection, owner, design)
+            connection.execute(
+                insert(shares).values(
+                    id=share,
+                    design_id=design,
+                    token_hash=_hash(token),
+                    mode=mode.value,
+                    created_at=at,
+                )
+            )
+
+        self._database.write(action)
+        return NewShare(id=share, mode=mode, created_at=moment(at), token=token)
+
+    def given(self, owner: str, design: str) -> Shares:
+        """The links of a design that still open it."""
+        with self._database.read() as connection:
+            find(connection, owner, design)
+            rows = connection.execute(
+                select(shares.c.id, shares.c.mode, shares.c.created_at)
+                .where(shares.c.design_id == design, shares.c.revoked_at.is_(None))
+                .order_by(shares.c.created_at, shares.c.id)
+            ).all()
+        return Shares(
+            shares=[
+                Share(id=r.id, mode=ShareMode(r.mode), created_at=moment(r.created_at))
+                for r in rows
+            ]
+        )
+
+    def revoke(self, owner: str, design: str, share: str) -> None:
+        """Close a link for good."""
+
+        def action(connection: Connection) -> None:
+            find(connection, owner, design)
+            closed = connection.execute(
+                update(shares)
+                .where(
+                    shares.c.id == share,
+                    shares.c.design_id == design,
+                    shares.c.revoked_at.is_(None),
+                )
+                .values(revoked_at=now())
+            )
+            if closed.rowcount == 0:
+                raise NotFoundError(f"The design has no open link {share}.", field="share")
+
+        self._database.write(action)
+
+    def open(self, token: str) -> SharedDesign:
+        """What a link shows, at its present state."""
+        with self._database.read() as connection:
+            row = _shared(connection, token)
+        return SharedDesign(
+            mode=ShareMode(row.mode),
+            document=document_of(row),
+            revision=row.revision,
+            changed_at=moment(row.changed_at),
+        )
+
+    def copy(self, owner: str, token: str, retry: Retry | None = None) -> Design:
+        """A copy of one's own of what a link shows.
+
+        Raises
+        ------
+        NotAllowedError
+            If the link is for reading only.
+        """
+
+        def action(connection: Connection) -> Design:
+            row = _shared(connection, token)
+            if row.mode != ShareMode.COPY:
+                raise NotAllowedError(
+                    "This link is for reading only.", remedy="Ask its owner for a link to copy."
+                )
+            return add(connection, owner, copied(row))
+
+        if retry is not None:
+            return retry.once(self._database, Design, action)
+        return self._database.write(action)
+
+
+def _shared(connection: Connection, token: str) -> Row[tuple[object, ...]]:
+    row = connection.execute(
+        select(designs, shares.c.mode)
+        .join(shares, shares.c.design_id == designs.c.id)
+        .where(
+            shares.c.token_hash == _hash(token),
+            shares.c.revoked_at.is_(None),
+            designs.c.deleted_at.is_(None),
+        )
+    ).one_or_none()
+    if row is None:
+        raise NotFoundError(
+            "This link leads nowhere: it was revoked, or the design is deleted.",
+            field="token",
+            remedy="Ask for a new link.",
+        )
+    return row
+
+
+def _hash(token: str) -> str:
+    """Tokens are 256 random bits, so a plain hash cannot be turned back."""
+    return hashlib.sha256(token.encode()).hexdigest()

@@ -1,0 +1,400 @@
+"""Designs in the database. Every method is one transaction; nobody sees what is not theirs."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, Row, func, insert, select, tuple_, update
+
+from app.designs.conditions import ConflictError, check_match
+from app.designs.document import (
+    Design,
+    DesignDocument,
+    DesignPage,
+    DesignPatch,
+    DesignSummary,
+    Painted,
+    Strokes,
+    Version,
+    Versions,
+    VersionSummary,
+)
+from app.designs.idempotency import Retry
+from app.designs.painting import paint
+from app.problems import NotFoundError
+from app.store.database import Database
+from app.store.tables import design_versions, designs
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+
+MAX_DESIGNS = 5_000
+MAX_VERSIONS = 500
+DELETED_KEPT_S = 30 * 86_400.0
+"""How long a deleted design can be recovered."""
+
+_SUMMARY = [c for c in designs.c if c.name not in ("chart", "note", "owner")]
+_VERSION_SUMMARY = [
+    design_versions.c[n] for n in ("number", "name", "automatic", "revision", "created_at")
+]
+
+
+class DesignStore:
+    """The designs of all owners."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def create(self, owner: str, document: DesignDocument, retry: Retry | None = None) -> Design:
+        """Keep a new design."""
+        content = _content(document)
+        return self._made(owner, lambda connection: content, retry)
+
+    def duplicate(self, owner: str, design: str, retry: Retry | None = None) -> Design:
+        """A copy of one's own design."""
+
+        def content(connection: Connection) -> dict[str, Any]:
+            return copied(find(connection, owner, design))
+
+        return self._made(owner, content, retry)
+
+    def _made(self, owner: str, content: Any, retry: Retry | None) -> Design:
+        def action(connection: Connection) -> Design:
+            return add(connection, owner, content(connection))
+
+        if retry is not None:
+            return retry.once(self._database, Design, action)
+        return self._database.write(action)
+
+    def get(self, owner: str, design: str) -> Design:
+        """A design that is not deleted."""
+        with self._database.read() as connection:
+            return full(find(connection, owner, design))
+
+    def page(self, owner: str, *, limit: int, cursor: str | None, deleted: bool) -> DesignPage:
+        """Designs of an owner, the latest changes first."""
+        chosen = select(*_SUMMARY).where(
+            designs.c.owner == owner,
+            designs.c.deleted_at.is_not(None) if deleted else designs.c.deleted_at.is_(None),
+        )
+        if cursor is not None:
+            place = tuple_(designs.c.changed_at, designs.c.id)
+            chosen = chosen.where(place < tuple_(*_place(cursor)))
+        chosen = chosen.order_by(designs.c.changed_at.desc(), designs.c.id.desc())
+        with self._database.read() as connection:
+            rows = connection.execute(chosen.limit(limit + 1)).all()
+        more = len(rows) > limit
+        rows = rows[:limit]
+        return DesignPage(
+            designs=[DesignSummary(**_public(row)) for row in rows],
+            next_cursor=f"{rows[-1].changed_at!r}_{rows[-1].id}" if more else None,
+        )
+
+    def replace(
+        self, owner: str, design: str, document: DesignDocument, if_match: str | None
+    ) -> Design:
+        """Put a whole document in the place of the present one."""
+        content = _content(document)
+
+        def action(connection: Connection) -> Design:
+            row = find(connection, owner, design, change=True)
+            check_match(if_match, row.revision)
+            return _changed(connection, row, content)
+
+        return self._database.write(action)
+
+    def patch(self, owner: str, design: str, patch: DesignPatch, if_match: str | None) -> Design:
+        """Change some fields."""
+
+        def action(connection: Connection) -> Design:
+            row = find(connection, owner, design, change=True)
+            check_match(if_match, row.revision)
+            return _changed(connection, row, patch.model_dump(exclude_none=True))
+
+        return self._database.write(action)
+
+    def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
+        """Merge strokes into the present chart, whoever else has painted since.
+
+        Raises
+        ------
+        ConflictError
+            If the chart has another size by now.
+        """
+
+        def action(connection: Connection) -> Painted:
+            row = find(connection, owner, design, change=True)
+            if (row.rows, row.columns) != (strokes.rows, strokes.columns):
+                raise ConflictError(
+                    f"The chart has {row.columns}x{row.rows} stitches now; these strokes were "
+                    f"painted on {strokes.columns}x{strokes.rows}.",
+                    field="rows",
+                    remedy="Read the design again and paint on that.",
+                )
+            values = {
+                "chart": paint(row.chart, row.rows, row.columns, strokes.runs),
+                "revision": row.revision + 1,
+                "changed_at": now(),
+            }
+            connection.execute(update(designs).where(designs.c.id == row.id).values(values))
+            return Painted(revision=values["revision"], changed_at=moment(values["changed_at"]))
+
+        return self._database.write(action)
+
+    def delete(self, owner: str, design: str, if_match: str | None) -> None:
+        """Put a design aside; it can be recovered for 30 days."""
+
+        def action(connection: Connection) -> None:
+            row = find(connection, owner, design, change=True)
+            if if_match is not None:
+                check_match(if_match, row.revision)
+            connection.execute(
+                update(designs).where(designs.c.id == design).values(deleted_at=now())
+            )
+
+        self._database.write(action)
+
+    def recover(self, owner: str, design: str) -> Design:
+        """Bring a deleted design back."""
+
+        def action(connection: Connection) -> Design:
+            row = find(connection, owner, design, change=True, deleted=True)
+            return _changed(connection, row, {"deleted_at": None})
+
+        return self._database.write(action)
+
+    def keep_version(
+        self, owner: str, design: str, name: str, retry: Retry | None = None
+    ) -> VersionSummary:
+        """Keep the present state under a name."""
+
+        def action(connection: Connection) -> VersionSummary:
+            row = find(connection, owner, design, change=True)
+            return _keep(connection, row, name, automatic=False)
+
+        if retry is not None:
+            return retry.once(self._database, VersionSummary, action)
+        return self._database.write(action)
+
+    def versions(self, owner: str, design: str) -> Versions:
+        """The kept states, oldest first."""
+        with self._database.read() as connection:
+            find(connection, owner, design)
+            rows = connection.execute(
+                select(*_VERSION_SUMMARY)
+                .where(design_versions.c.design_id == design)
+                .order_by(design_versions.c.number)
+            )
+            return Versions(versions=[VersionSummary(**_public(row)) for row in rows])
+
+    def version(self, owner: str, design: str, number: int) -> Version:
+        """A kept state."""
+        with self._database.read() as connection:
+            find(connection, owner, design)
+            row = _version(connection, design, number)
+        return Version(
+            number=row.number,
+            name=row.name,
+            automatic=row.automatic,
+            revision=row.revision,
+            created_at=moment(row.created_at),
+            document=DesignDocument(
+                name=row.design_name, material=row.material, chart=row.chart, note=row.note
+            ),
+        )
+
+    def restore(self, owner: str, design: str, number: int, if_match: str | None) -> Design:
+        """Make a kept state the present one; what it replaces is kept as a version first."""
+
+        def action(connection: Connection) -> Design:
+            row = find(connection, owner, design, change=True)
+            check_match(if_match, row.revision)
+            kept = _version(connection, design, number)
+            _keep(connection, row, f"Before “{kept.name}” was restored"[:200], automatic=True)
+            chart = StitchChart.parse(kept.chart)
+            content = {
+                "name": kept.design_name,
+                "material": kept.material,
+                "chart": kept.chart,
+                "note": kept.note,
+                "rows": chart.rows,
+                "columns": chart.columns,
+            }
+            return _changed(connection, row, content)
+
+        return self._database.write(action)
+
+    def forget_deleted(self) -> int:
+        """Remove for good what was deleted 30 days ago; returns how many designs that were."""
+
+        def action(connection: Connection) -> int:
+            gone = connection.execute(
+                designs.delete().where(designs.c.deleted_at < now() - DELETED_KEPT_S)
+            )
+            return gone.rowcount
+
+        return self._database.write(action)
+
+
+def now() -> float:
+    """Seconds since 1970."""
+    return time.time()
+
+
+def moment(seconds: float) -> datetime:
+    """A time as clients get it."""
+    return datetime.fromtimestamp(seconds, UTC)
+
+
+def find(
+    connection: Connection, owner: str, design: str, *, change: bool = False, deleted: bool = False
+) -> Row[Any]:
+    """An owner's design; with ``change`` nobody else changes it until the transaction ends.
+
+    Raises
+    ------
+    NotFoundError
+        If there is none, it is deleted (or, with ``deleted``, is not), or is somebody else's: a
+        stranger cannot tell which.
+    """
+    chosen = select(designs).where(
+        designs.c.id == design,
+        designs.c.owner == owner,
+        designs.c.deleted_at.is_not(None) if deleted else designs.c.deleted_at.is_(None),
+    )
+    row = connection.execute(chosen.with_for_update() if change else chosen).one_or_none()
+    if row is None:
+        raise NotFoundError(
+            f"There is no {'deleted ' if deleted else ''}design {design} of yours.",
+            field="design",
+            remedy="Look it up in the list of your designs.",
+        )
+    return row
+
+
+def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
+    """Insert a design.
+
+    Raises
+    ------
+    ConflictError
+        If the owner has as many as the service keeps.
+    """
+    count = select(func.count()).select_from(designs).where(designs.c.owner == owner)
+    if connection.execute(count).scalar_one() >= MAX_DESIGNS:
+        raise ConflictError(
+            f"You have {MAX_DESIGNS} designs, deleted ones included; no more are kept.",
+            remedy="Export and delete some; deleted ones leave for good after 30 days.",
+        )
+    at = now()
+    values = content | {
+        "id": secrets.token_urlsafe(16),
+        "owner": owner,
+        "revision": 1,
+        "created_at": at,
+        "changed_at": at,
+    }
+    connection.execute(insert(designs).values(values))
+    return full(connection.execute(select(designs).where(designs.c.id == values["id"])).one())
+
+
+def copied(row: Row[Any]) -> dict[str, Any]:
+    """The content of a design for a copy of it."""
+    kept = ("material", "chart", "note", "rows", "columns")
+    return {n: getattr(row, n) for n in kept} | {"name": f"{row.name[:190]} (copy)"}
+
+
+def full(row: Row[Any]) -> Design:
+    """A row as clients get it."""
+    return Design(**_public(row, "owner", "chart", "note"), document=document_of(row))
+
+
+def document_of(row: Row[Any]) -> DesignDocument:
+    """The document in a row."""
+    return DesignDocument.model_construct(
+        name=row.name, material=row.material, chart=row.chart, note=row.note
+    )
+
+
+def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> Design:
+    stamped = values | {"revision": row.revision + 1, "changed_at": now()}
+    connection.execute(update(designs).where(designs.c.id == row.id).values(stamped))
+    return full(connection.execute(select(designs).where(designs.c.id == row.id)).one())
+
+
+def _content(document: DesignDocument) -> dict[str, Any]:
+    chart = StitchChart.parse(document.chart)
+    return {
+        "name": document.name,
+        "material": document.material,
+        "chart": chart.text,
+        "note": document.note,
+        "rows": chart.rows,
+        "columns": chart.columns,
+    }
+
+
+def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) -> VersionSummary:
+    mine = design_versions.c.design_id == row.id
+    last = connection.execute(select(func.max(design_versions.c.number)).where(mine)).scalar()
+    number = (last or 0) + 1
+    if number > MAX_VERSIONS:
+        raise ConflictError(
+            f"{MAX_VERSIONS} versions of this design are kept, which is as many as there can be.",
+            remedy="Duplicate the design and go on with the copy.",
+        )
+    values = {
+        "design_id": row.id,
+        "number": number,
+        "name": name,
+        "automatic": automatic,
+        "design_name": row.name,
+        "material": row.material,
+        "chart": row.chart,
+        "note": row.note,
+        "revision": row.revision,
+        "created_at": now(),
+    }
+    connection.execute(insert(design_versions).values(values))
+    return VersionSummary(
+        number=number,
+        name=name,
+        automatic=automatic,
+        revision=row.revision,
+        created_at=moment(values["created_at"]),
+    )
+
+
+def _version(connection: Connection, design: str, number: int) -> Row[Any]:
+    row = connection.execute(
+        select(design_versions).where(
+            design_versions.c.design_id == design, design_versions.c.number == number
+        )
+    ).one_or_none()
+    if row is None:
+        raise NotFoundError(
+            f"The design has no version {number}.",
+            field="number",
+            remedy="Look it up in the list of its versions.",
+        )
+    return row
+
+
+def _public(row: Row[Any], *without: str) -> dict[str, Any]:
+    values = {k: v for k, v in row._mapping.items() if k not in without}
+    for name in ("created_at", "changed_at", "deleted_at"):
+        if values.get(name) is not None:
+            values[name] = moment(values[name])
+    return values
+
+
+def _place(cursor: str) -> tuple[float, str]:
+    at, _, design = cursor.partition("_")
+    try:
+        return float(at), design
+    except ValueError:
+        raise InputError(
+            "cursor", "is not one of ours.", "Send next_cursor of the page before."
+        ) from None

@@ -1,0 +1,15 @@
+"""Who is asking: the guard tells, and everything behind it may ask."""
+
+from __future__ import annotations
+
+from contextvars import ContextVar
+
+LOCAL_USER = "local"
+"""Whoever sits at this machine, while the service asks for no login."""
+
+current_user: ContextVar[str] = ContextVar("current_user", default=LOCAL_USER)
+
+
+def asking() -> str:
+    """The user whose request this is."""
+    return current_user.get()

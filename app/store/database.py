@@ -1,0 +1,195 @@
+"""Reading and writing, durable before it is acknowledged."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import queue
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
+
+from app.problems import UnavailableError
+
+log = logging.getLogger("knitcore.store")
+T = TypeVar("T")
+Action = Callable[[Connection], Any]
+
+FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
+"""The database itself failed; everything else is an answer of it or a mistake of ours."""
+BUSY_TIMEOUT_MS = 10_000
+LARGEST_BATCH = 64
+UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
+
+
+class StoreError(UnavailableError):
+    """The database did not take or give something: it is gone, locked, or its disk is full."""
+
+
+class Database:
+    """A database with one way to read and one to write.
+
+    Notes
+    -----
+    SQLite knows one writer at a time and pays a disk flush for every commit. One thread writes:
+    what arrives while it flushes shares the next commit, each change behind its own savepoint.
+    A change is acknowledged after the commit that holds it. PostgreSQL does both by itself.
+
+    Parameters
+    ----------
+    url : SQLAlchemy URL, ``sqlite:///…`` or ``postgresql+psycopg://…``.
+    """
+
+    def __init__(self, url: str) -> None:
+        self.url = make_url(url)
+        self.is_sqlite = self.url.get_backend_name() == "sqlite"
+        self.engine = _sqlite_engine(url) if self.is_sqlite else _server_engine(url)
+        self._waiting: queue.SimpleQueue[tuple[Action, Future[Any]] | None] = queue.SimpleQueue()
+        self._writer: threading.Thread | None = None
+        if self.is_sqlite:
+            self._writer = threading.Thread(target=self._write_all, name="store", daemon=True)
+            self._writer.start()
+
+    @contextlib.contextmanager
+    def read(self) -> Iterator[Connection]:
+        """A connection that sees one state of the database.
+
+        Raises
+        ------
+        StoreError
+            If the database cannot be reached.
+        """
+        with _told(), self.engine.connect() as connection:
+            yield connection
+
+    def write(self, action: Callable[[Connection], T]) -> T:
+        """Run ``action`` in a transaction and return what it returns, once that is on disk.
+
+        Raises
+        ------
+        StoreError
+            If it could not be made durable; then nothing of it is kept.
+        """
+        if self._writer is None:
+            with _told(), self.engine.begin() as connection:
+                return action(connection)
+        done: Future[T] = Future()
+        self._waiting.put((action, done))
+        with _told():
+            return done.result()
+
+    def close(self) -> None:
+        """Write what waits, then let go of all connections."""
+        if self._writer is not None:
+            self._waiting.put(None)
+            self._writer.join()
+            self._writer = None
+        self.engine.dispose()
+
+    def _write_all(self) -> None:
+        open_ = True
+        while open_:
+            batch = []
+            entry = self._waiting.get()
+            while entry is not None:
+                batch.append(entry)
+                if len(batch) == LARGEST_BATCH:
+                    break
+                try:
+                    entry = self._waiting.get_nowait()
+                except queue.Empty:
+                    break
+            open_ = entry is not None
+            if batch:
+                self._commit(batch)
+
+    def _commit(self, batch: list[tuple[Action, Future[Any]]]) -> None:
+        outcomes: list[tuple[Future[Any], Any, Exception | None]] = []
+        try:
+            with self.engine.connect() as connection:
+                connection.execution_options(knitcore_write=True)
+                with connection.begin():
+                    for action, done in batch:
+                        outcomes.append((done, *_attempt(connection, action)))
+        except Exception as error:
+            if len(batch) > 1:
+                for entry in batch:  # one by one: only who is to blame pays
+                    self._commit([entry])
+            else:
+                batch[0][1].set_exception(error)
+            return
+        for done, result, refused in outcomes:
+            if refused is None:
+                done.set_result(result)
+            else:
+                done.set_exception(refused)
+
+
+def _attempt(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
+    """An action behind a savepoint; errors of the database itself end the whole transaction."""
+    savepoint = connection.begin_nested()
+    try:
+        result = action(connection)
+    except Exception as error:
+        if isinstance(error, FAILURES):
+            raise
+        savepoint.rollback()
+        return None, error
+    savepoint.commit()
+    return result, None
+
+
+@contextlib.contextmanager
+def _told() -> Iterator[None]:
+    try:
+        yield
+    except FAILURES as error:
+        reason = str(error).splitlines()[0]
+        log.error("the database failed: %s", reason)
+        raise StoreError(UNREACHABLE.format(reason=_public(reason))) from error
+
+
+def _public(reason: str) -> str:
+    """A reason without addresses and names of the machines behind."""
+    for known in ("disk is full", "disk I/O error", "database is locked", "readonly database"):
+        if known in reason:
+            return known
+    return "the database does not answer"
+
+
+def _sqlite_engine(url: str) -> Engine:
+    engine = create_engine(url, connect_args={"check_same_thread": False})
+
+    @event.listens_for(engine, "connect")
+    def _(connection: Any, _record: Any) -> None:
+        connection.isolation_level = None  # BEGIN is ours, below
+        for pragma in (
+            "journal_mode=WAL",
+            "synchronous=FULL",  # a commit is on disk, not only in the system's memory
+            "foreign_keys=ON",
+            f"busy_timeout={BUSY_TIMEOUT_MS}",
+        ):
+            connection.execute(f"PRAGMA {pragma}")
+
+    @event.listens_for(engine, "begin")
+    def _(connection: Connection) -> None:
+        write = connection.get_execution_options().get("knitcore_write")
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
+
+    return engine
+
+
+def _server_engine(url: str) -> Engine:
+    return create_engine(
+        url,
+        pool_pre_ping=True,  # a database that went away and came back is found again
+        pool_size=10,
+        max_overflow=10,
+        pool_timeout=5,
+        connect_args={"connect_timeout": 3},
+    )
