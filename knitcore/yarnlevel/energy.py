@@ -23,6 +23,11 @@ PENALTY_PER_BENDING = 3e5
 """Stiffness of the augmented length constraint in units of B / L³."""
 
 
+REGULARISATION_PER_BENDING = 4e-4
+"""Most that C may be, in units of B L²: the constant C of the paper belongs to worsted yarn, and
+would be stiffer than the bending of a lace yarn. None of the paper's samples reaches the limit."""
+
+
 @dataclass(frozen=True)
 class Terms:
     """Parts of a cell's energy, N·mm, and its lengths."""
@@ -66,6 +71,12 @@ class CellEnergy:
         """B / L, the scale of energies, N·mm."""
         return self.yarn.bending_modulus_n_mm2 / self.mean_loop_mm
 
+    @property
+    def regularisation_n_mm4(self) -> float:
+        """C, N·mm⁴."""
+        limit = REGULARISATION_PER_BENDING * self.yarn.bending_modulus_n_mm2 * self.mean_loop_mm**2
+        return min(REGULARISATION_N_MM4, limit)
+
     @cached_property
     def penalty(self) -> float:
         """Stiffness of the length constraint of a course, N/mm."""
@@ -90,7 +101,7 @@ class CellEnergy:
         return np.array(
             [
                 self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
-                self.convention.regularisation_factor * REGULARISATION_N_MM4,
+                self.convention.regularisation_factor * self.regularisation_n_mm4,
                 GAUGE_PER_BENDING * self.unit,
                 self.mean_loop_mm,
                 1.0 / self.cell.grid.samples,

@@ -1,0 +1,57 @@
+"""``knitcore relax``."""
+
+from __future__ import annotations
+
+import click
+
+from app.cli.common import (
+    chart_argument,
+    choice,
+    emit,
+    json_option,
+    material_option,
+    resolve_chart,
+)
+from app.cli.materials import resolve_material
+from app.operations.relax import RelaxResult, YarnLevelOptions, relax_chart
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.relax import Branch
+
+
+@click.command("relax")
+@chart_argument
+@material_option
+@click.option("--loop-length-mm", type=float, help="Yarn per stitch; the material's otherwise.")
+@click.option("--branch", type=choice(Branch), default=Branch.MIRRORED.value, show_default=True)
+@click.option("--convention", type=choice(Convention), default=Convention.PUBLISHED.value)
+@json_option
+def command(
+    chart: str,
+    size: str | None,
+    material: str,
+    loop_length_mm: float | None,
+    branch: str,
+    convention: str,
+    as_json: bool,
+) -> None:
+    """Relax the repeat CHART at the yarn level: free of force, without friction."""
+    options = YarnLevelOptions(
+        loop_length_mm=loop_length_mm, branch=Branch(branch), convention=Convention(convention)
+    )
+    result = relax_chart(resolve_chart(chart, size), resolve_material(material), options)
+    emit(result, _text(result), as_json=as_json)
+
+
+def _text(r: RelaxResult) -> str:
+    return "\n".join(
+        [
+            f"repeat          {r.repeat_columns} columns x {r.repeat_rows} rows, {r.branch} branch",
+            f"stitch          {r.cell_course_mm:.3f} mm wide, {r.cell_wale_mm:.3f} mm high",
+            f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
+            f"bending, {100 * r.contact_share:.1f} % contact",
+            f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
+            f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
+            f"{'converged' if r.converged else 'NOT converged'}",
+            *(f"note: {note}" for note in r.notes),
+        ]
+    )

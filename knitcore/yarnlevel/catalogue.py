@@ -1,0 +1,96 @@
+"""Which repeats the packaged store holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+
+Grid = NDArray[np.bool_]
+
+COMMON: dict[str, str] = {
+    "stockinette": "K",
+    "garter": "P\nK",
+    "1x1 rib": "KP",
+    "seed": "PK\nKP",
+    "2x1 rib": "KKP",
+    "2x2 rib": "KKPP",
+    "3x1 rib": "KKKP",
+    "3x3 rib": "KKKPPP",
+    "2x1 welt": "P\nK\nK",
+    "2x2 welt": "P\nP\nK\nK",
+    "3x1 welt": "P\nK\nK\nK",
+    "3x3 welt": "P\nP\nP\nK\nK\nK",
+    "moss": "PK\nPK\nKP\nKP",
+    "basket 2x2": "PPKK\nPPKK\nKKPP\nKKPP",
+    "broken rib": "KP\nKK",
+}
+"""Repeats that knitters know by name, top row first."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """How a chart follows from a repeat that is the same up to symmetry.
+
+    ``chart = shift(swap(mirror(repeat)))``: mirrored left to right, K and P swapped (the back of
+    the fabric seen through it), then moved up and to the right by whole stitches.
+    """
+
+    up: int
+    right: int
+    mirror: bool
+    swap: bool
+
+
+def placements(grid: Grid) -> Iterator[tuple[Placement, Grid]]:
+    """All charts of the same size that are the same fabric, with their placements."""
+    rows, columns = grid.shape
+    for mirror, swap in product((False, True), repeat=2):
+        turned = grid[:, ::-1] if mirror else grid
+        turned = ~turned if swap else turned
+        for up, right in product(range(rows), range(columns)):
+            yield Placement(up, right, mirror, swap), np.roll(turned, (up, right), axis=(0, 1))
+
+
+def canonical(chart: StitchChart) -> StitchChart:
+    """The representative of a repeat among all that are the same fabric.
+
+    Examples
+    --------
+    >>> canonical(StitchChart.parse("KP")) == canonical(StitchChart.parse("PK"))
+    True
+    """
+    repeat = chart.repeat()
+    return StitchChart(min((g for _, g in placements(repeat.purl)), key=lambda g: g.tobytes()))
+
+
+def place(chart: StitchChart, representative: StitchChart) -> Placement | None:
+    """How a repeat follows from its representative; None if it does not."""
+    wanted = chart.repeat().purl
+    if wanted.shape != representative.purl.shape:
+        return None
+    return next(
+        (p for p, grid in placements(representative.purl) if np.array_equal(grid, wanted)), None
+    )
+
+
+def distinct_repeats(most_stitches: int) -> list[StitchChart]:
+    """Every fabric whose smallest repeat has at most so many stitches, small ones first."""
+    found: dict[StitchChart, None] = {}
+    shapes = [
+        (rows, columns)
+        for rows in range(1, most_stitches + 1)
+        for columns in range(1, most_stitches // rows + 1)
+    ]
+    for rows, columns in sorted(shapes, key=lambda s: (s[0] * s[1], s[0])):
+        for code in range(2 ** (rows * columns - 1)):
+            bits = [(code >> k) & 1 == 1 for k in range(rows * columns)]
+            chart = StitchChart(np.array(bits).reshape(rows, columns))
+            if chart.repeat() == chart:
+                found.setdefault(canonical(chart))
+    return list(found)

@@ -1,0 +1,141 @@
+"""The yarn-level parameters of a material's yarn in a chart.
+
+The paper measured contact data for acrylic and cotton only, and tuned the core radius for each of
+the eight samples. A chart of several symmetries gets the mean of the samples' parameters, weighted
+by its quarter cells, so that a pure fabric has exactly its own. Any other yarn gets an estimate.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Fabric
+from knitcore.materials import Material, material
+from knitcore.phases import quarter_phases
+from knitcore.yarnlevel.samples import Sample, load_samples
+from knitcore.yarnlevel.yarn import YarnModel
+
+
+@dataclass(frozen=True)
+class ChartYarn:
+    """Yarn and loop length for a chart.
+
+    Parameters
+    ----------
+    yarn : the parameters.
+    loop_length_mm : mm of yarn per stitch.
+    provenance : where they come from, in one sentence.
+    estimated : whether contact data were estimated rather than measured and tuned.
+    """
+
+    yarn: YarnModel
+    loop_length_mm: float
+    provenance: str
+    estimated: bool
+
+
+def yarn_for(of: Material, chart: StitchChart) -> ChartYarn:
+    """Parameters of a material's yarn in a chart.
+
+    Raises
+    ------
+    InputError
+        If the material has no loop length, or neither a diameter nor a bending modulus.
+    """
+    shares = phase_shares(chart)
+    tuned = {s.fabric: s for s in load_samples() if s.yarn_id == of.identifier}
+    if tuned:
+        parts = [(share, tuned[f].yarn, tuned[f].loop_length_mm) for f, share in shares.items()]
+        words = "simulation parameters of the paper (Supplementary Table 7)"
+        if len(parts) > 1:
+            words += ", mean over the quarter cells"
+        return ChartYarn(*_mean(parts), provenance=words, estimated=False)
+    parts = [(share, *_estimate(of, fabric)) for fabric, share in shares.items()]
+    words = (
+        "estimated: radius and core from loop length and stitch area, contact stiffness from "
+        "bending modulus and radius, in the proportions of acrylic and cotton"
+    )
+    return ChartYarn(*_mean(parts), provenance=words, estimated=True)
+
+
+def phase_shares(chart: StitchChart) -> dict[Fabric, float]:
+    """Share of each pure fabric in the quarter cells of a repeat (absent ones are left out)."""
+    codes = quarter_phases(chart.repeat(), periodic=True)
+    counts = np.bincount(codes.ravel(), minlength=len(PHASES)) / codes.size
+    return {fabric: float(counts[fabric.phase]) for fabric in PHASES if counts[fabric.phase] > 0}
+
+
+def _mean(parts: list[tuple[float, YarnModel, float]]) -> tuple[YarnModel, float]:
+    def mean(name: str) -> float:
+        return sum(share * float(getattr(yarn, name)) for share, yarn, _ in parts)
+
+    logarithm = sum(share * math.log(yarn.contact_stiffness_n_per_mm3) for share, yarn, _ in parts)
+    model = YarnModel(
+        bending_modulus_n_mm2=mean("bending_modulus_n_mm2"),
+        contact_stiffness_n_per_mm3=math.exp(logarithm),
+        contact_exponent=mean("contact_exponent"),
+        radius_mm=mean("radius_mm"),
+        core_radius_mm=mean("core_radius_mm"),
+    )
+    return model, sum(share * length for share, _, length in parts)
+
+
+def _estimate(of: Material, fabric: Fabric) -> tuple[YarnModel, float]:
+    """Scale the paper's two yarns in the same fabric to this one."""
+    record = of.fabrics.get(fabric)
+    if record is None or record.loop_length_mm is None:
+        raise InputError(
+            "material",
+            f"{of.identifier} has no loop length for {fabric}.",
+            "Give a loop length, or use a material that has one.",
+        )
+    bending = of.yarn.bending_modulus_n_mm2
+    if bending is None:
+        raise InputError(
+            "material",
+            f"the bending modulus of {of.identifier} is not known.",
+            "Measure it (`knitcore measure bending`) and put it into the material.",
+        )
+    loop = record.loop_length_mm
+    side = math.sqrt(record.stitch_course_mm * record.stitch_wale_mm)
+    models = [s for s in load_samples() if s.fabric is fabric]
+    # loose fabrics have much yarn on much area: both lengths tell of the radius, neither alone
+    by_loop = _geometric_mean([s.yarn.radius_mm / s.loop_length_mm for s in models]) * loop
+    by_area = _geometric_mean([s.yarn.radius_mm / _side(s) for s in models]) * side
+    radius = math.sqrt(by_loop * by_area)
+    core = radius * sum(s.yarn.core_radius_mm / s.yarn.radius_mm for s in models) / len(models)
+    stiffness = of.yarn.compression_stiffness_n_per_mm3
+    if stiffness is None:
+        stiffness = (
+            _geometric_mean([_contact_number(s) for s in models]) * bending / (loop * radius**4)
+        )
+    exponent = of.yarn.compression_exponent
+    if exponent is None:
+        exponent = sum(s.yarn.contact_exponent for s in models) / len(models)
+    return YarnModel(bending, stiffness, exponent, radius, core), loop
+
+
+def _contact_number(sample: Sample) -> float:
+    """k r⁴ L / B: contact energy over bending energy, up to a factor."""
+    yarn = sample.yarn
+    return (
+        yarn.contact_stiffness_n_per_mm3
+        * yarn.radius_mm**4
+        * sample.loop_length_mm
+        / yarn.bending_modulus_n_mm2
+    )
+
+
+def _side(sample: Sample) -> float:
+    """Side of a square of the sample's stitch area, mm (measured)."""
+    record = material(sample.yarn_id).fabrics[sample.fabric]
+    return math.sqrt(record.stitch_course_mm * record.stitch_wale_mm)
+
+
+def _geometric_mean(values: list[float]) -> float:
+    return math.exp(sum(math.log(v) for v in values) / len(values))
