@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import multiprocessing
+import os
+import threading
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -130,6 +132,15 @@ def _adopt(flags: Any) -> None:
     """In a worker: remember where the cancellation flags are."""
     global _flags  # noqa: PLW0603 - the pool's initializer has no other place
     _flags = flags
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """A killed service cannot tell its workers to stop; they would wait for work for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _run(slot: int | None, job: Callable[..., T], args: tuple[Any, ...]) -> T:

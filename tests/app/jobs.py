@@ -31,3 +31,7 @@ def stubborn(seconds: float, *, cancelled: Callable[[], bool]) -> None:
 
 def die(*, cancelled: Callable[[], bool]) -> None:
     os._exit(3)
+
+
+def process_id(*, cancelled: Callable[[], bool]) -> int:
+    return os.getpid()

@@ -7,6 +7,9 @@ import signal
 import socket
 import subprocess
 import sys
+import textwrap
+import time
+from pathlib import Path
 
 import httpx2
 
@@ -27,6 +30,28 @@ def test_it_starts_on_a_free_port_and_stops_when_told() -> None:
     finally:
         process.kill()
         process.communicate()
+
+
+def test_killed_it_leaves_no_worker_behind() -> None:
+    code = (
+        "import os, asyncio; from app.compute import Compute; from tests.app import jobs\n"
+        "async def never(): return False\n"
+        "pool = Compute(workers=1, timeout_s=60)\n"
+        "print(asyncio.run(pool.run(never, jobs.process_id)), flush=True)\n"
+        "os.kill(os.getpid(), 9)\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", f"if __name__ == '__main__':\n{textwrap.indent(code, '    ')}"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    worker = Path(f"/proc/{int(result.stdout)}")
+    deadline = time.monotonic() + 30
+    while worker.exists() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not worker.exists()
 
 
 def test_a_port_in_use_is_told() -> None:
