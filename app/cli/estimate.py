@@ -22,7 +22,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import load_law
 from knitcore.materials import load_material_file, material
-from knitcore.materials.document import save_material_file
+from knitcore.materials.files import save_material_file
 from knitcore.mechanics.estimate import MeasuredSwatch
 
 

@@ -15,7 +15,7 @@ from app.operations.materials import (
 )
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
-from knitcore.materials.document import load_material_file
+from knitcore.materials.files import load_material_file
 
 FILE_KINDS = (".json", ".yaml", ".yml")
 

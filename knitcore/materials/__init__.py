@@ -1,13 +1,12 @@
 """Materials: yarns, their fabrics and laws; the paper's tables, and users' own files."""
 
-from knitcore.materials.document import (
-    LawDocument,
-    MaterialDocument,
+from knitcore.materials.document import LawDocument, MaterialDocument
+from knitcore.materials.figures import Figure, FigureTable, paper_figures
+from knitcore.materials.files import (
     load_material_file,
     material_from_mapping,
     save_material_file,
 )
-from knitcore.materials.figures import Figure, FigureTable, paper_figures
 from knitcore.materials.library import load_library, load_variants, material
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.uncertainty import Interval, LawUncertainty

@@ -27,7 +27,6 @@ from knitcore.materials.uncertainty import log_interval, normal_interval
 from knitcore.mechanics.composite import (
     FoldedRepeat,
     Layout,
-    Series,
     flat_rib_wale_wise,
     folded_repeat,
     layout_of,
@@ -35,7 +34,14 @@ from knitcore.mechanics.composite import (
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.mechanics.homogenisation import EffectiveSheet, homogenise
 from knitcore.mechanics.notes import composite_notes, fabric_notes
-from knitcore.mechanics.relaxed import RelaxedSize, SizeSource, tabled_size
+from knitcore.mechanics.relaxed import RelaxedSize, tabled_size
+from knitcore.mechanics.spread import (
+    MODEL_LOG_SD,
+    MODEL_POISSON_SD,
+    YARN_LEVEL_LOG_SD,
+    folded_log_sd,
+    phase_log_sd,
+)
 from knitcore.phases import QUARTERS_OF_CODE, quarter_phases, surroundings
 
 
@@ -51,18 +57,6 @@ class Provenance(StrEnum):
 
 PATCHWORK_SHARE = 0.9
 """A chart is a patchwork of pure fabrics if so many of its stitches have pure surroundings."""
-
-# Standard deviations of the logarithm that the models add to their materials' own.
-_MODEL_LOG_SD = {
-    "rib": 0.06 / 1.645,  # strain within 6 % in the study
-    "welt": 0.13 / 1.645,
-    "flat": 0.30 / 1.645,  # 2-D charts, course-wise above 0.05 N/mm
-    "patchwork": 0.05,
-}
-_SIZE_LOG_SD = {SizeSource.TABLE: 0.10, SizeSource.YARN_LEVEL: 0.10, SizeSource.GAUGE: 0.03}
-_UNFOLDING_LOG_SD = 0.4  # sigma_c is known for one yarn
-_MODEL_POISSON_SD = 0.05
-_YARN_LEVEL_LOG_SD = 0.17  # rms factor 1.18 against the published simulations
 
 
 @dataclass(frozen=True)
@@ -203,8 +197,8 @@ def _yarn_level(law: ConstitutiveLaw, relaxed: RelaxedSize | None) -> Prediction
     size = None if relaxed is None else (relaxed.course_mm, relaxed.wale_mm, relaxed.source)
     return _of_law(
         law,
-        log_sd=(_YARN_LEVEL_LOG_SD, _YARN_LEVEL_LOG_SD),
-        poisson_sd=(_MODEL_POISSON_SD, _MODEL_POISSON_SD),
+        log_sd=(YARN_LEVEL_LOG_SD, YARN_LEVEL_LOG_SD),
+        poisson_sd=(MODEL_POISSON_SD, MODEL_POISSON_SD),
         provenance=Provenance.YARN_LEVEL,
         method="law fitted to a yarn-level stretch of this repeat",
         size=size,
@@ -250,10 +244,9 @@ def _flat(
     codes = surroundings(repeat, periodic=True)
     pure = np.ptp(QUARTERS_OF_CODE.reshape(16, 4), axis=1) == 0
     patchwork = float(pure[codes].mean()) >= PATCHWORK_SHARE
-    model = _MODEL_LOG_SD["patchwork" if patchwork else "flat"]
+    model = MODEL_LOG_SD["patchwork" if patchwork else "flat"]
     log_sd = tuple(
-        math.hypot(model, _phase_log_sd(sheet.energy_shares[d.axis], material, d))
-        for d in Direction
+        math.hypot(model, phase_log_sd(sheet.energy_shares[d.axis], material, d)) for d in Direction
     )
     kind = "patchwork" if patchwork else "repeat"
     course, wale = (sheet.modulus_n_per_mm(d) for d in Direction)
@@ -282,8 +275,8 @@ def _corrected(
     opened = min(moduli[along.axis] / sheet.modulus_n_per_mm(along), 1.0)
     poisson = [sheet.poisson_yx, sheet.poisson_xy]
     poisson[along.axis] *= opened
-    model = _MODEL_LOG_SD[folded.layout]
-    log_sd = tuple(math.hypot(model, _folded_log_sd(folded, d, material)) for d in Direction)
+    model = MODEL_LOG_SD[folded.layout]
+    log_sd = tuple(math.hypot(model, folded_log_sd(folded, d, material)) for d in Direction)
     return _composite(
         sheet,
         moduli=moduli,
@@ -311,8 +304,8 @@ def _composite(
     notes: tuple[str, ...],
 ) -> Prediction:
     spread = [record.uncertainty for record in material.fabrics.values()]
-    yx_sd = math.hypot(_MODEL_POISSON_SD, max(s.poisson_yx for s in spread))
-    xy_sd = math.hypot(_MODEL_POISSON_SD, max(s.poisson_xy for s in spread))
+    yx_sd = math.hypot(MODEL_POISSON_SD, max(s.poisson_yx for s in spread))
+    xy_sd = math.hypot(MODEL_POISSON_SD, max(s.poisson_xy for s in spread))
     return Prediction(
         modulus_course_n_per_mm=moduli[0],
         modulus_wale_n_per_mm=moduli[1],
@@ -332,38 +325,6 @@ def _composite(
         relaxed_source="" if size is None else size.source,
         notes=notes,
     )
-
-
-def _phase_log_sd(
-    shares: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
-    material: Material,
-    direction: Direction,
-) -> float:
-    """Delta method: d ln Y / d ln C of a phase is its share of the energy."""
-    return math.hypot(
-        *(
-            float(shares[phase]) * material.record(PHASES[phase]).uncertainty.log_modulus(direction)
-            for phase in np.flatnonzero(shares > 0)
-        )
-    )
-
-
-def _folded_log_sd(folded: FoldedRepeat, direction: Direction, material: Material) -> float:
-    response = folded.response(direction)
-    size_sd = _SIZE_LOG_SD[folded.relaxed.source]
-    if isinstance(response, Series):
-        parts, fold = response.compliances()
-        total = float(parts.sum()) + fold
-        weights, fold_share = parts / total, fold / total
-        opening = response.unfolding_stress_n_per_mm * total if fold else math.inf
-        # d ln Y / d ln s_0 = 1 + (s_0 / sigma_c) / (s_0 / Y): a narrower rest leaves more fold.
-        terms = [size_sd * (1 + 1 / opening), _UNFOLDING_LOG_SD * fold_share]
-    else:
-        weights, terms = response.stiffnesses() / response.modulus_n_per_mm, [size_sd]
-    for part, weight in zip(response.parts, weights, strict=True):
-        spread = material.record(part.fabric).uncertainty
-        terms.append(float(weight) * spread.log_modulus(direction))
-    return math.hypot(*terms)
 
 
 def _inverse(interval: Interval) -> Interval:
