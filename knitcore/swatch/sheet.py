@@ -108,6 +108,15 @@ class Sheet:
         self._width = grid.natural_width.ravel()
         self._height = grid.natural_height.ravel()
 
+    def with_grid(self, grid: QuarterGrid) -> Sheet:
+        """A sheet of the same laws and model on another grid."""
+        return Sheet(grid, self.laws, self.model)
+
+    @property
+    def at_rest(self) -> Sheet:
+        """The same sheet without misfit of gauges: stable as laid out."""
+        return self.with_grid(self.grid.at_rest_as_laid_out)
+
     @property
     def reference(self) -> State:
         """The nodes as laid out."""

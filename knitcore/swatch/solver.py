@@ -43,7 +43,7 @@ class Tolerance:
     """
 
     relative: float = 1e-7
-    absolute_n: float = 1e-12
+    absolute_n: float = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,16 +254,14 @@ class PathSolver:
         self._factor_is_current = True
 
     def _try_factorise(self, lin: Linearisation) -> None:
-        """Factorise a tangent on the way, where it may be indefinite; else start from the rest
-        state's, which never is.
+        """Factorise a tangent on the way, where it may be indefinite; if so, that of the sheet at
+        rest, which never is.
         """
         try:
             self._factorise(lin)
         except IndefiniteTangentError:
-            try:
-                self._factorise(self.sheet.linearise(self.sheet.reference))
-            except IndefiniteTangentError:
-                raise StepError("The sheet is unstable even as laid out.") from None
+            at_rest = self.sheet.at_rest
+            self._factorise(at_rest.linearise(at_rest.reference))
             self._factor_is_current = False
 
     def _solve(self, lin: Linearisation, force: Array, relative: float) -> Array:
