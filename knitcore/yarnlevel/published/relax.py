@@ -12,7 +12,13 @@ from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.published.walk import Walk, free_constraints, is_knitted
+from knitcore.yarnlevel.published.walk import (
+    Walk,
+    free_constraints,
+    has_room,
+    is_clasped,
+    is_knitted,
+)
 from knitcore.yarnlevel.results import FloatArray, RelaxedCell
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -104,10 +110,16 @@ def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
             f"None of {len(found)} starts of {stitch.fabric} converged; give the stitch more yarn "
             "or a size nearer to its natural one."
         )
-    knitted = [m for m in converged if is_knitted(stitch, m)]
-    if not knitted:
+    clasped = [m for m in converged if is_clasped(stitch, m.unknowns)]
+    if not clasped:
         raise UnravelledError(f"Every minimum found of {stitch.fabric} has lost its clasps.")
-    return min(knitted, key=lambda m: m.energy_n_mm)
+    roomy = [m for m in clasped if has_room(stitch, m)]
+    if not roomy:
+        raise ConvergenceError(
+            f"The {stitch.fabric} is jammed: its yarn is pressed to the core. Give it more yarn, a "
+            "smaller core, or a stiffer shell."
+        )
+    return min(roomy, key=lambda m: m.energy_n_mm)
 
 
 def relaxed_cell(

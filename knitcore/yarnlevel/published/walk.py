@@ -29,21 +29,30 @@ def free_constraints(
 
 
 def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
-    """Whether the two strands of the crossover still hold each other, core outside core.
+    """Whether the strands hold each other and no core is pressed into another."""
+    return is_clasped(stitch, minimum.unknowns) and has_room(stitch, minimum)
+
+
+def is_clasped(stitch: Stitch, unknowns: FloatArray) -> bool:
+    """Whether the two strands of the crossover still hold each other.
 
     In their common frame the strands make half a turn about each other, A bulging towards E1 (see
     :mod:`~knitcore.yarnlevel.published.shape`); passing through each other would turn that around.
     """
-    controls = stitch.controls(minimum.unknowns)
+    controls = stitch.controls(unknowns)
     strand_b, strand_a = controls[0], controls[2].copy()
-    strand_a[:, 1] -= minimum.unknowns[-1]
+    strand_a[:, 1] -= unknowns[-1]
     if stitch.fabric.wale_odd:
         strand_a[:, 2] *= -1.0
     apart = bernstein(np.array([0.0, 0.5, 1.0])) @ (strand_a - strand_b)
     middle, turn = apart[1], apart[2] - apart[0]
     along = strand_a[-1] + strand_b[-1] - strand_a[0] - strand_b[0]
-    clasped = float(np.cross(middle, turn) @ along) > 0.0
-    return clasped and minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
+    return float(np.cross(middle, turn) @ along) > 0.0
+
+
+def has_room(stitch: Stitch, minimum: Minimum) -> bool:
+    """Whether every core is outside every other."""
+    return minimum.evaluation.closest_mm > 2.0 * stitch.yarn.core_radius_mm
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,15 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from knitcore.errors import InputError
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.minimise import minimise
-from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.published.relax import lowest, relax_published
 from knitcore.yarnlevel.published.shape import unknown_names
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.published.walk import free_constraints, is_knitted
+from knitcore.yarnlevel.published.walk import free_constraints, is_clasped, is_knitted
 from knitcore.yarnlevel.samples import load_samples, sample
 
 SAMPLES = load_samples()
@@ -125,6 +125,29 @@ def test_impossible_stitches_are_refused(field, arguments):
     assert refusal.value.field == field
 
 
+def test_jammed_unravelled_and_unfinished_stitches_are_no_results():
+    known = sample("acrylic", "rib")
+    stitch = Stitch(known.fabric, known.yarn)
+    start = first_shapes(stitch, known.loop_length_mm, 1)[0]
+    good = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
+    assert lowest(stitch, [good]) is good
+    thick = replace(known.yarn, core_radius_mm=0.501 * good.evaluation.closest_mm)
+    with pytest.raises(ConvergenceError, match="jammed"):
+        lowest(Stitch(known.fabric, thick), [good])
+    with pytest.raises(ConvergenceError, match="starts"):
+        lowest(stitch, [replace(good, converged=False)])
+    swapped = good.unknowns.copy()
+    swapped[unknown_names(known.fabric).index("tilt")] *= -1.0
+    with pytest.raises(UnravelledError):
+        lowest(stitch, [replace(good, unknowns=swapped)])
+
+
+def test_a_size_beyond_the_yarn_is_no_result():
+    known = sample("cotton", "stockinette")
+    with pytest.raises(ConvergenceError, match="natural"):
+        relax_published("stockinette", known.yarn, 12.28, cell_course_mm=9.0, starts=1)
+
+
 @pytest.mark.parametrize("fabric", list(Fabric))
 def test_strands_that_passed_through_each_other_are_noticed(fabric):
     known = sample("acrylic", fabric)
@@ -134,4 +157,5 @@ def test_strands_that_passed_through_each_other_are_noticed(fabric):
     assert is_knitted(stitch, minimum)
     swapped = minimum.unknowns.copy()
     swapped[unknown_names(fabric).index("tilt")] *= -1.0
+    assert not is_clasped(stitch, swapped)
     assert not is_knitted(stitch, replace(minimum, unknowns=swapped))
