@@ -27,7 +27,8 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     from app.main import create_app
 
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s %(message)s")
-    logging.getLogger("websockets").setLevel(logging.WARNING)
+    for library in ("websockets", "skfem", "alembic"):
+        logging.getLogger(library).setLevel(logging.WARNING)
     listener = _listen(settings)
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
     name = f"[{shown}]" if ":" in shown else shown
