@@ -28,10 +28,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import paper_figures
 from knitcore.mechanics.elastica import Parity
+
+_FEWEST_POINTS = 5
 
 MATERIALS = ("acrylic", "cotton")
 """Yarns whose RS geometry the paper gives (tables 15 and 16)."""
@@ -76,6 +81,45 @@ class SegmentGeometry:
                 "angle_rad", f"{self.angle_rad} cannot be used.", "Give 0 < phi <= pi / 2."
             )
 
+    @classmethod
+    def from_curve(cls, parity: Parity, curve_mm: ArrayLike) -> SegmentGeometry:
+        """From the centre line of a segment, e.g. of a relaxed stitch of the yarn level.
+
+        Parameters
+        ----------
+        curve_mm : (points, 2) along the pull and out of the plane of the cloth, from one entangled
+            region to the next; the third coordinate is projected away, as in the paper.
+
+        Raises
+        ------
+        InputError
+            If there are fewer than 5 points or they describe no segment.
+        """
+        points = np.asarray(curve_mm, dtype=float)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < _FEWEST_POINTS:
+            raise InputError(
+                "curve_mm",
+                f"has the shape {points.shape}.",
+                f"Give at least {_FEWEST_POINTS} points of 2 coordinates.",
+            )
+        steps = np.diff(points, axis=0)
+        length, chord = float(np.linalg.norm(steps, axis=1).sum()), points[-1] - points[0]
+        separation = float(np.linalg.norm(chord))
+        if not (np.isfinite(length) and 0 < separation < length):
+            raise InputError("curve_mm", "describes no segment.", "Give a curved centre line.")
+        # Seen so that the chord rises along the pull; the ends' tangents by one-sided differences.
+        along = chord / separation
+        across = np.array([-along[1], along[0]])
+        rising = 1.0 if chord[0] * chord[1] >= 0 else -1.0
+        ends = [
+            _end_tangent(points) @ across,
+            _end_tangent(points[::-1]) @ across * (1 if parity is Parity.EVEN else -1),
+        ]
+        slope = float(np.mean(ends)) * rising
+        if parity is Parity.EVEN:
+            return cls(parity, separation, length, abs(slope))
+        return cls(parity, separation, length, slope, math.atan2(abs(chord[1]), abs(chord[0])))
+
     @property
     def delta(self) -> float:
         """The dimensionless slack of the rigidity formulas."""
@@ -93,6 +137,13 @@ class SegmentGeometry:
         if self.angle_rad is None:
             return 180 * scale / self.slope**2
         return 12 * scale * (1 + self.slope / math.tan(self.angle_rad))
+
+
+def _end_tangent(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit tangent at the first point, from it into the curve (second order)."""
+    tangent = -1.5 * points[0] + 2 * points[1] - 0.5 * points[2]
+    unit: NDArray[np.float64] = tangent / np.linalg.norm(tangent)
+    return unit
 
 
 def stitch_modulus_n_per_mm(

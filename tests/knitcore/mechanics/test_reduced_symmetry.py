@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from knitcore.errors import InputError
@@ -112,3 +113,34 @@ def test_other_yarns_and_bending_moduli_are_refused():
         rs_fabrics("lace-bamboo")
     with pytest.raises(InputError, match="B > 0"):
         SegmentGeometry(Parity.EVEN, 2.2, 4.1, 1.0).rigidity_n_per_mm(0.0)
+
+
+def test_an_arch_is_measured():
+    """A circular arc of 1 rad: chord 2 R sin ½, length R, end slope sin ½."""
+    angle = np.linspace(-0.5, 0.5, 400)
+    curve = 3.0 * np.column_stack([np.sin(angle), np.cos(angle)])
+    found = SegmentGeometry.from_curve(Parity.EVEN, curve)
+    assert found.separation_mm == pytest.approx(6 * math.sin(0.5))
+    assert found.length_mm == pytest.approx(3.0, rel=1e-5)
+    assert found.slope == pytest.approx(math.sin(0.5), rel=1e-4)
+    assert found.angle_rad is None
+
+
+@pytest.mark.parametrize("flip", [(1, 1), (-1, 1), (1, -1), (-1, -1)])
+def test_an_s_curve_is_measured_from_any_side(flip):
+    """z = x + a sin(2 pi x): chord at 45 degrees, ends steeper than it."""
+    x = np.linspace(0, 1, 2000)
+    amplitude = 0.1
+    curve = np.column_stack([x, x + amplitude * np.sin(2 * np.pi * x)]) * flip
+    found = SegmentGeometry.from_curve(Parity.ODD, curve)
+    rise = 1 + 2 * np.pi * amplitude
+    assert found.angle_rad == pytest.approx(math.pi / 4)
+    assert found.separation_mm == pytest.approx(math.sqrt(2))
+    assert found.slope == pytest.approx(math.sin(math.atan(rise) - math.pi / 4), rel=1e-3)
+    assert found.length_mm > found.separation_mm
+
+
+def test_curves_that_are_no_segments_are_refused():
+    for bad in (np.zeros((3, 2)), np.zeros((9, 3)), np.zeros((9, 2)), np.eye(9)[:, :2] * np.nan):
+        with pytest.raises(InputError, match="curve_mm"):
+            SegmentGeometry.from_curve(Parity.EVEN, bad)
