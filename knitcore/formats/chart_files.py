@@ -1,23 +1,29 @@
-"""Reading a chart from a file: text, PNG (one pixel a stitch) or the project's JSON."""
+"""Reading a chart from a file of any kind that holds one."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-import numpy as np
-from PIL import Image, UnidentifiedImageError
-
-from knitcore.chart import StitchChart, check_size
+from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.formats.design import FORMAT as DESIGN_FORMAT
+from knitcore.formats.design import VERSION as DESIGN_VERSION
+from knitcore.formats.design import read_design
+from knitcore.formats.png import read_png
+from knitcore.formats.written_reader import looks_written, read_rows
+
+__all__ = ["DESIGN_FORMAT", "DESIGN_VERSION", "MAX_FILE_BYTES", "read_chart"]
 
 MAX_FILE_BYTES = 16_000_000
-DESIGN_FORMAT = "knitcore-design"
-DESIGN_VERSION = 1
 
 
 def read_chart(path: str | Path) -> StitchChart:
-    """The chart in a ``.txt``, ``.png`` or ``.json`` file.
+    """The chart in a file.
+
+    Parameters
+    ----------
+    path : ``.txt`` (K/P lines or written rows), ``.png`` (one pixel a stitch), ``.json`` (a
+        design) or ``.k`` / ``.knitout`` (a knitout program).
 
     Raises
     ------
@@ -25,13 +31,20 @@ def read_chart(path: str | Path) -> StitchChart:
         If the file is missing, too large, of another kind, or does not hold what its name says.
     """
     file = Path(path)
-    readers = {".txt": _read_text, ".png": _read_png, ".json": _read_design}
+    readers = {
+        ".txt": _read_text,
+        ".png": read_png,
+        ".json": lambda file: read_design(file).to_chart(),
+        ".k": _read_knitout,
+        ".knitout": _read_knitout,
+    }
     reader = readers.get(file.suffix.lower())
     if reader is None:
         raise InputError(
             "chart",
             f"{file.name} is of no kind that holds a chart.",
-            "Use a .txt file of K/P lines, a .png with one pixel a stitch, or a .json design.",
+            "Use a .txt file of K/P lines or written rows, a .png with one pixel a stitch, a .json"
+            " design or a .k knitout program.",
         )
     if not file.is_file():
         raise InputError("chart", f"there is no file {file}.", "Check the path.")
@@ -43,46 +56,20 @@ def read_chart(path: str | Path) -> StitchChart:
 
 
 def _read_text(file: Path) -> StitchChart:
+    text = _text(file)
+    return read_rows(text) if looks_written(text) else StitchChart.parse(text)
+
+
+def _read_knitout(file: Path) -> StitchChart:
+    from knitcore.formats.knitout_reader import knitted_chart
+
+    return knitted_chart(_text(file)).chart
+
+
+def _text(file: Path) -> str:
     try:
-        return StitchChart.parse(file.read_text(encoding="utf-8"))
+        return file.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise InputError(
-            "chart", f"{file.name} is not UTF-8 text.", "Save it as plain text of K and P."
+            "chart", f"{file.name} is not UTF-8 text.", "Save it as plain text."
         ) from None
-
-
-def _read_png(file: Path) -> StitchChart:
-    """Dark pixels are purls (the dots of a printed chart), light or transparent ones knits."""
-    try:
-        with Image.open(file, formats=["PNG"]) as image:
-            check_size(image.height, image.width)  # before any pixel is decoded
-            flat = Image.new("RGBA", image.size, "white")
-            flat.alpha_composite(image.convert("RGBA"))
-            return StitchChart(np.asarray(flat.convert("L"))[::-1] < 128)
-    except (UnidentifiedImageError, OSError, SyntaxError):
-        raise InputError(
-            "chart", f"{file.name} is not a readable PNG.", "Export it again as PNG."
-        ) from None
-
-
-def _read_design(file: Path) -> StitchChart:
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
-        raise InputError(
-            "chart", f"{file.name} is not valid JSON ({error}).", "Export the design again."
-        ) from None
-    if not isinstance(content, dict) or content.get("format") != DESIGN_FORMAT:
-        raise InputError(
-            "chart", f"{file.name} is not a design.", f'A design says "format": "{DESIGN_FORMAT}".'
-        )
-    if content.get("version") != DESIGN_VERSION:
-        raise InputError(
-            "version",
-            f"{file.name} is of version {content.get('version')!r}.",
-            f"This program reads version {DESIGN_VERSION}.",
-        )
-    text = content.get("chart")
-    if not isinstance(text, str):
-        raise InputError("chart", f"{file.name} holds no chart text.", "Export the design again.")
-    return StitchChart.parse(text)

@@ -1,0 +1,112 @@
+"""The project file: one design as versioned JSON.
+
+::
+
+    {"format": "knitcore-design", "version": 1, "name": "Cuff", "material": "acrylic",
+     "chart": "KPKP\\nPKPK", "note": ""}
+
+Only ``format``, ``version`` and ``chart`` (K/P lines, top row first) are needed. The schema is
+:func:`design_schema`; older versions are brought up to date by :data:`MIGRATIONS`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+
+FORMAT: Final = "knitcore-design"
+VERSION: Final = 1
+MAX_TEXT = 1_200_000
+
+MIGRATIONS: dict[int | None, Callable[[dict[str, Any]], dict[str, Any]]] = {}
+"""From each older version to the next one. Version 1 is the first, so there is none yet."""
+
+
+class DesignFile(BaseModel):
+    """A design as a file holds it."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, title="Knitcore design")
+
+    format: Literal["knitcore-design"] = FORMAT
+    version: Literal[1] = VERSION
+    name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
+    material: str | None = Field(
+        None,
+        min_length=1,
+        max_length=80,
+        pattern=r"^[^\x00-\x1f]+$",
+        description="Library id or name of a material file.",
+    )
+    chart: str = Field(max_length=MAX_TEXT, description="K/P lines, the top row first, face side.")
+    note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$")
+
+    def to_chart(self) -> StitchChart:
+        """The chart itself."""
+        return StitchChart.parse(self.chart)
+
+
+def write_design(design: DesignFile) -> str:
+    """The text of the file."""
+    return json.dumps(design.model_dump(exclude_none=True), indent=1, ensure_ascii=False) + "\n"
+
+
+def read_design(file: Path) -> DesignFile:
+    """The design in a file.
+
+    Raises
+    ------
+    InputError
+        If it is not JSON, no design, or of a version that this program does not know.
+    """
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise InputError(
+            "chart", f"{file.name} is not valid JSON ({error}).", "Export the design again."
+        ) from None
+    return design_from_mapping(content, file.name)
+
+
+def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
+    """A design from the content of such a file, of any version up to ours."""
+    if not isinstance(content, Mapping) or content.get("format") != FORMAT:
+        raise InputError(
+            "chart", f"{name} is not a design.", f'A design says "format": "{FORMAT}".'
+        )
+    data = dict(content)
+    while (version := _version(data)) != VERSION:
+        if version not in MIGRATIONS:
+            raise InputError(
+                "version",
+                f"{name} is of version {data.get('version')!r}.",
+                f"This program reads versions up to {VERSION}.",
+            )
+        data = MIGRATIONS[version](data)
+    if not isinstance(data.get("chart"), str):
+        raise InputError("chart", f"{name} holds no chart text.", "Export the design again.")
+    try:
+        design = DesignFile.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise InputError(where, f"{name}: {first['msg']}.", "See the published schema.") from None
+    design.to_chart()
+    return design
+
+
+def _version(data: Mapping[str, Any]) -> int | None:
+    version = data.get("version")
+    return version if type(version) is int else None
+
+
+def design_schema() -> dict[str, Any]:
+    """The JSON schema of the project file."""
+    schema = DesignFile.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,0 +1,182 @@
+"""A page of simple shapes, and its two printers: SVG and PDF.
+
+Lengths in mm; the origin is the top left corner, y points down.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from xml.etree import ElementTree as ET
+
+MM_PER_POINT = 25.4 / 72.0
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle; ``fill`` and ``stroke`` are ``#rrggbb`` or None."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    fill: str | None = None
+    stroke: str | None = None
+    line_width: float = 0.2
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Straight lines of one width and colour, each from (x, y) to (x, y)."""
+
+    lines: tuple[tuple[float, float, float, float], ...]
+    stroke: str
+    line_width: float
+
+
+@dataclass(frozen=True)
+class Dots:
+    """Filled circles of one size and colour."""
+
+    centres: tuple[tuple[float, float], ...]
+    radius: float
+    fill: str
+
+
+@dataclass(frozen=True)
+class Label:
+    """A line of text on its baseline; ``anchor`` is start, middle or end."""
+
+    x: float
+    y: float
+    text: str
+    size: float = 3.0
+    anchor: str = "start"
+
+
+Shape = Box | Strokes | Dots | Label
+
+
+@dataclass(frozen=True)
+class Page:
+    """Shapes on paper, in the order in which they are drawn."""
+
+    width: float
+    height: float
+    shapes: tuple[Shape, ...]
+
+
+def to_svg(page: Page, title: str) -> str:
+    """The page as an SVG document."""
+    root = ET.Element(
+        "svg",
+        xmlns="http://www.w3.org/2000/svg",
+        width=f"{page.width:g}mm",
+        height=f"{page.height:g}mm",
+        viewBox=f"0 0 {page.width:g} {page.height:g}",
+        role="img",
+    )
+    ET.SubElement(root, "title").text = title
+    ET.SubElement(root, "rect", width=f"{page.width:g}", height=f"{page.height:g}", fill="#ffffff")
+    for shape in page.shapes:
+        _svg(root, shape)
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _svg(root: ET.Element, shape: Shape) -> None:
+    match shape:
+        case Box():
+            box = ET.SubElement(root, "rect", x=f"{shape.x:.3f}", y=f"{shape.y:.3f}")
+            box.set("width", f"{shape.width:.3f}")
+            box.set("height", f"{shape.height:.3f}")
+            box.set("fill", shape.fill or "none")
+            if shape.stroke:
+                box.set("stroke", shape.stroke)
+                box.set("stroke-width", f"{shape.line_width:g}")
+        case Strokes():
+            drawn = "".join(f"M{a:.3f} {b:.3f}L{c:.3f} {d:.3f}" for a, b, c, d in shape.lines)
+            path = ET.SubElement(root, "path", d=drawn, fill="none", stroke=shape.stroke)
+            path.set("stroke-width", f"{shape.line_width:g}")
+        case Dots():
+            group = ET.SubElement(root, "g", fill=shape.fill)
+            for x, y in shape.centres:
+                ET.SubElement(group, "circle", cx=f"{x:.3f}", cy=f"{y:.3f}", r=f"{shape.radius:g}")
+        case Label():
+            text = ET.SubElement(
+                root,
+                "text",
+                {"text-anchor": shape.anchor, "font-size": f"{shape.size:g}"},
+                x=f"{shape.x:.3f}",
+                y=f"{shape.y:.3f}",
+                fill="#222222",
+            )
+            text.set("font-family", "Helvetica, Arial, sans-serif")
+            text.text = shape.text
+
+
+def to_pdf(pages: Iterable[Page], title: str) -> bytes:
+    """The pages as a PDF document, the same bytes every time."""
+    from reportlab.pdfgen.canvas import Canvas
+
+    buffer = io.BytesIO()
+    canvas = Canvas(buffer, invariant=1, pageCompression=1)
+    canvas.setTitle(title)
+    for page in pages:
+        canvas.setPageSize((page.width / MM_PER_POINT, page.height / MM_PER_POINT))
+        canvas.scale(1 / MM_PER_POINT, 1 / MM_PER_POINT)
+        for shape in page.shapes:
+            _pdf(canvas, shape, page.height)
+        canvas.showPage()
+    canvas.save()
+    return buffer.getvalue()
+
+
+def _pdf(canvas: object, shape: Shape, top: float) -> None:
+    from reportlab.lib.colors import HexColor
+    from reportlab.pdfgen.canvas import Canvas
+
+    assert isinstance(canvas, Canvas)  # noqa: S101 - reportlab has no types
+    match shape:
+        case Box():
+            if shape.fill:
+                canvas.setFillColor(HexColor(shape.fill))
+            if shape.stroke:
+                canvas.setStrokeColor(HexColor(shape.stroke))
+                canvas.setLineWidth(shape.line_width)
+            canvas.rect(
+                shape.x,
+                top - shape.y - shape.height,
+                shape.width,
+                shape.height,
+                fill=int(shape.fill is not None),
+                stroke=int(shape.stroke is not None),
+            )
+        case Strokes():
+            canvas.setStrokeColor(HexColor(shape.stroke))
+            canvas.setLineWidth(shape.line_width)
+            canvas.lines([(a, top - b, c, top - d) for a, b, c, d in shape.lines])
+        case Dots():
+            canvas.setFillColor(HexColor(shape.fill))
+            _circles(canvas, shape.centres, shape.radius, top)
+        case Label():
+            canvas.setFillColor(HexColor("#222222"))
+            canvas.setFont("Helvetica", shape.size)
+            write = {
+                "start": canvas.drawString,
+                "middle": canvas.drawCentredString,
+                "end": canvas.drawRightString,
+            }
+            write[shape.anchor](shape.x, top - shape.y, shape.text)
+
+
+def _circles(
+    canvas: object, centres: Sequence[tuple[float, float]], radius: float, top: float
+) -> None:
+    from reportlab.pdfgen.canvas import Canvas
+
+    assert isinstance(canvas, Canvas)  # noqa: S101 - reportlab has no types
+    path = canvas.beginPath()
+    for x, y in centres:
+        path.circle(x, top - y, radius)
+    canvas.drawPath(path, fill=1, stroke=0)
