@@ -11,6 +11,7 @@ from typing import Any
 import click
 from pydantic import BaseModel
 
+from app.operations.predict import GaugeInput
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -32,6 +33,30 @@ def choice(names: type[StrEnum]) -> click.Choice[str]:
 direction_option = click.option(
     "--direction", required=True, type=choice(Direction), help="Along rows, or along columns."
 )
+
+
+def gauge_options(function: Decorated) -> Decorated:
+    """--stitches-per-10-cm and --rows-per-10-cm."""
+    help_text = "Counted on your own relaxed swatch; corrects the draw-in of ribs and welts."
+    stitches = click.option("--stitches-per-10-cm", type=float, help=help_text)
+    rows = click.option("--rows-per-10-cm", type=float, help="Give both or neither.")
+    return stitches(rows(function))
+
+
+def resolve_gauge(stitches: float | None, rows: float | None) -> GaugeInput | None:
+    """The gauge that was given, if any.
+
+    Raises
+    ------
+    InputError
+        If only one of the two was given.
+    """
+    if stitches is None and rows is None:
+        return None
+    if stitches is None or rows is None:
+        missing = "stitches-per-10-cm" if stitches is None else "rows-per-10-cm"
+        raise InputError(missing, "is missing.", "Give both, or neither.")
+    return GaugeInput(stitches_per_10_cm=stitches, rows_per_10_cm=rows)
 
 
 def chart_argument(function: Decorated) -> Decorated:

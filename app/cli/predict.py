@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import click
 
-from app.cli.common import chart_argument, emit, json_option, material_option, resolve_chart
+from app.cli.common import (
+    chart_argument,
+    emit,
+    gauge_options,
+    json_option,
+    material_option,
+    resolve_chart,
+    resolve_gauge,
+)
 from app.cli.materials import resolve_material
 from app.operations.predict import PredictResult, predict_chart
 
@@ -12,10 +20,19 @@ from app.operations.predict import PredictResult, predict_chart
 @click.command("predict")
 @chart_argument
 @material_option
+@gauge_options
 @json_option
-def command(chart: str, size: str | None, material: str, as_json: bool) -> None:
+def command(
+    chart: str,
+    size: str | None,
+    material: str,
+    stitches_per_10_cm: float | None,
+    rows_per_10_cm: float | None,
+    as_json: bool,
+) -> None:
     """Moduli, Poisson's ratios and extensibility of CHART."""
-    result = predict_chart(resolve_chart(chart, size), resolve_material(material))
+    gauge = resolve_gauge(stitches_per_10_cm, rows_per_10_cm)
+    result = predict_chart(resolve_chart(chart, size), resolve_material(material), gauge)
     emit(result, _text(result), as_json=as_json)
 
 
@@ -35,7 +52,14 @@ def _text(r: PredictResult) -> str:
             f"extensibility   course {r.extensibility_course_mm_per_n:.2f} mm/N   "
             f"wale {r.extensibility_wale_mm_per_n:.2f} mm/N",
             f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
+            f"stitch at rest  {_relaxed(r)}",
             f"source          {r.provenance} ({r.method})",
             *(f"note: {note}" for note in r.notes),
         ]
     )
+
+
+def _relaxed(r: PredictResult) -> str:
+    if r.relaxed_course_mm is None or r.relaxed_wale_mm is None:
+        return "not certified: knit a swatch and give its gauge"
+    return f"{r.relaxed_course_mm:.2f} x {r.relaxed_wale_mm:.2f} mm ({r.relaxed_source})"

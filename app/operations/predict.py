@@ -10,7 +10,23 @@ from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
 from knitcore.materials import material as find_material
 from knitcore.mechanics.prediction import predict
+from knitcore.mechanics.relaxed import RelaxedSize
 from knitcore.segments import segment_map
+
+IntervalResult = tuple[float, float]
+
+
+class GaugeInput(BaseModel):
+    """A swatch's gauge: what you counted on your own relaxed cloth."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    stitches_per_10_cm: float = Field(gt=0, le=1000, allow_inf_nan=False)
+    rows_per_10_cm: float = Field(gt=0, le=1000, allow_inf_nan=False)
+
+    def relaxed_size(self) -> RelaxedSize:
+        """The relaxed size of one stitch."""
+        return RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
 
 
 class PredictRequest(BaseModel):
@@ -20,6 +36,9 @@ class PredictRequest(BaseModel):
 
     chart: ChartInput
     material: str = Field(max_length=80, examples=["acrylic"])
+    gauge: GaugeInput | None = Field(
+        None, description="Corrects the draw-in of ribs and welts; from a table otherwise."
+    )
 
 
 class SegmentCountsResult(BaseModel):
@@ -30,7 +49,7 @@ class SegmentCountsResult(BaseModel):
 
 
 class PredictResult(BaseModel):
-    """Effective elastic constants of the whole chart at small strain."""
+    """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
 
     rows: int
     columns: int
@@ -41,10 +60,21 @@ class PredictResult(BaseModel):
     poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
-    modulus_course_interval_n_per_mm: tuple[float, float] = Field(description="90 % interval.")
-    modulus_wale_interval_n_per_mm: tuple[float, float]
+    modulus_course_interval_n_per_mm: IntervalResult
+    modulus_wale_interval_n_per_mm: IntervalResult
+    poisson_yx_interval: IntervalResult
+    poisson_xy_interval: IntervalResult
+    modulus_course_bounds_n_per_mm: IntervalResult = Field(description="Reuss and Voigt.")
+    modulus_wale_bounds_n_per_mm: IntervalResult
+    shear_modulus_n_per_mm: float = Field(description="An assumption unless it was calibrated.")
+    relaxed_course_mm: float | None = Field(
+        description="Mean width of a stitch at rest; null where it is not certified."
+    )
+    relaxed_wale_mm: float | None
+    relaxed_source: str
     provenance: str = Field(
-        description="measured; yarn level; composite, corrected; or composite, stretched state only"
+        description="measured; yarn level; estimated; composite, corrected; or composite, "
+        "stretched state only"
     )
     method: str
     notes: list[str]
@@ -52,12 +82,14 @@ class PredictResult(BaseModel):
 
 def predict_request(request: PredictRequest) -> PredictResult:
     """The prediction that a request asks for."""
-    return predict_chart(to_chart(request.chart), find_material(request.material))
+    return predict_chart(to_chart(request.chart), find_material(request.material), request.gauge)
 
 
-def predict_chart(chart: StitchChart, material: Material) -> PredictResult:
+def predict_chart(
+    chart: StitchChart, material: Material, gauge: GaugeInput | None = None
+) -> PredictResult:
     """The prediction of any chart and material."""
-    found = predict(chart, material)
+    found = predict(chart, material, relaxed=gauge.relaxed_size() if gauge else None)
     segments = segment_map(chart)
     counts = {direction: segments.counts(direction) for direction in Direction}
     return PredictResult(
@@ -72,11 +104,19 @@ def predict_chart(chart: StitchChart, material: Material) -> PredictResult:
         extensibility_wale_mm_per_n=found.extensibility_wale_mm_per_n,
         modulus_course_interval_n_per_mm=_pair(found.modulus_course_interval),
         modulus_wale_interval_n_per_mm=_pair(found.modulus_wale_interval),
+        poisson_yx_interval=_pair(found.poisson_yx_interval),
+        poisson_xy_interval=_pair(found.poisson_xy_interval),
+        modulus_course_bounds_n_per_mm=_pair(found.modulus_course_bounds),
+        modulus_wale_bounds_n_per_mm=_pair(found.modulus_wale_bounds),
+        shear_modulus_n_per_mm=found.shear_modulus_n_per_mm,
+        relaxed_course_mm=found.relaxed_course_mm,
+        relaxed_wale_mm=found.relaxed_wale_mm,
+        relaxed_source=found.relaxed_source,
         provenance=found.provenance,
         method=found.method,
         notes=list(found.notes),
     )
 
 
-def _pair(interval: Interval) -> tuple[float, float]:
+def _pair(interval: Interval) -> IntervalResult:
     return interval.low, interval.high
