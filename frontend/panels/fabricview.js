@@ -10,8 +10,15 @@ import { ApiError, api } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
+import { FrameGovernor } from "./framegovernor.js";
 
-const DELAY_MS = 160;
+/** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
+const DELAY_MS = 650;
+/** How long news takes to reach the viewer and be drawn. */
+const DRAW_MS = 1500;
+const START_MS = 6000;
+/** After a stroke another one often follows. */
+const BETWEEN_STROKES_MS = 600;
 
 /**
  * @param {HTMLElement} host
@@ -23,6 +30,24 @@ export function fabricview(host, studio) {
   const status = h("div", { class: "fabric-status", role: "status" });
   const caption = h("div", { class: "fabric-caption" });
   host.append(frame, caption, status);
+
+  const governor = new FrameGovernor();
+  frame.addEventListener("load", () => {
+    if (!frame.contentWindow || !shown) return;
+    governor.govern(frame.contentWindow);
+    governor.wake(START_MS);
+  });
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let holding;
+  studio.document.onChange(() => {
+    governor.hold(true);
+    clearTimeout(holding);
+    const release = () => {
+      if (studio.document.painting) holding = setTimeout(release, BETWEEN_STROKES_MS);
+      else governor.hold(false);
+    };
+    holding = setTimeout(release, BETWEEN_STROKES_MS);
+  });
 
   let sending = false;
   let again = false;
@@ -51,6 +76,7 @@ export function fabricview(host, studio) {
     try {
       const { url } = await api.view(studio.designId, wish());
       status.replaceChildren();
+      governor.wake(DRAW_MS);
       studio.online.value = true;
       if (shown !== url) {
         shown = url;
@@ -74,7 +100,10 @@ export function fabricview(host, studio) {
   };
   const soon = () => {
     clearTimeout(timer);
-    timer = setTimeout(send, DELAY_MS);
+    timer = setTimeout(() => {
+      if (studio.document.painting) soon();
+      else void send();
+    }, DELAY_MS);
   };
   const now = () => {
     clearTimeout(timer);

@@ -86,7 +86,7 @@ export function overlaybar(host, studio, view) {
     h("div", { class: "chips" },
       h("div", { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
         ...chips.slice(0, 3),
-        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Modulus"),
+        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Moduli"),
         ...chips.slice(3, 6),
         h("span", { class: "chip-divider", "aria-hidden": "true" }),
         ...chips.slice(6)),

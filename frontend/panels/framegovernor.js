@@ -1,0 +1,83 @@
+/**
+ * Keeps the 3D viewer from taking the page's time. The viewer draws without pause and shares our
+ * thread; where there is no GPU one of its frames takes longer than a brush stroke may. So its frames
+ * wait while somebody paints, and on a slow machine they are drawn only when there is news.
+ */
+
+/** Frames further apart than this on average mean a slow machine. */
+const SLOW_MS = 45;
+
+export class FrameGovernor {
+  /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */ #waiting = new Map();
+  /** @type {((callback: FrameRequestCallback) => number) | null} */ #request = null;
+  #next = 1;
+  #awakeUntil = 0;
+  #held = false;
+  #lastFrame = 0;
+  /** Mean time between frames, in ms; begins neither slow nor fast. */
+  #pace = SLOW_MS;
+
+  /**
+   * Take over the frames of a viewer that was just loaded.
+   *
+   * @param {Window} viewer of our own origin
+   */
+  govern(viewer) {
+    this.#waiting.clear();
+    const own = viewer.requestAnimationFrame.bind(viewer);
+    const cancel = viewer.cancelAnimationFrame.bind(viewer);
+    this.#request = own;
+    viewer.requestAnimationFrame = (callback) => {
+      if (this.#open()) return own((time) => this.#frame(callback, time));
+      // Numbers of our own lie far from the browser's.
+      const id = -this.#next++;
+      this.#waiting.set(id, callback);
+      return id;
+    };
+    viewer.cancelAnimationFrame = (id) => {
+      if (!this.#waiting.delete(id)) cancel(id);
+    };
+    for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "resize"]) {
+      viewer.addEventListener(name, () => this.wake(1200), { passive: true });
+    }
+  }
+
+  /**
+   * There is something new to draw.
+   *
+   * @param {number} milliseconds for how long at least
+   */
+  wake(milliseconds) {
+    this.#awakeUntil = Math.max(this.#awakeUntil, performance.now() + milliseconds);
+    this.#release();
+  }
+
+  /** Let frames wait, or go on. @param {boolean} held */
+  hold(held) {
+    this.#held = held;
+    if (!held) this.#release();
+  }
+
+  #open() {
+    return !this.#held && (performance.now() < this.#awakeUntil || this.#pace < SLOW_MS);
+  }
+
+  #release() {
+    if (!this.#open() || !this.#request) return;
+    const waiting = [...this.#waiting.values()];
+    this.#waiting.clear();
+    for (const callback of waiting) this.#request((time) => this.#frame(callback, time));
+  }
+
+  /**
+   * @param {FrameRequestCallback} callback
+   * @param {number} time
+   */
+  #frame(callback, time) {
+    const gap = time - this.#lastFrame;
+    // Several callbacks share a frame, and pauses of our own making are no measure.
+    if (gap > 0 && gap < 2000) this.#pace += 0.1 * (gap - this.#pace);
+    this.#lastFrame = time;
+    callback(time);
+  }
+}
