@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
@@ -42,6 +43,7 @@ def relax_published(
     convention: Convention = Convention.PUBLISHED,
     *,
     starts: int = STARTS,
+    cancel: Callable[[], bool] | None = None,
 ) -> RelaxedCell:
     """Shape of least energy of one stitch of a pure fabric.
 
@@ -53,6 +55,7 @@ def relax_published(
     cell_course_mm, cell_wale_mm : sizes of the stitch to hold, mm; None leaves one free of force.
     convention : factors of the energy.
     starts : how many starts to try; the lowest result is kept.
+    cancel : asked before every start; True stops with CancelledError.
 
     Raises
     ------
@@ -62,6 +65,8 @@ def relax_published(
         If no start converged, or the yarn locks before it gets to a size asked for.
     UnravelledError
         If the strands of the lowest shape are no longer clasped.
+    CancelledError
+        If ``cancel`` says so.
     """
     stitch = Stitch(Fabric.parse(fabric), yarn, Convention(convention))
     check_loop(yarn, loop_length_mm)
@@ -73,7 +78,10 @@ def relax_published(
     shapes = first_shapes(stitch, loop_length_mm, starts)
     stitch.evaluate(shapes[0])  # compiles; not part of the time
     began = time.process_time()
-    found = [_settle(stitch, shape, loop_length_mm, constraints) for shape in shapes]
+    found = []
+    for shape in shapes:
+        check_cancelled(cancel)
+        found.append(_settle(stitch, shape, loop_length_mm, constraints))
     best = lowest(stitch, found)
     evaluations = sum(m.evaluations for m in found)
     if cell_course_mm is not None or cell_wale_mm is not None:
@@ -94,6 +102,12 @@ def relax_published(
     )
     notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
     return relaxed_cell(stitch, best, seconds, evaluations, notes)
+
+
+def check_cancelled(cancel: Callable[[], bool] | None) -> None:
+    """Raise CancelledError if the caller wants to stop."""
+    if cancel is not None and cancel():
+        raise CancelledError("The relaxation was stopped.")
 
 
 def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:

@@ -14,7 +14,12 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.minimise import Minimum
-from knitcore.yarnlevel.published.relax import STARTS, relax_published, relaxed_cell
+from knitcore.yarnlevel.published.relax import (
+    STARTS,
+    check_cancelled,
+    relax_published,
+    relaxed_cell,
+)
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.published.walk import Walk
@@ -39,10 +44,10 @@ def sweep_published(
     convention: Convention = Convention.PUBLISHED,
     *,
     slide_quenching: SlideQuenching | None = None,
-    max_stress_n_per_mm: float = math.inf,
+    max_stress_n_per_mm: float | None = None,
     starts: int = STARTS,
     zero: RelaxedCell | None = None,
-    progress: Callable[[float], None] | None = None,
+    cancel: Callable[[], bool] | None = None,
 ) -> Sweep:
     """Stretch a stitch from its force-free state, then back, and keep the lower of both ways.
 
@@ -55,9 +60,9 @@ def sweep_published(
     points : number of points, the force-free one included.
     slide_quenching : which stretches of yarn keep their length at rest; by default the paper's
         choice (seed along the course only).
-    max_stress_n_per_mm : the stretch ends with the first point beyond this stress.
+    max_stress_n_per_mm : the stretch ends with the first point beyond this stress, if given.
     zero : the force-free state, if it is known.
-    progress : called with the share that is done; may raise to stop.
+    cancel : asked before every point; True stops with CancelledError.
 
     Returns
     -------
@@ -68,6 +73,8 @@ def sweep_published(
     ------
     InputError, ConvergenceError, UnravelledError
         As :func:`relax_published`.
+    CancelledError
+        If ``cancel`` says so.
     """
     kind, along = Fabric.parse(fabric), Direction(direction)
     if not (math.isfinite(max_strain) and max_strain > 0):
@@ -75,7 +82,9 @@ def sweep_published(
     if points < 2:
         raise InputError("points", f"{points} make no sweep.", "Give 2 or more.")
     if zero is None:
-        zero = relax_published(kind, yarn, loop_length_mm, convention=convention, starts=starts)
+        zero = relax_published(
+            kind, yarn, loop_length_mm, convention=convention, starts=starts, cancel=cancel
+        )
     stitch = Stitch(kind, yarn, Convention(convention))
     if slide_quenching is None:
         slide_quenching = SlideQuenching.default(kind, along)
@@ -88,27 +97,26 @@ def sweep_published(
 
     out = [_Point(walk.minimise_at(*_held(along, float(sizes[0])), zero.state), 0.0, 0)]
     width = zero.cell_mm(along.other)
+    limit = math.inf if max_stress_n_per_mm is None else max_stress_n_per_mm
     for i, size in enumerate(sizes[1:], start=1):
+        check_cancelled(cancel)
         point = _go(walk, along, out, float(size))
         if point is None:
             strain = max_strain * (i - 1) / (points - 1)
             notes.append(f"The yarn locks: no equilibrium found beyond a strain of {strain:.3g}.")
             break
         out.append(point)
-        if progress is not None:
-            progress(i / (2 * points))
-        if point.minimum.force_n[along.axis] / width > max_stress_n_per_mm:
+        if point.minimum.force_n[along.axis] / width > limit:
             break
     replaced = 0
     for i in range(len(out) - 2, 0, -1):
+        check_cancelled(cancel)
         back = _go(walk, along, out[i + 1 : i + 2], float(sizes[i]))
         if back is not None and back.minimum.energy_n_mm < out[i].minimum.energy_n_mm * (
             1 - _LOWER
         ):
             out[i] = replace(out[i], minimum=back.minimum, seconds=out[i].seconds + back.seconds)
             replaced += 1
-        if progress is not None:
-            progress(1.0 - i / (2 * points))
     if replaced:
         notes.append(f"At {replaced} of {len(out)} points the way back was lower.")
     cells = [relaxed_cell(stitch, p.minimum, p.seconds, p.evaluations) for p in out]

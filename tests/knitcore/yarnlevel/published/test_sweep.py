@@ -108,15 +108,16 @@ def test_a_locked_yarn_ends_the_stretch_and_says_so():
 
 
 def test_a_stretch_can_be_stopped():
-    seen = []
+    asked = []
 
-    def stop(share):
-        seen.append(share)
-        raise CancelledError("enough")
+    def at_the_third_time():
+        asked.append(1)
+        return len(asked) == 3
 
+    # asked before the only start and before each of two points
     with pytest.raises(CancelledError):
-        stretch("cotton", "rib", "course", 0.2, 5, progress=stop)
-    assert len(seen) == 1
+        stretch("cotton", "rib", "course", 0.2, 5, cancel=at_the_third_time)
+    assert len(asked) == 3
 
 
 def test_impossible_stretches_are_refused():
