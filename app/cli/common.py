@@ -100,3 +100,17 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
 def emit(result: BaseModel, text: str, *, as_json: bool) -> None:
     """Print a result as one JSON object, or as text for people."""
     click.echo(result.model_dump_json() if as_json else text)
+
+
+def check_folder(path: Path | None, field: str) -> None:
+    """Refuse a file to write in a folder that does not exist, before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder.
+    """
+    if path is not None and not path.parent.is_dir():
+        raise InputError(
+            field, f"{path.parent} is no folder.", "Name a file in a folder that exists."
+        )

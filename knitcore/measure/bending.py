@@ -130,6 +130,11 @@ def measure_bending(
                     "Give length_mm, or a photo of the whole hanging yarn.",
                 )
             notes.append(f"{name}: the yarn reaches the photo's border; is its end missing?")
+        if line.next_largest > 0.2:
+            notes.append(
+                f"{name}: something else stands out, {line.next_largest:.0%} of the yarn's area;"
+                " is the yarn in pieces?"
+            )
         photos.append(
             _fit_photo(name, line, linear_density_g_per_m, length_mm=length, px_per_mm=px_per_mm)
         )

@@ -45,6 +45,7 @@ class Centreline:
     arc_px : (n,) arc length from the clamp, evenly spaced.
     width_px : median width of the yarn.
     tip_in_photo : whether the free end ends inside the photo.
+    next_largest : area of the next largest thing that stands out, as a share of the yarn's.
     """
 
     x_px: Array
@@ -52,6 +53,7 @@ class Centreline:
     arc_px: Array
     width_px: float
     tip_in_photo: bool
+    next_largest: float
 
     @property
     def length_px(self) -> float:
@@ -120,7 +122,7 @@ def trace_centreline(grey: Array, *, name: str = "photo") -> Centreline:
         )
     factor = min(1.0, WORKING_PIXELS / max(grey.shape))
     small = rescale(grey, factor, anti_aliasing=True) if factor < 1 else grey
-    mask = _yarn_mask(small, name)
+    mask, next_largest = _yarn_mask(small, name)
     path, width = _ribbon_axis(mask, name)
     if path[0, 0] > path[-1, 0]:
         path = path[::-1]
@@ -132,10 +134,13 @@ def trace_centreline(grey: Array, *, name: str = "photo") -> Centreline:
     end = path[-1]
     edge = 0.5 * width
     inside = edge < end[0] < mask.shape[0] - 1 - edge and 2 < end[1] < mask.shape[1] - 3
-    return Centreline(x / factor, y / factor, arc / factor, width / factor, bool(inside))
+    return Centreline(
+        x / factor, y / factor, arc / factor, width / factor, bool(inside), next_largest
+    )
 
 
-def _yarn_mask(grey: Array, name: str) -> Mask:
+def _yarn_mask(grey: Array, name: str) -> tuple[Mask, float]:
+    """Where the yarn is, and the next largest area over its own."""
     border = np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
     ground = float(np.median(border))
     low, high = np.percentile(grey, [0.5, 99.5])
@@ -146,22 +151,27 @@ def _yarn_mask(grey: Array, name: str) -> Mask:
     mask: Mask = signal > threshold_otsu(signal)
     if mask.mean() > 0.6:
         raise _no_yarn(name, f"{mask.mean():.0%} of the photo stands out")
-    mask = _largest(mask, name)
+    whole = mask
+    mask, _ = _largest(mask, name)
     # Fibres are thinner than half a yarn: opening removes them and leaves the yarn.
     area, length = float(mask.sum()), float(skeletonize(mask).sum())
     if length**2 < MINIMUM_SLENDERNESS * area:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
-    return _largest(isotropic_opening(mask, max(1.0, 0.3 * area / length)), name)
+    radius = max(1.0, 0.3 * area / length)
+    _, next_largest = _largest(isotropic_opening(whole, radius), name)
+    return _largest(isotropic_opening(mask, radius), name)[0], next_largest
 
 
-def _largest(mask: Mask, name: str) -> Mask:
-    regions = regionprops(label(mask, connectivity=2))
+def _largest(mask: Mask, name: str) -> tuple[Mask, float]:
+    """The largest piece alone, and the area of the next one over its own."""
+    regions = sorted(
+        regionprops(label(mask, connectivity=2)), key=lambda region: region.area, reverse=True
+    )
     if not regions:
         raise _no_yarn(name, "nothing stands out from the background")
-    best = max(regions, key=lambda region: region.area)
     alone = np.zeros_like(mask)
-    alone[tuple(best.coords.T)] = True
-    return alone
+    alone[tuple(regions[0].coords.T)] = True
+    return alone, float(regions[1].area / regions[0].area) if len(regions) > 1 else 0.0
 
 
 def _no_yarn(name: str, why: str) -> InputError:

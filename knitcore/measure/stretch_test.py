@@ -104,6 +104,16 @@ def misread_forces(force: Array) -> NDArray[np.bool_]:
     return result
 
 
+def until_unloaded(run: StretchRun) -> StretchRun:
+    """A pull up to its largest stress, if it is let go or tears afterwards."""
+    peak = int(np.argmax(run.stress))
+    lowest = float(run.stress[peak:].min(initial=np.inf))
+    if peak < MINIMUM_POINTS or lowest > (1 - FALL_SHARE) * run.stress[peak]:
+        return run
+    part = slice(0, peak + 1)
+    return StretchRun(run.name, run.strain_along[part], run.strain_across[part], run.stress[part])
+
+
 def check_run(run: StretchRun, *, first_row: int = 1) -> None:
     """Refuse a run that no fit could make sense of.
 

@@ -27,6 +27,7 @@ from knitcore.measure.stretch_test import (
     StretchTest,
     check_run,
     misread_forces,
+    until_unloaded,
 )
 
 Array = NDArray[np.float64]
@@ -145,17 +146,37 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
                 stress=force / width_mm,
             )
         )
+    runs = _sound(runs, notes)
     if not runs:
         raise InputError(
             name,
             "has no usable pull. " + " ".join(notes),
             "Give at least one pull that is tracked from rest to the largest force.",
         )
-    for run in runs:
-        check_run(run)
     description = np.asarray(file.attrs.get("description", "")).ravel()
     text = _text(description[0]) if description.size else ""
     return StretchTest(name, text, tuple(runs), (width_mm,) * len(runs), tuple(notes))
+
+
+def _sound(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
+    """The pulls that a fit can use, without their unloading; refuses if there is none."""
+    sound: list[StretchRun] = []
+    refused: InputError | None = None
+    for whole in runs:
+        run = until_unloaded(whole)
+        try:
+            check_run(run)
+        except InputError as error:
+            refused = error
+            notes.append(f"{run.name} is left out: {error.problem}")
+            continue
+        if run.length < whole.length:
+            after = whole.length - run.length
+            notes.append(f"{run.name}: {after} frames after the unloading are left out.")
+        sound.append(run)
+    if refused is not None and not sound:
+        raise refused
+    return sound
 
 
 def _tracked(
@@ -238,7 +259,7 @@ def _read_csv(path: Path) -> StretchTest:
             f"cannot be read as CSV ({str(error).strip()}).",
             f"Give a header line {', '.join(CSV_COLUMNS)} and comma-separated numbers.",
         ) from None
-    table.columns = [re.sub(r"[\s-]+", "_", str(c).strip().lower()) for c in table.columns]
+    table.columns = [_column_name(str(c)) for c in table.columns]
     _check_header(path.name, list(table.columns))
     values = {column: _column(path.name, column, table[column]) for column in CSV_COLUMNS}
     labels = (
@@ -256,6 +277,12 @@ def _read_csv(path: Path) -> StretchTest:
         runs.append(run)
         widths.append(width)
     return StretchTest(path.name, "", tuple(runs), tuple(widths))
+
+
+def _column_name(text: str) -> str:
+    """The documented name of a column: ``Force (N)`` and ``force`` are ``force_n``."""
+    name = re.sub(r"[^\w%]+", "_", text.strip().lower()).strip("_")
+    return {"force": "force_n", "width": "width_mm"}.get(name, name)
 
 
 def _check_header(name: str, columns: list[str]) -> None:

@@ -127,6 +127,41 @@ def test_any_number_of_videos(tmp_path: Path, videos: int) -> None:
     assert fit_files(files[0], files[1]).runs[X] == max(1, videos - 1)
 
 
+def test_an_unloading_at_the_end_of_a_video_is_cut_off(tmp_path: Path) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
+    with h5py.File(files[0], "r+") as file:
+        forces, points = file["video2/forces"][()], file["video2/traj"][()]
+        del file["video2/forces"], file["video2/traj"]
+        file["video2/forces"] = np.concatenate([forces, forces[::-1]])
+        file["video2/traj"] = np.concatenate([points, points[:, :, ::-1]], axis=2)
+    fit = fit_files(files[0], files[1], reduction=Reduction.PUBLISHED)
+    close_to(fit.law, LAW, 1e-3)
+    assert any("after the unloading" in note for note in fit.notes)
+
+
+def test_a_senseless_pull_is_left_out_and_only_senseless_pulls_are_refused(tmp_path: Path) -> None:
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
+    with h5py.File(files[0], "r+") as file:
+        file["video3/forces"][:] = 0.0
+    fit = fit_files(files[0], files[1])
+    assert fit.runs[X] == 3
+    assert any("video3 is left out" in note for note in fit.notes)
+    with h5py.File(files[0], "r+") as file:
+        for video in (2, 4, 5):
+            file[f"video{video}/forces"][:] = 0.0
+    with pytest.raises(InputError, match=r"course\.h5, video5.*never rises"):
+        fit_files(files[0], files[1])
+
+
+def test_names_of_columns_may_carry_units_in_brackets(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d) for d in (X, Y)]
+    for file in files:
+        lines = file.read_text().splitlines()
+        lines[0] = "Run,Strain along,Strain across,Force (N),Width [mm]"
+        file.write_text("\n".join(lines))
+    close_to(fit_files(files[0], files[1]).law, LAW, 0.02)
+
+
 # -- bad input -----------------------------------------------------------------------------------
 
 
