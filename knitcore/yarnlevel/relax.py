@@ -245,6 +245,8 @@ class _Search:
         self.reports: list[StartReport] = []
         self.errors: list[KnitcoreError] = []
         self.evaluations = 0
+        self.mirrored: Minimum | None = None
+        self.mirrored_energy = float("nan")
 
     def try_starts(self, starts: Sequence[Start]) -> None:
         for start in starts:
@@ -268,6 +270,8 @@ class _Search:
                 options=options, cancel=self.cancel,
             )  # fmt: skip
             self.evaluations += mirrored.evaluations
+            self.mirrored = mirrored
+            self.mirrored_energy = mirrored.terms.energy / small.stitches
             energy = CellEnergy(self.cell, self.yarn, self.lengths, self.convention)
             state = tiled_state(small, mirrored.state, self.cell)
             state = _shaken_safely(energy, state)
@@ -313,11 +317,28 @@ class _Search:
         return min(settled, key=lambda m: m.terms.energy)
 
     def notes(self) -> tuple[str, ...]:
+        """What the user should know: higher minima, and how far the mirrored state is off."""
+        notes = []
+        best = self.best()
         energies = [m.terms.energy for m in self.found]
         others = sum(e > min(energies) * (1.0 + SAME_ENERGY) for e in energies)
-        if not others:
-            return ()
-        return (f"{others} of {len(self.reports)} starts ended in a higher minimum.",)
+        if others:
+            notes.append(f"{others} of {len(self.reports)} starts ended in a higher minimum.")
+        failed = len(self.reports) - len(self.found)
+        if failed:
+            notes.append(f"{failed} of {len(self.reports)} starts failed.")
+        if not best.converged:
+            notes.append("The solver stopped before its tolerance.")
+        if self.mirrored is not None:
+            energy = best.terms.energy / self.cell.stitches
+            lower = 1.0 - energy / self.mirrored_energy
+            if lower > SAME_ENERGY:
+                wide, high = (float(v) for v in best.state[-2:] / self.mirrored.state[-2:])
+                notes.append(
+                    f"The free shape differs from the mirrored one: its energy is {lower:.1%} "
+                    f"lower, a stitch {wide:.2f} times as wide and {high:.2f} times as high."
+                )
+        return tuple(notes)
 
 
 def _shaken_safely(energy: CellEnergy, state: Array) -> Array:

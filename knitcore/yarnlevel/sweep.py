@@ -107,7 +107,7 @@ def _held(
         raise ConvergenceError("the yarn is pulled straight.")
     began = time.process_time()
     target = np.array([size_mm, size_mm])
-    options = Options(tolerance=1e-8 if cell.cell.stitches <= 4 else 1e-6)
+    options = Options(tolerance=1e-8 if cell.cell.stitches <= 4 else 1e-6, iterations=150)
     found: Minimum = minimise(
         cell.energy, cell.state, tension=cell.tension_n,
         fixed=(COURSE if along is Direction.COURSE else WALE,), target=target,

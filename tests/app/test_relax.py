@@ -1,0 +1,74 @@
+"""``relax`` and ``sweep`` on the command line and over REST."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+
+FIELDS = {
+    "cell_course_mm", "cell_wale_mm", "energy_n_mm", "bending_share", "contact_share",
+    "yarn_length_mm", "seconds", "evaluations", "converged",
+}  # fmt: skip
+
+
+def _json(*arguments: str) -> dict[str, Any]:
+    result = CliRunner().invoke(main, [*arguments, "--json"])
+    assert result.exit_code == 0, result.stderr
+    told: dict[str, Any] = json.loads(result.stdout)
+    return told
+
+
+def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
+    told = _json("relax", "stockinette", "--size", "4x4", "--material", "cotton")
+    assert set(told) >= FIELDS
+    assert told["converged"]
+    assert told["energy_n_mm"] == pytest.approx(0.387, rel=5e-3)
+    chart = {"fabric": "stockinette", "columns": 4, "rows": 4}
+    body = {"chart": chart, "material": "cotton", "centre_lines": True}
+    answer = client.post("/api/v1/relax", json=body).json()
+    assert answer["cell_course_mm"] == pytest.approx(told["cell_course_mm"])
+    assert len(answer["centre_lines_mm"]) == 1
+
+
+def test_relax_in_the_published_branch() -> None:
+    told = _json(
+        "relax", "stockinette", "--size", "2x2", "--material", "cotton", "--branch", "published"
+    )
+    assert told["branch"] == "published"
+    assert told["energy_n_mm"] == pytest.approx(0.401, rel=0.03)
+
+
+def test_the_published_branch_refuses_mixed_charts(client: TestClient) -> None:
+    body = {"chart": "KKP", "material": "cotton", "branch": "published"}
+    answer = client.post("/api/v1/relax", json=body)
+    assert answer.status_code == 422
+    assert "four pure fabrics" in answer.text
+
+
+def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
+    arguments = ["relax", "rib", "--size", "2x2", "--material", "acrylic"]
+    result = CliRunner().invoke(main, [*arguments, "--loop-length-mm", "5"])
+    assert result.exit_code == 2
+    assert "too short" in result.stderr
+    assert "at least" in result.stderr
+
+
+def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
+    told = _json(
+        "sweep", "stockinette", "--size", "2x2", "--material", "cotton", "--direction", "course",
+        "--max-strain", "0.2", "--points", "5",
+    )  # fmt: skip
+    assert told["strain"] == pytest.approx([0.0, 0.05, 0.1, 0.15, 0.2])
+    assert len(told["stress_n_per_mm"]) == len(told["transverse_strain"]) == 5
+    assert told["law"]["modulus_course_n_per_mm"] == pytest.approx(0.298, rel=0.2)
+    body = {
+        "chart": "K", "material": "cotton", "direction": "course", "max_strain": 0.2, "points": 5,
+    }  # fmt: skip
+    answer = client.post("/api/v1/sweep", json=body).json()
+    assert answer["stress_n_per_mm"] == pytest.approx(told["stress_n_per_mm"], rel=1e-6, abs=1e-6)

@@ -1,0 +1,69 @@
+"""Stretching on splines: forces against energies, agreement with the rest state, refusals."""
+
+import numpy as np
+import pytest
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.yarnlevel.lawfit import fit_law
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.samples import sample
+from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.sweep import sweep
+
+
+@pytest.fixture(scope="module")
+def zero():
+    entry = sample("cotton", "stockinette")
+    return relax(StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, grid=SplineGrid(16, 5))
+
+
+@pytest.mark.parametrize("direction", list(Direction))
+def test_force_is_the_derivative_of_the_energy(zero, direction):
+    curve = sweep(zero, direction, 0.2, points=41)
+    assert curve.converged
+    assert curve.jumps == ()
+    size = np.array([cell.cell_mm(direction) for cell in curve.cells])
+    force = curve.stress_n_per_mm * zero.cell_mm(direction.other)
+    by_energy = np.gradient(curve.energy_n_mm, size)
+    np.testing.assert_allclose(force[2:-2], by_energy[2:-2], rtol=2e-2, atol=1e-3)
+    work = np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(size))
+    assert work == pytest.approx(curve.energy_n_mm[-1] - curve.energy_n_mm[0], rel=5e-3)
+
+
+def test_strain_begins_at_rest_and_the_fabric_narrows(zero):
+    curve = sweep(zero, "course", 0.3, points=7)
+    assert curve.strain[0] == pytest.approx(0.0, abs=1e-9)
+    assert curve.strain[-1] == pytest.approx(0.3, abs=1e-9)
+    assert curve.stress_n_per_mm[0] == pytest.approx(0.0, abs=1e-5)
+    assert np.all(np.diff(curve.stress_n_per_mm) > 0)
+    assert np.all(np.diff(curve.transverse_strain) < 0)
+
+
+def test_the_law_of_a_sample_is_near_the_published_simulation(zero):
+    """Table 12, cotton stockinette, simulation: Y_x .298, Y_y .536 N/mm; the freer spline is
+    up to 20 % softer."""
+    course = sweep(zero, "course", 0.9, points=30, max_stress_n_per_mm=0.35, back=False)
+    wale = sweep(zero, "wale", 0.5, points=30, max_stress_n_per_mm=0.35, back=False)
+    law = fit_law(course, wale).law
+    assert law.modulus_course == pytest.approx(0.298, rel=0.2)
+    assert law.modulus_wale == pytest.approx(0.536, rel=0.2)
+
+
+def test_yarn_pulled_straight_ends_the_sweep_with_a_note(zero):
+    curve = sweep(zero, "course", 5.0, points=12, back=False)
+    assert len(curve.cells) < 12
+    assert any("Stopped at strain" in note for note in curve.notes)
+    assert max(c.cell_course_mm for c in curve.cells) < 12.28
+
+
+@pytest.mark.parametrize("strain", [0.0, -0.1, float("nan"), float("inf")])
+def test_strains_that_are_no_stretch_are_refused(zero, strain):
+    with pytest.raises(InputError, match="max_strain"):
+        sweep(zero, "course", strain)
+
+
+def test_one_point_is_refused(zero):
+    with pytest.raises(InputError, match="points"):
+        sweep(zero, "course", 0.1, points=1)

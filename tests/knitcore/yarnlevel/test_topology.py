@@ -1,0 +1,69 @@
+"""The certificate refuses steps on which yarn would meet yarn."""
+
+import numpy as np
+import pytest
+
+from knitcore.chart import StitchChart
+from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.start import start_state
+from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.yarn import YarnModel
+
+YARN = YarnModel(0.046, 6e-4, 2.4, 0.74, 0.1)
+REACH = 3.2 * YARN.radius_mm
+
+
+def _energy(text, kind, per_span=5):
+    cell = kind(StitchChart.parse(text), SplineGrid(16, per_span))
+    return CellEnergy(cell, YARN, np.full(cell.rows, 11.3), Convention.PUBLISHED)
+
+
+def _guard(energy, state):
+    curve = energy.curve(state)
+    pairs, _ = energy.pairs(curve, state, REACH)
+    return Guard.at(energy.cell, state, curve, pairs, REACH, 2 * YARN.radius_mm)
+
+
+@pytest.mark.parametrize(("text", "kind"), [("K", mirrored_cell), ("KP\nKK", plain_cell)])
+def test_a_step_through_the_yarn_is_cut_before_it_meets(text, kind):
+    """Knits turned into purls by pushing all yarn through the plane cross on the way."""
+    energy = _energy(text, kind)
+    state = start_state(energy.cell, 11.3, 0.6)
+    through = state.copy()
+    z = energy.cell.dof[..., 2][energy.cell.sign[..., 2] != 0]
+    through[z] *= -1.0
+    guard = _guard(energy, state)
+    allowed = guard.longest_step(through, energy.curve(through), 1e9)
+    assert 0.0 < allowed < 0.5
+    fine = _energy(text, kind, per_span=20)
+    for fraction in np.linspace(0.0, allowed, 9):
+        between = state + fraction * (through - state)
+        assert _guard(fine, between).min_distance_mm > 0.0
+
+
+def test_small_steps_and_rest_pass():
+    energy = _energy("K", mirrored_cell)
+    state = start_state(energy.cell, 11.3, 0.6)
+    guard = _guard(energy, state)
+    assert guard.longest_step(state, energy.curve(state), 1.0) == 1.0
+    moved = state + 0.005 * np.random.default_rng(0).standard_normal(len(state))
+    assert guard.longest_step(moved, energy.curve(moved), 1.0) == 1.0
+
+
+def test_the_cap_on_a_pair_holds():
+    energy = _energy("KP\nKK", plain_cell)
+    state = start_state(energy.cell, 11.3, 0.6)
+    guard = _guard(energy, state)
+    moved = state + 0.1 * np.random.default_rng(0).standard_normal(len(state))
+    fraction = guard.longest_step(moved, energy.curve(moved), 0.05)
+    after = _guard(energy, state + fraction * (moved - state))
+    old = {tuple(p): v for p, v in zip(guard.pairs.tolist(), guard.vectors, strict=True)}
+    change = [
+        np.linalg.norm(v - old[tuple(p)])
+        for p, v in zip(after.pairs.tolist(), after.vectors, strict=True)
+        if tuple(p) in old
+    ]
+    assert max(change) <= 0.05 + 1e-9
