@@ -167,6 +167,14 @@ def _check_percent(run: StretchRun, first_row: int) -> None:
             " in percent (%).",
             "Divide the strains by 100: 0.25 means 25 %.",
         )
+    widest = int(np.argmax(run.strain_across))
+    if run.strain_across[widest] > PERCENT_STRAIN:
+        raise InputError(
+            f"{run.name}, strain_across",
+            f"{run.strain_across[widest]:.4g} in row {widest + first_row} looks like a strain"
+            " in percent (%).",
+            "Divide the strains by 100: -0.05 means 5 % narrower.",
+        )
     if run.strain_across[narrowest] <= -1:
         raise InputError(
             f"{run.name}, strain_across",
@@ -189,6 +197,13 @@ def _check_stress(run: StretchRun, first_row: int) -> None:
             f"{run.name}, force",
             f"gives a stress of {peak:.3g} N/mm, more than yarn carries.",
             "Give the force in newton (not mN, gram or kgf) and the width in mm.",
+        )
+    pushed = int(np.argmin(run.stress))
+    if run.stress[pushed] < -0.5 * peak:
+        raise InputError(
+            f"{run.name}, force",
+            f"is compression in row {pushed + first_row} ({run.stress[pushed]:.3g} N/mm).",
+            "Give tension as a positive force in newton, zeroed before the pull.",
         )
     fall = np.maximum.accumulate(run.stress) - run.stress
     fallen = fall > FALL_SHARE * peak

@@ -35,6 +35,8 @@ Array = NDArray[np.float64]
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
 MAXIMUM_CSV_BYTES = 64 * 2**20
+MAXIMUM_PIXEL = 1e6
+MAXIMUM_FORCE_N = 1e6
 MAXIMUM_FRAMES = 2_000_000
 MAXIMUM_VIDEOS = 100
 _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
@@ -201,8 +203,8 @@ def _tracked(
     force, points = force[:frames], points[:, :, :frames]
     used = points[[_RIGHT, _LEFT, *gauge.points]]
     # A point that leaves the image sticks to its border.
-    lost = ~np.all(np.isfinite(used) & (used > 0), axis=(0, 1))
-    unread = ~np.isfinite(force)
+    lost = ~np.all((used > 0) & (used < MAXIMUM_PIXEL), axis=(0, 1))
+    unread = ~(np.abs(force) < MAXIMUM_FORCE_N)
     good = ~(lost | unread)
     good[good] = ~misread_forces(force[good])
     if good.sum() < max(MINIMUM_POINTS, 0.5 * frames):
