@@ -64,10 +64,13 @@ def test_under_load_the_flat_composite_comes_back():
     assert series.size_mm(0.0) == pytest.approx(series.relaxed_mm)
 
 
-def test_a_small_draw_in_only_scales():
-    series = folded(StitchChart.parse("KKKP"), material("acrylic")).along
+def test_a_repeat_wider_than_its_flat_composite_is_scaled():
+    yarn = material("acrylic")
+    series = folded_repeat(RIB22, yarn, RelaxedSize.from_gauge(20, 33)).along
     assert series.gap_mm == 0
-    assert series.size_mm(0.0) == pytest.approx(series.relaxed_mm)
+    assert series.size_mm(0.0) == pytest.approx(5.0)
+    flat = folded_repeat(RIB22, yarn, RelaxedSize.from_gauge(100 / series.flat_mm, 33)).along
+    np.testing.assert_allclose(series.strain(LOADS), flat.strain(LOADS))
 
 
 def test_a_gauge_is_as_good_as_the_table():
