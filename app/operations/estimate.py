@@ -22,6 +22,10 @@ from knitcore.mechanics.estimate import (
 from knitcore.mechanics.estimate_model import left_out, library_table
 
 
+MEASURED_LOG_SD = 0.1
+"""Of the moduli of a measured swatch in a saved material: the paper's median."""
+
+
 class SwatchInput(BaseModel):
     """A measured swatch of the yarn."""
 
@@ -178,7 +182,10 @@ def estimated_material(
 
 def _record(found: FabricEstimate, setting: str) -> FabricRecord:
     deviations = {
-        d: math.log(found.modulus[d].high / found.modulus[d].value) / Z_SCORE for d in Direction
+        d: MEASURED_LOG_SD
+        if found.measured
+        else math.log(found.modulus[d].high / found.modulus[d].value) / Z_SCORE
+        for d in Direction
     }
     return FabricRecord(
         fabric=found.fabric,
@@ -189,9 +196,11 @@ def _record(found: FabricEstimate, setting: str) -> FabricRecord:
         uncertainty=LawUncertainty(
             log_modulus_course=deviations[Direction.COURSE],
             log_modulus_wale=deviations[Direction.WALE],
-            poisson_yx=0.1,
-            poisson_xy=0.2,
-            source="yarns of the library left out",
+            poisson_yx=0.02 if found.measured else 0.1,
+            poisson_xy=0.02 if found.measured else 0.2,
+            source="assumed: the paper's median"
+            if found.measured
+            else "yarns of the library left out",
         ),
         origin=Origin.FITTED if found.measured else Origin.ESTIMATED,
         loop_length_mm=found.loop_length_mm,

@@ -130,26 +130,22 @@ def estimate_yarn(
     scale = np.log(bending_modulus_n_mm2 / length**3)
     own = _own_values(swatches, bending_modulus_n_mm2)
     estimate = predict_cells(table, own, measured, scale)
-    factors = interval_widths(tuple(s.fabric for s in swatches))
+    widths = interval_widths(tuple(s.fabric for s in swatches))
+    log_width = {name: widths[name] * estimate.deviation[name] for name in QUANTITIES}
+    log_width["strain"] = np.full((4, 2), widths["strain"])
     stitch = np.exp(table.stitch.mean(axis=0)) * length
     given = {s.fabric: s for s in swatches}
     fabrics = {}
     for i, fabric in enumerate(FABRICS):
         swatch = given.get(fabric)
         law = swatch.law if swatch else estimate.laws[i]
-
-        def intervals(
-            name: str, log_spread: Array, i: int = i, law: ConstitutiveLaw = law
-        ) -> dict[Direction, Estimate]:
-            widths = np.zeros(2) if measured[i, 0] else log_spread[i]
-            return {d: _interval(_value(law, d, name), float(widths[d.axis])) for d in DIRECTIONS}
-
+        width = {name: np.zeros(2) if swatch else log_width[name][i] for name in log_width}
         fabrics[fabric] = FabricEstimate(
             fabric=fabric,
-            strain_at_load=intervals("strain", np.full((4, 2), factors["strain"])),
-            modulus=intervals("modulus", factors["modulus"] * estimate.deviation["modulus"]),
-            alpha=intervals("alpha", factors["alpha"] * estimate.deviation["alpha"]),
-            beta=intervals("beta", factors["beta"] * estimate.deviation["beta"]),
+            strain_at_load=_intervals(law, "strain", width),
+            modulus=_intervals(law, "modulus", width),
+            alpha=_intervals(law, "alpha", width),
+            beta=_intervals(law, "beta", width),
             law=law,
             loop_length_mm=loops[fabric],
             stitch_course_mm=float(stitch[i, 0]),
@@ -181,9 +177,15 @@ def _value(law: ConstitutiveLaw, direction: Direction, name: str) -> float:
     return stiffening_constants(law, direction)[0 if name == "alpha" else 1]
 
 
-def _interval(value: float, log_width: float) -> Estimate:
-    factor = math.exp(log_width)
-    return Estimate(value, value / factor, value * factor)
+def _intervals(
+    law: ConstitutiveLaw, name: str, log_width: Mapping[str, Array]
+) -> dict[Direction, Estimate]:
+    """A law's value in both directions, with its interval."""
+    found = {}
+    for d in DIRECTIONS:
+        value, factor = _value(law, d, name), math.exp(log_width[name][d.axis])
+        found[d] = Estimate(value, value / factor, value * factor)
+    return found
 
 
 # -- what is given -------------------------------------------------------------------------------
