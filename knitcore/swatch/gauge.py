@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from knitcore.fabric import PHASES, Fabric
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.results import SwatchTest
-from knitcore.swatch.run import run_path
-from knitcore.swatch.sheet import Sheet, State
+from knitcore.swatch.run import Path, run_path
+from knitcore.swatch.sheet import Sheet
+from knitcore.swatch.solver import Equilibrium, Tolerance
 
 Array = NDArray[np.float64]
 
-RELAXATION_STEPS = 5
+RELAXATION_STAGES = 10
+BALANCED = Tolerance(absolute_n=1e-6)
+"""A free swatch has no clamp force to measure its residual by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +60,8 @@ def misfit(grid: QuarterGrid) -> Misfit:
 def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) -> SwatchTest:
     """The shape of a free swatch whose fabrics keep their own gauge (flat; it does not curl).
 
-    The rest sizes change from the common grid's to the natural ones in a few steps, so that the
-    solver follows the draw-in.
+    The smooth energy is tried first; where compressed regions make it unstable, the sheet's own
+    model with its tension field.
 
     Parameters
     ----------
@@ -75,14 +78,35 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
     middle = (grid.rows + 1) // 2 * (grid.columns + 1) + (grid.columns + 1) // 2
     fixed[middle] = True  # no drift
     fixed[middle - 1, 1] = True  # no turning
+    plain = replace(sheet.model, tension_field=False)
+    path = draw_in(sheet.with_model(plain), fixed, cancelled=cancelled)
+    if path.problem and sheet.model.tension_field:
+        path = draw_in(sheet, fixed, cancelled=cancelled)
+    return SwatchTest(
+        sheet=sheet,
+        states=path.states,
+        energy_n_mm=path.energies,
+        iterations=path.iterations,
+        converged=path.problem is None,
+        problem=path.problem,
+        seconds=path.seconds,
+    )
+
+
+def draw_in(
+    sheet: Sheet, fixed: NDArray[np.bool_], *, cancelled: Callable[[], bool] | None = None
+) -> Path:
+    """Change the rest sizes from the common grid's to the natural ones, some nodes held.
+
+    It goes in a few stages, so that the solver follows the motion.
+    """
+    grid = sheet.grid
     laid = grid.at_rest_as_laid_out
     state = sheet.reference
-    seconds, problem = 0.0, None
-    states: list[State] = []
-    energies: list[float] = []
-    iterations: list[int] = []
-    for stage in range(1, RELAXATION_STEPS + 1):
-        share = stage / RELAXATION_STEPS
+    found: list[Equilibrium] = []
+    seconds = 0.0
+    for stage in range(1, RELAXATION_STAGES + 1):
+        share = stage / RELAXATION_STAGES
         part = sheet.with_grid(
             QuarterGrid(
                 grid.column_lines,
@@ -92,22 +116,13 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
                 laid.natural_height ** (1 - share) * grid.natural_height**share,
             )
         )
-        held = state.corners if states else grid.corners
-        path = run_path(part, fixed, [held], start=state, cancelled=cancelled)
+        path = run_path(
+            part, fixed, [grid.corners], start=state, tolerance=BALANCED, cancelled=cancelled
+        )
         seconds += path.seconds
         if path.problem:
-            problem = f"Stage {stage} of {RELAXATION_STEPS}: {path.problem}"
-            break
+            problem = f"Draw-in, stage {stage} of {RELAXATION_STAGES}: {path.problem}"
+            return Path(tuple(found), problem, seconds)
+        found += path.found
         state = path.states[-1]
-        states.append(state)
-        energies.append(path.found[-1].energy)
-        iterations.append(path.found[-1].iterations)
-    return SwatchTest(
-        sheet=sheet,
-        states=tuple(states),
-        energy_n_mm=np.array(energies),
-        iterations=tuple(iterations),
-        converged=problem is None,
-        problem=problem,
-        seconds=seconds,
-    )
+    return Path(tuple(found), None, seconds)

@@ -158,6 +158,15 @@ class QuarterGrid:
         """The same grid without the misfit of the gauges."""
         return QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
 
+    @property
+    def has_misfit(self) -> bool:
+        """Whether a cell would like another size than it is laid out with."""
+        laid = self.at_rest_as_laid_out
+        return not (
+            np.allclose(laid.natural_width, self.natural_width, rtol=1e-12)
+            and np.allclose(laid.natural_height, self.natural_height, rtol=1e-12)
+        )
+
     @cached_property
     def corners(self) -> Array:
         """Positions (mm) of the cells' corners, row by row from the bottom, (n, 2)."""

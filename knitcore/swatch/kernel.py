@@ -24,7 +24,7 @@ from knitcore.mechanics.stiffening import EXTENSION_START
 
 Array = NDArray[np.float64]
 
-WRINKLED_SHARE = 1e-3
+WRINKLED_SHARE = 0.05
 """Share of the compressive energy that a wrinkled sheet keeps, so that its tangent has a bound."""
 
 # The edge of each triangle (its two corners), whether the edge runs course-wise, and the sign of

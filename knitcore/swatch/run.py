@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
 from knitcore.swatch.sheet import Sheet, State
-from knitcore.swatch.solver import Equilibrium, PathSolver, StepError
+from knitcore.swatch.solver import Equilibrium, PathSolver, StepError, Tolerance
 
 Array = NDArray[np.float64]
 
@@ -60,6 +60,7 @@ def run_path(
     targets: list[Array],
     *,
     start: State | None = None,
+    tolerance: Tolerance | None = None,
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Path:
@@ -71,7 +72,7 @@ def run_path(
         If ``cancelled`` returned True.
     """
     begin = time.perf_counter()
-    solver = PathSolver(sheet, fixed, cancelled=cancelled)
+    solver = PathSolver(sheet, fixed, tolerance=tolerance, cancelled=cancelled)
     found: list[Equilibrium] = []
     problem = None
     try:

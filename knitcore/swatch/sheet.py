@@ -112,6 +112,10 @@ class Sheet:
         """A sheet of the same laws and model on another grid."""
         return Sheet(grid, self.laws, self.model)
 
+    def with_model(self, model: SheetModel) -> Sheet:
+        """The same grid and laws (symmetric already) under another model."""
+        return Sheet(self.grid, self.laws, model)
+
     @property
     def at_rest(self) -> Sheet:
         """The same sheet without misfit of gauges: stable as laid out."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
@@ -13,6 +14,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials.material import Material
 from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.swatch.gauge import draw_in as draw_in_path
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.swatch.results import StripTest
@@ -65,7 +67,8 @@ def strip_test(
     shear_modulus : N/mm, replaces the laws' assumed one.
     clamps : gripped or sliding ends.
     draw_in : let each fabric keep its own gauge as rest size instead of the mean grid's, so that
-        regions of different gauge pull on each other (the ends stay at the grid's size).
+        regions of different gauge pull on each other (the ends stay at the grid's size). What is
+        pushed together wrinkles: by default the model then has its tension field on.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
     progress : called with (steps done, steps in all).
     cancelled : asked now and then; True stops the test.
@@ -116,6 +119,8 @@ def chart_sheet(
 ) -> Sheet:
     """The sheet that a chart of a material is."""
     chosen = sheet_model(model, shear_modulus)
+    if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
+        chosen = replace(chosen, tension_field=True)
     sizes = {
         fabric: (record.stitch_course_mm, record.stitch_wale_mm)
         for fabric, record in material.fabrics.items()
@@ -167,7 +172,17 @@ def pull(
     check_lock_up(sheet, direction, float(levels.max()))
     fixed = clamp_mask(sheet.grid, direction, clamps)
     targets = [stretched(sheet.grid, direction, e) for e in levels]
-    path = run_path(sheet, fixed, targets, progress=progress, cancelled=cancelled)
+    start, problem, seconds = None, None, 0.0
+    if sheet.grid.has_misfit:
+        drawn = draw_in_path(sheet, fixed, cancelled=cancelled)
+        problem, seconds = drawn.problem, drawn.seconds
+        start = drawn.states[-1] if drawn.states else None
+    path = (
+        run_path(sheet, fixed, targets, start=start, progress=progress, cancelled=cancelled)
+        if problem is None
+        else Path((), problem, 0.0)
+    )
+    path = replace(path, seconds=path.seconds + seconds)
     return strip_result(sheet, direction, levels, path)
 
 
