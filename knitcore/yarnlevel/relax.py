@@ -36,6 +36,9 @@ FINE_UP_TO = 2
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this are the same minimum."""
 
+OVERLONG = 1e-4
+"""Error of the length, as a part of it, beyond which a state does not count."""
+
 MIRRORED_STARTS = (
     Start("usual"),
     Start("wide", course=1.15, wale=0.85),
@@ -228,6 +231,12 @@ def relaxed_repeat(
     )
 
 
+def overlong(energy: CellEnergy, found: Minimum) -> bool:
+    """Whether a course is longer than its yarn: jammed or locked, not a state of the fabric."""
+    excess = float(np.abs(found.terms.excess_mm).max()) / energy.cell.wales
+    return excess > OVERLONG * energy.mean_loop_mm
+
+
 class _Search:
     """Runs starts on one cell and remembers what became of them."""
 
@@ -301,6 +310,8 @@ class _Search:
     def _outcome(self, found: Minimum) -> str:
         if not np.all(np.isfinite(found.state)) or not np.isfinite(found.terms.energy):
             return "not finite"
+        if overlong(CellEnergy(self.cell, self.yarn, self.lengths, self.convention), found):
+            return "too little yarn"
         if found.min_distance_mm <= 2.0 * self.yarn.core_radius_mm:
             return "cores overlap"
         if found.state[-2] > 0.9 * float(np.mean(self.lengths)):

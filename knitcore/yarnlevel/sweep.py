@@ -16,7 +16,13 @@ import numpy as np
 
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.relax import SAME_ENERGY, Branch, RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.relax import (
+    SAME_ENERGY,
+    Branch,
+    RelaxedRepeat,
+    overlong,
+    relaxed_repeat,
+)
 from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 
@@ -107,13 +113,13 @@ def _held(
         raise ConvergenceError("the yarn is pulled straight.")
     began = time.process_time()
     target = np.array([size_mm, size_mm])
-    options = Options(tolerance=1e-8 if cell.cell.stitches <= 4 else 1e-6, iterations=150)
+    options = Options(tolerance=1e-8 if cell.cell.stitches <= 4 else 1e-6, iterations=80)
     found: Minimum = minimise(
         cell.energy, cell.state, tension=cell.tension_n,
         fixed=(COURSE if along is Direction.COURSE else WALE,), target=target,
         options=options, cancel=cancel,
     )  # fmt: skip
-    if not found.converged and abs(found.state[along.axis - 2] - size_mm) > 1e-9:
+    if overlong(cell.energy, found) or abs(found.state[along.axis - 2] - size_mm) > 1e-9:
         raise ConvergenceError("the yarn locks before it gets there.")
     return relaxed_repeat(
         cell.chart, cell.cell, cell.yarn, cell.loop_lengths_mm, cell.convention,
