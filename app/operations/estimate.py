@@ -21,7 +21,6 @@ from knitcore.mechanics.estimate import (
 )
 from knitcore.mechanics.estimate_model import left_out, library_table
 
-
 MEASURED_LOG_SD = 0.1
 """Of the moduli of a measured swatch in a saved material: the paper's median."""
 

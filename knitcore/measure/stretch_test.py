@@ -255,12 +255,13 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
 
 
 def stated_direction(test: StretchTest) -> Direction | None:
-    """The direction that a description or file name states as a lone X or Y, if any."""
+    """The direction that description and file name state as a lone X or Y, if they agree."""
+    stated = set()
     for text in (test.description, test.source.rsplit(".", 1)[0]):
         words = [w for w in text.replace("_", " ").replace("-", " ").split() if w in ("X", "Y")]
         if words:
-            return Direction.COURSE if words[-1] == "X" else Direction.WALE
-    return None
+            stated.add(Direction.COURSE if words[-1] == "X" else Direction.WALE)
+    return stated.pop() if len(stated) == 1 else None
 
 
 def _sample_name(description: str) -> str:

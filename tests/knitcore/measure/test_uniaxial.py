@@ -239,6 +239,8 @@ def test_exchanged_and_equal_tests_are_refused(tmp_path: Path) -> None:
     course, wale = (write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y))
     with pytest.raises(InputError, match="pulled wale-wise"):
         fit_files(wale, course)
+    misnamed = write_h5(tmp_path / "sample Y.h5", X)  # description and name contradict each other
+    assert fit_files(misnamed, wale).law.alpha_xx == pytest.approx(LAW.alpha_xx, rel=0.02)
     csv = write_csv(tmp_path / "same.csv", X)
     with pytest.raises(InputError, match="same points"):
         fit_files(csv, csv)
