@@ -1,138 +1,245 @@
-"""Heavy work in processes: the event loop stays free, and what nobody waits for is stopped."""
+"""Heavy work in processes: the event loop stays free, and what nobody waits for is stopped.
+
+Every worker is a process of its own: one that dies, hangs or eats its memory costs one job.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import inspect
 import logging
 import multiprocessing
 import os
+import resource
 import threading
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from enum import IntEnum
 from typing import Any, Protocol, TypeVar
 
-from app.problems import UnavailableError
+from app.identity import current_user
+from app.problems import ServiceError, UnavailableError
+from app.turns import Turns
 
-log = logging.getLogger("knitcore.app")
+log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
 R_co = TypeVar("R_co", covariant=True)
 
 POLL_S = 0.25
 GRACE_S = 3.0
 """How long a job may take to notice that it was cancelled before its process is stopped."""
+MEMORY_BYTES = 4_000_000_000
+WAITING_EACH = 100
 
 
 class Job(Protocol[R_co]):
-    """A picklable function that looks at ``cancelled`` now and then."""
+    """A picklable function that looks at ``cancelled`` now and then.
+
+    If it has a parameter ``progress``, it may call that with (steps done, steps in all).
+    """
 
     def __call__(self, *args: Any, cancelled: Callable[[], bool]) -> R_co:
         """Do the work."""
         ...
 
 
+class AbandonedError(UnavailableError):
+    """Nobody waits for the result any more."""
+
+
+class TimeLimitError(UnavailableError):
+    """The computation took longer than it may."""
+
+
+class WorkerDiedError(UnavailableError):
+    """The process of a computation ended without a result."""
+
+
+class MemoryLimitError(ServiceError):
+    """The computation needs more memory than it may use."""
+
+    status, type, title = 422, "unsolved", "No result was reached"
+    default_remedy = "Ask for less: a smaller chart or fewer steps."
+
+
+class Cell(IntEnum):
+    """Places in the memory that a worker shares with the service."""
+
+    CANCELLED = 0
+    STARTED = 1
+    DONE = 2
+    OF = 3
+
+
+class Worker:
+    """One process, replaced when it is lost."""
+
+    def __init__(self, context: Any, memory_bytes: int) -> None:
+        self._context = context
+        self._memory_bytes = memory_bytes
+        self.cells = context.Array("d", len(Cell), lock=False)
+        self._executor = self._new()
+
+    def submit(self, job: Callable[..., T], args: tuple[Any, ...]) -> asyncio.Future[T]:
+        """Begin a job."""
+        self.cells[:] = [0.0] * len(Cell)
+        try:
+            return asyncio.wrap_future(self._executor.submit(_run, job, args))
+        except BrokenProcessPool:  # it died while it had nothing to do
+            self.replace()
+            return asyncio.wrap_future(self._executor.submit(_run, job, args))
+
+    def replace(self) -> None:
+        """Stop the process, whatever it does, and have a new one for the next job."""
+        lost, self._executor = self._executor, self._new()
+        _kill(lost)
+
+    def close(self) -> None:
+        """End the process; nobody waits for what it does any more."""
+        _kill(self._executor)
+
+    def _new(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(
+            1,
+            mp_context=self._context,
+            initializer=_adopt,
+            initargs=(self.cells, self._memory_bytes),
+        )
+
+
 class Compute:
-    """A pool of worker processes.
+    """Worker processes and whose turn it is.
 
     Parameters
     ----------
-    workers : number of processes; as many jobs again may wait, times four, before new ones are
-        refused.
-    timeout_s : longest run of one job.
+    workers : number of processes. Four times as many computations may wait in the foreground.
+    timeout_s : longest run of one job, unless it is given another.
+    memory_bytes : most memory of one process.
     """
 
-    def __init__(self, workers: int, timeout_s: float) -> None:
-        self._workers = workers
+    def __init__(self, workers: int, timeout_s: float, memory_bytes: int = MEMORY_BYTES) -> None:
+        context = multiprocessing.get_context("spawn")
         self._timeout_s = timeout_s
-        self._context = multiprocessing.get_context("spawn")
-        self._slots = list(range(workers * 5))
-        self._flags = self._context.Array("b", len(self._slots), lock=False)
-        self._pool = self._new_pool()
+        self.workers = [Worker(context, memory_bytes) for _ in range(workers)]
+        self.turns = Turns(
+            self.workers,
+            most_background=max(1, workers - 1),
+            most_waiting=4 * workers,
+            most_waiting_each=WAITING_EACH,
+        )
 
     def warm_up(self, job: Job[Any], *args: Any) -> None:
         """Start the processes and let them load what the first user would wait for."""
-        for _ in range(self._workers):
-            self._pool.submit(_run, None, job, args)
+        for worker in self.workers:
+            worker._executor.submit(_run, job, args)
 
     async def run(
         self,
         abandoned: Callable[[], Awaitable[bool]],
         job: Callable[..., T],
         *args: Any,
+        owner: str | None = None,
+        background: bool = False,
+        timeout_s: float | None = None,
+        told: Callable[[float], Awaitable[None]] | None = None,
     ) -> T:
         """Run a job; stop it when ``abandoned`` says that nobody waits any more.
 
+        Parameters
+        ----------
+        owner : in whose turn; by default whoever asks.
+        background : whether it may wait behind those who look at a page.
+        timeout_s : longest run, from its start.
+        told : awaited with the share done, with 0 when the job starts.
+
         Raises
         ------
+        AbandonedError, TimeLimitError, WorkerDiedError, MemoryLimitError
         UnavailableError
-            If too many jobs wait, the job takes too long, or its process dies.
+            If too many wait already.
         """
-        if not self._slots:
-            raise UnavailableError("Too many computations are waiting.")
-        slot = self._slots.pop()
-        self._flags[slot] = 0
-        pool = self._pool
+        limit = self._timeout_s if timeout_s is None else timeout_s
+        ticket = self.turns.enter(owner or current_user.get(), background=background)
         try:
-            future = asyncio.wrap_future(pool.submit(_run, slot, job, args))
-            deadline = asyncio.get_running_loop().time() + self._timeout_s
-            while True:
-                done, _ = await asyncio.wait([future], timeout=POLL_S)
-                if done:
-                    return future.result()
-                late = asyncio.get_running_loop().time() > deadline
-                if late or await abandoned():
-                    await self._stop(slot, future, pool)
-                    raise UnavailableError(
-                        f"The computation took longer than {self._timeout_s:g} s."
-                        if late
-                        else "The computation was abandoned."
-                    )
-        except BrokenProcessPool as error:
-            self._renew(pool)
-            raise UnavailableError("The process of this computation died.") from error
+            while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
+                if await abandoned():
+                    raise AbandonedError("The computation was abandoned.")
+            worker = ticket.place.result()
+            return await self._watch(worker, worker.submit(job, args), abandoned, limit, told)
         finally:
-            self._slots.append(slot)
+            self.turns.leave(ticket)
+
+    async def _watch(
+        self,
+        worker: Worker,
+        future: asyncio.Future[T],
+        abandoned: Callable[[], Awaitable[bool]],
+        limit_s: float,
+        told: Callable[[float], Awaitable[None]] | None,
+    ) -> T:
+        loop = asyncio.get_running_loop()
+        deadline, share = None, -1.0
+        try:
+            while not (await asyncio.wait([future], timeout=POLL_S))[0]:
+                if await abandoned():
+                    raise AbandonedError("The computation was abandoned.")
+                if not worker.cells[Cell.STARTED]:
+                    continue
+                deadline = deadline or loop.time() + limit_s
+                if loop.time() > deadline:
+                    raise TimeLimitError(f"The computation took longer than {limit_s:g} s.")
+                now = worker.cells[Cell.DONE] / max(worker.cells[Cell.OF], 1.0)
+                if told is not None and now != share:
+                    share = now
+                    await told(share)
+        except (AbandonedError, TimeLimitError):
+            await _stop(worker, future)
+            raise
+        except BaseException:
+            worker.replace()  # nobody is left who could wait for the process to notice
+            raise
+        try:
+            return future.result()
+        except BrokenProcessPool as error:
+            log.warning("a worker process died")
+            worker.replace()
+            raise WorkerDiedError("The process of this computation died.") from error
 
     def close(self) -> None:
-        """Cancel everything and end the processes."""
-        for slot in range(len(self._flags)):
-            self._flags[slot] = 1
-        self._pool.shutdown(wait=False, cancel_futures=True)
-
-    async def _stop(
-        self, slot: int, future: asyncio.Future[Any], pool: ProcessPoolExecutor
-    ) -> None:
-        self._flags[slot] = 1
-        done, _ = await asyncio.wait([future], timeout=GRACE_S)
-        if done:
-            future.exception()  # retrieved: it was cancelled on purpose
-            return
-        log.warning("a cancelled computation did not stop; its processes are replaced")
-        self._renew(pool, kill=True)
-
-    def _renew(self, broken: ProcessPoolExecutor, *, kill: bool = False) -> None:
-        if self._pool is not broken:
-            return  # somebody else has replaced it already
-        self._pool = self._new_pool()
-        if kill:
-            for process in list((broken._processes or {}).values()):
-                process.terminate()
-        broken.shutdown(wait=False, cancel_futures=True)
-
-    def _new_pool(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
-            self._workers, mp_context=self._context, initializer=_adopt, initargs=(self._flags,)
-        )
+        """End the processes."""
+        for worker in self.workers:
+            worker.close()
 
 
-_flags: Any = None
+def _kill(executor: ProcessPoolExecutor) -> None:
+    for process in list((executor._processes or {}).values()):
+        process.kill()
+    executor.shutdown(wait=False, cancel_futures=True)
 
 
-def _adopt(flags: Any) -> None:
-    """In a worker: remember where the cancellation flags are."""
-    global _flags  # noqa: PLW0603 - the pool's initializer has no other place
-    _flags = flags
+async def _stop(worker: Worker, future: asyncio.Future[Any]) -> None:
+    worker.cells[Cell.CANCELLED] = 1.0
+    done, _ = await asyncio.wait([future], timeout=GRACE_S)
+    if not done:
+        log.warning("a cancelled computation did not stop; its process is replaced")
+        worker.replace()
+        await asyncio.wait([future])
+    if not future.cancelled():
+        future.exception()  # retrieved: it was stopped on purpose
+
+
+_cells: Any = None
+_memory_bytes = 0
+
+
+def _adopt(cells: Any, memory_bytes: int) -> None:
+    """In a worker: remember the shared memory, and take no more of anything than allowed."""
+    global _cells, _memory_bytes
+    _cells, _memory_bytes = cells, memory_bytes
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    os.nice(5)  # pages come before computations
+    resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))
 
 
 def _end_with_parent() -> None:
@@ -143,8 +250,21 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _run(slot: int | None, job: Callable[..., T], args: tuple[Any, ...]) -> T:
-    def cancelled() -> bool:
-        return slot is not None and bool(_flags[slot])
+def _run(job: Callable[..., T], args: tuple[Any, ...]) -> T:
+    cells = _cells
+    cells[Cell.STARTED] = 1.0
 
-    return job(*args, cancelled=cancelled)
+    def cancelled() -> bool:
+        return bool(cells[Cell.CANCELLED])
+
+    def progress(done: float, of: float) -> None:
+        cells[Cell.OF] = of
+        cells[Cell.DONE] = done
+
+    extra = {"progress": progress} if "progress" in inspect.signature(job).parameters else {}
+    try:
+        return job(*args, cancelled=cancelled, **extra)
+    except MemoryError:
+        raise MemoryLimitError(
+            f"The computation needs more than the {_memory_bytes / 1e9:g} GB it may use."
+        ) from None

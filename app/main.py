@@ -18,6 +18,8 @@ from app.api import routers
 from app.compute import Compute
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
+from app.jobs.runner import JobRunner
+from app.jobs.store import JobStore
 from app.operations.stretch import warm_up
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.recent import RecentResults
@@ -51,18 +53,28 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
         app.state.database = await asyncio.to_thread(_open_database, chosen)
-        app.state.compute = Compute(chosen.workers, chosen.job_timeout_s)
+        app.state.compute = Compute(
+            chosen.workers, chosen.job_timeout_s, chosen.worker_memory_bytes
+        )
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.viewer_page = relay.viewer_page()
         app.state.compute.warm_up(warm_up)
+        job_store = JobStore(app.state.database, chosen.process_name)
+        app.state.jobs = JobRunner(
+            job_store, app.state.compute, app.state.recent, chosen.background_timeout_s
+        )
+        await app.state.jobs.resume()
         janitors = [
             asyncio.create_task(_close_idle_views(app.state.views)),
-            asyncio.create_task(_tidy_store(app.state.database)),
+            asyncio.create_task(
+                _tidy_store(app.state.database, job_store, chosen.results_max_bytes)
+            ),
         ]
         yield
         for janitor in janitors:
             janitor.cancel()
+        await app.state.jobs.close()
         app.state.compute.close()
         await asyncio.to_thread(app.state.views.close)
         await asyncio.to_thread(app.state.database.close)
@@ -114,12 +126,13 @@ def _open_database(settings: Settings) -> Database:
     return database
 
 
-async def _tidy_store(database: Database) -> None:
+async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int) -> None:
     """Remove for good what nobody can ask for any more."""
     while True:
         try:
             await asyncio.to_thread(DesignStore(database).forget_deleted)
             await asyncio.to_thread(forget_old_keys, database)
+            await asyncio.to_thread(jobs.tidy, results_max_bytes)
         except StoreError as error:
             log.warning("could not tidy the store: %s", error)
         await asyncio.sleep(TIDY_PERIOD_S)

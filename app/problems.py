@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -11,7 +12,13 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 
-from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
+from knitcore.errors import (
+    CancelledError,
+    ConvergenceError,
+    InputError,
+    KnitcoreError,
+    UnravelledError,
+)
 
 log = logging.getLogger("knitcore.app")
 
@@ -86,85 +93,89 @@ class NotFoundError(ServiceError):
     status, type, title = 404, "not found", "There is no such thing here"
 
 
-def problem_response(problem: Problem) -> JSONResponse:
+def problem_response(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
     """A problem as a response."""
     return JSONResponse(
-        problem.model_dump(), status_code=problem.status, media_type="application/problem+json"
+        problem.model_dump(),
+        status_code=problem.status,
+        headers=headers,
+        media_type="application/problem+json",
+    )
+
+
+def problem_of(error: Exception) -> Problem:
+    """Any error as a problem; what is not foreseen keeps its details to itself."""
+    if isinstance(error, ServiceError):
+        return error.problem
+    if isinstance(error, InputError):
+        return Problem(
+            type="input",
+            title="This input cannot be used",
+            status=422,
+            detail=f"{error.field}: {error.problem}",
+            field=error.field,
+            remedy=error.remedy,
+        )
+    if isinstance(error, ConvergenceError | UnravelledError | CancelledError):
+        return Problem(
+            type="unsolved",
+            title="No result was reached",
+            status=422,
+            detail=str(error),
+            remedy="Ask for less: a smaller strain, a smaller chart or more steps.",
+        )
+    if isinstance(error, RequestValidationError):
+        return _invalid(error)
+    if isinstance(error, HTTPException):
+        return Problem(
+            type="http",
+            title=str(error.detail),
+            status=error.status_code,
+            detail=str(error.detail),
+            remedy="Compare address and method with /docs." if error.status_code < 500 else None,
+        )
+    return Problem(
+        type="internal",
+        title="Something went wrong in the service",
+        status=500,
+        detail="The service met an error that it did not expect; its log has the details.",
+        remedy="Nothing you painted is lost. Try again, or report it with the log.",
+    )
+
+
+def _invalid(error: RequestValidationError) -> Problem:
+    first = error.errors()[0]
+    if first["type"] == "json_invalid":
+        return Problem(
+            type="input",
+            title="The request is not valid JSON",
+            status=422,
+            detail=f"body: {first['ctx']['error']}",
+            field="body",
+            remedy="Send one JSON object as /docs describes it.",
+        )
+    field = ".".join(str(part) for part in first["loc"] if part != "body") or "body"
+    return Problem(
+        type="input",
+        title="This input cannot be used",
+        status=422,
+        detail=f"{field}: {first['msg']}.",
+        field=field,
+        remedy="Send one JSON object as /docs describes it.",
     )
 
 
 def install_problem_handlers(app: FastAPI) -> None:
     """Turn every error into a problem response."""
 
-    @app.exception_handler(InputError)
-    async def _(_: Request, error: InputError) -> JSONResponse:
-        return problem_response(
-            Problem(
-                type="input",
-                title="This input cannot be used",
-                status=422,
-                detail=f"{error.field}: {error.problem}",
-                field=error.field,
-                remedy=error.remedy,
-            )
-        )
-
-    @app.exception_handler(RequestValidationError)
-    async def _(_: Request, error: RequestValidationError) -> JSONResponse:
-        first = error.errors()[0]
-        malformed = first["type"] == "json_invalid"
-        field = ".".join(str(part) for part in first["loc"] if part != "body") or "body"
-        return problem_response(
-            Problem(
-                type="input",
-                title="The request is not valid JSON" if malformed else "This input cannot be used",
-                status=422,
-                detail=f"body: {first['ctx']['error']}"
-                if malformed
-                else f"{field}: {first['msg']}.",
-                field="body" if malformed else field,
-                remedy="Send one JSON object as /docs describes it.",
-            )
-        )
-
-    @app.exception_handler(HTTPException)
-    async def _(_: Request, error: HTTPException) -> JSONResponse:
-        return problem_response(
-            Problem(
-                type="http",
-                title=str(error.detail),
-                status=error.status_code,
-                detail=str(error.detail),
-            )
-        )
-
-    @app.exception_handler(ConvergenceError)
-    @app.exception_handler(UnravelledError)
-    @app.exception_handler(CancelledError)
-    async def _(_: Request, error: Exception) -> JSONResponse:
-        return problem_response(
-            Problem(
-                type="unsolved",
-                title="No result was reached",
-                status=422,
-                detail=str(error),
-                remedy="Ask for less: a smaller strain, a smaller chart or more steps.",
-            )
-        )
-
+    @app.exception_handler(KnitcoreError)
     @app.exception_handler(ServiceError)
-    async def _(_: Request, error: ServiceError) -> JSONResponse:
-        return problem_response(error.problem)
+    @app.exception_handler(RequestValidationError)
+    @app.exception_handler(HTTPException)
+    async def _(_: Request, error: Exception) -> JSONResponse:
+        return problem_response(problem_of(error), getattr(error, "headers", None))
 
     @app.exception_handler(Exception)
     async def _(request: Request, error: Exception) -> JSONResponse:
         log.error("unexpected error at %s %s", request.method, request.url.path, exc_info=error)
-        return problem_response(
-            Problem(
-                type="internal",
-                title="Something went wrong in the service",
-                status=500,
-                detail="The service met an error that it did not expect; its log has the details.",
-                remedy="Nothing you painted is lost. Try again, or report it with the log.",
-            )
-        )
+        return problem_response(problem_of(error))

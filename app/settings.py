@@ -36,9 +36,26 @@ class Settings(BaseSettings):
         None, description="postgresql+psycopg://…; an SQLite file in the data folder otherwise."
     )
     workers: int = Field(
-        max(1, min(4, (os.cpu_count() or 2) - 1)), ge=1, description="Processes for heavy work."
+        max(2, min(4, (os.cpu_count() or 2) - 1)),
+        ge=1,
+        description="Processes for heavy work; one stays free of background jobs.",
     )
     job_timeout_s: float = Field(120.0, gt=0, description="Longest run of one computation.")
+    background_timeout_s: float = Field(
+        1800.0, gt=0, description="Longest run of one job in the background."
+    )
+    worker_memory_bytes: int = Field(
+        4_000_000_000, ge=500_000_000, description="Most memory of one process for heavy work."
+    )
+    results_max_bytes: int = Field(
+        1_000_000_000, ge=0, description="Most room for results of jobs, as they are stored."
+    )
+    process_name: str = Field(
+        "main",
+        min_length=1,
+        max_length=80,
+        description="Name of this process, if several share a database; it finds its jobs by it.",
+    )
     max_body_bytes: int = Field(4_000_000, gt=0, description="Largest request body.")
     max_viewers: int = Field(64, ge=1, description="3D views kept open at once.")
     viewer_idle_s: float = Field(300.0, gt=0, description="A view nobody watches closes after.")

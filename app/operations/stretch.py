@@ -131,7 +131,12 @@ def stretch_key(request: StretchRequest) -> str:
     return hashlib.sha256(request.model_dump_json().encode()).hexdigest()[:32]
 
 
-def run_stretch(request: StretchRequest, *, cancelled: Callable[[], bool]) -> StretchRun:
+def run_stretch(
+    request: StretchRequest,
+    *,
+    cancelled: Callable[[], bool],
+    progress: Callable[[int, int], None] | None = None,
+) -> StretchRun:
     """Run a test for the service.
 
     Raises
@@ -146,7 +151,9 @@ def run_stretch(request: StretchRequest, *, cancelled: Callable[[], bool]) -> St
             f"{chart.columns}x{chart.rows} stitches are too many for a stretch test here.",
             f"Use at most {MAX_STITCHES} stitches, such as {side}x{side}, or the command line.",
         )
-    test = stretch_chart(chart, find_material(request.material), request, cancelled=cancelled)
+    test = stretch_chart(
+        chart, find_material(request.material), request, cancelled=cancelled, progress=progress
+    )
     return _stitches(chart, request, test)
 
 
@@ -156,6 +163,7 @@ def stretch_chart(
     options: StretchOptions,
     *,
     cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> StripTest:
     """The strip test of any chart and material."""
     return strip_test(
@@ -169,6 +177,7 @@ def stretch_chart(
         width_mm=options.width_mm,
         length_mm=options.length_mm,
         cancelled=cancelled,
+        progress=progress,
     )
 
 

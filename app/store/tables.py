@@ -9,6 +9,7 @@ from sqlalchemy import (
     ForeignKey,
     Index,
     Integer,
+    LargeBinary,
     MetaData,
     String,
     Table,
@@ -77,4 +78,32 @@ idempotency_keys = Table(
     Column("fingerprint", String(64), nullable=False),
     Column("answer", Text, nullable=False),
     Column("created_at", Float, nullable=False, index=True),
+)
+
+jobs = Table(
+    "jobs",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    Column("owner", String(80), nullable=False),
+    Column("process", String(80), nullable=False),  # which service process runs it
+    Column("kind", String(40), nullable=False),
+    Column("request", Text, nullable=False),
+    Column("key", String(64), nullable=False),  # of the content, names the result
+    Column("state", String(16), nullable=False),
+    Column("problem", Text),
+    Column("created_at", Float, nullable=False),
+    Column("started_at", Float),
+    Column("finished_at", Float),
+    Index(None, "owner", "created_at", "id"),
+    Index(None, "process", "state"),
+)
+
+results = Table(
+    "results",
+    metadata,
+    Column("key", String(64), primary_key=True),
+    Column("kind", String(40), nullable=False),
+    Column("body", LargeBinary, nullable=False),  # gzipped JSON
+    Column("size_bytes", Integer, nullable=False),
+    Column("used_at", Float, nullable=False, index=True),
 )

@@ -1,11 +1,15 @@
-"""Jobs for the tests of the process pool; workers import them by name."""
+"""Jobs for the tests of the workers, which import them by name."""
 
 from __future__ import annotations
 
 import os
+import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
 
 from knitcore import InputError
 
@@ -25,6 +29,20 @@ def until_cancelled(mark: str, *, cancelled: Callable[[], bool]) -> str:
     return "stopped"
 
 
+def until_told(mark: str, name: str, *, cancelled: Callable[[], bool]) -> str:
+    """Ends when there is a file ``mark``."""
+    while not Path(mark).exists() and not cancelled():
+        time.sleep(0.01)
+    return name
+
+
+def climb(steps: int, pause_s: float, *, cancelled: object, progress: Callable[..., None]) -> int:
+    for step in range(1, steps + 1):
+        time.sleep(pause_s)
+        progress(step, steps)
+    return steps
+
+
 def stubborn(seconds: float, *, cancelled: Callable[[], bool]) -> None:
     time.sleep(seconds)
 
@@ -33,5 +51,36 @@ def die(*, cancelled: Callable[[], bool]) -> None:
     os._exit(3)
 
 
+def eat(size: int, *, cancelled: Callable[[], bool]) -> int:
+    return len(bytearray(size))
+
+
 def process_id(*, cancelled: Callable[[], bool]) -> int:
     return os.getpid()
+
+
+class Wish(BaseModel):
+    """What the jobs of these tests are asked."""
+
+    what: str = "answer"
+    mark: str = "/nonexistent"
+
+
+class Answer(BaseModel):
+    """What they answer."""
+
+    value: int
+
+
+def work(wish: Wish, *, cancelled: Any, progress: Any) -> Answer:
+    """A job that does what it is told."""
+    progress(1, 4)
+    if wish.what == "die":
+        os.kill(os.getpid(), signal.SIGKILL)
+    if wish.what == "fail":
+        raise ValueError("a mistake of ours")
+    while wish.what == "wait" and not Path(wish.mark).exists():
+        if cancelled():
+            break
+        time.sleep(0.01)
+    return Answer(value=42)

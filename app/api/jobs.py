@@ -1,0 +1,161 @@
+"""Long computations in the background over REST."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Depends, Path, Query, Request, Response
+from fastapi.responses import StreamingResponse
+
+from app.designs.conditions import ConflictError
+from app.identity import asking
+from app.jobs.document import JobPage, JobState, JobStatus
+from app.jobs.kinds import JobRequest
+from app.jobs.runner import JobRunner
+from app.problems import NotFoundError, Problem
+
+MISSING = {"model": Problem, "description": "No such thing, or it is not yours."}
+EVENT_PERIOD_S = 0.25
+HEARTBEATS = 60
+"""Periods without a change after which a line is sent, so that a vanished client is noticed."""
+
+router = APIRouter(tags=["jobs"], responses={404: MISSING})
+
+Owner = Annotated[str, Depends(asking)]
+JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{8,64}$")]
+
+
+def _runner(request: Request) -> JobRunner:
+    runner: JobRunner = request.app.state.jobs
+    return runner
+
+
+Runner = Annotated[JobRunner, Depends(_runner)]
+
+
+@router.post("/jobs", status_code=202, summary="Run something in the background")
+async def post_job(
+    body: Annotated[
+        JobRequest,
+        Body(
+            examples=[
+                {
+                    "kind": "stretch",
+                    "request": {
+                        "chart": {"fabric": "garter", "columns": 31, "rows": 20},
+                        "material": "acrylic",
+                        "direction": "wale",
+                        "strain": 0.5,
+                    },
+                }
+            ]
+        ),
+    ],
+    runner: Runner,
+    owner: Owner,
+    response: Response,
+) -> JobStatus:
+    """Waits for its turn among all users; if the result is known, the job is done at once."""
+    status = await runner.submit(owner, body.kind, body.request.model_dump_json())
+    response.headers["Location"] = f"/api/v1/jobs/{status.id}"
+    return status
+
+
+@router.get("/jobs", summary="Your jobs, latest first")
+async def get_jobs(
+    runner: Runner,
+    owner: Owner,
+    limit: Annotated[int, Query(ge=1, le=200)] = 50,
+    cursor: Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")] = None,
+) -> JobPage:
+    """Jobs are kept for 30 days."""
+    return await asyncio.to_thread(runner.store.page, owner, limit=limit, cursor=cursor)
+
+
+@router.get("/jobs/{job}", summary="Where a job stands")
+async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
+    """State, progress, and the problem if there is one."""
+    return await runner.status(owner, job)
+
+
+@router.get(
+    "/jobs/{job}/events",
+    summary="Follow a job",
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {}}, "description": "Events `status`."}},
+)
+async def get_events(job: JobId, runner: Runner, owner: Owner) -> StreamingResponse:
+    """Server-sent events, one per change, each a job as `GET /jobs/{job}` has it; ends with it."""
+    first = await runner.status(owner, job)
+    return StreamingResponse(
+        _events(first, job, runner, owner),
+        media_type="text/event-stream",
+        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
+    )
+
+
+async def _events(
+    status: JobStatus, job: str, runner: JobRunner, owner: str
+) -> AsyncIterator[bytes]:
+    told, quiet = "", 0
+    with contextlib.suppress(NotFoundError):  # deleted while it was followed
+        while True:
+            text = status.model_dump_json()
+            if text != told:
+                told, quiet = text, 0
+                yield f"event: status\ndata: {text}\n\n".encode()
+            else:
+                quiet += 1
+                if quiet % HEARTBEATS == 0:
+                    yield b": still there\n\n"
+            if status.state.is_final:
+                return
+            await asyncio.sleep(EVENT_PERIOD_S)
+            status = await runner.status(owner, job)
+
+
+@router.get(
+    "/jobs/{job}/result",
+    summary="The result of a job",
+    responses={
+        200: {
+            "content": {"application/json": {"schema": {"type": "object"}}},
+            "description": "What the operation of that kind answers.",
+        },
+        409: {"model": Problem, "description": "The job is not done."},
+    },
+)
+async def get_result(job: JobId, runner: Runner, owner: Owner) -> Response:
+    """The same JSON that the operation's own address answers."""
+    status = await runner.status(owner, job)
+    if status.state is not JobState.DONE:
+        raise ConflictError(
+            f"The job is {status.state}, it has no result.",
+            field="job",
+            remedy="Follow its events until it is done."
+            if not status.state.is_final
+            else "Run it again.",
+        )
+    body = await asyncio.to_thread(runner.store.result, owner, job)
+    if body is None:
+        raise NotFoundError(
+            "The result is not kept any more.", field="job", remedy="Run the job again."
+        )
+    return Response(body, media_type="application/json")
+
+
+@router.delete("/jobs/{job}", summary="Cancel a job")
+async def delete_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
+    """Stops what runs; a job that has ended stays as it is."""
+    return await runner.cancel(owner, job)
+
+
+@router.post("/jobs/{job}/again", status_code=202, summary="Run a job again")
+async def post_again(job: JobId, runner: Runner, owner: Owner, response: Response) -> JobStatus:
+    """A new job with the same request, for instance after an interruption."""
+    status = await runner.again(owner, job)
+    response.headers["Location"] = f"/api/v1/jobs/{status.id}"
+    return status

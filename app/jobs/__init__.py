@@ -1,0 +1,1 @@
+"""Long computations in the background: progress, cancel, fair turns, results kept by content."""

@@ -1,0 +1,45 @@
+"""Jobs at the border."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from pydantic import AwareDatetime, BaseModel, Field
+
+from app.problems import Problem
+
+
+class JobState(StrEnum):
+    """Where a job stands."""
+
+    WAITING = "waiting"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+    INTERRUPTED = "interrupted"
+
+    @property
+    def is_final(self) -> bool:
+        """Whether nothing will happen any more."""
+        return self not in (JobState.WAITING, JobState.RUNNING)
+
+
+class JobStatus(BaseModel):
+    """A job as its owner sees it."""
+
+    id: str
+    kind: str
+    state: JobState
+    progress: float = Field(ge=0, le=1, description="Share done, where the computation tells it.")
+    problem: Problem | None = Field(None, description="Why it failed or was interrupted.")
+    created_at: AwareDatetime
+    started_at: AwareDatetime | None = None
+    finished_at: AwareDatetime | None = None
+
+
+class JobPage(BaseModel):
+    """A part of a list of jobs, latest first."""
+
+    jobs: list[JobStatus]
+    next_cursor: str | None = Field(description="Ask with it for what follows; None at the end.")

@@ -1,0 +1,179 @@
+"""Running jobs: one task each, which waits for its turn, works, and writes down what came of it."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.compute import AbandonedError, Compute
+from app.jobs.document import JobState, JobStatus
+from app.jobs.kinds import KINDS, content_key
+from app.jobs.store import JobStore
+from app.operations.stretch import StretchRequest, stretch_key
+from app.problems import Problem, ServiceError, problem_of
+from app.recent import RecentResults
+from app.store.database import StoreError
+
+log = logging.getLogger("knitcore.jobs")
+
+STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
+"""A database that is away for half a minute costs no result."""
+
+
+@dataclass(eq=False)
+class _Run:
+    task: asyncio.Task[None]
+    progress: float = 0.0
+    begun: bool = False
+    cancelled: bool = False
+
+
+class JobRunner:
+    """The jobs of this service process.
+
+    Parameters
+    ----------
+    store : what a restart must not forget.
+    compute : where the work is done.
+    recent : where the 3D view finds stretch tests.
+    timeout_s : longest run of one job.
+    """
+
+    def __init__(
+        self, store: JobStore, compute: Compute, recent: RecentResults, timeout_s: float
+    ) -> None:
+        self.store = store
+        self._compute = compute
+        self._recent = recent
+        self._timeout_s = timeout_s
+        self._runs: dict[str, _Run] = {}
+        self._stopping = False
+
+    async def resume(self) -> None:
+        """After a start: go on with what waited, and say of the rest that it was interrupted."""
+        for job, owner in await asyncio.to_thread(self.store.adopt):
+            kind, request = await asyncio.to_thread(self.store.request_of, owner, job)
+            self._start(job, owner, kind, request)
+
+    async def submit(self, owner: str, kind: str, request: str) -> JobStatus:
+        """Take a job on; if its result is known, it is done at once."""
+        key = content_key(kind, request)
+        known = await asyncio.to_thread(self.store.kept, key)
+        state = JobState.WAITING if known is None else JobState.DONE
+        status = await asyncio.to_thread(self.store.add, owner, kind, request, key, state)
+        if known is None:
+            self._start(status.id, owner, kind, request)
+        return status
+
+    async def again(self, owner: str, job: str) -> JobStatus:
+        """The same job once more."""
+        kind, request = await asyncio.to_thread(self.store.request_of, owner, job)
+        return await self.submit(owner, kind, request)
+
+    async def status(self, owner: str, job: str) -> JobStatus:
+        """A job with its progress."""
+        status = await asyncio.to_thread(self.store.get, owner, job)
+        run = self._runs.get(job)
+        if run is not None and not status.state.is_final:
+            status = status.model_copy(update={"progress": run.progress})
+        return status
+
+    async def cancel(self, owner: str, job: str) -> JobStatus:
+        """Stop a job; one that has ended stays as it is."""
+        await asyncio.to_thread(self.store.get, owner, job)
+        await asyncio.to_thread(self.store.end, job, JobState.CANCELLED)
+        run = self._runs.get(job)
+        if run is not None:
+            run.cancelled = True
+        return await self.status(owner, job)
+
+    def counts(self) -> dict[str, int]:
+        """Jobs of this process that wait and that run."""
+        waiting = self._compute.turns.waiting(background=True)
+        return {"waiting": waiting, "running": len(self._runs) - waiting}
+
+    async def close(self) -> None:
+        """Put what runs back in line for the next start."""
+        self._stopping = True
+        tasks = [run.task for run in self._runs.values()]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    def _start(self, job: str, owner: str, kind: str, request: str) -> None:
+        task = asyncio.create_task(self._work(job, owner, kind, request), name=f"job {job}")
+        self._runs[job] = _Run(task)
+        task.add_done_callback(lambda _: self._runs.pop(job, None))
+
+    async def _work(self, job: str, owner: str, kind: str, request: str) -> None:
+        run = self._runs[job]
+
+        async def told(share: float) -> None:
+            run.progress = min(share, 1.0)
+            if not run.begun:
+                run.begun = True
+                await self._begin(job, run)
+
+        async def abandoned() -> bool:
+            return run.cancelled
+
+        described = KINDS[kind]
+        extra = {"job": job, "kind": kind}
+        log.info("job waits", extra=extra)
+        try:
+            wanted = described.request.model_validate_json(request)
+            answer = await self._compute.run(
+                abandoned,
+                described.function,
+                wanted,
+                owner=owner,
+                background=True,
+                timeout_s=self._timeout_s,
+                told=told,
+            )
+            if isinstance(wanted, StretchRequest):
+                self._recent.put(stretch_key(wanted), answer, answer.size_bytes)
+            body = described.told(answer)
+            await self._keep(lambda: self.store.finish(job, kind, content_key(kind, request), body))
+            log.info("job done", extra=extra)
+        except asyncio.CancelledError:
+            if self._stopping:
+                await asyncio.to_thread(self.store.wait_again, job)
+            raise
+        except AbandonedError:
+            log.info("job cancelled", extra=extra)
+        except Exception as error:
+            problem = problem_of(error)
+            if not isinstance(error, ServiceError) and problem.status >= 500:
+                log.exception("job failed unexpectedly", extra=extra)
+            else:
+                log.info("job failed: %s", problem.detail, extra=extra)
+            await self._fail(job, problem)
+
+    async def _begin(self, job: str, run: _Run) -> None:
+        try:
+            waited = await asyncio.to_thread(self.store.begin, job)
+        except StoreError as error:
+            log.warning("the start of job %s could not be written down: %s", job, error)
+        else:
+            run.cancelled = run.cancelled or not waited  # cancelled through another process
+
+    async def _fail(self, job: str, problem: Problem) -> None:
+        try:
+            await self._keep(lambda: self.store.end(job, JobState.FAILED, problem))
+        except StoreError:
+            log.exception("the end of job %s could not be written down", job)
+
+    async def _keep(self, write: Callable[[], object]) -> None:
+        """Write, however often it takes while the database is away for a while."""
+        for pause in STORE_RETRY_S:
+            try:
+                await asyncio.to_thread(write)
+            except StoreError as error:
+                log.warning("a result waits for the database: %s", error)
+                await asyncio.sleep(pause)
+            else:
+                return
+        await asyncio.to_thread(write)

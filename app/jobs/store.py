@@ -1,0 +1,224 @@
+"""Jobs and results in the database: what a restart must not forget."""
+
+from __future__ import annotations
+
+import gzip
+import secrets
+from typing import Any
+
+from sqlalchemy import Connection, Row, func, insert, select, tuple_, update
+
+from app.designs.store import moment, now
+from app.jobs.document import JobPage, JobState, JobStatus
+from app.problems import NotFoundError, Problem
+from app.store.database import Database
+from app.store.tables import jobs, results
+from knitcore.errors import InputError
+
+OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
+KEPT_S = 30 * 86_400.0
+INTERRUPTED = Problem(
+    type="interrupted",
+    title="The service stopped in the middle of this job",
+    status=503,
+    detail="The service was stopped or failed while this job ran.",
+    remedy="Run it again.",
+)
+
+
+class JobStore:
+    """Jobs of all owners, and the results by content.
+
+    Parameters
+    ----------
+    database : where.
+    process : name of this service process; it answers for the jobs that carry it.
+    """
+
+    def __init__(self, database: Database, process: str) -> None:
+        self._database = database
+        self._process = process
+
+    def add(self, owner: str, kind: str, request: str, key: str, state: JobState) -> JobStatus:
+        """Keep a new job; one whose result is known already is done."""
+        at = now()
+        values = {
+            "id": secrets.token_urlsafe(16),
+            "owner": owner,
+            "process": self._process,
+            "kind": kind,
+            "request": request,
+            "key": key,
+            "state": state.value,
+            "created_at": at,
+            "finished_at": at if state.is_final else None,
+        }
+
+        def action(connection: Connection) -> JobStatus:
+            connection.execute(insert(jobs).values(values))
+            return _status(_one(connection, owner, str(values["id"])))
+
+        return self._database.write(action)
+
+    def get(self, owner: str, job: str) -> JobStatus:
+        """A job."""
+        with self._database.read() as connection:
+            return _status(_one(connection, owner, job))
+
+    def request_of(self, owner: str, job: str) -> tuple[str, str]:
+        """Kind and request of a job."""
+        with self._database.read() as connection:
+            row = _one(connection, owner, job)
+        return row.kind, row.request
+
+    def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
+        """Jobs of an owner, latest first."""
+        chosen = select(jobs).where(jobs.c.owner == owner)
+        if cursor is not None:
+            at, _, job = cursor.partition("_")
+            try:
+                place = tuple_(float(at), job)
+            except ValueError:
+                raise InputError(
+                    "cursor", "is not one of ours.", "Send next_cursor of the page before."
+                ) from None
+            chosen = chosen.where(tuple_(jobs.c.created_at, jobs.c.id) < place)
+        chosen = chosen.order_by(jobs.c.created_at.desc(), jobs.c.id.desc()).limit(limit + 1)
+        with self._database.read() as connection:
+            rows = connection.execute(chosen).all()
+        more = len(rows) > limit
+        rows = rows[:limit]
+        return JobPage(
+            jobs=[_status(row) for row in rows],
+            next_cursor=f"{rows[-1].created_at!r}_{rows[-1].id}" if more else None,
+        )
+
+    def begin(self, job: str) -> bool:
+        """A waiting job runs now; False if it does not wait any more."""
+        return self._move(job, (JobState.WAITING,), JobState.RUNNING, started_at=now())
+
+    def wait_again(self, job: str) -> bool:
+        """A running job goes back in line."""
+        return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None)
+
+    def end(self, job: str, state: JobState, problem: Problem | None = None) -> bool:
+        """Close an open job; False if it was closed before."""
+        told = None if problem is None else problem.model_dump_json()
+        return self._move(
+            job,
+            (JobState.WAITING, JobState.RUNNING),
+            state,
+            problem=told,
+            finished_at=now(),
+        )
+
+    def _move(self, job: str, before: tuple[JobState, ...], after: JobState, **values: Any) -> bool:
+        change = (
+            update(jobs)
+            .where(jobs.c.id == job, jobs.c.state.in_([s.value for s in before]))
+            .values(state=after.value, **values)
+        )
+        return self._database.write(lambda connection: connection.execute(change).rowcount == 1)
+
+    def adopt(self) -> list[tuple[str, str]]:
+        """After a start: interrupt what ran when the service went; (id, owner) of what waits."""
+
+        def action(connection: Connection) -> list[tuple[str, str]]:
+            mine = jobs.c.process == self._process
+            connection.execute(
+                update(jobs)
+                .where(mine, jobs.c.state == JobState.RUNNING.value)
+                .values(
+                    state=JobState.INTERRUPTED.value,
+                    problem=INTERRUPTED.model_dump_json(),
+                    finished_at=now(),
+                )
+            )
+            waiting = connection.execute(
+                select(jobs.c.id, jobs.c.owner)
+                .where(mine, jobs.c.state == JobState.WAITING.value)
+                .order_by(jobs.c.created_at)
+            )
+            return [(row.id, row.owner) for row in waiting]
+
+        return self._database.write(action)
+
+    def result(self, owner: str, job: str) -> bytes | None:
+        """The result of a job as JSON, or None if it is not kept (any more)."""
+        with self._database.read() as connection:
+            key = _one(connection, owner, job).key
+        return self.kept(key)
+
+    def kept(self, key: str) -> bytes | None:
+        """A result by its content."""
+
+        def action(connection: Connection) -> bytes | None:
+            found = update(results).where(results.c.key == key).values(used_at=now())
+            if connection.execute(found).rowcount == 0:
+                return None
+            body = select(results.c.body).where(results.c.key == key)
+            return bytes(connection.execute(body).scalar_one())
+
+        packed = self._database.write(action)
+        return None if packed is None else gzip.decompress(packed)
+
+    def finish(self, job: str, kind: str, key: str, body: bytes) -> bool:
+        """Keep a result and close its job, both or neither."""
+        packed = gzip.compress(body, compresslevel=4)
+
+        def action(connection: Connection) -> bool:
+            done = connection.execute(
+                update(jobs)
+                .where(jobs.c.id == job, jobs.c.state.in_(OPEN))
+                .values(state=JobState.DONE.value, finished_at=now())
+            )
+            connection.execute(results.delete().where(results.c.key == key))
+            connection.execute(
+                insert(results).values(
+                    key=key, kind=kind, body=packed, size_bytes=len(packed), used_at=now()
+                )
+            )
+            return done.rowcount == 1
+
+        return self._database.write(action)
+
+    def tidy(self, most_bytes: int) -> None:
+        """Forget old jobs, and the longest unused results beyond a size."""
+
+        def action(connection: Connection) -> None:
+            connection.execute(jobs.delete().where(jobs.c.finished_at < now() - KEPT_S))
+            newest = func.sum(results.c.size_bytes).over(
+                order_by=(results.c.used_at.desc(), results.c.key)
+            )
+            sizes = select(results.c.key, newest.label("so_far")).subquery()
+            too_many = select(sizes.c.key).where(sizes.c.so_far > most_bytes)
+            connection.execute(results.delete().where(results.c.key.in_(too_many)))
+
+        self._database.write(action)
+
+
+def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
+    row = connection.execute(
+        select(jobs).where(jobs.c.id == job, jobs.c.owner == owner)
+    ).one_or_none()
+    if row is None:
+        raise NotFoundError(
+            f"There is no job {job} of yours.",
+            field="job",
+            remedy="Look it up in the list of your jobs.",
+        )
+    return row
+
+
+def _status(row: Row[Any]) -> JobStatus:
+    state = JobState(row.state)
+    return JobStatus(
+        id=row.id,
+        kind=row.kind,
+        state=state,
+        progress=1.0 if state is JobState.DONE else 0.0,
+        problem=None if row.problem is None else Problem.model_validate_json(row.problem),
+        created_at=moment(row.created_at),
+        started_at=None if row.started_at is None else moment(row.started_at),
+        finished_at=None if row.finished_at is None else moment(row.finished_at),
+    )

@@ -1,0 +1,101 @@
+"""Whose turn it is: a few places, many users, nobody ahead of the others twice."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict, deque
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from app.problems import UnavailableError
+
+Place = TypeVar("Place")
+Lane = OrderedDict[str, deque["Ticket[Place]"]]
+
+
+@dataclass(eq=False)
+class Ticket(Generic[Place]):
+    """Somebody who waits for a place."""
+
+    owner: str
+    background: bool
+    place: asyncio.Future[Place]
+
+
+class Turns(Generic[Place]):
+    """Hands out places in turn: one user after the other, whoever waits in a browser first.
+
+    Parameters
+    ----------
+    places : what is handed out.
+    most_background : how many places background work may hold at once, so that a long job leaves
+        one for those who look at a page.
+    most_waiting : how many may wait in the foreground.
+    most_waiting_each : how many one user may have waiting in the background.
+    """
+
+    def __init__(
+        self,
+        places: list[Place],
+        *,
+        most_background: int,
+        most_waiting: int,
+        most_waiting_each: int,
+    ) -> None:
+        self._free = list(places)
+        self._most_background = most_background
+        self._most_waiting = most_waiting
+        self._most_waiting_each = most_waiting_each
+        self._background = 0
+        self._lanes: dict[bool, Lane[Place]] = {False: OrderedDict(), True: OrderedDict()}
+
+    def enter(self, owner: str, *, background: bool) -> Ticket[Place]:
+        """Stand in line.
+
+        Raises
+        ------
+        UnavailableError
+            If the line is as long as it may be.
+        """
+        lane = self._lanes[background]
+        ahead = len(lane.get(owner, ())) if background else self.waiting(background=False)
+        if ahead >= (self._most_waiting_each if background else self._most_waiting):
+            raise UnavailableError("Too many computations are waiting.")
+        ticket = Ticket(owner, background, asyncio.get_running_loop().create_future())
+        lane.setdefault(owner, deque()).append(ticket)
+        self._hand_out()
+        return ticket
+
+    def leave(self, ticket: Ticket[Place]) -> None:
+        """Give the place back, or leave the line without having had one."""
+        if ticket.place.done():
+            self._free.append(ticket.place.result())
+            self._background -= ticket.background
+        else:
+            ticket.place.cancel()
+            lane = self._lanes[ticket.background]
+            lane[ticket.owner].remove(ticket)
+            if not lane[ticket.owner]:
+                del lane[ticket.owner]
+        self._hand_out()
+
+    def waiting(self, *, background: bool) -> int:
+        """How many wait."""
+        return sum(len(tickets) for tickets in self._lanes[background].values())
+
+    def _hand_out(self) -> None:
+        while self._free:
+            if self._lanes[False]:
+                lane = self._lanes[False]
+            elif self._lanes[True] and self._background < self._most_background:
+                lane = self._lanes[True]
+                self._background += 1
+            else:
+                return
+            owner, tickets = next(iter(lane.items()))
+            ticket = tickets.popleft()
+            if tickets:
+                lane.move_to_end(owner)
+            else:
+                del lane[owner]
+            ticket.place.set_result(self._free.pop())

@@ -1,0 +1,282 @@
+"""Jobs in the background: over REST, over restarts, and when something dies."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from app.compute import Compute
+from app.jobs import runner as runner_module
+from app.jobs.document import JobState, JobStatus
+from app.jobs.kinds import KINDS, JobKind
+from app.jobs.runner import JobRunner
+from app.jobs.store import JobStore
+from app.main import create_app
+from app.problems import NotFoundError
+from app.recent import RecentResults
+from app.settings import Settings
+from app.store.database import Database, StoreError
+from app.store.schema import migrate
+from tests.app.jobs import Answer, Wish, work
+from tests.app.service import Service
+
+JOBS = "/api/v1/jobs"
+GARTER = {"fabric": "garter", "columns": 9, "rows": 6}
+STRETCH = {"chart": GARTER, "material": "acrylic", "direction": "wale", "strain": 0.3, "steps": 3}
+
+
+@pytest.fixture(autouse=True)
+def _kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "work", JobKind(Wish, Answer, work))
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Iterator[Database]:
+    database = Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")
+    migrate(database)
+    yield database
+    database.close()
+
+
+@pytest.fixture(scope="module")
+def compute() -> Iterator[Compute]:
+    pool = Compute(workers=2, timeout_s=60)
+    yield pool
+    pool.close()
+
+
+def _runner(database: Database, compute: Compute, timeout_s: float = 60.0) -> JobRunner:
+    return JobRunner(JobStore(database, "main"), compute, RecentResults(), timeout_s)
+
+
+async def _ended(runner: JobRunner, job: str, owner: str = "ada") -> JobStatus:
+    async with asyncio.timeout(30):
+        while not (status := await runner.status(owner, job)).state.is_final:
+            await asyncio.sleep(0.02)
+    return status
+
+
+async def _running(runner: JobRunner, job: str) -> None:
+    async with asyncio.timeout(30):
+        while (await runner.status("ada", job)).state is not JobState.RUNNING:
+            await asyncio.sleep(0.02)
+
+
+def _wish(what: str, mark: Path | str = "/nonexistent") -> str:
+    return Wish(what=what, mark=str(mark)).model_dump_json()
+
+
+def test_a_stretch_test_in_the_background(client: TestClient) -> None:
+    made = client.post(JOBS, json={"kind": "stretch", "request": STRETCH})
+    assert made.status_code == 202
+    address = made.headers["location"]
+    with client.stream("GET", f"{address}/events") as stream:
+        assert stream.headers["content-type"].startswith("text/event-stream")
+        events = [json.loads(e[6:]) for e in stream.iter_lines() if e.startswith("data: ")]
+    assert events[-1]["state"] == "done"
+    assert events[-1]["progress"] == 1
+    result = client.get(f"{address}/result").json()
+    direct = client.post("/api/v1/stretch", json=STRETCH).json()
+    assert result == direct
+    view = {"chart": GARTER, "material": "acrylic", "stretch": {"id": result["id"], "step": 2}}
+    assert client.put("/api/v1/views/of-a-job-1", json=view).status_code == 200
+
+    again = client.post(f"{address}/again").json()
+    assert (again["state"], again["id"] != made.json()["id"]) == ("done", True)
+    listed = client.get(JOBS, params={"limit": 1}).json()
+    assert [j["id"] for j in listed["jobs"]] == [again["id"]]
+    following = client.get(JOBS, params={"limit": 1, "cursor": listed["next_cursor"]}).json()
+    assert [j["id"] for j in following["jobs"]] == [made.json()["id"]]
+
+
+def test_a_job_that_cannot_work_says_why(client: TestClient) -> None:
+    body = {"kind": "stretch", "request": STRETCH | {"material": "steel"}}
+    address = client.post(JOBS, json=body).headers["location"]
+    with client.stream("GET", f"{address}/events") as stream:
+        for _ in stream.iter_lines():
+            pass
+    told = client.get(address).json()
+    assert (told["state"], told["problem"]["field"]) == ("failed", "material")
+    assert client.get(f"{address}/result").status_code == 409
+    assert client.get(f"{JOBS}/no-such-job").json()["field"] == "job"
+    assert client.post(JOBS, json={"kind": "dance", "request": {}}).status_code == 422
+
+
+def test_jobs_are_private_and_results_are_shared_by_content(
+    database: Database, compute: Compute
+) -> None:
+    async def scenario() -> None:
+        runner = _runner(database, compute)
+        first = await runner.submit("ada", "work", _wish("answer"))
+        assert (await _ended(runner, first.id)).state is JobState.DONE
+        with pytest.raises(NotFoundError):
+            await runner.status("eve", first.id)
+        with pytest.raises(NotFoundError):
+            await runner.cancel("eve", first.id)
+        second = await runner.submit("bob", "work", _wish("answer"))
+        assert second.state is JobState.DONE
+        assert runner.store.result("bob", second.id) == b'{"value":42}'
+
+    asyncio.run(scenario())
+
+
+def test_progress_and_cancel(database: Database, compute: Compute) -> None:
+    async def scenario() -> None:
+        runner = _runner(database, compute)
+        job = (await runner.submit("ada", "work", _wish("wait"))).id
+        await _running(runner, job)
+        async with asyncio.timeout(10):
+            while (await runner.status("ada", job)).progress != 0.25:
+                await asyncio.sleep(0.02)
+        assert (await runner.cancel("ada", job)).state is JobState.CANCELLED
+        async with asyncio.timeout(10):
+            while runner.counts()["running"]:
+                await asyncio.sleep(0.02)
+        assert (await runner.status("ada", job)).state is JobState.CANCELLED
+        assert (await runner.cancel("ada", job)).state is JobState.CANCELLED
+        assert runner.store.result("ada", job) is None
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize(
+    ("what", "type_", "says"),
+    [("die", "busy", "died"), ("fail", "internal", "did not expect"), ("wait", "busy", "0.3 s")],
+)
+def test_a_failure_costs_one_job(
+    database: Database, compute: Compute, what: str, type_: str, says: str
+) -> None:
+    async def scenario() -> None:
+        runner = _runner(database, compute, timeout_s=0.3 if what == "wait" else 60.0)
+        bad = await runner.submit("ada", "work", _wish(what))
+        good = await runner.submit("ada", "work", _wish("answer", what))
+        failed = await _ended(runner, bad.id)
+        assert failed.state is JobState.FAILED
+        assert failed.problem is not None
+        assert failed.problem.type == type_
+        assert says in failed.problem.detail
+        assert (await _ended(runner, good.id)).state is JobState.DONE
+
+    asyncio.run(scenario())
+
+
+def test_what_waited_goes_on_and_what_ran_is_interrupted(
+    database: Database, compute: Compute
+) -> None:
+    """A service that was killed: its successor finds the rows as they were."""
+
+    async def scenario() -> None:
+        store = JobStore(database, "main")
+        ran = store.add("ada", "work", _wish("wait"), "k1", JobState.WAITING)
+        waited = store.add("ada", "work", _wish("answer"), "k2", JobState.WAITING)
+        others = JobStore(database, "another process")
+        theirs = others.add("ada", "work", _wish("wait"), "k1", JobState.WAITING)
+        assert store.begin(ran.id)
+        assert others.begin(theirs.id)
+        runner = _runner(database, compute)
+        await runner.resume()
+        interrupted = await runner.status("ada", ran.id)
+        assert interrupted.state is JobState.INTERRUPTED
+        assert interrupted.problem is not None
+        assert interrupted.problem.remedy == "Run it again."
+        assert (await _ended(runner, waited.id)).state is JobState.DONE
+        assert (await runner.status("ada", theirs.id)).state is JobState.RUNNING
+
+    asyncio.run(scenario())
+
+
+def test_a_service_that_stops_puts_its_jobs_back_in_line(
+    database: Database, compute: Compute, tmp_path: Path
+) -> None:
+    mark = tmp_path / "mark"
+
+    async def stopped() -> str:
+        runner = _runner(database, compute)
+        job = (await runner.submit("ada", "work", _wish("wait", mark))).id
+        await _running(runner, job)
+        await runner.close()
+        assert (await runner.status("ada", job)).state is JobState.WAITING
+        return job
+
+    async def started_again(job: str) -> None:
+        mark.touch()
+        runner = _runner(database, compute)
+        await runner.resume()
+        assert (await _ended(runner, job)).state is JobState.DONE
+
+    asyncio.run(started_again(asyncio.run(stopped())))
+
+
+def test_a_database_that_is_away_costs_no_result(
+    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runner_module, "STORE_RETRY_S", (0.01, 0.01, 0.01))
+
+    async def scenario() -> None:
+        runner = _runner(database, compute)
+        real, failures = runner.store.finish, []
+
+        def away(*args: Any) -> bool:
+            if len(failures) < 3:
+                failures.append(1)
+                raise StoreError("away")
+            return real(*args)
+
+        monkeypatch.setattr(runner.store, "finish", away)
+        job = await runner.submit("ada", "work", _wish("answer"))
+        assert (await _ended(runner, job.id)).state is JobState.DONE
+        assert len(failures) == 3
+
+    asyncio.run(scenario())
+
+
+def test_the_longest_unused_results_make_room(database: Database) -> None:
+    store = JobStore(database, "main")
+    for number in range(3):
+        status = store.add("ada", "work", "{}", f"k{number}", JobState.WAITING)
+        assert store.finish(status.id, "work", f"k{number}", os.urandom(1000))
+        time.sleep(0.002)
+    assert store.kept("k0") is not None
+    store.tidy(most_bytes=2100)
+    assert [store.kept(f"k{n}") is None for n in range(3)] == [False, True, False]
+
+
+def test_the_real_service_killed_in_mid_job(tmp_path: Path) -> None:
+    service = Service(tmp_path)
+    client = service.start()
+    chart = {"fabric": "garter", "columns": 150, "rows": 150}
+    long = {"kind": "stretch", "request": STRETCH | {"chart": chart, "steps": 60}}
+    try:
+        job = client.post(JOBS, json=long).json()["id"]
+        deadline = time.monotonic() + 40
+        while client.get(f"{JOBS}/{job}").json()["state"] == "waiting":
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        service.kill()
+        client.close()
+        client = service.start()
+        told = client.get(f"{JOBS}/{job}").json()
+        assert told["state"] == "interrupted"
+        assert client.get(f"{JOBS}/{job}/result").status_code == 409
+        again = client.post(f"{JOBS}/{job}/again").json()
+        assert again["state"] == "waiting"
+        assert client.delete(f"{JOBS}/{again['id']}").json()["state"] == "cancelled"
+    finally:
+        client.close()
+        service.kill()
+
+
+def test_settings_reach_the_jobs(tmp_path: Path) -> None:
+    settings = Settings(workers=1, data_dir=tmp_path, background_timeout_s=7, process_name="two")
+    app = create_app(settings)
+    with TestClient(app, base_url="http://127.0.0.1"):
+        assert app.state.jobs._timeout_s == 7
+        assert app.state.jobs.store._process == "two"
