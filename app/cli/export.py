@@ -10,6 +10,7 @@ from app.cli.common import chart_argument, choice, emit, json_option, resolve_ch
 from app.cli.materials import resolve_material
 from app.operations.export import ExportFacts, export_facts
 from knitcore.errors import InputError
+from knitcore.formats.design import read_design
 from knitcore.formats.export import ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
 from knitcore.worked import Construction, Side
@@ -41,8 +42,14 @@ def command(
     if not out.parent.is_dir():
         raise InputError("out", f"there is no folder {out.parent}.", "Make it first.")
     stitches = resolve_chart(chart, size)
+    path = Path(chart)
+    is_design = path.suffix.lower() == ".json"
     options = ExportOptions(
-        Construction(construction), Side(first_side), Finish(finish), name or out.stem or "Untitled"
+        Construction(construction),
+        Side(first_side),
+        Finish(finish),
+        name or out.stem or "Untitled",
+        read_design(path).outline if is_design else None,
     )
     file = export_chart(stitches, ExportKind(kind), resolve_material(material), options)
     out.write_bytes(file.content)

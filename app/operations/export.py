@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart
+from app.operations.charts import MAX_TEXT, ChartInput, to_chart
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.export import (
@@ -37,6 +37,9 @@ class ExportRequest(BaseModel):
     first_side: Side = Field(Side.RS, description="Side of row 1 in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="How a knitout program ends.")
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
+    outline: str | None = Field(
+        None, max_length=MAX_TEXT, description="Lines of x (stitch) and . (no stitch)."
+    )
 
 
 class ExportFacts(BaseModel):
@@ -88,7 +91,9 @@ def run_export(request: ExportRequest, *, cancelled: Callable[[], bool]) -> Expo
             f"{chart.columns}x{chart.rows} stitches are too many for {request.to} here.",
             f"Use at most {limit} stitches, or the command line.",
         )
-    options = ExportOptions(request.construction, request.first_side, request.finish, request.name)
+    options = ExportOptions(
+        request.construction, request.first_side, request.finish, request.name, request.outline
+    )
     file = export_chart(chart, request.to, find_material(request.material), options)
     return ExportResult(
         **export_facts(chart, file).model_dump(),

@@ -33,6 +33,7 @@ class ImportResult(BaseModel):
     name: str | None = Field(None, description="Of a design.")
     material: str | None = None
     note: str | None = None
+    outline: str | None = Field(None, description="Lines of x (stitch) and . (no stitch).")
 
 
 def import_path(path: Path) -> ImportResult:
@@ -52,7 +53,7 @@ def import_path(path: Path) -> ImportResult:
         return result
     design = read_design(path)
     return result.model_copy(
-        update={"name": design.name, "material": design.material, "note": design.note}
+        update=design.model_dump(include={"name", "material", "note", "outline"})
     )
 
 

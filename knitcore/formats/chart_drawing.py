@@ -12,6 +12,7 @@ import numpy as np
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.drawing import Box, Dots, Label, Page, Shape, Strokes, to_pdf, to_svg
+from knitcore.garment.shaped import ShapedChart
 from knitcore.worked import Construction, Side, side_of_row
 
 CELL_MM = 5.0
@@ -22,7 +23,7 @@ KEY_MM = 24.0
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
 """Longer rows get every fifth number."""
-_INK, _GRID, _HEAVY = "#222222", "#b5b0a8", "#b3322b"
+_INK, _GRID, _HEAVY, _NO_STITCH = "#222222", "#b5b0a8", "#b3322b", "#d9d5ce"
 
 
 @dataclass(frozen=True)
@@ -47,31 +48,36 @@ class ChartStyle:
             )
 
 
-def chart_svg(chart: StitchChart, style: ChartStyle | None = None) -> str:
-    """The whole chart as one SVG drawing."""
-    style = style or ChartStyle()
-    part = _Part(chart, style, range(chart.rows), range(chart.columns), CELL_MM)
-    return to_svg(part.page(), _title(chart))
+def chart_svg(chart: StitchChart | ShapedChart, style: ChartStyle | None = None) -> str:
+    """The whole chart as one SVG drawing; "no stitch" is grey."""
+    shaped = _shaped(chart)
+    size = range(shaped.chart.rows), range(shaped.chart.columns)
+    return to_svg(_Part(shaped, style or ChartStyle(), *size, CELL_MM).page(), _title(shaped.chart))
 
 
-def chart_pdf(chart: StitchChart, style: ChartStyle | None = None) -> bytes:
+def chart_pdf(chart: StitchChart | ShapedChart, style: ChartStyle | None = None) -> bytes:
     """The chart as A4 pages: one if it fits with cells of at least 3 mm, otherwise several.
 
     Every page has its numbers and the key; pages go from the bottom right, where flat knitting
     begins, to the left and then up.
     """
-    style = style or ChartStyle()
+    style, shaped = style or ChartStyle(), _shaped(chart)
+    chart = shaped.chart
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
     room_y = A4_MM[1] - HEADER_MM - KEY_MM - 2 * MARGIN_MM
     cell = min(CELL_MM, room_x / chart.columns, room_y / (chart.rows * style.aspect))
     cell = max(cell, SMALLEST_CELL_MM)
     across, up = int(room_x / cell), int(room_y / (cell * style.aspect))
     parts = [
-        _Part(chart, style, rows, columns, cell)
+        _Part(shaped, style, rows, columns, cell)
         for rows in _pieces(chart.rows, up)
         for columns in reversed(_pieces(chart.columns, across))
     ]
     return to_pdf([part.page(paper=A4_MM) for part in parts], _title(chart))
+
+
+def _shaped(chart: StitchChart | ShapedChart) -> ShapedChart:
+    return chart if isinstance(chart, ShapedChart) else ShapedChart.rectangle(chart)
 
 
 def _pieces(count: int, most: int) -> list[range]:
@@ -88,7 +94,7 @@ def _title(chart: StitchChart) -> str:
 class _Part:
     """A window of a chart on a page."""
 
-    chart: StitchChart
+    shaped: ShapedChart
     style: ChartStyle
     rows: range
     columns: range
@@ -102,6 +108,14 @@ class _Part:
         else:
             width = max(width, 120.0)
         return Page(width, height, tuple(self._shapes()))
+
+    @property
+    def chart(self) -> StitchChart:
+        return self.shaped.chart
+
+    @property
+    def _is_shaped(self) -> bool:
+        return not bool(self.shaped.stitch.all())
 
     @property
     def _row_height(self) -> float:
@@ -135,7 +149,9 @@ class _Part:
         yield Box(self._left, self._top, self._width, self._height, fill="#ffffff")
         yield self._grid()
         yield self._purls()
-        yield from self._repeat()
+        yield from self._no_stitches()
+        if not self._is_shaped:
+            yield from self._repeat()
         yield from self._row_numbers()
         yield from self._stitch_numbers()
         yield from self._key()
@@ -148,7 +164,12 @@ class _Part:
         yield Label(MARGIN_MM, MARGIN_MM, part + _title(self.chart), 4.0)
         flat = self.style.construction is Construction.FLAT
         how = "worked flat" if flat else "worked in the round"
-        yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {_multiple(self.chart)}", 3.0)
+        about = (
+            f"{self.shaped.stitches} stitches inside the outline"
+            if self._is_shaped
+            else _multiple(self.chart)
+        )
+        yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
 
     def _grid(self) -> Strokes:
         right, bottom = self._left + self._width, self._top + self._height
@@ -163,7 +184,7 @@ class _Part:
         return Strokes(tuple(upright + level), _GRID, 0.15)
 
     def _purls(self) -> Dots:
-        window = self.chart.purl[
+        window = (self.chart.purl & self.shaped.stitch)[
             self.rows.start : self.rows.stop, self.columns.start : self.columns.stop
         ]
         rows, columns = np.nonzero(window)
@@ -171,6 +192,17 @@ class _Part:
         y = self._top + self._row_height * (len(self.rows) - 0.5 - rows)
         radius = round(0.22 * min(self.cell, self._row_height), 3)
         return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, _INK)
+
+    def _no_stitches(self) -> Iterator[Shape]:
+        """Grey boxes before and after the stitches of each row."""
+        spans = self.shaped.spans
+        for row in self.rows:
+            for start, stop in ((0, spans[row][0]), (spans[row][1], self.chart.columns)):
+                first, last = max(start, self.columns.start), min(stop, self.columns.stop)
+                if first < last:
+                    width = self.cell * (last - first)
+                    x, y = self._x(first), self._y(row)
+                    yield Box(x, y, width, self._row_height, fill=_NO_STITCH)
 
     def _repeat(self) -> Iterator[Shape]:
         """A heavy border around the repeat at the bottom right, where row 1 begins."""
@@ -225,7 +257,10 @@ class _Part:
                 yield Dots(((MARGIN_MM + 2.0, top - 1.0),), 0.9, _INK)
             yield Label(MARGIN_MM + 6.0, top, words)
         x = MARGIN_MM + 50.0
-        if self.chart.repeat_cut() != self.chart:
+        if self._is_shaped:
+            yield Box(x, y - 3.0, 4.0, 4.0, fill=_NO_STITCH)
+            yield Label(x + 6.0, y, "no stitch")
+        elif self.chart.repeat_cut() != self.chart:
             yield Box(x, y - 3.0, 4.0, 4.0, stroke=_HEAVY, line_width=0.7)
             yield Label(x + 6.0, y, "repeat")
         reading = (

@@ -20,6 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.garment.shaped import ShapedChart
 
 FORMAT: Final = "knitcore-design"
 VERSION: Final = 1
@@ -46,6 +47,18 @@ class DesignFile(BaseModel):
     )
     chart: str = Field(max_length=MAX_TEXT, description="K/P lines, the top row first, face side.")
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$")
+    outline: str | None = Field(
+        None,
+        max_length=MAX_TEXT,
+        description="Lines of x (stitch) and . (no stitch), the top row first; a full rectangle "
+        "if left out.",
+    )
+
+    def to_shaped(self) -> ShapedChart:
+        """The chart with its outline."""
+        if self.outline is None:
+            return ShapedChart.rectangle(self.to_chart())
+        return ShapedChart.parse(self.chart, self.outline)
 
     def to_chart(self) -> StitchChart:
         """The chart itself."""
@@ -97,7 +110,7 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise InputError(where, f"{name}: {first['msg']}.", "See the published schema.") from None
-    design.to_chart()
+    design.to_shaped()
     return design
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from knitcore.chart import StitchChart
+from knitcore.errors import InputError
 from knitcore.formats import (
     chart_drawing,
     design,
@@ -17,6 +18,7 @@ from knitcore.formats import (
     yarn_mesh,
 )
 from knitcore.formats.knitout import Finish
+from knitcore.garment.shaped import ShapedChart
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.materials import Material
 from knitcore.worked import Construction, Side
@@ -54,6 +56,10 @@ SUFFIXES = {
 """Usual suffix and media type of each kind."""
 
 
+SHAPED_KINDS = (ExportKind.SVG, ExportKind.PDF, ExportKind.DESIGN)
+"""Formats that know "no stitch"."""
+
+
 @dataclass(frozen=True)
 class ExportOptions:
     """How a chart is worked and finished, where that matters.
@@ -64,12 +70,15 @@ class ExportOptions:
     first_side : the side of row 1 in flat knitting.
     finish : how a knitout program ends.
     name : of the design.
+    outline : lines of ``x`` and ``.`` (see :class:`knitcore.garment.shaped.ShapedChart`), or None
+        for a rectangle.
     """
 
     construction: Construction = Construction.FLAT
     first_side: Side = Side.RS
     finish: Finish = Finish.WASTE
     name: str = "Untitled"
+    outline: str | None = None
 
 
 @dataclass(frozen=True)
@@ -118,11 +127,20 @@ def export_chart(
     Raises
     ------
     InputError
-        If the chart is too wide for the machine or too large for a mesh.
+        If the chart is too wide for the machine or too large for a mesh, or has an outline that
+        this format cannot hold.
     KnitoutMismatchError
         If a knitout program does not knit its chart on the virtual machine.
     """
-    return _WRITERS[kind](chart, material, options or ExportOptions())
+    options = options or ExportOptions()
+    if options.outline is not None and kind not in SHAPED_KINDS:
+        known = ", ".join(SHAPED_KINDS)
+        raise InputError(
+            "to",
+            f"{kind} cannot hold a chart with an outline, and its stitches must not be made up.",
+            f"Export {known}, or a rectangular part.",
+        )
+    return _WRITERS[kind](chart, material, options)
 
 
 _Writer = Callable[[StitchChart, Material, ExportOptions], ExportedFile]
@@ -140,12 +158,12 @@ def _knitout(chart: StitchChart, _: Material, options: ExportOptions) -> Exporte
 
 
 def _svg(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
-    drawing = chart_drawing.chart_svg(chart, _style(chart, material, options))
+    drawing = chart_drawing.chart_svg(_shaped(chart, options), _style(chart, material, options))
     return ExportedFile(ExportKind.SVG, drawing.encode())
 
 
 def _pdf(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
-    drawing = chart_drawing.chart_pdf(chart, _style(chart, material, options))
+    drawing = chart_drawing.chart_pdf(_shaped(chart, options), _style(chart, material, options))
     return ExportedFile(ExportKind.PDF, drawing)
 
 
@@ -155,7 +173,12 @@ def _written(chart: StitchChart, _: Material, options: ExportOptions) -> Exporte
 
 
 def _design(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
-    document = design.DesignFile(name=options.name, material=material.identifier, chart=chart.text)
+    document = design.DesignFile(
+        name=options.name,
+        material=material.identifier,
+        chart=chart.text,
+        outline=options.outline,
+    )
     return ExportedFile(ExportKind.DESIGN, design.write_design(document).encode())
 
 
@@ -173,6 +196,12 @@ def _vtu(chart: StitchChart, material: Material, _: ExportOptions) -> ExportedFi
 
 def _csv(chart: StitchChart, material: Material, _: ExportOptions) -> ExportedFile:
     return ExportedFile(ExportKind.CSV, stitch_values.write_csv(chart, material).encode(), _LOCAL)
+
+
+def _shaped(chart: StitchChart, options: ExportOptions) -> ShapedChart:
+    if options.outline is None:
+        return ShapedChart.rectangle(chart)
+    return ShapedChart.parse(chart.text, options.outline)
 
 
 def _style(

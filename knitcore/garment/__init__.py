@@ -1,0 +1,1 @@
+"""From measurements of a body to a chart: gauge, outline, regions, templates, yarn."""

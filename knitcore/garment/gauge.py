@@ -1,0 +1,107 @@
+"""Gauge: how many stitches and rows a length of cloth takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import Material
+
+
+class GaugeLength(Enum):
+    """Lengths over which gauge is counted, in mm."""
+
+    TEN_CM = 100.0
+    FOUR_INCHES = 101.6
+    FIVE_CM = 50.0
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """Size of one stitch at rest.
+
+    Attributes
+    ----------
+    stitch_course_mm, stitch_wale_mm : width of a stitch and height of a row.
+    source : where they come from, in words.
+    """
+
+    stitch_course_mm: float
+    stitch_wale_mm: float
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("stitch_course_mm", "stitch_wale_mm"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and 0.1 <= value <= 100):
+                raise InputError(
+                    "gauge",
+                    f"a stitch of {value:g} mm is no gauge.",
+                    "Count stitches and rows over a ruler, and give both counts and the length.",
+                )
+
+    @classmethod
+    def of_swatch(cls, stitches: int, rows: int, width_mm: float, height_mm: float) -> Gauge:
+        """The gauge of a measured swatch.
+
+        Examples
+        --------
+        >>> gauge = Gauge.of_swatch(stitches=22, rows=30, width_mm=100, height_mm=100)
+        >>> gauge.stitches_for(250), gauge.rows_for(60)
+        (55, 18)
+        """
+        for name, value in (("stitches", stitches), ("rows", rows)):
+            if value < 1:
+                raise InputError(name, f"{value} cannot be counted.", "Count at least one.")
+        return cls(width_mm / stitches, height_mm / rows, "swatch")
+
+    @classmethod
+    def of_count(cls, stitches: float, rows: float, per: GaugeLength = GaugeLength.TEN_CM) -> Gauge:
+        """The gauge as a ball band prints it."""
+        if not (stitches > 0 and rows > 0):
+            raise InputError("gauge", "the counts must be positive.", "Give stitches and rows.")
+        return cls(per.value / stitches, per.value / rows, "counted")
+
+    @classmethod
+    def of_material(cls, material: Material, fabric: Fabric) -> Gauge:
+        """The gauge of a pure fabric of the library.
+
+        Raises
+        ------
+        InputError
+            If the material lacks that fabric.
+        """
+        record = material.record(fabric)
+        return cls(
+            record.stitch_course_mm,
+            record.stitch_wale_mm,
+            f"{material.identifier}, {fabric}: {record.stitch_size_source}",
+        )
+
+    def counts(self, per: GaugeLength = GaugeLength.TEN_CM) -> tuple[float, float]:
+        """Stitches and rows over a length."""
+        return per.value / self.stitch_course_mm, per.value / self.stitch_wale_mm
+
+    def stitches_for(self, width_mm: float, *, multiple: int = 1, extra: int = 0) -> int:
+        """Stitches of a width, rounded to ``multiple * n + extra`` with at least one repeat."""
+        return _rounded(width_mm / self.stitch_course_mm, multiple, extra)
+
+    def rows_for(self, height_mm: float, *, multiple: int = 1, extra: int = 0) -> int:
+        """Rows of a height, rounded likewise."""
+        return _rounded(height_mm / self.stitch_wale_mm, multiple, extra)
+
+    def count_for(self, length_mm: float, direction: Direction) -> int:
+        """Stitches along a course, or rows along a wale."""
+        along_course = direction is Direction.COURSE
+        return self.stitches_for(length_mm) if along_course else self.rows_for(length_mm)
+
+
+def _rounded(count: float, multiple: int, extra: int) -> int:
+    if not (math.isfinite(count) and count > 0):
+        raise InputError("size", "a length must be positive.", "Give it in mm.")
+    if multiple < 1 or extra < 0:
+        raise InputError("multiple", "no repeat has this many stitches.", "Give 1 or more.")
+    return max(round((count - extra) / multiple), 1) * multiple + extra

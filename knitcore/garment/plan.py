@@ -1,0 +1,105 @@
+"""A garment plan: outline, regions and everything that is known of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.fabric import Direction, Fabric
+from knitcore.garment.gauge import Gauge
+from knitcore.garment.regions import (
+    Misfit,
+    Region,
+    RegionNumbers,
+    YarnUse,
+    fabric_repeat,
+    fill_regions,
+    misfits,
+    region_numbers,
+    yarn_use,
+)
+from knitcore.garment.shaped import ShapedChart
+from knitcore.materials import Material
+
+FABRIC_COLOURS = {
+    Fabric.STOCKINETTE: "#3b6fb6",
+    Fabric.GARTER: "#d9822b",
+    Fabric.RIB: "#3f9b5b",
+    Fabric.SEED: "#8a5ea8",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class GarmentPlan:
+    """A garment, ready to be edited as a chart.
+
+    Attributes
+    ----------
+    name : of the template.
+    shaped : chart and outline.
+    regions : its parts.
+    around : which material direction runs around the limb.
+    closing : how the piece is closed, in words.
+    notes : of shaping and assumptions.
+    misfits : where regions of unlike gauge meet.
+    numbers : extensibility by region.
+    yarn : what it takes.
+    """
+
+    name: str
+    shaped: ShapedChart
+    regions: tuple[Region, ...]
+    around: Direction
+    closing: str
+    notes: tuple[str, ...]
+    misfits: tuple[Misfit, ...]
+    numbers: tuple[RegionNumbers, ...]
+    yarn: YarnUse
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A named part of an outline in one pure fabric, before it is filled."""
+
+    name: str
+    cells: NDArray[np.bool_]
+    fabric: Fabric
+
+
+def make_plan(
+    name: str,
+    stitch: NDArray[np.bool_],
+    parts: tuple[Part, ...],
+    material: Material,
+    *,
+    around: Direction,
+    closing: str,
+    notes: tuple[str, ...] = (),
+    linear_density_tex: float | None = None,
+) -> GarmentPlan:
+    """Fill an outline and compute what is known of it.
+
+    Raises
+    ------
+    InputError
+        From the outline, the regions or the material.
+    """
+    used = tuple(part for part in parts if (part.cells & stitch).any())
+    regions = tuple(
+        Region(p.name, p.cells, fabric_repeat(p.fabric), FABRIC_COLOURS[p.fabric]) for p in used
+    )
+    gauges = [Gauge.of_material(material, part.fabric) for part in used]
+    shaped = fill_regions(stitch, regions)
+    return GarmentPlan(
+        name=name,
+        shaped=shaped,
+        regions=regions,
+        around=around,
+        closing=closing,
+        notes=notes,
+        misfits=misfits(regions, gauges, stitch),
+        numbers=region_numbers(shaped, regions, material),
+        yarn=yarn_use(shaped, material, linear_density_tex=linear_density_tex),
+    )

@@ -1,0 +1,214 @@
+"""Regions of a garment, what fills them, and what happens where they meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Fabric
+from knitcore.garment.gauge import Gauge
+from knitcore.garment.shaped import ShapedChart
+from knitcore.materials import Material
+from knitcore.mechanics.local import local_moduli
+from knitcore.phases import quarter_phases
+
+MISFIT = 0.10
+"""Relative difference of stitch sizes above which a seam between regions puckers visibly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A part of a garment with one fabric.
+
+    Attributes
+    ----------
+    name : for people.
+    cells : bool (rows, columns), row 0 at the bottom.
+    fill : repeat, continued over the whole chart from its bottom left, so that regions of one
+        fabric fit together.
+    colour : ``#rrggbb`` for intarsia and for the chart, or empty.
+    """
+
+    name: str
+    cells: NDArray[np.bool_]
+    fill: StitchChart
+    colour: str = ""
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """Two regions of unlike gauge that share an edge.
+
+    Attributes
+    ----------
+    first, second : the regions.
+    stitches : how many pairs of stitches meet there.
+    difference : of the size that both should have in common, relative to the smaller.
+    text : what it means.
+    """
+
+    first: str
+    second: str
+    stitches: int
+    difference: float
+    text: str
+
+
+@dataclass(frozen=True)
+class RegionNumbers:
+    """What a region does, stitch by stitch on the average."""
+
+    name: str
+    stitches: int
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+
+
+def fill_regions(stitch: NDArray[np.bool_], regions: Sequence[Region]) -> ShapedChart:
+    """The chart that regions make inside an outline.
+
+    Raises
+    ------
+    InputError
+        If regions overlap, or leave a stitch without a fabric.
+    """
+    times = np.zeros(stitch.shape, dtype=int)
+    purl = np.zeros(stitch.shape, dtype=bool)
+    for region in regions:
+        if region.cells.shape != stitch.shape:
+            raise InputError("regions", f"{region.name} has another size.", "Mark every cell.")
+        times += region.cells
+        purl[region.cells] = region.fill.resized(*stitch.shape).purl[region.cells]
+    for problem, cells in (("two regions", times > 1), ("no region", times == 0)):
+        wrong = np.argwhere(cells & stitch)
+        if len(wrong):
+            row, column = wrong[0] + 1
+            raise InputError(
+                "regions",
+                f"{len(wrong)} stitches belong to {problem}, the first in row {row}, column "
+                f"{column}.",
+                "Give every stitch of the outline exactly one region.",
+            )
+    return ShapedChart(StitchChart(purl), stitch)
+
+
+def misfits(
+    regions: Sequence[Region], gauges: Sequence[Gauge], stitch: NDArray[np.bool_]
+) -> tuple[Misfit, ...]:
+    """Where regions of unlike gauge meet.
+
+    Regions side by side share row heights; regions above each other share stitch widths.
+    """
+    owner = np.full(stitch.shape, -1)
+    for index, region in enumerate(regions):
+        owner[region.cells & stitch] = index
+    found = []
+    for pairs, name, words in (
+        ((owner[:, :-1], owner[:, 1:]), "stitch_wale_mm", ("beside", "rows", "higher")),
+        ((owner[:-1], owner[1:]), "stitch_course_mm", ("below or above", "stitches", "wider")),
+    ):
+        first, second = (side.ravel() for side in pairs)
+        meet = (first >= 0) & (second >= 0) & (first != second)
+        edges = np.sort(np.stack([first[meet], second[meet]]), axis=0)
+        for a, b in np.unique(edges, axis=1).T.tolist():
+            sizes = getattr(gauges[a], name), getattr(gauges[b], name)
+            difference = max(sizes) / min(sizes) - 1
+            if difference <= MISFIT:
+                continue
+            larger, smaller = (a, b) if sizes[0] > sizes[1] else (b, a)
+            text = (
+                f"{regions[larger].name} lies {words[0]} {regions[smaller].name} and its "
+                f"{words[1]} are {difference:.0%} {words[2]}: the edge will pucker or draw in "
+                "unless one of them is knitted on other needles or with short rows."
+            )
+            count = int(np.count_nonzero((edges == [[a], [b]]).all(axis=0)))
+            found.append(Misfit(regions[a].name, regions[b].name, count, difference, text))
+    return tuple(found)
+
+
+def region_numbers(
+    shaped: ShapedChart, regions: Sequence[Region], material: Material
+) -> tuple[RegionNumbers, ...]:
+    """The extensibility field by region: means of the rectangles of its stitches (Fig. 4d).
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    local = local_moduli(shaped.chart, material)
+    numbers = []
+    for region in regions:
+        cells = region.cells & shaped.stitch
+        if not cells.any():
+            continue
+        course = float(local.extensibility_course_mm_per_n[cells].mean())
+        wale = float(local.extensibility_wale_mm_per_n[cells].mean())
+        numbers.append(
+            RegionNumbers(region.name, int(cells.sum()), course, wale, 1 / course, 1 / wale)
+        )
+    return tuple(numbers)
+
+
+@dataclass(frozen=True)
+class YarnUse:
+    """Yarn that a chart takes.
+
+    Attributes
+    ----------
+    length_m : without cast-on, tails and swatch.
+    mass_g : None without a linear density.
+    """
+
+    length_m: float
+    mass_g: float | None
+
+
+def yarn_use(
+    shaped: ShapedChart, material: Material, *, linear_density_tex: float | None = None
+) -> YarnUse:
+    """Yarn of all stitches; each takes the mean loop length of its four quarters' fabrics.
+
+    Parameters
+    ----------
+    shaped : the chart.
+    material : with loop lengths.
+    linear_density_tex : g per km of the yarn.
+
+    Raises
+    ------
+    InputError
+        If a fabric in the chart has no loop length, or the density is not positive.
+    """
+    phases = quarter_phases(shaped.chart).reshape(shaped.chart.rows, 2, shaped.chart.columns, 2)
+    quarters = phases.transpose(0, 2, 1, 3)[shaped.stitch].ravel()
+    lengths = np.zeros(len(PHASES))
+    for phase in np.unique(quarters):
+        length = material.record(PHASES[phase]).loop_length_mm
+        if length is None:
+            raise InputError(
+                "material",
+                f"{material.identifier} has no loop length for {PHASES[phase]}.",
+                "Unravel ten stitches of a swatch, measure the yarn, and add loop_length_mm.",
+            )
+        lengths[phase] = length
+    metres = float(lengths[quarters].sum()) / 4 / 1000
+    if linear_density_tex is None:
+        return YarnUse(metres, None)
+    if not 0 < linear_density_tex < 1e5:
+        raise InputError(
+            "linear_density_tex", f"{linear_density_tex:g} tex is no yarn.", "Give g per km."
+        )
+    return YarnUse(metres, metres * linear_density_tex / 1000)
+
+
+def fabric_repeat(fabric: Fabric) -> StitchChart:
+    """The repeat of a pure fabric."""
+    return StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()

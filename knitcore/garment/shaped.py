@@ -1,0 +1,112 @@
+"""Charts whose outline is no rectangle: stitches outside it are "no stitch"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+
+INSIDE, OUTSIDE = "x", "."
+
+
+@dataclass(frozen=True, eq=False)
+class ShapedChart:
+    """A chart and which of its cells are stitches.
+
+    Parameters
+    ----------
+    chart : K/P of every cell; what stands at "no stitch" means nothing.
+    stitch : bool (rows, columns), row 0 at the bottom.
+
+    Raises
+    ------
+    InputError
+        If the outline cannot be knitted as one piece: an empty row, a row in two parts, or a row
+        that hangs on nothing.
+    """
+
+    chart: StitchChart
+    stitch: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        inside = np.array(self.stitch, dtype=bool)
+        if inside.shape != self.chart.purl.shape:
+            raise InputError(
+                "outline",
+                f"it has {inside.shape[-1]}x{inside.shape[0]} cells, the chart "
+                f"{self.chart.columns}x{self.chart.rows}.",
+                "Give one mark for every stitch of the chart.",
+            )
+        check_outline(inside)
+        inside.setflags(write=False)
+        object.__setattr__(self, "stitch", inside)
+
+    @classmethod
+    def rectangle(cls, chart: StitchChart) -> ShapedChart:
+        """A chart without "no stitch"."""
+        return cls(chart, np.ones_like(chart.purl))
+
+    @classmethod
+    def parse(cls, chart: str, outline: str) -> ShapedChart:
+        """From K/P lines and lines of ``x`` (stitch) and ``.`` (no stitch), the top row first."""
+        marks = [line.strip() for line in outline.splitlines() if line.strip()]
+        if not marks or len({len(line) for line in marks}) > 1 or set("".join(marks)) - set("x."):
+            raise InputError("outline", "it is no grid of x and dots.", "Write x or . per stitch.")
+        inside = np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
+        return cls(StitchChart.parse(chart), inside)
+
+    @property
+    def outline(self) -> str:
+        """Lines of ``x`` and ``.``, the top row first; :meth:`parse` reads them back."""
+        rows = self.stitch[::-1]
+        return "\n".join("".join(INSIDE if s else OUTSIDE for s in row) for row in rows)
+
+    @property
+    def stitches(self) -> int:
+        """Number of stitches."""
+        return int(np.count_nonzero(self.stitch))
+
+    @property
+    def spans(self) -> tuple[tuple[int, int], ...]:
+        """First column and one past the last of every row, from the bottom."""
+        first = self.stitch.argmax(axis=1)
+        last = self.chart.columns - self.stitch[:, ::-1].argmax(axis=1)
+        return tuple(zip(first.tolist(), last.tolist(), strict=True))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ShapedChart) or not np.array_equal(self.stitch, other.stitch):
+            return False
+        return np.array_equal(self.chart.purl[self.stitch], other.chart.purl[other.stitch])
+
+    def __hash__(self) -> int:
+        return hash((self.stitch.tobytes(), self.chart.purl[self.stitch].tobytes()))
+
+
+def check_outline(stitch: NDArray[np.bool_]) -> None:
+    """Refuse an outline that falls apart, naming the row."""
+    spans = []
+    for row, inside in enumerate(stitch, start=1):
+        columns = np.flatnonzero(inside)
+        if len(columns) == 0:
+            raise InputError(
+                "outline", f"row {row} has no stitch.", "Crop the chart, or fill the row."
+            )
+        if columns[-1] - columns[0] + 1 != len(columns):
+            raise InputError(
+                "outline",
+                f"row {row} is in two parts, which one yarn cannot knit in one row.",
+                "Close the gap, or make it two pieces.",
+            )
+        spans.append((int(columns[0]), int(columns[-1])))
+    for row, (below, above) in enumerate(pairwise(spans), start=1):
+        if above[0] > below[1] or above[1] < below[0]:
+            raise InputError(
+                "outline",
+                f"row {row + 1} does not stand on row {row}: the outline falls apart.",
+                "Let neighbouring rows overlap by at least one stitch.",
+            )

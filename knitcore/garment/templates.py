@@ -1,0 +1,181 @@
+"""Templates for limbs: tubes from a circumference profile, and a brace knitted sideways."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.garment.gauge import Gauge
+from knitcore.garment.plan import GarmentPlan, Part, make_plan
+from knitcore.materials import Material
+
+LARGEST_CHANGE = 2
+"""Stitches that a row may gain or lose: one at each edge."""
+
+
+@dataclass(frozen=True)
+class Girth:
+    """Circumference of a limb at a distance along it, both in mm."""
+
+    at_mm: float
+    circumference_mm: float
+
+
+def limb_tube(
+    name: str,
+    profile: Sequence[Girth],
+    material: Material,
+    *,
+    ease: float = -0.15,
+    body: Fabric = Fabric.STOCKINETTE,
+    hem: Fabric = Fabric.RIB,
+    hem_mm: float = 40.0,
+    linear_density_tex: float | None = None,
+) -> GarmentPlan:
+    """A tube along a limb, worked in the round or flat and seamed; courses run around the limb.
+
+    Parameters
+    ----------
+    name : of the garment.
+    profile : circumferences along the limb, from where the knitting begins.
+    material : gives the gauge, taken from the body's fabric.
+    ease : rest circumference over the limb's, minus one; negative is tighter.
+    body, hem : fabrics of the middle, and of the first and last ``hem_mm``.
+    linear_density_tex : for the mass of yarn.
+
+    Raises
+    ------
+    InputError
+        If the profile cannot be used, or it widens faster than one stitch at each edge of a row.
+    """
+    _check_profile(profile, ease)
+    gauge = Gauge.of_material(material, body)
+    length = profile[-1].at_mm - profile[0].at_mm
+    rows = gauge.rows_for(length)
+    at = profile[0].at_mm + (np.arange(rows) + 0.5) * length / rows
+    girth = np.interp(at, [g.at_mm for g in profile], [g.circumference_mm for g in profile])
+    # Even counts: shaping is symmetrical, and 1x1 rib closes around the limb.
+    counts = [gauge.stitches_for(float(c) * (1 + ease), multiple=2) for c in girth]
+    notes = []
+    shaped = _limit_changes(counts)
+    if shaped != counts:
+        worst = max(range(rows), key=lambda row: abs(shaped[row] - counts[row]))
+        notes.append(
+            f"The limb widens faster than one stitch at each edge of a row: row {worst + 1} has "
+            f"{shaped[worst]} stitches instead of {counts[worst]}."
+        )
+    columns = max(shaped)
+    column = np.arange(columns)
+    left = (columns - np.array(shaped)) // 2
+    stitch = (column >= left[:, None]) & (column < columns - left[:, None])
+    hem_rows = min(gauge.rows_for(hem_mm), rows // 3) if hem_mm > 0 else 0
+    row = np.broadcast_to(np.arange(rows)[:, None], stitch.shape)
+    parts = (
+        Part("first hem", row < hem_rows, hem),
+        Part("body", (row >= hem_rows) & (row < rows - hem_rows), body),
+        Part("last hem", row >= rows - hem_rows, hem),
+    )
+    return make_plan(
+        name,
+        stitch,
+        parts,
+        material,
+        around=Direction.COURSE,
+        closing="work in the round, or work flat and seam the edges",
+        notes=tuple(notes),
+        linear_density_tex=linear_density_tex,
+    )
+
+
+def sock_leg(
+    ankle_mm: float, calf_mm: float, length_mm: float, material: Material, *, ease: float = -0.15
+) -> GarmentPlan:
+    """The leg of a sock from the ankle up to the calf, with rib at both ends."""
+    profile = (Girth(0.0, ankle_mm), Girth(length_mm / 3, ankle_mm), Girth(length_mm, calf_mm))
+    return limb_tube("sock leg", profile, material, ease=ease)
+
+
+def wrist_brace(
+    wrist_mm: float,
+    length_mm: float,
+    material: Material,
+    *,
+    ease: float = -0.15,
+    edge_mm: float = 15.0,
+    linear_density_tex: float | None = None,
+) -> GarmentPlan:
+    """A brace knitted sideways and grafted, so that wales, stockinette's stiff way, go around.
+
+    Parameters
+    ----------
+    wrist_mm : circumference of the wrist.
+    length_mm : along the arm.
+    material : gives the gauge of stockinette.
+    ease : rest circumference over the wrist's, minus one.
+    edge_mm : width of the garter edges, which give way around the arm.
+    linear_density_tex : for the mass of yarn.
+    """
+    _check_length("wrist_mm", wrist_mm)
+    _check_length("length_mm", length_mm)
+    _check_ease(ease)
+    gauge = Gauge.of_material(material, Fabric.STOCKINETTE)
+    rows = gauge.rows_for(wrist_mm * (1 + ease), multiple=2)
+    columns = gauge.stitches_for(length_mm)
+    edge = min(gauge.stitches_for(edge_mm), columns // 3) if edge_mm > 0 else 0
+    column = np.broadcast_to(np.arange(columns), (rows, columns))
+    parts = (
+        Part("edge at the forearm", column < edge, Fabric.GARTER),
+        Part("support", (column >= edge) & (column < columns - edge), Fabric.STOCKINETTE),
+        Part("edge at the hand", column >= columns - edge, Fabric.GARTER),
+    )
+    return make_plan(
+        "wrist brace",
+        np.ones((rows, columns), dtype=bool),
+        parts,
+        material,
+        around=Direction.WALE,
+        closing="graft the last row to the first",
+        linear_density_tex=linear_density_tex,
+    )
+
+
+def _limit_changes(counts: Sequence[int]) -> list[int]:
+    """The largest counts that nowhere exceed these and change slowly enough."""
+    limited = list(counts)
+    for order in (range(1, len(limited)), range(len(limited) - 2, -1, -1)):
+        for row in order:
+            before = limited[row - order.step]
+            limited[row] = min(limited[row], before + LARGEST_CHANGE)
+    return limited
+
+
+def _check_profile(profile: Sequence[Girth], ease: float) -> None:
+    if len(profile) < 2:
+        raise InputError("profile", "it has no length.", "Give at least two circumferences.")
+    for before, after in pairwise(profile):
+        if not after.at_mm > before.at_mm:
+            raise InputError(
+                "profile",
+                f"{after.at_mm:g} mm does not come after {before.at_mm:g} mm.",
+                "Give positions in rising order.",
+            )
+    for girth in profile:
+        _check_length("profile", girth.circumference_mm)
+    _check_length("profile", profile[-1].at_mm - profile[0].at_mm)
+    _check_ease(ease)
+
+
+def _check_length(name: str, value: float) -> None:
+    if not (math.isfinite(value) and 5 <= value <= 2000):
+        raise InputError(name, f"{value:g} mm cannot be knitted.", "Give 5 to 2000 mm.")
+
+
+def _check_ease(ease: float) -> None:
+    if not (math.isfinite(ease) and -0.6 <= ease <= 1):
+        raise InputError("ease", f"{ease:g} is no ease.", "Give -0.6 (tight) to 1 (wide).")

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from knitcore import InputError, StitchChart
+from knitcore.formats.design import DesignFile, design_from_mapping
+from knitcore.garment.shaped import ShapedChart
+from tests.knitcore.charts import stitch_charts
+
+
+@st.composite
+def shaped_charts(draw: st.DrawFn) -> ShapedChart:
+    """A trapezium in a random chart."""
+    chart = draw(stitch_charts(most=8))
+    middle = draw(st.integers(0, chart.columns - 1))
+    stitch = np.zeros_like(chart.purl)
+    for row in range(chart.rows):
+        left = draw(st.integers(0, middle))
+        stitch[row, left : draw(st.integers(middle + 1, chart.columns))] = True
+    return ShapedChart(chart, stitch)
+
+
+@given(shaped=shaped_charts())
+def test_text_and_project_file_keep_chart_and_outline(shaped: ShapedChart) -> None:
+    assert ShapedChart.parse(shaped.chart.text, shaped.outline) == shaped
+    design = DesignFile(chart=shaped.chart.text, outline=shaped.outline)
+    assert design_from_mapping(design.model_dump(exclude_none=True)).to_shaped() == shaped
+
+
+@given(shaped=shaped_charts())
+def test_spans_are_the_stitches(shaped: ShapedChart) -> None:
+    assert sum(stop - start for start, stop in shaped.spans) == shaped.stitches
+
+
+def test_what_stands_outside_means_nothing() -> None:
+    first = ShapedChart.parse("KP\nKP", "x.\nxx")
+    assert first == ShapedChart.parse("KK\nKP", "x.\nxx")
+    assert first != ShapedChart.parse("PK\nKP", "x.\nxx")
+
+
+@pytest.mark.parametrize(
+    ("outline", "says"),
+    [
+        ("xxx\n...\nxxx", "row 2 has no stitch"),
+        ("xxx\nx.x\nxxx", "row 2 is in two parts"),
+        ("..x\nx..\nxxx", "row 3 does not stand on row 2"),
+        ("xx\nxx", "the chart 3x3"),
+        ("xyz\nxxx\nxxx", "no grid of x and dots"),
+        ("xxx\nxx\nxxx", "no grid"),
+    ],
+)
+def test_outlines_that_cannot_be_knitted(outline: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        ShapedChart.parse("KKK\nKKK\nKKK", outline)
+
+
+def test_a_rectangle_has_no_holes() -> None:
+    chart = StitchChart.of_fabric("rib", rows=3, columns=4)
+    assert ShapedChart.rectangle(chart).stitches == 12
