@@ -135,9 +135,24 @@ def folded_repeat(repeat: StitchChart, material: Material, relaxed: RelaxedSize)
 
 
 def flat_rib_wale_wise(repeat: StitchChart, material: Material) -> Series:
-    """Wale-wise response of a rib whose relaxed size is unknown, at its flat width."""
+    """Wale-wise response of a rib whose relaxed size is unknown, at its flat width.
+
+    The mean of the phases' strains at equal stress, weighted by width: the Reuss bound, which is
+    as near to the force-per-wale rule as a flat composite can be.
+    """
     parts = _parts(repeat, material, Direction.COURSE)
-    return _rib_wale_wise(repeat, parts, flat_mm(parts))
+    flat = flat_mm(parts)
+    return Series(
+        direction=Direction.WALE,
+        parts=tuple(
+            replace(part, share=part.share * part.along_mm / flat, along_mm=1.0, across_mm=1.0)
+            for part in parts
+        ),
+        relaxed_mm=1.0,
+        across_mm=1.0,
+        gap_mm=0.0,
+        unfolding_stress_n_per_mm=math.inf,
+    )
 
 
 def _parts(repeat: StitchChart, material: Material, direction: Direction) -> tuple[Part, ...]:

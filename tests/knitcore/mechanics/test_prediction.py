@@ -1,5 +1,7 @@
 """Predictions: the tables, the rule of sources, symmetry, bounds and intervals."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,8 +12,10 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import load_library, load_variants, material
+from knitcore.mechanics.homogenisation import homogenise
 from knitcore.mechanics.prediction import Provenance, predict
 from knitcore.mechanics.relaxed import RelaxedSize
+from knitcore.mechanics.spread import phase_log_sd
 
 ALL = {**load_library(), **load_variants()}
 
@@ -105,6 +109,8 @@ def test_intervals_hold_the_value_and_bounds_hold_the_flat_composite(grid, ident
         interval, bounds = getattr(found, f"{name}_interval"), getattr(found, f"{name}_bounds")
         assert 0 < interval.low < value < interval.high
         assert bounds.low <= bounds.high * (1 + 1e-9)
+        if found.provenance is Provenance.STRETCHED:
+            assert bounds.low * (1 - 1e-6) <= value <= bounds.high * (1 + 1e-6)
     assert found.poisson_yx * found.poisson_xy < 1
     one = found.extensibility_course_interval
     assert one.low < found.extensibility_course_mm_per_n < one.high
@@ -139,3 +145,33 @@ def test_a_large_chart_of_noise_is_answered():
 def test_missing_fabrics_are_named():
     with pytest.raises(InputError, match="has no rib"):
         predict(StitchChart.parse("KKPP"), material("glove-wool:needle-2.0mm"))
+
+
+def test_the_delta_method_agrees_with_sampling():
+    """Laws of a flat basket drawn from their log-normal spread, 300 times."""
+    yarn = material("lace-cashmere")
+    chart = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
+    rng = np.random.default_rng(0)
+    drawn = []
+    for _ in range(300):
+        fabrics = {}
+        for fabric, record in yarn.fabrics.items():
+            factor = np.exp(rng.normal() * record.uncertainty.log_modulus_course)
+            law = replace(
+                record.law,
+                **{name: getattr(record.law, name) * factor for name in STIFFNESSES},
+            )
+            fabrics[fabric] = replace(record, law=law)
+        sheet = homogenise(chart, replace(yarn, fabrics=fabrics))
+        drawn.append(np.log(sheet.modulus_n_per_mm(Direction.COURSE)))
+    shares = homogenise(chart, yarn).energy_shares[0]
+    assert phase_log_sd(shares, yarn, Direction.COURSE) == pytest.approx(np.std(drawn), rel=0.15)
+
+
+STIFFNESSES = (
+    "stiffness_xxxx",
+    "stiffness_yyyy",
+    "stiffness_xxyy",
+    "stiffness_yyxx",
+    "shear_modulus",
+)
