@@ -179,7 +179,7 @@ def rod_sample(
         for m in range(6):
             for n in range(m):
                 curvature[m, n] = curvature[n, m]
-    return value
+    return float(value)
 
 
 @numba.njit(cache=True)
@@ -290,7 +290,7 @@ def scatter_gradient(
 
 
 @numba.njit(cache=True)
-def scatter_local(
+def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     local: Array,
     position: Array,
     position_speed: Array,
@@ -362,7 +362,7 @@ def scatter_local(
 
 
 @numba.njit(cache=True)
-def contact_hessian(
+def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one sweep
     curve: Array,
     course_mm: float,
     wale_mm: float,

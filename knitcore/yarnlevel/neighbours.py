@@ -16,7 +16,7 @@ EXCLUSION_RADII = 2.1
 
 
 @numba.njit(cache=True)
-def neighbour_pairs(
+def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
     cell: tuple[float, float],

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +33,7 @@ MAX_STITCHES = 100
 FINE = SplineGrid(controls=20, per_span=4)
 COARSE = SplineGrid(controls=16, per_span=3)
 FINE_UP_TO = 2
-"""Cells of so many stitches are solved on the fine grid (energy within 1e-5), others coarse (1e-4)."""
+"""Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this are the same minimum."""
 
@@ -259,13 +260,13 @@ class _Search:
 
     def try_starts(self, starts: Sequence[Start]) -> None:
         for start in starts:
-            self._run(
-                start.name,
-                lambda start=start: grow(
-                    self.cell, self.yarn, self.lengths, self.convention, start,
-                    options=self.options, cancel=self.cancel,
-                ),
-            )  # fmt: skip
+            self._run(start.name, partial(self._grow, start))
+
+    def _grow(self, start: Start) -> Minimum:
+        return grow(
+            self.cell, self.yarn, self.lengths, self.convention, start,
+            options=self.options, cancel=self.cancel,
+        )  # fmt: skip
 
     def continue_mirrored(self, repeat: StitchChart, grid: SplineGrid) -> None:
         """Go on from the mirrored state, laid out over the free cell and shaken a little."""

@@ -71,7 +71,7 @@ class Minimum:
     evaluations: int
 
 
-def minimise(
+def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
     energy: CellEnergy,
     state: Array,
     *,

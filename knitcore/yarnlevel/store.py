@@ -179,7 +179,7 @@ def build(folder: Path, most_stitches: int) -> None:
             try:
                 relaxed = relax(chart, used.yarn, used.loop_length_mm)
             except KnitcoreError as error:
-                print(f"{key}: {error}", file=sys.stderr)
+                _tell(f"{key}: {error}")
                 continue
             entry = _entry(relaxed, used)
             if chart in common:
@@ -190,8 +190,8 @@ def build(folder: Path, most_stitches: int) -> None:
             entries[key] = entry
             points = tiled_controls(relaxed.cell, relaxed.state, chart.rows, chart.columns)
             controls[key] = points.astype(np.float32)
-            print(f"{number}/{len(charts)} {key}: {entry['cell_course_mm']:.3f} x "
-                  f"{entry['cell_wale_mm']:.3f} mm, law {entry['law'] is not None}", flush=True)  # fmt: skip
+            size = f"{entry['cell_course_mm']:.3f} x {entry['cell_wale_mm']:.3f} mm"
+            _tell(f"{number}/{len(charts)} {key}: {size}, law {entry['law'] is not None}")
         _write(folder, entries, controls)
 
 
@@ -231,9 +231,14 @@ def _law(relaxed: RelaxedRepeat) -> dict[str, float] | None:
         )  # fmt: skip
         law = fit_law(course, wale).law
     except KnitcoreError as error:
-        print(f"  no law: {error}", file=sys.stderr)
+        _tell(f"  no law: {error}")
         return None
     return {name: round(value, 6) for name, value in asdict(law).items()}
+
+
+def _tell(line: str) -> None:
+    sys.stderr.write(line + "\n")
+    sys.stderr.flush()
 
 
 def main() -> None:

@@ -1,12 +1,13 @@
 """Yarn must not pass through yarn: how far a step may go.
 
 Between two states every point moves along a straight line. Consecutive samples of a course are at
-most a spacing h apart at either end of the step, hence also in between. Where two stretches of yarn
-meet, some sample of one lies within 0.75 h of some sample of the other; so if the vector between
-any two samples changes by less than its length minus 0.75 h, nothing meets on the way. Pairs beyond the reach of the list are covered by a
-bound: their distance shrinks by no more than the strain of the cell times itself plus twice the
-largest displacement. A step that passes keeps the topology. Stretches of one yarn nearer than
-2.1 r along it are exempt: they would need a kink to cross.
+most a spacing h apart at either end of the step, hence also in between. Where two stretches of
+yarn meet, some sample of one lies within 0.75 h of some sample of the other; so if the vector
+between any two samples changes by less than its length minus 0.75 h, nothing meets on the way.
+Pairs beyond the reach of the list are covered by a bound: their distance shrinks by no more than
+the strain of the cell times itself plus twice the largest displacement. A step that passes keeps
+the topology. Stretches of one yarn nearer than 2.1 r along it are exempt: they would need a kink
+to cross.
 """
 
 from __future__ import annotations
