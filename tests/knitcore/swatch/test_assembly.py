@@ -1,0 +1,189 @@
+"""The compiled kernel against scikit-fem's general assembly, and against finite differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from skfem import Basis, BilinearForm, ElementTriP1, ElementVector, Functional, LinearForm
+from skfem.helpers import grad
+
+from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.mechanics.stiffening import StiffeningForm
+from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, State
+
+LAWS = (
+    ConstitutiveLaw(0.241, 0.060, 0.036, 0.029, 1.17, 0.802, 0.022, 0.022, 0.01),
+    ConstitutiveLaw(0.204, 0.930, 0.088, 0.413, 1.111, 2.537, 0.046, 0.010, 0.03),
+)
+
+
+def mixed_grid(rng: np.random.Generator) -> QuarterGrid:
+    columns, rows = 5, 4
+    return QuarterGrid.between(
+        np.cumsum(rng.uniform(0.5, 2.0, columns + 1)),
+        np.cumsum(rng.uniform(0.5, 2.0, rows + 1)),
+        rng.integers(0, 2, (rows, columns)).astype(np.uint8),
+    )
+
+
+def disturbed(sheet: Sheet, rng: np.random.Generator) -> State:
+    stretch = np.array([[1.08, 0.03], [-0.02, 1.2]])
+    corners, centres = sheet.grid.corners @ stretch, sheet.grid.centres @ stretch
+    return State(
+        corners + rng.uniform(-0.03, 0.03, corners.shape),
+        centres + rng.uniform(-0.03, 0.03, centres.shape),
+    )
+
+
+def full_tangent(sheet: Sheet, state: State) -> sp.csr_matrix:
+    """By central differences of the kernel's forces."""
+    sizes = state.corners.size, state.centres.size
+    x = np.concatenate([state.corners.ravel(), state.centres.ravel()])
+
+    def force(x: np.ndarray) -> np.ndarray:
+        lin = sheet.linearise(State(x[: sizes[0]].reshape(-1, 2), x[sizes[0] :].reshape(-1, 2)))
+        return np.concatenate([lin.corner_force.ravel(), lin.centre_force.ravel()])
+
+    step = 1e-6
+    columns = [(force(x + step * e) - force(x - step * e)) / (2 * step) for e in np.eye(sum(sizes))]
+    return np.array(columns).T
+
+
+def skfem_assembly(sheet: Sheet, state: State) -> tuple[float, np.ndarray, np.ndarray]:
+    """Energy, forces and tangent by scikit-fem, from Notes 7 and 9 written down directly."""
+    mesh = sheet.grid.mesh()
+    basis = Basis(mesh, ElementVector(ElementTriP1()), intorder=2)
+    law_of_triangle = np.repeat(sheet.grid.law_of_cell.ravel(), 4)[:, None]
+    law = {
+        name: np.array([getattr(law, name) for law in sheet.laws])[law_of_triangle]
+        for name in ConstitutiveLaw.__dataclass_fields__
+    }
+    displacement = np.vstack([state.corners, state.centres]) - mesh.p.T
+    u = basis.interpolate(displacement.ravel())
+    du = grad(u)
+    a = np.array([1 + du[0, 0], du[1, 0]])
+    b = np.array([du[0, 1], 1 + du[1, 1]])
+    published = sheet.model.energy is EnergyModel.PUBLISHED
+    if published:
+        ex, ey, gamma = a[0] - 1, b[1] - 1, a[1] + b[0]
+        zero, one = np.zeros_like(ex), np.ones_like(ex)
+        d_ex, d_ey = np.array([one, zero, zero, zero]), np.array([zero, zero, zero, one])
+        d_gamma = np.array([zero, one, one, zero])
+        dd = [np.zeros((4, 4, *ex.shape))] * 3
+    else:
+        la, lb = np.hypot(*a), np.hypot(*b)
+        ex, ey = la - 1, lb - 1
+        gamma = np.arctan2(a[1], a[0]) - np.arctan2(-b[0], b[1])
+        zero = np.zeros_like(ex)
+        d_ex = np.array([a[0] / la, a[1] / la, zero, zero])
+        d_ey = np.array([zero, zero, b[0] / lb, b[1] / lb])
+        d_gamma = np.array([-a[1] / la**2, a[0] / la**2, b[1] / lb**2, -b[0] / lb**2])
+        dd = [np.zeros((4, 4, *ex.shape)) for _ in range(3)]
+        for k, (v, length) in enumerate(((a, la), (b, lb))):
+            o = 2 * k
+            dd[k][o, o], dd[k][o + 1, o + 1] = v[1] ** 2 / length**3, v[0] ** 2 / length**3
+            dd[k][o, o + 1] = dd[k][o + 1, o] = -v[0] * v[1] / length**3
+            sign = 1 if k == 0 else -1  # gamma = angle(a) - (angle(b) - 90 degrees)
+            dd[2][o, o] = sign * 2 * v[0] * v[1] / length**4
+            dd[2][o + 1, o + 1] = -dd[2][o, o]
+            dd[2][o, o + 1] = dd[2][o + 1, o] = sign * (v[1] ** 2 - v[0] ** 2) / length**4
+    from knitcore.mechanics.stiffening import stiffening
+
+    form = StiffeningForm(sheet.model.energy.value)
+    wx, wx1, wx2 = stiffening(law["alpha_xx"] * ex, form)
+    wy, wy1, wy2 = stiffening(law["alpha_yy"] * ey, form)
+    cxx, cyy, cxy = law["stiffness_xxxx"], law["stiffness_yyyy"], law["stiffness_xxyy"]
+    g = law["shear_modulus"]
+    density = (
+        cxx * ex**2 / 2 + cyy * ey**2 / 2 + cxy * ex * ey + g * gamma**2 / 2
+        + law["beta_xx"] / law["alpha_xx"] * wx + law["beta_yy"] / law["alpha_yy"] * wy
+    )  # fmt: skip
+    s = [cxx * ex + cxy * ey + law["beta_xx"] * wx1, cyy * ey + cxy * ex + law["beta_yy"] * wy1]
+    s.append(g * gamma)
+    kxx = cxx + law["alpha_xx"] * law["beta_xx"] * wx2
+    kyy = cyy + law["alpha_yy"] * law["beta_yy"] * wy2
+    p = s[0] * d_ex + s[1] * d_ey + s[2] * d_gamma
+
+    def outer(m: np.ndarray, n: np.ndarray) -> np.ndarray:
+        return m[:, None] * n[None]
+
+    h = (
+        kxx * outer(d_ex, d_ex) + kyy * outer(d_ey, d_ey) + g * outer(d_gamma, d_gamma)
+        + cxy * (outer(d_ex, d_ey) + outer(d_ey, d_ex))
+        + s[0] * dd[0] + s[1] * dd[1] + s[2] * dd[2]
+    )  # fmt: skip
+
+    def flat(v: object) -> np.ndarray:
+        dv = grad(v)
+        return np.array([dv[0, 0], dv[1, 0], dv[0, 1], dv[1, 1]])
+
+    energy = Functional(lambda w: density).assemble(basis)
+    force = LinearForm(lambda v, w: np.einsum("i...,i...", p, flat(v))).assemble(basis)
+    tangent = BilinearForm(
+        lambda u, v, w: np.einsum("i...,ij...,j...", flat(v), h, flat(u))
+    ).assemble(basis)
+    return energy, force, tangent.toarray()
+
+
+@pytest.mark.parametrize("energy", list(EnergyModel))
+def test_the_kernel_equals_scikit_fem(energy: EnergyModel) -> None:
+    rng = np.random.default_rng(7)
+    sheet = Sheet(mixed_grid(rng), LAWS, SheetModel(energy))
+    state = disturbed(sheet, rng)
+    lin = sheet.linearise(state)
+    expected, force, tangent = skfem_assembly(sheet, state)
+    assert lin.energy == pytest.approx(expected, rel=1e-12)
+    assert sheet.energy(state) == pytest.approx(expected, rel=1e-12)
+    found = np.concatenate([lin.corner_force.ravel(), lin.centre_force.ravel()])
+    assert np.abs(found - force).max() <= 1e-12 * np.abs(force).max()
+    # the cells' centres eliminated from scikit-fem's tangent
+    n = state.corners.size
+    inverse = np.linalg.inv(tangent[n:, n:])
+    condensed = tangent[:n, :n] - tangent[:n, n:] @ inverse @ tangent[n:, :n]
+    columns = np.array([lin.apply(e.reshape(-1, 2)).ravel() for e in np.eye(n)]).T
+    assert np.abs(columns - condensed).max() <= 1e-12 * np.abs(condensed).max()
+    reduced = force[:n] - tangent[:n, n:] @ inverse @ force[n:]
+    assert np.abs(lin.condensed_force().ravel() - reduced).max() <= 1e-12 * np.abs(force).max()
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        SheetModel(EnergyModel.PUBLISHED),
+        SheetModel(),
+        SheetModel(stiffening_coupling=0.4),
+        SheetModel(tension_field=True),
+    ],
+    ids=["published", "full", "coupled", "tension field"],
+)
+def test_force_and_tangent_are_derivatives_of_the_energy(model: SheetModel) -> None:
+    rng = np.random.default_rng(3)
+    sheet = Sheet(mixed_grid(rng), LAWS, model)
+    state = disturbed(sheet, rng)
+    lin = sheet.linearise(state)
+    corner, centre = rng.normal(size=state.corners.shape), rng.normal(size=state.centres.shape)
+    step = 1e-6
+    ahead, behind = (sheet.energy(state.moved(corner, centre, s)) for s in (step, -step))
+    slope = np.sum(lin.corner_force * corner) + np.sum(lin.centre_force * centre)
+    assert (ahead - behind) / (2 * step) == pytest.approx(slope, rel=1e-6)
+    tangent = full_tangent(sheet, state)
+    n = state.corners.size
+    condensed = tangent[:n, :n] - tangent[:n, n:] @ np.linalg.solve(
+        tangent[n:, n:], tangent[n:, :n]
+    )
+    assert lin.apply(corner).ravel() == pytest.approx(
+        condensed @ corner.ravel(), abs=2e-6 * np.abs(condensed).max()
+    )
+
+
+def test_the_grid_numbers_its_nodes_and_edges_like_its_mesh() -> None:
+    grid = mixed_grid(np.random.default_rng(0))
+    mesh = grid.mesh()
+    basis = Basis(mesh, ElementVector(ElementTriP1()))
+    for name in ("left", "right", "bottom", "top"):
+        by_mesh = basis.get_dofs(name).all()
+        by_grid = (2 * grid.edge(name)[:, None] + np.arange(2)).ravel()
+        assert sorted(by_mesh) == sorted(by_grid)
+    assert grid.dofs == basis.N
+    assert np.abs(mesh.p.T - np.vstack([grid.corners, grid.centres])).max() == 0
