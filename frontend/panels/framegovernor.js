@@ -6,11 +6,14 @@
 
 /** Frames further apart than this on average mean a slow machine. */
 const SLOW_MS = 45;
+/** A sleeping viewer still draws this often, for news that came late or from elsewhere. */
+const HEARTBEAT_MS = 2500;
 
 export class FrameGovernor {
   /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */ #waiting = new Map();
   /** @type {((callback: FrameRequestCallback) => number) | null} */ #request = null;
   #next = 1;
+  #beating = false;
   #awakeUntil = 0;
   #held = false;
   #lastFrame = 0;
@@ -37,6 +40,7 @@ export class FrameGovernor {
     viewer.cancelAnimationFrame = (id) => {
       if (!this.#waiting.delete(id)) cancel(id);
     };
+    this.#beat();
     for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "resize"]) {
       viewer.addEventListener(name, () => this.wake(1200), { passive: true });
     }
@@ -58,12 +62,24 @@ export class FrameGovernor {
     if (!held) this.#release();
   }
 
+  #beat() {
+    if (this.#beating) return;
+    this.#beating = true;
+    setInterval(() => {
+      if (!this.#held) this.#draw();
+    }, HEARTBEAT_MS);
+  }
+
   #open() {
     return !this.#held && (performance.now() < this.#awakeUntil || this.#pace < SLOW_MS);
   }
 
   #release() {
-    if (!this.#open() || !this.#request) return;
+    if (this.#open()) this.#draw();
+  }
+
+  #draw() {
+    if (!this.#request) return;
     const waiting = [...this.#waiting.values()];
     this.#waiting.clear();
     for (const callback of waiting) this.#request((time) => this.#frame(callback, time));

@@ -66,13 +66,17 @@ export function inspector(host, studio) {
   );
   choose("rigidity");
 
+  /** @type {Prediction | null | undefined} */
+  let shown;
   const show = () => {
     const { value, busy, problem: wrong, scope } = studio.prediction.value;
+    host.classList.toggle("busy", busy);
+    if (busy && shown === value) return; // asked anew: the old numbers stay, greyed, until the answer
+    shown = value;
     const box = studio.selection.value;
     const { grid } = studio.document;
     const [rows, columns] = box ? [box.row1 - box.row0, box.column1 - box.column0] : [grid.rows, grid.columns];
     title.replaceChildren(box ? "Selection" : "Whole chart", h("span", { class: "muted figures" }, ` ${columns} × ${rows}`));
-    host.classList.toggle("busy", busy);
     problem.hidden = !wrong;
     if (wrong) {
       problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
@@ -123,6 +127,7 @@ export function inspector(host, studio) {
   };
   studio.prediction.watch(show);
   studio.selection.listen(() => {
+    shown = undefined;
     show();
     countSoon();
   });

@@ -13,13 +13,15 @@ export function startAutosave(studio) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   let warned = false;
+  const root = document.documentElement;
   const save = () => {
     clearTimeout(timer);
     timer = undefined;
-    const { document, designId, name, materialId } = studio;
+    delete root.dataset.unsaved;
+    const { document: chart, designId, name, materialId } = studio;
     const kept = saveDesign(
-      { id: designId, name: name.value, material: materialId.value, chart: document.grid.text },
-      document.history,
+      { id: designId, name: name.value, material: materialId.value, chart: chart.grid.text },
+      chart.history,
     );
     if (!kept && !warned) {
       warned = true;
@@ -33,6 +35,7 @@ export function startAutosave(studio) {
     }
   };
   const soon = () => {
+    root.dataset.unsaved = "";
     timer ??= setTimeout(save, DELAY_MS);
   };
   studio.document.onSettle(soon);

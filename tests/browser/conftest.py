@@ -1,0 +1,122 @@
+"""The page in Chromium, against the real service."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+CHROMIUM = Path("/usr/bin/chromium")
+FLAGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+]
+TIMEOUT_MS = 60_000
+"""Generous: a busy machine without a GPU draws the 3D view slowly."""
+
+expect.set_options(timeout=TIMEOUT_MS)
+
+ROWS, COLUMNS = 10, 12
+CHART = "\n".join(["K" * COLUMNS] * ROWS)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Everything in this folder needs Chromium."""
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.browser)
+
+
+@pytest.fixture(scope="session")
+def service() -> Iterator[str]:
+    """Address of a running service."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+        cwd=Path(__file__).resolve().parents[2],
+    )
+    assert process.stdout is not None
+    with process.stdout:
+        found = None
+        while found is None and (line := process.stdout.readline()):
+            found = re.search(r"http://\S+?:\d+/", line)
+        assert found, "the service printed no address"
+        yield found.group(0)
+        process.terminate()
+        process.wait(timeout=20)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """One Chromium for all tests."""
+    if not CHROMIUM.exists():
+        pytest.skip("needs Debian's chromium (apt-get install --no-install-recommends chromium)")
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def visitor(browser: Browser) -> Iterator[Page]:
+    """A page in a browser that was never here before; scripts of ours must not fail."""
+    context = browser.new_context(viewport={"width": 1280, "height": 720}, reduced_motion="reduce")
+    context.set_default_timeout(TIMEOUT_MS)
+    page = context.new_page()
+    failures: list[str] = []
+    page.on("pageerror", lambda error: failures.append(f"{error.message}\n{error.stack}"))
+    yield page
+    context.close()
+    ours = [failure for failure in failures if "/static/" in failure]
+    assert not ours, ours
+
+
+@pytest.fixture
+def studio(visitor: Page, service: str) -> Page:
+    """The page with a small chart, all knit, ready to be painted."""
+    return open_small_chart(visitor, service)
+
+
+@pytest.fixture
+def flat_studio(visitor: Page, service: str) -> Page:
+    """The same with an empty 3D view: drawing it without a GPU takes most of a test's time."""
+    visitor.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    return open_small_chart(visitor, service)
+
+
+def open_small_chart(visitor: Page, service: str) -> Page:
+    """Show a chart of 12 x 10 knits."""
+    design = {
+        "id": os.urandom(16).hex(),
+        "name": "Test",
+        "material": "acrylic",
+        "chart": CHART,
+    }
+    visitor.add_init_script(f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}")
+    visitor.goto(service)
+    wait_for_numbers(visitor)
+    return visitor
+
+
+def wait_for_numbers(page: Page) -> None:
+    """Until the service's answer to the latest change is on show."""
+    page.wait_for_function(
+        """() => document.querySelector('#modulus-course .value')?.textContent.match(/\\d/)
+             && !document.querySelector('#inspector').classList.contains('busy')"""
+    )

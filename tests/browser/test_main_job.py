@@ -1,0 +1,117 @@
+"""The main job: paint, see, stretch."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import CHART, COLUMNS, ROWS, wait_for_numbers
+from tests.browser.page import coloured, drag, kept_chart, number, pixels, wait_for_colour
+
+
+def test_first_visit_opens_on_a_painted_and_stretched_example(visitor: Page, service: str) -> None:
+    visitor.goto(service)
+    wait_for_numbers(visitor)
+    expect(visitor.locator("#stretch-slider")).to_be_enabled()
+    expect(visitor.locator("#stretch-figures")).to_contain_text("30 %")
+    expect(visitor.locator("#overlay-strain")).to_have_attribute("aria-checked", "true")
+    expect(visitor.locator("#plot-curve .main-svg").first).to_be_visible()
+    assert coloured(pixels(visitor, "#chart")) > 10_000
+
+
+def test_pure_fabric_shows_the_table_s_numbers(flat_studio: Page) -> None:
+    flat_studio.click("#ink-garter")
+    flat_studio.click("#fill-all")
+    expect(flat_studio.locator("#segments-wale")).to_contain_text(f"{(ROWS - 1) * COLUMNS} odd")
+    expect(flat_studio.locator("#modulus-course .value")).to_have_text("0.223")
+    wait_for_numbers(flat_studio)
+    assert number(flat_studio, "#modulus-course") == pytest.approx(0.223, rel=0.01)
+    assert number(flat_studio, "#modulus-wale") == pytest.approx(0.056, rel=0.01)
+    expect(flat_studio.locator("#provenance")).not_to_be_empty()
+
+
+def test_painting_changes_chart_segments_and_moduli(flat_studio: Page) -> None:
+    flat_studio.click("#overlay-modulus-course")
+    before = pixels(flat_studio, "#chart")
+    modulus = number(flat_studio, "#modulus-course")
+    shown = flat_studio.locator("#modulus-course .value").inner_text()
+    expect(flat_studio.locator("#segments-course")).not_to_contain_text("odd")
+
+    drag(flat_studio, 90, 40)
+
+    expect(flat_studio.locator("#segments-course")).to_contain_text("odd")
+    assert np.abs(pixels(flat_studio, "#chart") - before).max() > 60
+    flat_studio.wait_for_function(
+        "old => document.querySelector('#modulus-course .value').textContent !== old",
+        arg=shown,
+    )
+    wait_for_numbers(flat_studio)
+    assert number(flat_studio, "#modulus-course") < modulus
+    assert "P" in kept_chart(flat_studio)
+
+
+def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
+    drag(studio, 90, 40)
+    wait_for_colour(studio, "#fabric", 1_500)
+    studio.click("#stretch-course")
+    studio.fill("#stretch-amount", "20")
+    studio.click("#stretch-run")
+    slider = studio.locator("#stretch-slider")
+    expect(slider).to_be_enabled()
+    expect(studio.locator("#stretch-figures")).to_contain_text("20 %")
+    expect(studio.locator("#overlay-strain")).to_have_attribute("aria-checked", "true")
+    expect(studio.locator("#plot-curve .main-svg").first).to_be_visible()
+    expect(studio.locator(".fabric-caption")).to_have_text("Stretched course-wise by 20 %")
+    studio.wait_for_timeout(500)
+    chart, curve = pixels(studio, "#chart"), pixels(studio, "#plot-curve")
+    figures = studio.locator("#stretch-figures").inner_text()
+    with studio.expect_response(lambda r: "/api/v1/views/" in r.url) as answer:
+        slider.focus()
+        for _ in range(12):
+            studio.keyboard.press("ArrowLeft")
+
+    assert answer.value.ok
+    assert studio.locator("#stretch-figures").inner_text() != figures
+    expect(studio.locator(".fabric-caption")).not_to_have_text("Stretched course-wise by 20 %")
+    studio.wait_for_timeout(500)
+    assert np.abs(pixels(studio, "#chart") - chart).max() > 40
+    assert np.abs(pixels(studio, "#plot-curve") - curve).max() > 40
+    wait_for_colour(studio, "#fabric", 300)
+
+
+def test_change_after_a_stretch_marks_it_as_old(flat_studio: Page) -> None:
+    flat_studio.fill("#stretch-amount", "10")
+    flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    drag(flat_studio, 30, 0)
+    expect(flat_studio.locator("#stretch-note")).to_contain_text("changed since")
+    expect(flat_studio.locator("#overlay-strain")).to_be_disabled()
+
+
+def test_3d_view_shows_the_fabrics_in_their_colours(studio: Page) -> None:
+    studio.click("#ink-seed")
+    studio.click("#fill-all")
+    studio.wait_for_timeout(1_000)
+    for _ in range(40):
+        picture = wait_for_colour(studio, "#fabric", 1_500)
+        red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
+        purple = int(((red > green + 6) & (blue > green + 14)).sum())
+        if purple > 800:
+            return
+        studio.wait_for_timeout(700)
+    raise AssertionError(f"{purple} purple pixels")
+
+
+def test_the_whole_chart_is_undone_to_the_start_and_redone(flat_studio: Page) -> None:
+    drag(flat_studio, 60, 0)
+    drag(flat_studio, 0, 60, start=(-60, -40))
+    flat_studio.keyboard.press("x")
+    after = kept_chart(flat_studio)
+    for _ in range(3):
+        flat_studio.keyboard.press("Control+z")
+    assert kept_chart(flat_studio) == CHART
+    expect(flat_studio.locator("#action-undo")).to_be_disabled()
+    for _ in range(3):
+        flat_studio.keyboard.press("Control+Shift+Z")
+    assert kept_chart(flat_studio) == after != CHART

@@ -1,0 +1,81 @@
+"""Reloads, bad input and an absent service leave the painting alone and say what to do."""
+
+from __future__ import annotations
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import CHART, wait_for_numbers
+from tests.browser.page import drag, kept_chart
+
+
+def test_reload_keeps_painting_and_its_history(flat_studio: Page) -> None:
+    drag(flat_studio, 60, 30)
+    painted = kept_chart(flat_studio)
+    flat_studio.reload()
+    wait_for_numbers(flat_studio)
+    assert kept_chart(flat_studio) == painted != CHART
+    flat_studio.click("#action-undo")
+    assert kept_chart(flat_studio) == CHART
+
+
+def test_reload_at_once_after_a_stroke_loses_nothing(flat_studio: Page) -> None:
+    drag(flat_studio, 60, 30)
+    flat_studio.reload()
+    wait_for_numbers(flat_studio)
+    assert "P" in kept_chart(flat_studio)
+
+
+def test_bad_text_is_explained_and_changes_nothing(flat_studio: Page) -> None:
+    drag(flat_studio, 60, 30)
+    painted = kept_chart(flat_studio)
+    flat_studio.click("#action-import")
+    flat_studio.fill("#import-text", "KPKX\nKPKP")
+    flat_studio.click("#import-apply")
+    problem = flat_studio.locator("#import-problem")
+    expect(problem).to_be_visible()
+    expect(problem).to_contain_text("stitch 4 is 'X'")
+    expect(problem).to_contain_text("Write every stitch as K or P.")
+    assert kept_chart(flat_studio) == painted
+
+    flat_studio.fill("#import-text", "KPK\nPKP")
+    flat_studio.click("#import-apply")
+    expect(flat_studio.locator("#import-dialog")).to_be_hidden()
+    assert kept_chart(flat_studio) == "KPK\nPKP"
+    flat_studio.click("#action-undo")
+    assert kept_chart(flat_studio) == painted
+
+
+def test_dropped_nonsense_is_explained(flat_studio: Page) -> None:
+    flat_studio.evaluate(
+        """() => {
+            const data = new DataTransfer();
+            data.items.add(new File(["KP\\nKPK"], "ragged.txt", { type: "text/plain" }));
+            window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+        }"""
+    )
+    expect(flat_studio.locator("#messages")).to_contain_text("line 2 has 3 stitches")
+    assert kept_chart(flat_studio) == CHART
+
+
+def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
+    flat_studio.fill("#stretch-amount", "390")
+    flat_studio.click("#stretch-run")
+    note = flat_studio.locator("#stretch-note")
+    expect(note).to_contain_text("lock-up")
+    expect(note).to_contain_text("Use at most")
+    assert kept_chart(flat_studio) == CHART
+
+
+def test_absent_service_is_told_and_painting_goes_on(flat_studio: Page) -> None:
+    for path in ("**/api/**", "**/healthz"):
+        flat_studio.route(path, lambda route: route.abort())
+    drag(flat_studio, 60, 30)
+    expect(flat_studio.locator("#offline")).to_be_visible()
+    drag(flat_studio, 0, 50, start=(-80, -30))
+    assert kept_chart(flat_studio).count("P") > 3
+    expect(flat_studio.locator("#segments-course")).to_contain_text("odd")
+
+    for path in ("**/api/**", "**/healthz"):
+        flat_studio.unroute(path)
+    expect(flat_studio.locator("#offline")).to_be_hidden()
+    wait_for_numbers(flat_studio)
