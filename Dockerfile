@@ -2,14 +2,16 @@ FROM debian:bookworm-slim
 RUN apt-get update \
  && apt-get install -y --no-install-recommends python3 python3-venv make \
  && rm -rf /var/lib/apt/lists/* \
- && useradd --create-home --uid 10001 knit
+ && useradd --create-home --uid 10001 knit \
+ && mkdir -p /var/lib/knitcore && chown knit:knit /var/lib/knitcore && chmod 700 /var/lib/knitcore
 WORKDIR /srv/knitcore
 COPY --chown=knit:knit . .
 RUN chown knit:knit /srv/knitcore
 USER knit
 RUN make install
 # Beyond loopback the service asks for a token: docker run -e KNITCORE_TOKEN=… -p 8737:8737
-ENV KNITCORE_HOST=0.0.0.0 KNITCORE_PORT=8737
+ENV KNITCORE_HOST=0.0.0.0 KNITCORE_PORT=8737 KNITCORE_DATA_DIR=/var/lib/knitcore
+VOLUME /var/lib/knitcore
 EXPOSE 8737
 HEALTHCHECK CMD [".venv/bin/python", "-c", "import urllib.request as u; u.urlopen('http://127.0.0.1:8737/healthz')"]
 CMD [".venv/bin/knitcore", "serve"]

@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import logging
 import os
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 import plotly
@@ -14,12 +14,14 @@ from fastapi import FastAPI
 from fastapi.responses import FileResponse
 from fastapi.staticfiles import StaticFiles
 
+from app import health
 from app.api import routers
 from app.compute import Compute
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
+from app.observing import Metrics, Observer
 from app.operations.stretch import warm_up
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.recent import RecentResults
@@ -87,13 +89,30 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         responses=PROBLEM_RESPONSES,
     )
     app.state.settings = chosen
+    app.state.stopping = False
+    app.state.metrics = Metrics(_gauges(app))
     install_problem_handlers(app)
     for router in routers():
         app.include_router(router, prefix="/api/v1")
     app.include_router(relay.router)
+    app.include_router(health.router)
     _serve_page(app)
     app.add_middleware(Guard, settings=chosen)
+    app.add_middleware(Observer, metrics=app.state.metrics)
     return app
+
+
+def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
+    state = app.state
+    return {
+        "views_open": ("3D views kept open.", lambda: len(state.views)),
+        "jobs_waiting": ("Jobs in line.", lambda: state.jobs.counts()["waiting"]),
+        "jobs_running": ("Jobs at work.", lambda: state.jobs.counts()["running"]),
+        "computations_waiting": (
+            "Requests that wait for a worker.",
+            lambda: state.compute.turns.waiting(background=False),
+        ),
+    }
 
 
 def _serve_page(app: FastAPI) -> None:
@@ -104,10 +123,6 @@ def _serve_page(app: FastAPI) -> None:
     @app.get("/static/plotly.min.js", include_in_schema=False)
     async def plotly_script() -> FileResponse:
         return FileResponse(PLOTLY_SCRIPT, headers={"Cache-Control": "public, max-age=86400"})
-
-    @app.get("/healthz", tags=["service"], summary="Whether the service is up")
-    async def healthz() -> dict[str, str]:
-        return {"status": "ok"}
 
     app.mount("/static", StaticFiles(directory=FRONTEND), name="static")
 

@@ -21,7 +21,7 @@ from app.settings import Settings
 
 TOKEN_COOKIE = "knitcore_token"  # noqa: S105 - the cookie's name, not a secret
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
-OPEN_PATHS = frozenset({"/healthz"})
+OPEN_PATHS = frozenset({"/healthz", "/readyz"})
 
 PAGE_POLICY = "; ".join(
     [

@@ -1,4 +1,4 @@
-"""Settings, from the environment (``KNITCORE_…``)."""
+"""Settings, from the environment (``KNITCORE_…``) and from a TOML file (``KNITCORE_CONFIG``)."""
 
 from __future__ import annotations
 
@@ -6,9 +6,15 @@ import os
 from functools import cached_property
 from ipaddress import ip_address
 from pathlib import Path
+from typing import Literal
 
 from pydantic import Field, SecretStr
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    TomlConfigSettingsSource,
+)
 
 from knitcore.errors import InputError
 
@@ -35,6 +41,9 @@ class Settings(BaseSettings):
     database_url: SecretStr | None = Field(
         None, description="postgresql+psycopg://…; an SQLite file in the data folder otherwise."
     )
+    log_format: Literal["text", "json"] = Field(
+        "text", description="Log lines for people, or one JSON object a line."
+    )
     workers: int = Field(
         max(2, min(4, (os.cpu_count() or 2) - 1)),
         ge=1,
@@ -59,6 +68,37 @@ class Settings(BaseSettings):
     max_body_bytes: int = Field(4_000_000, gt=0, description="Largest request body.")
     max_viewers: int = Field(64, ge=1, description="3D views kept open at once.")
     viewer_idle_s: float = Field(300.0, gt=0, description="A view nobody watches closes after.")
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Given values come first, then the environment, then the file.
+
+        Raises
+        ------
+        InputError
+            If the file that KNITCORE_CONFIG names is not there, or is no TOML.
+        """
+        named = os.environ.get("KNITCORE_CONFIG")
+        if named is None:
+            return init_settings, env_settings
+        file = Path(named)
+        try:
+            source = TomlConfigSettingsSource(settings_cls, file)
+            readable = file.is_file()
+        except (OSError, ValueError):
+            readable = False
+        if not readable:
+            raise InputError(
+                "KNITCORE_CONFIG", f"{file} is no TOML file.", "Name a file with lines: port = 8737"
+            )
+        return init_settings, env_settings, source
 
     @cached_property
     def is_loopback(self) -> bool:

@@ -87,22 +87,24 @@ async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
     response_class=StreamingResponse,
     responses={200: {"content": {"text/event-stream": {}}, "description": "Events `status`."}},
 )
-async def get_events(job: JobId, runner: Runner, owner: Owner) -> StreamingResponse:
+async def get_events(
+    job: JobId, runner: Runner, owner: Owner, request: Request
+) -> StreamingResponse:
     """Server-sent events, one per change, each a job as `GET /jobs/{job}` has it; ends with it."""
     first = await runner.status(owner, job)
     return StreamingResponse(
-        _events(first, job, runner, owner),
+        _events(first, job, request, owner),
         media_type="text/event-stream",
         headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
     )
 
 
 async def _events(
-    status: JobStatus, job: str, runner: JobRunner, owner: str
+    status: JobStatus, job: str, request: Request, owner: str
 ) -> AsyncIterator[bytes]:
-    told, quiet = "", 0
+    runner, told, quiet = _runner(request), "", 0
     with contextlib.suppress(NotFoundError):  # deleted while it was followed
-        while True:
+        while not request.app.state.stopping:
             text = status.model_dump_json()
             if text != told:
                 told, quiet = text, 0

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import json
-import logging
+import signal
 import socket
+import sys
+from types import FrameType
 
 import click
 
@@ -25,10 +27,9 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     import uvicorn
 
     from app.main import create_app
+    from app.observing import configure_logging
 
-    logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s %(message)s")
-    for library in ("websockets", "skfem", "alembic"):
-        logging.getLogger(library).setLevel(logging.WARNING)
+    configure_logging(settings.log_format)
     listener = _listen(settings)
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
     name = f"[{shown}]" if ":" in shown else shown
@@ -36,15 +37,24 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     click.echo(
         json.dumps({"url": address}) if as_json else f"Knitcore is at {address}  (Ctrl+C stops it)"
     )
-    server = uvicorn.Server(
+    app = create_app(settings)
+
+    class Server(uvicorn.Server):
+        def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+            app.state.stopping = True  # so that open streams end instead of holding it up
+            super().handle_exit(sig, frame)
+
+    server = Server(
         uvicorn.Config(
-            create_app(settings),
-            log_level="warning",
+            app,
+            log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             timeout_graceful_shutdown=3,
         )
     )
-    with contextlib.suppress(KeyboardInterrupt):  # uvicorn passes it on after a clean shutdown
+    # uvicorn raises the signal again after a clean stop: end like any program, not killed by it
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    with contextlib.suppress(KeyboardInterrupt):
         server.run(sockets=[listener])
 
 

@@ -67,6 +67,14 @@ class Database:
         with _told(), self.engine.connect() as connection:
             yield connection
 
+    @contextlib.contextmanager
+    def snapshot(self) -> Iterator[Connection]:
+        """A connection whose later reads see the same state as its first."""
+        with self.read() as connection:
+            if not self.is_sqlite:  # where every transaction is one already
+                connection.execution_options(isolation_level="REPEATABLE READ")
+            yield connection
+
     def write(self, action: Callable[[Connection], T]) -> T:
         """Run ``action`` in a transaction and return what it returns, once that is on disk.
 

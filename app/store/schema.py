@@ -15,13 +15,13 @@ from knitcore.errors import InputError
 MIGRATIONS = Path(__file__).with_name("migrations")
 
 
-def migrate(database: Database) -> None:
-    """Bring the schema to this program's version; does nothing if it is there already.
+def migrate(database: Database, target: str = "head") -> None:
+    """Bring the schema to a version, by default this program's; does nothing if it is there.
 
     Raises
     ------
     InputError
-        If the database was written by a newer program.
+        If the database (or the backup that asks for ``target``) was written by a newer program.
     StoreError
         If the database cannot be reached.
     """
@@ -29,16 +29,17 @@ def migrate(database: Database) -> None:
     config.set_main_option("script_location", str(MIGRATIONS))
     found = revision(database)
     known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
-    if found is not None and found not in known:
+    strange = {found, target} - known - {None, "head"}
+    if strange:
         raise InputError(
             "database_url",
-            f"the database has schema {found}, which this program does not know.",
+            f"the designs have schema {strange.pop()}, which this program does not know.",
             "Use the newer program that wrote it, or restore a backup.",
         )
 
     def upgrade(connection: object) -> None:
         config.attributes["connection"] = connection
-        command.upgrade(config, "head")
+        command.upgrade(config, target)
 
     database.write(upgrade)
 

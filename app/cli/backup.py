@@ -1,0 +1,29 @@
+"""``knitcore backup``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from app.cli.common import emit, json_option
+from app.settings import Settings
+
+
+@click.command("backup")
+@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@json_option
+def command(file: Path, as_json: bool) -> None:
+    """Write all designs, versions, links and users to FILE, also while the service runs."""
+    from app.store.backup import back_up
+    from app.store.database import Database
+    from app.store.schema import migrate
+
+    database = Database(Settings().store_url)
+    try:
+        migrate(database)
+        report = back_up(database, file)
+    finally:
+        database.close()
+    told = ", ".join(f"{count} {name}" for name, count in report.tables.items())
+    emit(report, f"{report.file}: {told}", as_json=as_json)

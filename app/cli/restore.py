@@ -1,0 +1,27 @@
+"""``knitcore restore``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from app.cli.common import emit, json_option
+from app.settings import Settings
+
+
+@click.command("restore")
+@click.argument("file", type=click.Path(path_type=Path, dir_okay=False, exists=True))
+@json_option
+def command(file: Path, as_json: bool) -> None:
+    """Read the backup FILE into the empty data folder or database of the settings."""
+    from app.store.backup import restore
+    from app.store.database import Database
+
+    database = Database(Settings().store_url)
+    try:
+        report = restore(database, file)
+    finally:
+        database.close()
+    told = ", ".join(f"{count} {name}" for name, count in report.tables.items())
+    emit(report, f"{report.file}: {told}", as_json=as_json)

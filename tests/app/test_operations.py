@@ -1,0 +1,177 @@
+"""What operators rely on: logs, health, metrics, settings in a file, shutdown."""
+
+from __future__ import annotations
+
+import json
+import logging
+import sqlite3
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import httpx2 as httpx
+import pytest
+from fastapi.testclient import TestClient
+from prometheus_client.parser import text_string_to_metric_families
+
+from app import health
+from app.main import create_app
+from app.observing import JsonLines, TextLines, configure_logging
+from app.settings import Settings
+from knitcore.errors import InputError
+from tests.app.service import Service
+
+
+@pytest.fixture
+def lines(caplog: pytest.LogCaptureFixture) -> Iterator[list[dict[str, object]]]:
+    found: list[dict[str, object]] = []
+    handler = logging.Handler()
+    handler.emit = lambda record: found.append(json.loads(JsonLines().format(record)))  # type: ignore[method-assign]
+    logger = logging.getLogger("knitcore.access")
+    logger.addHandler(handler)
+    with caplog.at_level(logging.INFO, "knitcore.access"):
+        yield found
+    logger.removeHandler(handler)
+
+
+def test_every_request_is_a_json_line_with_its_id(
+    client: TestClient, lines: list[dict[str, object]]
+) -> None:
+    answer = client.get("/api/v1/patterns", headers={"X-Request-ID": "from-the-proxy.1"})
+    assert answer.headers["x-request-id"] == "from-the-proxy.1"
+    (line,) = lines
+    assert line["request_id"] == "from-the-proxy.1"
+    assert (line["method"], line["path"], line["status"]) == ("GET", "/api/v1/patterns", 200)
+    assert line["user"] == "local"
+    assert float(str(line["ms"])) > 0
+    made = client.get("/api/v1/patterns", headers={"X-Request-ID": "no good\tid"})
+    assert len(made.headers["x-request-id"]) == 16
+
+
+def test_no_secret_is_in_the_log(client: TestClient, lines: list[dict[str, object]]) -> None:
+    secret = "s3cret" * 6
+    client.get(f"/api/v1/shared/{secret}")
+    client.get(f"/?token={secret}")
+    client.get("/api/v1/patterns", headers={"Authorization": f"Bearer {secret}"})
+    client.get("/a%0aforged line")
+    assert len(lines) == 4
+    assert secret not in json.dumps(lines)
+    assert "\n" not in str(lines[-1]["path"])
+
+
+def test_lines_for_people_name_the_request() -> None:
+    record = logging.LogRecord("knitcore", logging.INFO, "", 0, "job done", None, None)
+    record.job = "j1"
+    assert TextLines().format(record).endswith("knitcore job done job=j1")
+    assert json.loads(JsonLines().format(record))["job"] == "j1"
+
+
+def test_logging_goes_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+    root = logging.getLogger()
+    before = root.handlers[:], root.level
+    try:
+        configure_logging("json")
+        logging.getLogger("knitcore.test").info("hello")
+        assert json.loads(capsys.readouterr().err)["message"] == "hello"
+    finally:
+        root.handlers[:], root.level = before
+
+
+def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
+    for number in range(3):
+        client.get(f"/api/v1/designs/no-such-design-{number}")
+    client.get("/nowhere/at/all")
+    families = {f.name: f for f in text_string_to_metric_families(client.get("/metrics").text)}
+    counted = {
+        s.labels["route"]: s.value
+        for s in families["knitcore_requests"].samples
+        if s.name.endswith("_total") and s.labels["status"] == "404"
+    }
+    assert counted["/designs/{design}"] >= 3
+    assert counted["other"] >= 1
+    assert not any("no-such-design" in route for route in counted)
+    for name in ("views_open", "jobs_waiting", "jobs_running", "computations_waiting"):
+        assert families[f"knitcore_{name}"].samples[0].value >= 0
+    assert "process_resident_memory_bytes" in families
+
+
+def test_ready_means_that_database_and_disk_are(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert client.get("/readyz").json() == {"status": "ok"}
+    monkeypatch.setattr(health.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
+    full = client.get("/readyz")
+    assert (full.status_code, full.json()["title"]) == (503, "Not ready")
+    assert "3 MB left" in full.json()["detail"]
+    assert client.get("/healthz").status_code == 200
+
+
+def test_a_database_that_went_away_is_told_and_found_again(tmp_path: Path) -> None:
+    app = create_app(Settings(workers=1, data_dir=tmp_path))
+    design = {"name": "a", "material": "acrylic", "chart": "KP"}
+    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+        file = tmp_path / "knitcore.sqlite3"
+        app.state.database.engine.dispose()
+        away = tmp_path / "away"
+        file.rename(away)
+        file.mkdir()  # nothing that could be opened as a database
+        for answer in (client.get("/readyz"), client.post("/api/v1/designs", json=design)):
+            assert answer.status_code == 503
+            assert answer.json()["remedy"]
+        assert client.get("/healthz").status_code == 200
+        assert client.get("/api/v1/patterns").status_code == 200
+        file.rmdir()
+        away.rename(file)
+        assert client.get("/readyz").status_code == 200
+        assert client.post("/api/v1/designs", json=design).status_code == 201
+
+
+def test_settings_come_from_a_file_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "knitcore.toml"
+    monkeypatch.setenv("KNITCORE_CONFIG", str(file))
+    with pytest.raises(InputError, match="no TOML"):
+        Settings()
+    file.write_text('port = 9001\nworkers = 3\nlog_format = "json"\n')
+    monkeypatch.setenv("KNITCORE_WORKERS", "1")
+    assert (Settings().port, Settings().workers, Settings().log_format) == (9001, 1, "json")
+    file.write_text("porrt = 9001\n")
+    with pytest.raises(ValueError, match="porrt"):
+        Settings()
+    file.write_text("not toml at all")
+    with pytest.raises(InputError, match="no TOML"):
+        Settings()
+
+
+def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
+    service = Service(tmp_path, log_format="json")
+    client = service.start()
+    chart = {"fabric": "garter", "columns": 150, "rows": 150}
+    wish = {"chart": chart, "material": "acrylic", "direction": "wale", "strain": 0.3, "steps": 60}
+    job = client.post("/api/v1/jobs", json={"kind": "stretch", "request": wish}).json()["id"]
+    heard: list[str] = []
+
+    def listen() -> None:
+        try:
+            with client.stream("GET", f"/api/v1/jobs/{job}/events") as stream:
+                heard.extend(line for line in stream.iter_lines() if line.startswith("data"))
+        except httpx.TransportError:
+            heard.append("the stream ended")
+
+    listener = threading.Thread(target=listen)
+    listener.start()
+    deadline = time.monotonic() + 40
+    while not heard and time.monotonic() < deadline:
+        time.sleep(0.05)
+    code = service.stop()
+    listener.join(20)
+    client.close()
+    assert not listener.is_alive()
+    assert code == 0
+    with sqlite3.connect(tmp_path / "data" / "knitcore.sqlite3") as connection:
+        assert connection.execute("SELECT state FROM jobs").fetchall() == [("waiting",)]
+    connection.close()
+    log = [json.loads(line) for line in service.log.read_text().splitlines()]
+    assert {"request", "job waits"} <= {line["message"] for line in log}
+    assert not [line for line in log if line["level"] == "error"]
