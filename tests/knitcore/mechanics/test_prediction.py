@@ -148,12 +148,12 @@ def test_missing_fabrics_are_named():
 
 
 def test_the_delta_method_agrees_with_sampling():
-    """Laws of a flat basket drawn from their log-normal spread, 300 times."""
+    """Laws of a flat double seed drawn from their log-normal spread, 120 times."""
     yarn = material("lace-cashmere")
-    chart = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
+    chart = StitchChart.parse("KKPP\nPPKK")
     rng = np.random.default_rng(0)
     drawn = []
-    for _ in range(300):
+    for _ in range(120):
         fabrics = {}
         for fabric, record in yarn.fabrics.items():
             factor = np.exp(rng.normal() * record.uncertainty.log_modulus_course)
@@ -165,7 +165,7 @@ def test_the_delta_method_agrees_with_sampling():
         sheet = homogenise(chart, replace(yarn, fabrics=fabrics))
         drawn.append(np.log(sheet.modulus_n_per_mm(Direction.COURSE)))
     shares = homogenise(chart, yarn).energy_shares[0]
-    assert phase_log_sd(shares, yarn, Direction.COURSE) == pytest.approx(np.std(drawn), rel=0.15)
+    assert phase_log_sd(shares, yarn, Direction.COURSE) == pytest.approx(np.std(drawn), rel=0.2)
 
 
 STIFFNESSES = (
