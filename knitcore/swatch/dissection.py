@@ -52,7 +52,7 @@ class _Shape:
 
     halves: tuple[_Half, ...]  # empty for a leaf
     cells: Indices  # of a leaf, else empty
-    local: Indices  # (cells, 8) position of each cell unknown in the front of a leaf
+    places: Indices  # (cells, 36) where the lower triangle of each cell goes, see _places
     eliminated: Indices
     border: Indices
 
@@ -161,7 +161,8 @@ class GridFactor:
                         schur,
                     )
             else:
-                _add_cells(cell_matrices, box.cells, box.shape.local, pivot, below, schur)
+                front = self._factor[box.offset : box.offset + s * (s + b)]
+                _add_cells(cell_matrices, box.cells, box.shape.places, front, schur)
                 _fix(self.fixed, box.eliminated, box.border, pivot, below, schur)
             if s:
                 _, info = potrf(pivot, lower=1, clean=0, overwrite_a=1)
@@ -233,7 +234,8 @@ def _shape(width: int, height: int, sides: tuple[bool, bool, bool, bool], column
         corners = np.column_stack([first, first + 1, above + 1, above])
         local = _positions(np.concatenate([own, border]), _unknowns(corners.ravel()))
         cells = (cy * columns + cx).ravel()
-        return _Shape((), cells, local.reshape(-1, 8), own, border)
+        places = _places(local.reshape(-1, 8), len(own), len(border))
+        return _Shape((), cells, places, own, border)
     left, right, below, above_ = sides
     if width >= height:
         half = width // 2
@@ -250,7 +252,7 @@ def _shape(width: int, height: int, sides: tuple[bool, bool, bool, bool], column
         ]
     eliminated = np.setdiff1d(np.concatenate(parts), border)
     halves = tuple(_half(part, eliminated, border) for part in parts)
-    return _Shape(halves, none, none.reshape(0, 8), eliminated, border)
+    return _Shape(halves, none, none.reshape(0, 36), eliminated, border)
 
 
 def _unknowns(corners: Indices) -> Indices:
@@ -274,21 +276,21 @@ def _half(theirs: Indices, eliminated: Indices, border: Indices) -> _Half:
     )
 
 
+def _places(local: Indices, s: int, b: int) -> Indices:
+    """For each entry (i, j <= i) of each cell, by rows: its place in the columns of the leaf that
+    are eliminated (pivot (s, s), then below (b, s), column-major); of the border, -1 - its place.
+    """
+    i, j = np.tril_indices(8)
+    one, other = local[:, i], local[:, j]
+    row, column = np.maximum(one, other), np.minimum(one, other)
+    in_pivot, in_border = row < s, column >= s
+    below = s * s + column * b + row - s
+    border = -1 - ((column - s) * b + row - s)
+    return np.where(in_pivot, column * s + row, np.where(in_border, border, below))
+
+
 def _concatenate(arrays: list[Indices]) -> Indices:
     return np.concatenate(arrays).astype(np.int64)
-
-
-@njit(cache=True)
-def _place(r: int, c: int, value: float, s: int, pivot: Block, below: Block, schur: Block) -> None:
-    """Add to the lower triangle of the front made of pivot, below and schur."""
-    if r < c:
-        r, c = c, r
-    if r < s:
-        pivot[r, c] += value
-    elif c < s:
-        below[r - s, c] += value
-    else:
-        schur[r - s, c - s] += value
 
 
 @njit(cache=True)
@@ -318,15 +320,21 @@ def _extend_add(
 
 @njit(cache=True)
 def _add_cells(
-    matrices: Array, cells: Indices, local: Indices, pivot: Block, below: Block, schur: Block
+    matrices: Array, cells: Indices, places: Indices, front: Block, schur: Block
 ) -> None:
-    """Add the lower triangles of cell matrices to the front of a leaf."""
-    s = pivot.shape[0]
+    """Add the lower triangles of cell matrices to a leaf: its columns in the factor, its border."""
+    border = schur.shape[0]
     for n in range(cells.size):
+        k = 0
         for i in range(8):
             for j in range(i + 1):
+                place = places[n, k]
                 value = matrices[cells[n], i, j]
-                _place(local[n, i], local[n, j], value, s, pivot, below, schur)
+                if place >= 0:
+                    front[place] += value
+                else:
+                    schur[(-place - 1) % border, (-place - 1) // border] += value
+                k += 1
 
 
 @njit(cache=True)
