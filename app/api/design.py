@@ -1,0 +1,32 @@
+"""Inverse design over REST."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+
+from app.operations.atlas import (
+    AtlasRequest,
+    AtlasResult,
+    FindRequest,
+    FindResult,
+    run_atlas,
+    run_find,
+)
+
+router = APIRouter(tags=["design"])
+
+
+@router.post("/atlas", summary="Predicted constants of all small repeats of a material")
+async def post_atlas(body: AtlasRequest, request: Request) -> AtlasResult:
+    """Columns for a scatter of stiffness course-wise against wale-wise."""
+    compute = request.app.state.compute
+    result: AtlasResult = await compute.run(request.is_disconnected, run_atlas, body)
+    return result
+
+
+@router.post("/find", summary="Fabrics that do what is wanted")
+async def post_find(body: FindRequest, request: Request) -> FindResult:
+    """Ranked repeats with intervals and knitting cost; says so when nothing reaches the wishes."""
+    compute = request.app.state.compute
+    result: FindResult = await compute.run(request.is_disconnected, run_find, body)
+    return result
