@@ -21,11 +21,12 @@ export function watchConnection(studio, back) {
       return; // still away: the next look comes
     }
     studio.online.value = true;
-    back();
   };
-  studio.online.watch((online) => {
+  studio.online.listen((online) => {
     clearInterval(timer);
-    if (!online) timer = setInterval(look, RETRY_MS);
+    // Whoever heard from the service first: all of the page has to catch up.
+    if (online) back();
+    else timer = setInterval(look, RETRY_MS);
   });
   window.addEventListener("offline", () => (studio.online.value = false));
   window.addEventListener("online", () => void look());
