@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.potential import potential, potential_slope
+from knitcore.yarnlevel.potential import potential_and_slope
 from knitcore.yarnlevel.published.elastic import bernstein
 
 FloatArray = npt.NDArray[np.float64]
@@ -66,6 +66,27 @@ def sample(
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _boxes(points: FloatArray, curves: int) -> FloatArray:
+    """Extent of each curve's points in the plane, mm: shape (curves, low or high, x or y)."""
+    out = np.empty((curves, 2, 2))
+    for c, own in enumerate(points.reshape(curves, -1, 3)):
+        for d in range(2):
+            out[c, 0, d], out[c, 1, d] = own[:, d].min(), own[:, d].max()
+    return out
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _apart(box: FloatArray, other: FloatArray, x: float, y: float, reach: float) -> bool:
+    """Whether a box and another one, shifted by (x, y), are farther apart than the reach."""
+    return bool(
+        other[0, 0] + x - box[1, 0] > reach
+        or box[0, 0] - other[1, 0] - x > reach
+        or other[0, 1] + y - box[1, 1] > reach
+        or box[0, 1] - other[1, 1] - y > reach
+    )
+
+
+@numba.njit(cache=True, error_model="numpy")
 def contact_energy(
     controls: FloatArray,
     cell_course: float,
@@ -96,49 +117,45 @@ def contact_energy(
     reach, limit = 2.0 * radius, EXCLUSION * radius
     reach2 = reach * reach
     energy, closest = 0.0, 1e300
-    low = np.array([points[:, d].min() for d in range(3)])
-    high = np.array([points[:, d].max() for d in range(3)])
+    curves = controls.shape[0]
+    boxes = _boxes(points, curves)
     # Images (m, n) and (-m, -n) hold the same pairs, so half of them are enough.
     for n in range(WALE_IMAGES + 1):
         for m in range(-images if n > 0 else 0, images + 1):
-            odd = (m * course_odd + n * wale_odd) % 2 == 1
-            mirror = -1.0 if odd else 1.0
+            mirror = -1.0 if (m * course_odd + n * wale_odd) % 2 == 1 else 1.0
             own = n == 0 and m == 0
             shift_x, shift_y = m * cell_course, n * cell_wale
-            if shift_x + low[0] - high[0] > reach or low[0] - high[0] - shift_x > reach:
-                continue
-            if shift_y + low[1] - high[1] > reach:
-                continue
-            for i in range(count):
-                xi, yi, zi = points[i, 0], points[i, 1], points[i, 2]
-                for j in range(i + 1 if own else 0, count):
-                    dy = points[j, 1] + shift_y - yi
-                    if dy > reach or dy < -reach:
+            for c in range(curves):
+                for e in range(c if own else 0, curves):
+                    if _apart(boxes[c], boxes[e], shift_x, shift_y, reach):
                         continue
-                    dx = points[j, 0] + shift_x - xi
-                    dz = mirror * points[j, 2] - zi
-                    square = dx * dx + dy * dy + dz * dz
-                    if square >= reach2:
-                        continue
-                    if n == 0 and abs(arclengths[i] - arclengths[j] - m * total_length) <= limit:
-                        continue
-                    distance = max(np.sqrt(square), 1e-12)
-                    closest = min(closest, distance)
-                    value = 2.0 * factor * potential(distance, k, p, radius, core)
-                    slope = 2.0 * factor * potential_slope(distance, k, p, radius, core)
-                    pair = lengths[i] * lengths[j]
-                    energy += value * pair
-                    weights_bar[i] += value * lengths[j]
-                    weights_bar[j] += value * lengths[i]
-                    pull = slope * pair / distance
-                    forces[i, 0] -= pull * dx
-                    forces[i, 1] -= pull * dy
-                    forces[i, 2] -= pull * dz
-                    forces[j, 0] += pull * dx
-                    forces[j, 1] += pull * dy
-                    forces[j, 2] += pull * dz * mirror
-                    cell_gradient[0] += pull * dx * m
-                    cell_gradient[1] += pull * dy * n
+                    for i in range(c * per, (c + 1) * per):
+                        for j in range(i + 1 if own and c == e else e * per, (e + 1) * per):
+                            dx = points[j, 0] + shift_x - points[i, 0]
+                            dy = points[j, 1] + shift_y - points[i, 1]
+                            dz = mirror * points[j, 2] - points[i, 2]
+                            square = dx * dx + dy * dy + dz * dz
+                            if square >= reach2:
+                                continue
+                            along = arclengths[i] - arclengths[j] - m * total_length
+                            if n == 0 and abs(along) <= limit:
+                                continue
+                            distance = max(np.sqrt(square), 1e-12)
+                            closest = min(closest, distance)
+                            value, slope = potential_and_slope(distance, k, p, radius, core)
+                            value *= 2.0 * factor
+                            energy += value * lengths[i] * lengths[j]
+                            weights_bar[i] += value * lengths[j]
+                            weights_bar[j] += value * lengths[i]
+                            pull = 2.0 * factor * slope * lengths[i] * lengths[j] / distance
+                            forces[i, 0] -= pull * dx
+                            forces[i, 1] -= pull * dy
+                            forces[i, 2] -= pull * dz
+                            forces[j, 0] += pull * dx
+                            forces[j, 1] += pull * dy
+                            forces[j, 2] += pull * dz * mirror
+                            cell_gradient[0] += pull * dx * m
+                            cell_gradient[1] += pull * dy * n
     for i in range(count):
         curve, q = i // per, i % per
         stretch = weights_bar[i] / per

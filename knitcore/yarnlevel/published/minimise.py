@@ -46,9 +46,11 @@ _HIGH = 5.0
 """Energy, in that unit, above which its logarithm is minimised."""
 _TYPICAL = {1.0: 0.1, 0.0: 1.0, -1.0: 10.0}
 """Usual size of an unknown by its power of length, in loop lengths."""
+_TYPICAL_SPEED = 0.4
+"""And of the speeds alpha at the ends of curves: they hardly move the yarn, in flat valleys."""
 _REACH = 0.3
 """How far a round of the optimiser goes, in those sizes."""
-_ROUNDS = 8
+_ROUNDS, _NEAR_ROUNDS = 8, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +118,7 @@ def minimise(
     *,
     tolerance: float = 1e-10,
     max_iterations: int = 400,
+    near: bool = False,
 ) -> Minimum:
     """Lowest energy near a start.
 
@@ -127,6 +130,7 @@ def minimise(
     constraints : what else is held.
     tolerance : of the energy, in units of 60 B over the loop length.
     max_iterations : of the optimiser, for each of its rounds.
+    near : the start is an equilibrium of a neighbouring state, so give up early.
     """
     problem = _Problem(stitch, loop_length_mm, constraints)
     lower, upper = problem.bounds()
@@ -135,8 +139,8 @@ def minimise(
         {"type": "eq", "fun": problem.equal, "jac": problem.equal_jacobian},
         {"type": "ineq", "fun": problem.above, "jac": problem.above_jacobian},
     ]
-    converged = False
-    for _ in range(_ROUNDS):
+    converged, energy = False, np.inf
+    for _ in range(_NEAR_ROUNDS if near else _ROUNDS):
         # A box around the start keeps a line search from pulling yarn through yarn.
         reach = _REACH * problem.typical
         near_lower, near_upper = np.maximum(lower, x - reach), np.minimum(upper, x + reach)
@@ -152,11 +156,13 @@ def minimise(
         if not np.all(np.isfinite(result.x)):
             break
         x = np.clip(result.x, near_lower, near_upper)
-        stopped = (x <= near_lower) & (near_lower > lower) | (x >= near_upper) & (
-            near_upper < upper
-        )
+        slack = 1e-6 * reach
+        stopped = (x < near_lower + slack) & (near_lower > lower)
+        stopped |= (x > near_upper - slack) & (near_upper < upper)
         converged = bool(result.status == 0) and not np.any(stopped)
-        if converged:
+        before, energy = energy, problem.energy(x)
+        stuck = result.status != 0 and energy > before - 1e-3
+        if converged or stuck or (near and energy > _HIGH):
             break
     return problem.report(x, converged)
 
@@ -177,6 +183,8 @@ class _Problem:
         self.constraints = constraints
         self.scale = loop_length_mm ** length_powers(stitch)
         self.typical = np.array([_TYPICAL[power] for power in length_powers(stitch)])
+        speeds = [name.endswith("alpha") for name in unknown_names(stitch.fabric)]
+        self.typical[speeds] = _TYPICAL_SPEED
         self.energy_scale = _ENERGY * stitch.yarn.bending_modulus_n_mm2 / loop_length_mm
         self.evaluations = 0
         self._at: bytes = b""

@@ -78,9 +78,8 @@ class Walk:
         """Minimise at given sizes (None: free) from a start, whose sizes are replaced."""
         free = free_constraints(self.loop_length_mm, course_mm, wale_mm)
         rules = replace(free, held=self.held, held_mm=self.held_mm)
-        return minimise(
-            self.stitch, _resized(start, course_mm, wale_mm), self.loop_length_mm, rules
-        )
+        first = _resized(start, course_mm, wale_mm)
+        return minimise(self.stitch, first, self.loop_length_mm, rules, near=True)
 
     def go(
         self, path: Sequence[Minimum], course_mm: float | None, wale_mm: float | None

@@ -2,7 +2,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.yarnlevel.potential import CAP, potential, potential_curvature, potential_slope
+from knitcore.yarnlevel.potential import (
+    CAP,
+    potential,
+    potential_and_slope,
+    potential_curvature,
+    potential_slope,
+)
 
 K, P, R, CORE = 6e-4, 2.4, 0.74, 0.335
 SHELL = 2 * (R - CORE)
@@ -42,3 +48,12 @@ def test_inside_the_core_the_potential_is_finite_and_grows():
     inside = potential(0.9 * edge, K, P, R, CORE)
     assert inside == pytest.approx(at_edge + 100 * 0.1**2)
     assert potential_slope(0.9 * edge, K, P, R, CORE) == pytest.approx(-200 * 0.1 / edge)
+
+
+@settings(deadline=None)
+@given(st.floats(-0.2, 1.2))
+def test_both_at_once_are_each_of_them(zeta):
+    distance = 2 * CORE + zeta * SHELL
+    value, slope = potential_and_slope(distance, K, P, R, CORE)
+    assert value == pytest.approx(potential(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)
+    assert slope == pytest.approx(potential_slope(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)

@@ -53,7 +53,7 @@ def test_packaged_shapes_are_stationary(known):
     after = minimise(stitch, start, known.loop_length_mm, free_constraints(known.loop_length_mm))
     assert before.lengths_mm.sum() == pytest.approx(known.loop_length_mm, rel=1e-5)
     assert before.energy_n_mm == pytest.approx(after.energy_n_mm, rel=1e-3)
-    assert np.abs(after.force_n).max() < 1e-4
+    assert np.abs(after.force_n).max() < 5e-4  # N; garter ends on a constraint
 
 
 def test_random_starts_end_in_one_minimum():
