@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.interpolate import griddata
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -21,33 +20,13 @@ from knitcore.swatch.calibrated_files import load_calibrated, save_calibrated
 from knitcore.swatch.calibration import ForceCurve, calibrate
 from knitcore.swatch.comparison import Edges, compare
 from knitcore.swatch.measured import MeasuredField, load_field, measured_field
+from tests.knitcore.swatch.synthetic import PITCH_PX, camera_arrays
 
 GARTER = material("acrylic").law(Fabric.GARTER)
 
 
 def synthetic_field(law_model: tuple[ConstitutiveLaw, SheetModel]) -> MeasuredField:
-    """A field as a camera would see it, made with a known law (pulled along the picture's y)."""
-    law, model = law_model
-    grid = QuarterGrid.uniform(60, 20, 960.0, 320.0)
-    test = pull(Sheet(grid, [law], model), Direction.WALE, np.array([0.15, 0.3]))
-    pitch, rows, columns = 8.0, 75, 125
-    row, column = np.mgrid[0:rows, 0:columns]
-    picture = np.column_stack([(column.ravel() - 62) * pitch, (37 - row.ravel()) * pitch])
-    frames = [np.zeros((2, rows, columns))]
-    inside = (np.abs(picture[:, 0]) <= 480) & (np.abs(picture[:, 1]) <= 160)
-    frames[0][0].ravel()[inside] = 1e-13
-    for state in test.states:
-        moved = state.corners - grid.corners
-        u = griddata(state.corners, moved, picture)
-        # griddata fills the convex hull; the waist is narrower
-        x, y = picture.T
-        left, right = (
-            np.interp(y, state.corners[grid.edge(name), 1], state.corners[grid.edge(name), 0])
-            for name in ("left", "right")
-        )
-        u[~np.isfinite(u).all(axis=1) | (x < left) | (x > right)] = 0
-        frames.append(np.stack([u[:, 0].reshape(rows, -1), -u[:, 1].reshape(rows, -1)]))
-    return measured_field(np.array(frames), np.array([1, 2, 3]), pitch)
+    return measured_field(*camera_arrays(*law_model), PITCH_PX)
 
 
 def test_a_synthetic_field_is_read_back() -> None:
