@@ -87,7 +87,7 @@ def fit_direction(
         stiff = stiff / stiffening_stress(np.asarray(alpha * 0.85 * largest))
         c, s = _two_non_negative(linear, stiff, target - floor * linear)
         residual = target - (c + floor) * linear - s * stiff
-        return float(residual @ residual), c + floor, s
+        return _dot(residual, residual), c + floor, s
 
     shares = ALPHA_SHARES
     costs = [solve(share / largest)[0] for share in shares]
@@ -110,8 +110,8 @@ def fit_direction(
 
 def _two_non_negative(a: Array, b: Array, target: Array) -> tuple[float, float]:
     """Non-negative least squares of ``x a + y b = target`` for two columns, in closed form."""
-    aa, bb, ab = float(a @ a), float(b @ b), float(a @ b)
-    at, bt = float(a @ target), float(b @ target)
+    aa, bb, ab = _dot(a, a), _dot(b, b), _dot(a, b)
+    at, bt = _dot(a, target), _dot(b, target)
     determinant = aa * bb - ab * ab
     if determinant > 1e-14 * aa * bb:
         x, y = (at * bb - bt * ab) / determinant, (bt * aa - at * ab) / determinant
@@ -120,3 +120,8 @@ def _two_non_negative(a: Array, b: Array, target: Array) -> tuple[float, float]:
     only_a, only_b = max(at / aa, 0.0), max(bt / bb, 0.0)
     gain_a, gain_b = only_a * at, only_b * bt
     return (only_a, 0.0) if gain_a >= gain_b else (0.0, only_b)
+
+
+def _dot(a: Array, b: Array) -> float:
+    """Scalar product without BLAS, whose threads cost more than they gain on vectors this short."""
+    return float(np.einsum("i,i->", a, b))
