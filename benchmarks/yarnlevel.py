@@ -1,7 +1,8 @@
 """CPU times of the yarn level: relaxations, sweeps and cells of several sizes.
 
 Run with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1: idle threads of the linear algebra would count
-as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one fabric.
+as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one
+fabric.
 """
 
 from __future__ import annotations

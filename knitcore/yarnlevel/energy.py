@@ -83,7 +83,8 @@ class CellEnergy:
         return PENALTY_PER_BENDING * self.unit / self.mean_loop_mm**2 / self.cell.wales
 
     @cached_property
-    def _contact_parameters(self) -> Array:
+    def contact_parameters(self) -> Array:
+        """Factor of a pair, k, p, r, r_core and dt, as the kernels take them."""
         y = self.yarn
         return np.array(
             [
@@ -143,7 +144,7 @@ class CellEnergy:
         none = np.zeros((0, 3)), np.zeros(0)
         contact = kernels.contact(
             curve, state[-2], state[-1], pairs, cell.place, cell.wales, cell.rows,
-            self._contact_parameters, 0, *none,
+            self.contact_parameters, 0, *none,
         )  # fmt: skip
         rod, gauge = kernels.rod(
             curve, len(cell.place), self._rod_parameters, np.zeros(cell.rows), np.zeros(0), 0,
@@ -170,7 +171,7 @@ class CellEnergy:
         weight_slope = np.zeros(n)
         kernels.contact(
             curve, state[-2], state[-1], pairs, cell.place, cell.wales, cell.rows,
-            self._contact_parameters, 1, force, weight_slope,
+            self.contact_parameters, 1, force, weight_slope,
         )  # fmt: skip
         pull = tension + self.penalty * self.excess(curve)
         slopes = np.zeros((n, 3, 3))
@@ -190,7 +191,7 @@ class CellEnergy:
         position_speed = np.zeros((n, 3, 3))
         kernels.contact_hessian(
             curve, state[-2], state[-1], pairs, start, cell.place, cell.wales, cell.rows,
-            cell.mirror[0], self._contact_parameters, cell.grid.basis, cell.dof, cell.sign,
+            cell.mirror[0], self.contact_parameters, cell.grid.basis, cell.dof, cell.sign,
             position, position_speed, matrix,
         )  # fmt: skip
         kernels.scatter_local(local, position, position_speed, *layout, matrix)

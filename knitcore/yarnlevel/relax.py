@@ -32,6 +32,9 @@ MAX_STITCHES = 100
 """Largest cell that is solved; the unknowns fill a dense matrix."""
 FINE = SplineGrid(controls=20, per_span=4)
 COARSE = SplineGrid(controls=16, per_span=3)
+ROUGH = SplineGrid(controls=10, per_span=5)
+"""Large cells find their shape on this grid (energy within 2e-3) before they are refined."""
+ROUGH_FROM = 30
 FINE_UP_TO = 2
 """Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
 SAME_ENERGY = 1e-3
@@ -169,7 +172,8 @@ def relax(
         )
     if grid is None:
         grid = FINE if draft.stitches <= FINE_UP_TO else COARSE
-    explored = grid if grid.controls <= COARSE.controls else COARSE
+    first = ROUGH if draft.stitches >= ROUGH_FROM else COARSE
+    explored = grid if grid.controls <= first.controls else first
     cell = replace(draft, grid=explored)
     per_course = np.resize(lengths, cell.rows)
     options = Options(tolerance=1e-9 if cell.stitches <= FINE_UP_TO else 1e-6)

@@ -11,10 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack
+from threadpoolctl import ThreadpoolController
 
 from knitcore.errors import CancelledError, UnravelledError
 from knitcore.yarnlevel.energy import CellEnergy, Terms
@@ -134,7 +136,8 @@ def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
         moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
         accepted = indefinite = False
         for _ in range(60):
-            step = _step(gradient, hessian, free, all_free, held, remaining, damping)
+            with _threads().limit(limits=1, user_api="blas"):
+                step = _step(gradient, hessian, free, all_free, held, remaining, damping)
             if step is None:
                 indefinite = True
                 damping = max(4.0 * damping, damping_floor)
@@ -185,6 +188,12 @@ def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
         state, pull, terms, gradient[-2:].copy(), guard.min_distance_mm, converged, steps,
         evaluations,
     )  # fmt: skip
+
+
+@cache
+def _threads() -> ThreadpoolController:
+    """Matrices of a few hundred rows: a second thread would only wait."""
+    return ThreadpoolController()
 
 
 def _step(
