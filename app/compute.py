@@ -197,6 +197,7 @@ class Compute:
             await _stop(worker, future)
             raise
         except BaseException:
+            future.add_done_callback(_forget)
             worker.replace()  # nobody is left who could wait for the process to notice
             raise
         try:
@@ -218,6 +219,12 @@ def _kill(executor: ProcessPoolExecutor) -> None:
     executor.shutdown(wait=False, cancel_futures=True)
 
 
+def _forget(future: asyncio.Future[Any]) -> None:
+    """Retrieve what came of a job that was stopped on purpose."""
+    if not future.cancelled():
+        future.exception()
+
+
 async def _stop(worker: Worker, future: asyncio.Future[Any]) -> None:
     worker.cells[Cell.CANCELLED] = 1.0
     done, _ = await asyncio.wait([future], timeout=GRACE_S)
@@ -225,8 +232,7 @@ async def _stop(worker: Worker, future: asyncio.Future[Any]) -> None:
         log.warning("a cancelled computation did not stop; its process is replaced")
         worker.replace()
         await asyncio.wait([future])
-    if not future.cancelled():
-        future.exception()  # retrieved: it was stopped on purpose
+    _forget(future)
 
 
 _cells: Any = None

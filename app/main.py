@@ -29,6 +29,7 @@ from app.security import Guard
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate
+from app.tokens import Login, Tokens
 from app.viewer import relay
 from app.viewer.views import Views
 
@@ -55,6 +56,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
         app.state.database = await asyncio.to_thread(_open_database, chosen)
+        app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
         app.state.compute = Compute(
             chosen.workers, chosen.job_timeout_s, chosen.worker_memory_bytes
         )
@@ -139,6 +141,11 @@ def _open_database(settings: Settings) -> Database:
     database = Database(settings.store_url)
     migrate(database)
     return database
+
+
+def _login(database: Database, settings: Settings) -> Login:
+    token = settings.token.get_secret_value() if settings.token else None
+    return Login(Tokens(database), token)
 
 
 async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int) -> None:

@@ -6,21 +6,28 @@ must refuse requests that another site's page makes it send.
 
 from __future__ import annotations
 
-import hmac
-from collections.abc import Iterable
+import asyncio
+import math
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
+from app.identity import current_user
 from app.problems import Problem, problem_response
+from app.rate import RateLimit
 from app.settings import Settings
+from app.store.database import StoreError
+from app.tokens import SESSION_S, Login
 
-TOKEN_COOKIE = "knitcore_token"  # noqa: S105 - the cookie's name, not a secret
+SESSION_COOKIE = "knitcore_session"
+LOGIN_FAILURES = 20
+"""Wrong tokens that one address may try before it must wait; one more every ten seconds."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
+HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
 OPEN_PATHS = frozenset({"/healthz", "/readyz"})
 
 PAGE_POLICY = "; ".join(
@@ -68,22 +75,23 @@ class Guard:
         self.hosts = LOOPBACK_NAMES | {h.lower() for h in settings.allowed_hosts}
         if settings.host not in ("0.0.0.0", "::"):  # noqa: S104 - a comparison, not a bind
             self.hosts |= {settings.host.lower()}
-        self.token = settings.token.get_secret_value() if settings.token else None
+        self.rate = RateLimit(settings.requests_per_s, int(4 * settings.requests_per_s))
+        self.failures = RateLimit(0.1, LOGIN_FAILURES)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check one connection and pass it on."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
+        limits: dict[str, str] = {}
         refusal = self._refusal(scope)
-        if refusal is not None:
-            if scope["type"] == "websocket":
+        if refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
+            refusal = await self._login(scope, limits)
+        if scope["type"] == "websocket":
+            if refusal is not None:
                 await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
             else:
-                await refusal(scope, receive, send)
-            return
-        if scope["type"] == "websocket":
-            await self.app(scope, receive, send)
+                await self.app(scope, receive, send)
             return
 
         async def send_with_headers(message: Message) -> None:
@@ -95,15 +103,19 @@ class Guard:
                 headers["Referrer-Policy"] = "no-referrer"
                 headers["Cross-Origin-Opener-Policy"] = "same-origin"
                 headers["Cross-Origin-Resource-Policy"] = "same-origin"
+                headers.update(limits)
             await send(message)
 
+        if refusal is not None:
+            await refusal(scope, receive, send_with_headers)
+            return
         await self.app(scope, _limited(receive, self.settings.max_body_bytes), send_with_headers)
 
     def _refusal(self, scope: Scope) -> Response | None:
         headers = Headers(scope=scope)
         host = headers.get("host", "")
         if not self._knows(host):
-            return PlainTextResponse("Unknown host name; see KNITCORE_ALLOWED_HOSTS.", 400)
+            return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
         if changes and origin is not None and urlsplit(origin).netloc.lower() != host.lower():
@@ -116,7 +128,7 @@ class Guard:
                 f"Send at most {self.settings.max_body_bytes} bytes.",
                 413,
             )
-        return self._token_refusal(scope, headers)
+        return None
 
     def _knows(self, host: str) -> bool:
         try:
@@ -125,35 +137,84 @@ class Guard:
             return False
         return name is not None and (name in self.hosts or f"[{name}]" in self.hosts)
 
-    def _token_refusal(self, scope: Scope, headers: Headers) -> Response | None:
-        if self.token is None or scope["path"] in OPEN_PATHS:
-            return None
-        if any(hmac.compare_digest(t.encode(), self.token.encode()) for t in _tokens(headers)):
-            return None
-        offered = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
-        if scope["type"] == "http" and hmac.compare_digest(offered.encode(), self.token.encode()):
-            # the link with the token: keep it in a cookie and out of the address bar
-            response = RedirectResponse(scope["path"], 303)
-            response.set_cookie(TOKEN_COOKIE, self.token, httponly=True, samesite="strict")
+    async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
+        """Let a known user in, within their rate, and note who it is."""
+        address = (scope.get("client") or ("unknown", 0))[0]
+        if self.failures.left(address) < 1:
+            return _too_many("Too many wrong tokens came from this address.", 10.0)
+        login: Login = scope["app"].state.login
+        headers = Headers(scope=scope)
+        token, cookie = _bearer(headers), _cookie(headers)
+        link = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
+        try:
+            identifier, user = await asyncio.to_thread(_who, login, token or link, cookie)
+        except StoreError as error:
+            return problem_response(error.problem)
+        if not user:
+            if token or link:
+                self.failures.take(address)
+            return _refused(
+                "token",
+                "This service asks for a token.",
+                "Open the page as /?token=…, or send the header Authorization: Bearer ….",
+                403,
+            )
+        left, wait = self.rate.take(user)
+        limits["RateLimit-Limit"] = str(self.rate.burst)
+        limits["RateLimit-Remaining"] = str(left)
+        if wait:
+            return _too_many("You are asking too often.", wait)
+        current_user.set(user)
+        if link and not token and scope["type"] == "http" and scope["method"] == "GET":
+            # the link with the token: keep a session in a cookie, and the token out of the address
+            response = RedirectResponse(_own_path(scope["path"]), 303)
+            response.set_cookie(
+                SESSION_COOKIE,
+                login.session(identifier),
+                max_age=SESSION_S,
+                httponly=True,
+                samesite="strict",
+                secure=scope["scheme"] == "https",
+            )
             return response
-        return _refused(
-            "token",
-            "This service asks for a token.",
-            "Open the page as /?token=…, or send the header Authorization: Bearer ….",
-            403,
-        )
+        return None
 
 
-def _tokens(headers: Headers) -> Iterable[str]:
+def _who(login: Login, token: str, cookie: str) -> tuple[str, str]:
+    found = login.by_token(token) if token else ("", "")
+    return found if found[1] or not cookie else login.by_session(cookie)
+
+
+def _own_path(path: str) -> str:
+    """A path of this service: ``//evil.example`` would lead to another."""
+    return "/" + path.lstrip("/\\")
+
+
+def _bearer(headers: Headers) -> str:
     scheme, _, value = headers.get("authorization", "").partition(" ")
-    if scheme.lower() == "bearer":
-        yield value.strip()
+    return value.strip() if scheme.lower() == "bearer" else ""
+
+
+def _cookie(headers: Headers) -> str:
     try:
-        cookie = SimpleCookie(headers.get("cookie", "")).get(TOKEN_COOKIE)
+        found = SimpleCookie(headers.get("cookie", "")).get(SESSION_COOKIE)
     except CookieError:
-        return
-    if cookie is not None:
-        yield cookie.value
+        return ""
+    return found.value if found is not None else ""
+
+
+def _too_many(detail: str, wait_s: float) -> Response:
+    wait = math.ceil(wait_s)
+    return problem_response(
+        Problem(
+            type="too many",
+            title="Too many requests",
+            status=429,
+            detail=detail,
+            remedy=f"Try again in {wait} s.",
+        ),
+        {"Retry-After": str(wait)},
+    )
 
 
 def _refused(field: str, detail: str, remedy: str, status: int) -> Response:

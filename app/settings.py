@@ -29,6 +29,13 @@ class Settings(BaseSettings):
     token: SecretStr | None = Field(
         None, description="Token that every request must bring; needed beyond loopback."
     )
+    require_login: bool = Field(
+        False,
+        description="Whether every user must bring a token of their own (`knitcore token create`).",
+    )
+    requests_per_s: float = Field(
+        50.0, gt=0, description="Requests of one user a second, where a login is asked for."
+    )
     allowed_hosts: tuple[str, ...] = Field(
         (), description="Host names that a browser may use for this service beyond loopback."
     )
@@ -111,6 +118,11 @@ class Settings(BaseSettings):
             return False
 
     @property
+    def asks_for_login(self) -> bool:
+        """Whether requests need a token or a session."""
+        return self.token is not None or self.require_login
+
+    @property
     def store_url(self) -> str:
         """The database's URL; makes the data folder if the database is a file in it.
 
@@ -147,11 +159,12 @@ class Settings(BaseSettings):
         InputError
             If the service would listen beyond loopback without a token.
         """
-        if not self.is_loopback and self.token is None:
+        if not self.is_loopback and not self.asks_for_login:
             raise InputError(
                 "token",
                 f"listening on {self.host} would open the service to other machines unprotected.",
-                "Set KNITCORE_TOKEN to a long random text, or listen on 127.0.0.1.",
+                "Set KNITCORE_TOKEN to a long random text, or KNITCORE_REQUIRE_LOGIN=true and make "
+                "tokens with `knitcore token create`, or listen on 127.0.0.1.",
             )
         if self.token is not None and len(self.token.get_secret_value()) < 16:
             raise InputError("token", "is too short.", "Use at least 16 characters.")

@@ -7,7 +7,7 @@ import asyncio
 from fastapi import APIRouter, Request
 
 from app.operations.view import ViewRequest, ViewResult, build_scene
-from app.viewer.design_id import DesignId
+from app.viewer.design_id import DesignId, private_name
 
 router = APIRouter(tags=["views"])
 
@@ -18,9 +18,11 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     state = request.app.state
     stretch = state.recent.get(body.stretch.id) if body.stretch else None
 
+    name = private_name(design)
+
     def draw() -> int:
         scene = build_scene(body, stretch)
-        return int(state.views.open(design).show(scene))
+        return int(state.views.open(name).show(scene))
 
     drawn = await asyncio.to_thread(draw)
     return ViewResult(stitches=drawn, url=f"/view/{design}/")

@@ -21,8 +21,8 @@ from knitcore.errors import InputError
 
 FORMAT = "knitcore-backup"
 VERSION = 1
-LEFT_OUT = frozenset({"results", "idempotency_keys"})
-"""What can be computed again, or is over in a day."""
+LEFT_OUT = frozenset({"results", "idempotency_keys", "service_keys"})
+"""What can be computed again, is over in a day, or would let a thief sign sessions."""
 CHUNK = 200
 
 

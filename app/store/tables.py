@@ -107,3 +107,22 @@ results = Table(
     Column("size_bytes", Integer, nullable=False),
     Column("used_at", Float, nullable=False, index=True),
 )
+
+access_tokens = Table(
+    "access_tokens",
+    metadata,
+    Column("id", String(16), primary_key=True),
+    Column("user", String(80), nullable=False),
+    Column("token_hash", String(64), nullable=False, unique=True),  # the token itself is not kept
+    Column("label", String(200), nullable=False),
+    Column("created_at", Float, nullable=False),
+    Column("expires_at", Float),
+    Column("revoked_at", Float),
+)
+
+service_keys = Table(
+    "service_keys",
+    metadata,
+    Column("name", String(40), primary_key=True),
+    Column("value", String(200), nullable=False),
+)

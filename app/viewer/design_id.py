@@ -6,6 +6,8 @@ from typing import Annotated
 
 from fastapi import Path
 
+from app.identity import current_user
+
 DesignId = Annotated[
     str,
     Path(
@@ -13,3 +15,8 @@ DesignId = Annotated[
         description="The design's identifier: 8 to 64 letters, digits, - or _.",
     ),
 ]
+
+
+def private_name(design: str) -> str:
+    """The name of a design's view among all users': nobody sees or draws another's."""
+    return f"{current_user.get()}/{design}"

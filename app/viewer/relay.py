@@ -13,7 +13,8 @@ import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from app.viewer.design_id import DesignId
+from app.viewer.design_id import DesignId, private_name
+from app.viewer.private_port import RELAY_HEADERS
 from app.viewer.views import Views
 
 log = logging.getLogger("knitcore.app")
@@ -47,7 +48,8 @@ async def client_page(design: DesignId, request: Request) -> HTMLResponse:
 async def relay(socket: WebSocket, design: DesignId) -> None:
     """Carry messages between a browser and the design's viser server."""
     views: Views = socket.app.state.views
-    view = views.get(design)
+    name = private_name(design)
+    view = views.get(name)
     if view is None:
         await socket.close(code=1013, reason="This view is not open yet.")
         return
@@ -55,15 +57,16 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
     async with websockets.connect(
         f"ws://127.0.0.1:{view.port}",
         subprotocols=offered or None,
+        additional_headers=RELAY_HEADERS,
         max_size=None,
         compression=None,
     ) as inner:
         await socket.accept(subprotocol=inner.subprotocol)
-        views.watch(design, +1)
+        views.watch(name, +1)
         try:
             await _carry(socket, inner)
         finally:
-            views.watch(design, -1)
+            views.watch(name, -1)
 
 
 async def _carry(socket: WebSocket, inner: websockets.ClientConnection) -> None:

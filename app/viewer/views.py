@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import viser
 
 from app.problems import UnavailableError
+from app.viewer.private_port import private_server
 from app.viewer.scene import FabricScene, SceneWriter
 
 log = logging.getLogger("knitcore.app")
@@ -112,7 +113,7 @@ class Views:
 
 
 def _new_view() -> View:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    server = private_server()
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     scene = server.scene
     scene.set_up_direction("+y")

@@ -46,7 +46,7 @@ def test_two_designs_are_two_scenes(client: TestClient) -> None:
         body = {"chart": chart, "material": "cotton"}
         assert client.put(f"/api/v1/views/{design}", json=body).json()["stitches"] == 2 * columns
     views = client.app.state.views  # type: ignore[attr-defined]
-    assert views.open("first-design").port != views.open("second-design").port
+    assert views.open("local/first-design").port != views.open("local/second-design").port
 
 
 def test_a_stretched_state_can_be_shown(client: TestClient) -> None:

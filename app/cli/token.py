@@ -1,0 +1,68 @@
+"""``knitcore token``."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import click
+
+from app.cli.common import emit, json_option
+from app.settings import Settings
+
+if TYPE_CHECKING:
+    from app.tokens import Tokens
+
+
+@contextlib.contextmanager
+def _tokens() -> Iterator[Tokens]:
+    from app.store.database import Database
+    from app.store.schema import migrate
+    from app.tokens import Tokens
+
+    database = Database(Settings().store_url)
+    try:
+        migrate(database)
+        yield Tokens(database)
+    finally:
+        database.close()
+
+
+@click.group("token")
+def command() -> None:
+    """Who may use a service that asks for a login."""
+
+
+@command.command("create")
+@click.argument("user")
+@click.option("--label", default="", help="What it is for.")
+@click.option("--days", type=click.FloatRange(min=0, min_open=True), help="Ends after; else never.")
+@json_option
+def create(user: str, label: str, days: float | None, as_json: bool) -> None:
+    """Make a token of USER; it is shown this once."""
+    with _tokens() as tokens:
+        made = tokens.create(user, label, days)
+    emit(made, f"{made.token}\n(id {made.id}; it is not shown again)", as_json=as_json)
+
+
+@command.command("list")
+@json_option
+def list_(as_json: bool) -> None:
+    """List all tokens, without their secrets."""
+    with _tokens() as tokens:
+        found = tokens.all()
+    lines = [
+        f"{t.id}  {t.user:20} {t.created_at:%Y-%m-%d}  "
+        f"{'revoked' if t.revoked_at else 'open'}  {t.label}"
+        for t in found.tokens
+    ]
+    emit(found, "\n".join(lines), as_json=as_json)
+
+
+@command.command("revoke")
+@click.argument("identifier", metavar="ID")
+def revoke(identifier: str) -> None:
+    """Close the token ID; it stops working within seconds."""
+    with _tokens() as tokens:
+        tokens.revoke(identifier)

@@ -1,0 +1,40 @@
+"""How often somebody may ask."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+
+MOST_KNOWN = 50_000
+
+
+class RateLimit:
+    """A bucket of requests for each user, filled again at a steady rate.
+
+    Parameters
+    ----------
+    per_s : requests a second in the long run.
+    burst : requests at once.
+    """
+
+    def __init__(self, per_s: float, burst: int) -> None:
+        self.per_s = per_s
+        self.burst = burst
+        self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    def take(self, who: str, at: float | None = None) -> tuple[int, float]:
+        """Take one: how many are left, and 0 or the seconds to wait because there was none."""
+        at = time.monotonic() if at is None else at
+        level, since = self._buckets.pop(who, (float(self.burst), at))
+        level = min(self.burst, level + (at - since) * self.per_s)
+        wait = 0.0 if level >= 1 else (1 - level) / self.per_s
+        self._buckets[who] = (level if wait else level - 1, at)
+        if len(self._buckets) > MOST_KNOWN:
+            self._buckets.popitem(last=False)
+        return int(self._buckets[who][0]), wait
+
+    def left(self, who: str, at: float | None = None) -> float:
+        """How many there are, without taking one."""
+        at = time.monotonic() if at is None else at
+        level, since = self._buckets.get(who, (float(self.burst), at))
+        return min(self.burst, level + (at - since) * self.per_s)

@@ -1,0 +1,68 @@
+"""viser's own port, closed to everybody but the relay.
+
+viser listens on a loopback port of its own and checks nothing there: any page in a browser on this
+machine, and any other user of it, could connect and draw or run scripts in a view. A secret header
+that only the relay knows keeps them out. viser has no setting for it, so the function with which
+it starts its websocket server is wrapped; if that ever stops working, no view is opened.
+"""
+
+from __future__ import annotations
+
+import http
+import secrets
+from types import SimpleNamespace
+from typing import Any
+
+import viser
+import viser.infra._infra as viser_infra
+import websockets.asyncio.server
+
+HEADER = "X-Knitcore-Relay"
+RELAY_HEADERS = {HEADER: secrets.token_urlsafe(32)}
+"""What the relay sends along; new in every process."""
+
+_guarded_calls = 0
+
+
+def private_server() -> viser.ViserServer:
+    """A viser server on a free loopback port that answers the relay only.
+
+    Raises
+    ------
+    RuntimeError
+        If this viser starts its server in another way, so that the port would be open.
+    """
+    before = _guarded_calls
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    if _guarded_calls == before:
+        server.stop()
+        raise RuntimeError("viser's port could not be closed to others; no view is opened")
+    return server
+
+
+def _refuse_strangers(connection: Any, request: Any) -> Any:
+    offered = request.headers.get(HEADER, "")
+    if secrets.compare_digest(offered.encode(), RELAY_HEADERS[HEADER].encode()):
+        return None
+    return connection.respond(http.HTTPStatus.FORBIDDEN, "This port is for the service itself.\n")
+
+
+def _serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
+    """``websockets``' own, for which strangers are refused before anything else is looked at."""
+    global _guarded_calls  # noqa: PLW0603 - counts for private_server
+    _guarded_calls += 1
+
+    def checked(connection: Any, request: Any) -> Any:
+        refusal = _refuse_strangers(connection, request)
+        if refusal is not None or process_request is None:
+            return refusal
+        return process_request(connection, request)
+
+    return websockets.asyncio.server.serve(*args, process_request=checked, **options)
+
+
+# Only viser's name for the package is replaced; everybody else's stays as it is.
+_server = SimpleNamespace(**{**vars(websockets.asyncio.server), "serve": _serve})
+vars(viser_infra)["websockets"] = SimpleNamespace(
+    **{**vars(websockets), "asyncio": SimpleNamespace(server=_server)}
+)
