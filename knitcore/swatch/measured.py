@@ -1,9 +1,9 @@
 """Measured displacement fields (digital image correlation) of a strip test.
 
 File layout (``.npz``): ``displacement`` (frames, 2, rows, columns) in pixels, component x then y,
-sampled every 8 pixels on the *deformed* picture, rows downwards, (0, 0) outside the cloth;
-``frame`` (frames,) the picture numbers; picture 1, or the one without displacement, is the rest
-state. ``pitch_px`` may give another sampling distance. A material point now at x was at X = x - u.
+sampled every 8 pixels on the *deformed* picture, rows downwards, (0, 0) or NaN outside the cloth;
+``frame`` (frames,) the picture numbers. The picture with the least displacement gives the region
+at rest. ``pitch_px`` may give another sampling distance. A material point now at x was at X = x - u.
 """
 
 from __future__ import annotations
@@ -134,8 +134,10 @@ def measured_field(
             f"displacement has shape {displacement.shape}, frame {numbers.shape}.",
             "Use (frames, 2, rows, columns) and (frames,).",
         )
-    if not np.all(np.isfinite(displacement)) or not (np.isfinite(pitch_px) and pitch_px > 0):
-        raise InputError("field", "has values that are no numbers.", "Mark the outside by (0, 0).")
+    if not (np.isfinite(pitch_px) and pitch_px > 0):
+        raise InputError("field", f"pitch_px is {pitch_px}.", "Give a distance above 0 px.")
+    lost = ~np.isfinite(displacement).all(axis=1, keepdims=True)  # some programs mark it so
+    displacement = np.where(lost, 0.0, displacement)
     largest = np.abs(displacement).max(axis=(1, 2, 3))
     samples = [_samples(u, pitch_px) for u in displacement]
     box = _rest_region(samples, largest)
