@@ -3,7 +3,7 @@
 File layout (``.npz``): ``displacement`` (frames, 2, rows, columns) in pixels, component x then y,
 sampled every 8 pixels on the *deformed* picture, rows downwards, (0, 0) or NaN outside the cloth;
 ``frame`` (frames,) the picture numbers. The picture with the least displacement gives the region
-at rest. ``pitch_px`` may give another sampling distance. A material point now at x was at X = x - u.
+at rest. ``pitch_px`` may give another distance. A point of the cloth now at x was at X = x - u.
 """
 
 from __future__ import annotations
