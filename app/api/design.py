@@ -12,6 +12,7 @@ from app.operations.atlas import (
     run_atlas,
     run_find,
 )
+from app.operations.fill import FillRequest, FillResult, run_fill
 
 router = APIRouter(tags=["design"])
 
@@ -29,4 +30,12 @@ async def post_find(body: FindRequest, request: Request) -> FindResult:
     """Ranked repeats with intervals and knitting cost; says so when nothing reaches the wishes."""
     compute = request.app.state.compute
     result: FindResult = await compute.run(request.is_disconnected, run_find, body)
+    return result
+
+
+@router.post("/fill", summary="A chart for a map of wanted stiffness")
+async def post_fill(body: FillRequest, request: Request) -> FillResult:
+    """Patches from the atlas, fitted to each other; tells what is not reached."""
+    compute = request.app.state.compute
+    result: FillResult = await compute.run(request.is_disconnected, run_fill, body)
     return result

@@ -103,13 +103,13 @@ def repeats_of(extent: Extent) -> tuple[StitchChart, ...]:
 
 def run_atlas(request: AtlasRequest, *, cancelled: Callable[[], bool]) -> AtlasResult:
     """The atlas of a library material; a process remembers those that it has built."""
-    return atlas_result(_atlas(request.material, request.repeats, cancelled))
+    return atlas_result(cached_atlas(request.material, request.repeats, cancelled))
 
 
 def run_find(request: FindRequest, *, cancelled: Callable[[], bool]) -> FindResult:
     """Find fabrics for the service."""
     names = dict.fromkeys(request.materials)
-    atlases = [_atlas(name, request.repeats, cancelled) for name in names]
+    atlases = [cached_atlas(name, request.repeats, cancelled) for name in names]
     return find_in(atlases, [t.target() for t in request.targets], request.count)
 
 
@@ -148,7 +148,8 @@ def make_atlas(
     return build_atlas(material, repeats_of(extent), file=file, progress=progress)
 
 
-def _atlas(name: str, extent: Extent, cancelled: Callable[[], bool]) -> Atlas:
+def cached_atlas(name: str, extent: Extent, cancelled: Callable[[], bool]) -> Atlas:
+    """The atlas of a library material; a process remembers those that it has built."""
     built = _built()
     if (name, extent) not in built:
         built[name, extent] = build_atlas(

@@ -11,11 +11,24 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.operations.atlas import repeats_of
+from knitcore.formats.stitch_maps import read_wanted_moduli
 
 WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.223, "tolerance": 0.05, "weight": 1.0}
 
 
-def test_rest_and_command_line_find_the_same(client: TestClient, tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def atlas(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, list[object]]]:
+    """The small atlas of acrylic from the command line: its file and what was printed."""
+    file = tmp_path_factory.mktemp("atlas") / "acrylic.npz"
+    build = ["atlas", "--material", "acrylic", "--repeats", "small", "-o", str(file), "--json"]
+    built = CliRunner().invoke(main, build)
+    assert built.exit_code == 0, built.output
+    return file, json.loads(built.stdout)
+
+
+def test_rest_and_command_line_find_the_same(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]]
+) -> None:
     request = {"materials": ["acrylic"], "targets": [WISH], "count": 3}
     asked = client.post("/api/v1/find", json=request)
     assert asked.status_code == 200, asked.text
@@ -23,19 +36,22 @@ def test_rest_and_command_line_find_the_same(client: TestClient, tmp_path: Path)
     assert asked.json()["candidates"][0]["chart"] in ("K\nP", "P\nK")
     assert asked.json()["searched"] == len(repeats_of("small"))
 
-    file = tmp_path / "acrylic.npz"
-    build = ["atlas", "--material", "acrylic", "--repeats", "small", "-o", str(file), "--json"]
-    built = CliRunner().invoke(main, build)
-    assert built.exit_code == 0, built.output
-    assert len(json.loads(built.stdout)["repeats"]) == len(repeats_of("small"))
-
-    find = ["find", "--atlas", str(file), "--target", "course=0.223~5%*1", "--count=3", "--json"]
+    find = [
+        "find",
+        "--atlas",
+        str(atlas[0]),
+        "--target",
+        "course=0.223~5%*1",
+        "--count=3",
+        "--json",
+    ]
     told = CliRunner().invoke(main, find)
     assert told.exit_code == 0, told.output
     assert json.loads(told.stdout) == asked.json()
 
     columns = client.post("/api/v1/atlas", json={"material": "acrylic"}).json()
-    assert columns == json.loads(built.stdout)
+    assert columns == atlas[1]
+    assert len(atlas[1]["repeats"]) == len(repeats_of("small"))
 
 
 @pytest.mark.parametrize("target", ["course", "course=x", "colour=1", "course=0.1~%"])
@@ -48,3 +64,59 @@ def test_there_must_be_something_to_search() -> None:
     refused = CliRunner().invoke(main, ["find", "--target", "course=0.1"])
     assert refused.exit_code == 2
     assert "nothing to search" in refused.stderr
+
+
+def test_the_values_of_a_chart_give_the_chart_back(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path
+) -> None:
+    """Exported values filled again: the same moduli over REST and on the command line."""
+    chart, values, design = (tmp_path / name for name in ("c.txt", "v.csv", "d.json"))
+    chart.write_text("\n".join(["KPKPKPKPKPKP"] * 6 + ["KKKKKKKKKKKK"] * 6))
+    export = ["export", str(chart), "--to", "csv", "-o", str(values)]
+    assert CliRunner().invoke(main, export).exit_code == 0
+    fill = ["fill", str(values), "--material=acrylic", f"--atlas={atlas[0]}", f"-o{design}"]
+    told = CliRunner().invoke(main, [*fill, "--json"])
+    assert told.exit_code == 0, told.output
+    result = json.loads(told.stdout)
+    assert result["off_share"] == 0
+    assert (result["rows"], result["columns"]) == (12, 12)
+    assert json.loads(design.read_text())["chart"] == result["chart"]
+
+    course, wale = (m.tolist() for m in read_wanted_moduli(values))
+    request = {"material": "acrylic", "modulus_course_n_per_mm": course}
+    asked = client.post("/api/v1/fill", json=request | {"modulus_wale_n_per_mm": wale})
+    assert asked.status_code == 200, asked.text
+    assert asked.json() == result
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("row,column\n1,1\n", "lacks columns"),
+        ("row,column,modulus_wale_n_per_mm\n1,x,1\n", "line 2 holds no numbers"),
+        ("row,column,modulus_wale_n_per_mm\n0,1,1\n", "row 0, column 1"),
+        ("row,column,modulus_wale_n_per_mm\n", "holds no stitch"),
+        ("row,column,modulus_wale_n_per_mm\n1,1,\n", "nothing is wanted"),
+    ],
+)
+def test_maps_that_cannot_be_read(
+    atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path, text: str, says: str
+) -> None:
+    file = tmp_path / "v.csv"
+    file.write_text(text)
+    refused = CliRunner().invoke(
+        main, ["fill", str(file), "--material=acrylic", f"--atlas={atlas[0]}"]
+    )
+    assert refused.exit_code == 2
+    assert says in refused.stderr
+
+
+def test_ragged_maps_are_refused(client: TestClient) -> None:
+    request = {
+        "material": "acrylic",
+        "modulus_course_n_per_mm": [[0.1, 0.1], [0.1]],
+        "modulus_wale_n_per_mm": [[0.1, None], [0.1, 0.1]],
+    }
+    refused = client.post("/api/v1/fill", json=request)
+    assert refused.status_code == 422
+    assert refused.json()["field"] == "modulus_course_n_per_mm"

@@ -1,0 +1,109 @@
+"""Patches: which repeat of an atlas goes where, so that a map of wanted moduli is met."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from knitcore.design.atlas import Atlas
+
+Array = NDArray[np.float64]
+Labels = NDArray[np.intp]
+
+MOST_LABELS = 48
+"""Repeats that one chart may mix."""
+_BIN = 0.02
+"""Targets that differ by less (in logarithms) are looked up together."""
+_SWEEPS = 6
+
+
+def wanted_labels(atlas: Atlas, log_course: Array, log_wale: Array) -> tuple[Labels, Array]:
+    """The best repeats for a map, and what each would cost at every stitch.
+
+    Parameters
+    ----------
+    atlas : repeats to choose from.
+    log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN is no wish.
+
+    Returns
+    -------
+    indices into the atlas (labels,), and (labels, rows, columns) squared deviations.
+    """
+    have = np.log(
+        np.stack([atlas.column("modulus_course_n_per_mm"), atlas.column("modulus_wale_n_per_mm")])
+    )
+    binned = np.stack([np.round(log_course / _BIN), np.round(log_wale / _BIN)]).reshape(2, -1)
+    kinds, counts = np.unique(np.nan_to_num(binned, nan=1e9), axis=1, return_counts=True)
+    kinds = np.where(kinds == 1e9, np.nan, kinds) * _BIN
+    off = np.nansum((have[:, :, None] - kinds[:, None, :]) ** 2, axis=0)  # (repeats, kinds)
+    # Small repeats come first in an atlas, so argmin prefers them among equals.
+    best = np.argmin(off.round(6), axis=0)
+    votes = np.bincount(best, weights=counts, minlength=len(atlas))
+    chosen = np.argsort(-votes, kind="stable")[:MOST_LABELS]
+    chosen = np.sort(chosen[votes[chosen] > 0])
+    wanted = np.stack([log_course, log_wale])
+    cost = np.nansum((have[:, chosen, None, None] - wanted[:, None]) ** 2, axis=0)
+    return chosen, cost
+
+
+def smooth(cost: Array, smallest: int) -> Labels:
+    """Labels (rows, columns) of low cost in patches of at least smallest x smallest stitches.
+
+    Starts from the cheapest label of every stitch, lets neighbours agree where that costs little,
+    and gives patches that are too small to their cheapest neighbour.
+    """
+    labels: Labels = cost.argmin(axis=0)
+    if len(cost) == 1:
+        return labels
+    fine = np.partition(cost, 1, axis=0)
+    weight = float(np.median(fine[1] - fine[0])) / 4
+    for _ in range(_SWEEPS):
+        agree = np.stack([_neighbours_like(labels, label) for label in range(len(cost))])
+        updated = (cost - weight * agree).argmin(axis=0)
+        if np.array_equal(updated, labels):
+            break
+        labels = updated
+    return _absorb(labels, cost, smallest)
+
+
+def patches_of(labels: Labels) -> Labels:
+    """Connected patches of one label, numbered from 0."""
+    numbered = np.zeros(labels.shape, dtype=np.intp)
+    count = 0
+    for label in np.unique(labels):
+        parts, found = ndimage.label(labels == label)
+        numbered[parts > 0] = parts[parts > 0] - 1 + count
+        count += found
+    return numbered
+
+
+def _neighbours_like(labels: Labels, label: int) -> NDArray[np.intp]:
+    like = np.pad((labels == label).astype(np.intp), 1)
+    total: NDArray[np.intp] = like[:-2, 1:-1] + like[2:, 1:-1] + like[1:-1, :-2] + like[1:-1, 2:]
+    return total
+
+
+def _absorb(labels: Labels, cost: Array, smallest: int) -> Labels:
+    """Give patches that are too small to the neighbour that suits them best, smallest first."""
+    labels = labels.copy()
+    rows = min(smallest, labels.shape[0])
+    columns = min(smallest, labels.shape[1])
+    while True:
+        patches = patches_of(labels)
+        boxes = ndimage.find_objects(patches + 1)
+        sizes = np.bincount(patches.ravel())
+        small = [
+            index
+            for index, (row, column) in enumerate(boxes)
+            if sizes[index] < rows * columns
+            or row.stop - row.start < rows
+            or column.stop - column.start < columns
+        ]
+        if not small or len(sizes) == 1:
+            return labels
+        index = min(small, key=lambda i: (sizes[i], i))
+        cells = patches == index
+        beside = ndimage.binary_dilation(cells) & ~cells
+        choices = np.unique(labels[beside])
+        labels[cells] = choices[np.argmin(cost[choices][:, cells].sum(axis=1))]

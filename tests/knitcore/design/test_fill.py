@@ -1,0 +1,126 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore import Fabric, InputError, StitchChart
+from knitcore.design.atlas import Atlas, build_atlas
+from knitcore.design.fill import FilledField, fill_field
+from knitcore.design.patches import patches_of
+from knitcore.design.repeats import repeat_of_key, repeats_up_to
+from knitcore.errors import CancelledError
+from knitcore.materials import material
+from knitcore.mechanics.local import local_moduli
+from knitcore.mechanics.prediction import predict
+
+ACRYLIC = material("acrylic")
+ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 3))
+
+
+def hidden_chart(seed: int, side: int = 40, patches: int = 6) -> StitchChart:
+    """Rectangles of the four fabrics, on each other."""
+    rng = np.random.default_rng(seed)
+    fabric = np.full((side, side), rng.integers(4))
+    for _ in range(patches):
+        height, width = rng.integers(8, side // 2, 2)
+        row, column = rng.integers(side - height), rng.integers(side - width)
+        fabric[row : row + height, column : column + width] = rng.integers(4)
+    purl = np.zeros((side, side), dtype=bool)
+    for code, kind in enumerate(Fabric):
+        purl[fabric == code] = StitchChart.of_fabric(kind, side, side).purl[fabric == code]
+    return StitchChart(purl)
+
+
+def fill_like(chart: StitchChart, atlas: Atlas = ATLAS, **options: int) -> FilledField:
+    local = local_moduli(chart, ACRYLIC)
+    course, wale = local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm
+    return fill_field(course, wale, ACRYLIC, atlas, **options)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_hidden_chart_of_the_four_fabrics_is_found_again(seed: int) -> None:
+    """At most 5 % of the area off by more than 10 %."""
+    assert fill_like(hidden_chart(seed)).off_share <= 0.05
+
+
+@pytest.mark.parametrize("index", range(0, len(ATLAS), 3))
+def test_a_uniform_wish_is_met(index: int) -> None:
+    """Within 5 %, by the prediction of the whole chart."""
+    course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm")[index] for d in ("course", "wale"))
+    field = fill_field(np.full((12, 12), course), np.full((12, 12), wale), ACRYLIC, ATLAS)
+    assert len(field.regions) == 1
+    found = predict(field.chart, ACRYLIC)
+    assert found.modulus_course_n_per_mm == pytest.approx(course, rel=0.05)
+    assert found.modulus_wale_n_per_mm == pytest.approx(wale, rel=0.05)
+    assert field.messages == ()
+
+
+def test_the_same_seed_gives_the_same_chart() -> None:
+    chart = hidden_chart(3, side=24)
+    assert fill_like(chart, seed=5).chart == fill_like(chart, seed=5).chart
+
+
+@pytest.mark.parametrize("smallest", [2, 5])
+def test_patches_are_not_too_small(smallest: int) -> None:
+    rng = np.random.default_rng(0)
+    course, wale = np.exp(rng.uniform(-4, -1, (2, 20, 20)))
+    field = fill_field(course, wale, ACRYLIC, ATLAS, smallest_patch=smallest)
+    for patch in range(len(field.regions)):
+        rows, columns = np.nonzero(field.patches == patch)
+        assert np.ptp(rows) + 1 >= smallest
+        assert np.ptp(columns) + 1 >= smallest
+        assert field.regions[patch].stitches == len(rows)
+
+
+def test_no_wish_is_no_constraint() -> None:
+    garter = ACRYLIC.law(Fabric.GARTER)
+    course = np.full((10, 10), np.nan)
+    course[:, :5] = garter.modulus_course
+    wale = np.where(np.isnan(course), np.nan, garter.modulus_wale)
+    field = fill_field(course, wale, ACRYLIC, ATLAS)
+    repeats = {repeat_of_key(region.repeat) for region in field.regions}
+    assert StitchChart.parse("K\nP") in repeats
+    assert field.off_share == 0
+
+
+def test_what_cannot_be_reached_is_told() -> None:
+    field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, ATLAS)
+    assert field.off_share == 1
+    assert "off course-wise" in field.messages[0]
+    assert np.isnan(field.regions[0].deviation_wale)
+
+
+def test_it_tells_progress_and_stops_when_asked() -> None:
+    told: list[float] = []
+    chart = hidden_chart(1, side=20, patches=3)
+    local = local_moduli(chart, ACRYLIC)
+    maps = local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm
+    fill_field(*maps, ACRYLIC, ATLAS, progress=told.append)
+    assert told == sorted(told)
+    assert 0 <= told[0] < told[-1] <= 1
+    with pytest.raises(CancelledError):
+        fill_field(*maps, ACRYLIC, ATLAS, cancelled=lambda: True)
+
+
+def test_patches_are_connected() -> None:
+    labels = np.array([[0, 0, 1], [1, 0, 1], [1, 1, 0]])
+    assert len(np.unique(patches_of(labels))) == 4
+
+
+@pytest.mark.parametrize(
+    ("course", "wale", "says"),
+    [
+        (np.ones((2, 3)), np.ones((3, 2)), "differ in size"),
+        (np.full((2, 2), np.nan), np.full((2, 2), np.nan), "nothing is wanted"),
+        (np.zeros((2, 2)), np.ones((2, 2)), "not positive"),
+        (np.full((2, 2), np.inf), np.ones((2, 2)), "not positive"),
+    ],
+)
+def test_maps_that_cannot_be_used(course: np.ndarray, wale: np.ndarray, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        fill_field(course, wale, ACRYLIC, ATLAS)
+
+
+def test_the_atlas_must_be_of_the_yarn() -> None:
+    with pytest.raises(InputError, match="it is of acrylic"):
+        fill_field(np.ones((2, 2)), np.ones((2, 2)), material("cotton"), ATLAS)
