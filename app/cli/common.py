@@ -11,6 +11,7 @@ from typing import Any
 import click
 from pydantic import BaseModel
 
+from app.operations.charts import fabric_repeat
 from app.operations.predict import GaugeInput
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -95,6 +96,21 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
             f"Name a .txt, .png or .json file, or one of {names} with --size.",
         )
     return read_chart(chart)
+
+
+def resolve_repeat(chart: str, size: str | None) -> StitchChart:
+    """The repeat that CHART means; the name of a fabric needs no size here.
+
+    Raises
+    ------
+    InputError
+        As :func:`resolve_chart`.
+    """
+    if chart.lower() in set(Fabric):
+        if size is not None:
+            resolve_chart(chart, size)  # a malformed size is told all the same
+        return fabric_repeat(Fabric.parse(chart))
+    return resolve_chart(chart, size)
 
 
 def emit(result: BaseModel, text: str, *, as_json: bool) -> None:

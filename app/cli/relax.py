@@ -10,7 +10,7 @@ from app.cli.common import (
     emit,
     json_option,
     material_option,
-    resolve_chart,
+    resolve_repeat,
 )
 from app.cli.materials import resolve_material
 from app.operations.relax import RelaxResult, YarnLevelOptions, relax_chart
@@ -38,7 +38,7 @@ def command(
     options = YarnLevelOptions(
         loop_length_mm=loop_length_mm, branch=Branch(branch), convention=Convention(convention)
     )
-    result = relax_chart(resolve_chart(chart, size), resolve_material(material), options)
+    result = relax_chart(resolve_repeat(chart, size), resolve_material(material), options)
     emit(result, _text(result), as_json=as_json)
 
 

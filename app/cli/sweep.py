@@ -11,7 +11,7 @@ from app.cli.common import (
     emit,
     json_option,
     material_option,
-    resolve_chart,
+    resolve_repeat,
 )
 from app.cli.materials import resolve_material
 from app.operations.sweep import SweepOptions, SweepResult, sweep_chart
@@ -51,7 +51,7 @@ def command(
         branch=Branch(branch),
         convention=Convention(convention),
     )
-    result = sweep_chart(resolve_chart(chart, size), resolve_material(material), options)
+    result = sweep_chart(resolve_repeat(chart, size), resolve_material(material), options)
     emit(result, _text(result), as_json=as_json)
 
 

@@ -41,6 +41,18 @@ def to_chart(chart: ChartInput) -> StitchChart:
     return StitchChart.parse(chart)
 
 
+def to_repeat(chart: ChartInput) -> StitchChart:
+    """The repeat that a request means: the chart itself, or a pure fabric's own repeat."""
+    if isinstance(chart, PureFabricChart):
+        return fabric_repeat(chart.fabric)
+    return StitchChart.parse(chart)
+
+
+def fabric_repeat(fabric: Fabric) -> StitchChart:
+    """The repeat of a pure fabric."""
+    return StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
+
+
 class ParseRequest(BaseModel):
     """A chart text as somebody typed it."""
 

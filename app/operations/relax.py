@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart
+from app.operations.charts import ChartInput, to_repeat
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
@@ -90,7 +90,7 @@ class RelaxResult(BaseModel):
 
 def run_relax(request: RelaxRequest, *, cancelled: Cancelled) -> RelaxResult:
     """Relax for the service."""
-    chart, material = to_chart(request.chart), find_material(request.material)
+    chart, material = to_repeat(request.chart), find_material(request.material)
     return relax_chart(
         chart, material, request, with_lines=request.centre_lines, cancelled=cancelled
     )

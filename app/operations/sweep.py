@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart
+from app.operations.charts import ChartInput, to_repeat
 from app.operations.relax import (
     Cancelled,
     YarnLevelOptions,
@@ -96,7 +96,7 @@ class SweepResult(BaseModel):
 
 def run_sweep(request: SweepRequest, *, cancelled: Cancelled) -> SweepResult:
     """Stretch for the service."""
-    chart, material = to_chart(request.chart), find_material(request.material)
+    chart, material = to_repeat(request.chart), find_material(request.material)
     return sweep_chart(chart, material, request, cancelled=cancelled)
 
 
