@@ -16,6 +16,13 @@ import { readPalette } from "./palette.js";
 import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
 
+/**
+ * Drawn by the processor: the strokes are small, and where there is no GPU its emulation would take
+ * longer for them than a stroke may. (The option's name speaks of reading, its effect is this.)
+ */
+const TOP_CONTEXT = { willReadFrequently: true };
+const CONTEXT = { ...TOP_CONTEXT, alpha: false };
+
 export class ChartView {
   viewport = new Viewport();
   palette = readPalette();
@@ -38,9 +45,9 @@ export class ChartView {
     this.top = top;
     this.studio = studio;
     this.context = /** @type {CanvasRenderingContext2D} */ (
-      canvas.getContext("2d", { alpha: false })
+      canvas.getContext("2d", CONTEXT)
     );
-    this.topContext = /** @type {CanvasRenderingContext2D} */ (top.getContext("2d"));
+    this.topContext = /** @type {CanvasRenderingContext2D} */ (top.getContext("2d", TOP_CONTEXT));
 
     new ResizeObserver(() => this.#resize(host)).observe(host);
     this.#resize(host);
