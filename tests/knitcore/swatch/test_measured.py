@@ -48,6 +48,38 @@ def test_calibration_finds_the_law_of_a_synthetic_field() -> None:
     assert found.frames == (2, 3)
 
 
+def test_a_picture_turned_by_a_quarter_gives_the_same_errors() -> None:
+    """Pulled along the picture's x instead of y; the law is another, so that errors are seen."""
+    displacement, frame = camera_arrays(GARTER, SheetModel())
+    turned = np.stack([displacement[:, 1], displacement[:, 0]], axis=1).transpose(0, 1, 3, 2)
+    other = material("acrylic").law(Fabric.SEED)
+    upright, lying = (
+        compare(measured_field(u, frame), other, Direction.WALE, edges=Edges.RIGID).frames
+        for u in (displacement, turned)
+    )
+    for one, two in zip(upright, lying, strict=True):
+        assert one.ux_rms_percent_width > 0.05
+        assert two.ux_rms_percent_width == pytest.approx(one.ux_rms_percent_width, rel=1e-3)
+        assert two.uy_rms_percent_width == pytest.approx(one.uy_rms_percent_width, rel=1e-2)
+
+
+def test_a_course_wise_pull_is_compared_along_the_courses() -> None:
+    """With x and y of the law exchanged, the field of a wale-wise pull is a course-wise one."""
+    field = measured_field(*camera_arrays(GARTER, SheetModel()))
+    exchanged = ConstitutiveLaw(
+        GARTER.stiffness_yyyy,
+        GARTER.stiffness_xxxx,
+        GARTER.stiffness_yyxx,
+        GARTER.stiffness_xxyy,
+        GARTER.alpha_yy,
+        GARTER.alpha_xx,
+        GARTER.beta_yy,
+        GARTER.beta_xx,
+    )
+    errors = compare(field, exchanged, Direction.COURSE, edges=Edges.MEASURED).frames
+    assert max(max(f.ux_rms_percent_width, f.uy_rms_percent_width) for f in errors) < 0.06
+
+
 def test_pictures_can_be_left_out() -> None:
     field = synthetic_field((GARTER, SheetModel()))
     assert [f.number for f in field.only({3}).frames] == [3]
