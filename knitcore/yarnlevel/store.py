@@ -52,6 +52,7 @@ class StoredStitch:
     branch, convention : of the relaxation.
     cell_course_mm, cell_wale_mm : size of one stitch, mm.
     energy_n_mm, bending_share, contact_share : per stitch.
+    converged : whether the solver reached its tolerance.
     law : fitted to stretches in both directions up to ``law_max_stress_n_per_mm``; None where none
         could be fitted.
     controls : (rows, columns * N, 3) control points over the repeat without the drift, mm.
@@ -70,6 +71,7 @@ class StoredStitch:
     energy_n_mm: float
     bending_share: float
     contact_share: float
+    converged: bool
     law: ConstitutiveLaw | None
     law_max_stress_n_per_mm: float
     controls: Array
@@ -126,6 +128,7 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
         energy_n_mm=entry["energy_n_mm"],
         bending_share=entry["bending_share"],
         contact_share=entry["contact_share"],
+        converged=entry["converged"],
         law=None if law is None else ConstitutiveLaw(**law),
         law_max_stress_n_per_mm=entry["law_max_stress_n_per_mm"],
         controls=points,
