@@ -56,6 +56,13 @@ def chart_svg(chart: StitchChart | ShapedChart, style: ChartStyle | None = None)
 
 
 def chart_pdf(chart: StitchChart | ShapedChart, style: ChartStyle | None = None) -> bytes:
+    """The chart as a PDF of :func:`chart_pages`."""
+    return to_pdf(chart_pages(chart, style), _title(_shaped(chart).chart))
+
+
+def chart_pages(
+    chart: StitchChart | ShapedChart, style: ChartStyle | None = None
+) -> tuple[Page, ...]:
     """The chart as A4 pages: one if it fits with cells of at least 3 mm, otherwise several.
 
     Every page has its numbers and the key; pages go from the bottom right, where flat knitting
@@ -73,7 +80,7 @@ def chart_pdf(chart: StitchChart | ShapedChart, style: ChartStyle | None = None)
         for rows in _pieces(chart.rows, up)
         for columns in reversed(_pieces(chart.columns, across))
     ]
-    return to_pdf([part.page(paper=A4_MM) for part in parts], _title(chart))
+    return tuple(part.page(paper=A4_MM) for part in parts)
 
 
 def _shaped(chart: StitchChart | ShapedChart) -> ShapedChart:

@@ -13,6 +13,7 @@ from knitcore.formats import (
     design,
     knitout_reader,
     png,
+    report,
     stitch_values,
     written,
     yarn_mesh,
@@ -31,6 +32,7 @@ class ExportKind(StrEnum):
     PNG = "png"
     SVG = "svg"
     PDF = "pdf"
+    REPORT = "report"
     TEXT = "text"
     WRITTEN = "written"
     DESIGN = "design"
@@ -45,6 +47,7 @@ SUFFIXES = {
     ExportKind.PNG: (".png", "image/png"),
     ExportKind.SVG: (".svg", "image/svg+xml"),
     ExportKind.PDF: (".pdf", "application/pdf"),
+    ExportKind.REPORT: (".pdf", "application/pdf"),
     ExportKind.TEXT: (".txt", "text/plain; charset=utf-8"),
     ExportKind.WRITTEN: (".txt", "text/plain; charset=utf-8"),
     ExportKind.DESIGN: (".json", "application/json"),
@@ -167,6 +170,11 @@ def _pdf(chart: StitchChart, material: Material, options: ExportOptions) -> Expo
     return ExportedFile(ExportKind.PDF, drawing)
 
 
+def _report(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
+    pages = report.design_report(chart, material, options.name, _style(chart, material, options))
+    return ExportedFile(ExportKind.REPORT, pages)
+
+
 def _written(chart: StitchChart, _: Material, options: ExportOptions) -> ExportedFile:
     rows = written.write_rows(chart, options.construction, first_side=options.first_side)
     return ExportedFile(ExportKind.WRITTEN, rows.encode())
@@ -217,6 +225,7 @@ _WRITERS: dict[ExportKind, _Writer] = {
     ExportKind.PNG: lambda chart, _, __: ExportedFile(ExportKind.PNG, png.write_png(chart)),
     ExportKind.SVG: _svg,
     ExportKind.PDF: _pdf,
+    ExportKind.REPORT: _report,
     ExportKind.TEXT: lambda c, _, __: ExportedFile(ExportKind.TEXT, f"{c.text}\n".encode()),
     ExportKind.WRITTEN: _written,
     ExportKind.DESIGN: _design,

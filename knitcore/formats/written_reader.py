@@ -190,8 +190,11 @@ class _Reader:
             if rest.lower() in ("knit", "purl"):
                 found, used = (rest.lower() == "purl",) * (self._stitches - len(purls)), len(rest)
             elif bracket is not None:
+                inside = self._items(line, bracket[1])
                 times = 2 if bracket[2] else int(bracket[3])
-                found, used = self._items(line, bracket[1]) * times, bracket.end()
+                # More than a row can hold is told below; it need not be written out for that.
+                found = inside * min(times, MAX_STITCHES_PER_SIDE + 1)
+                used = bracket.end()
             elif stitches is not None:
                 found, used = (stitches[1].lower() == "p",) * int(stitches[2]), stitches.end()
             else:

@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from collections.abc import Iterable
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -15,8 +16,10 @@ from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
 from knitcore.fabric import Direction
+from knitcore.formats import report
 from knitcore.formats.chart_drawing import ChartStyle, chart_pdf, chart_svg
 from knitcore.formats.chart_files import read_chart
+from knitcore.formats.drawing import Box, Label, Page
 from knitcore.formats.export import SUFFIXES, ExportKind, export_chart
 from knitcore.formats.yarn_mesh import MAXIMUM_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.materials import material
@@ -147,3 +150,36 @@ def test_values_of_every_stitch(tmp_path: Path) -> None:
     assert mesh.cell_data["modulus_course_n_per_mm"][0] == pytest.approx(
         local.modulus_course_n_per_mm.ravel()
     )
+
+
+@pytest.mark.parametrize(
+    ("chart", "pages"),
+    [
+        (StitchChart.of_fabric("garter", rows=31, columns=31), 2),
+        (StitchChart(np.random.default_rng(0).random((60, 70)) < 0.5), 3),
+    ],
+    ids=["with curves", "patchwork"],
+)
+def test_a_report_has_numbers_and_the_chart(chart: StitchChart, pages: int) -> None:
+    content = export_chart(chart, ExportKind.REPORT, ACRYLIC).content
+    assert content.startswith(b"%PDF-")
+    assert content.count(b"/Type /Page\n") == pages
+
+
+def test_a_report_tells_its_numbers_with_their_source(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[Page] = []
+
+    def keep(pages: Iterable[Page], _: str) -> bytes:
+        drawn.extend(pages)
+        return b""
+
+    monkeypatch.setattr(report, "to_pdf", keep)
+    chart = StitchChart.of_fabric("garter", rows=5, columns=5)
+    report.design_report(chart, ACRYLIC, "Cuff", ChartStyle())
+    words = " ".join(shape.text for shape in drawn[0].shapes if isinstance(shape, Label))
+    assert "Cuff" in words
+    assert "0.223  (" in words
+    assert "Source: measured" in words
+    assert "Shear modulus 0.01 N/mm: an assumption" in words
+    inside = [s for s in drawn[0].shapes if isinstance(s, Box)]
+    assert all(0 <= b.x <= 210 and b.y + b.height <= 297 for b in inside)

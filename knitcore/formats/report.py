@@ -1,0 +1,182 @@
+"""A design on paper: its numbers with intervals, maps, curves, assumptions, and the chart."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.formats.chart_drawing import A4_MM, MARGIN_MM, ChartStyle, chart_pages
+from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
+from knitcore.materials import Interval, Material
+from knitcore.mechanics.chart_curve import ChartCurve, chart_curve
+from knitcore.mechanics.local import local_moduli
+from knitcore.mechanics.prediction import Prediction, predict
+from knitcore.segments import segment_map
+
+Array = NDArray[np.float64]
+
+# Cividis at five points: perceptually uniform, and the same for colour-blind readers.
+_CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108], [255, 234, 70]])
+_DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
+_LEVELS = 32
+_LINE_CHARACTERS = 112
+_MAP_MM = (84.0, 62.0)
+
+
+def design_report(chart: StitchChart, material: Material, name: str, style: ChartStyle) -> bytes:
+    """A PDF: one page of mechanics, then the chart.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    found = predict(chart, material)
+    curves, said = _curves(chart, material)
+    shapes = [*_numbers(chart, material, name, found), *_maps(chart, material)]
+    shapes += [*_plot(curves, said), *_assumptions(found)]
+    return to_pdf([Page(*A4_MM, tuple(shapes)), *chart_pages(chart, style)], name)
+
+
+def _curves(chart: StitchChart, material: Material) -> tuple[dict[Direction, ChartCurve], str]:
+    try:
+        return {d: chart_curve(chart, material, d) for d in Direction}, ""
+    except InputError as error:  # a patchwork has no curve of its own
+        return {}, f"No curve: {error.problem} A swatch of it can be stretched instead."
+
+
+def _numbers(
+    chart: StitchChart, material: Material, name: str, found: Prediction
+) -> Iterator[Shape]:
+    yield Label(MARGIN_MM, 16.0, name, 6.0)
+    size = (
+        f"{chart.columns} stitches × {chart.rows} rows in {material.name} ({material.identifier})"
+    )
+    yield Label(MARGIN_MM, 22.0, size, 3.4)
+    segments = segment_map(chart)
+    course, wale = (segments.counts(d) for d in Direction)
+    yield Label(
+        MARGIN_MM,
+        27.0,
+        f"segments: course-wise {course.even} even, {course.odd} odd; "
+        f"wale-wise {wale.even} even, {wale.odd} odd",
+    )
+    rows = [
+        ("", "along the rows (course)", "along the columns (wale)"),
+        (
+            "Young's modulus, N/mm",
+            _value(found.modulus_course_n_per_mm, found.modulus_course_interval),
+            _value(found.modulus_wale_n_per_mm, found.modulus_wale_interval),
+        ),
+        (
+            "extensibility, mm/N",
+            _value(found.extensibility_course_mm_per_n, found.extensibility_course_interval),
+            _value(found.extensibility_wale_mm_per_n, found.extensibility_wale_interval),
+        ),
+        (
+            "contraction when pulled so",
+            _value(found.poisson_yx, found.poisson_yx_interval),
+            _value(found.poisson_xy, found.poisson_xy_interval),
+        ),
+        (
+            "stitch at rest, mm",
+            _size(found.relaxed_course_mm),
+            _size(found.relaxed_wale_mm),
+        ),
+    ]
+    for index, cells in enumerate(rows):
+        for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
+            yield Label(x, 36.0 + 5.2 * index, text, 3.2)
+    yield Strokes(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
+    yield Label(MARGIN_MM, 64.0, f"Intervals hold 90 %. Source: {found.provenance}.", 3.0)
+
+
+def _value(value: float, interval: Interval) -> str:
+    return f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})"
+
+
+def _size(value: float | None) -> str:
+    return "not certified" if value is None else f"{value:.2f}"
+
+
+def _maps(chart: StitchChart, material: Material) -> Iterator[Shape]:
+    """Local moduli as two maps with one logarithmic scale."""
+    local = local_moduli(chart, material)
+    logs = {d: np.log(local.table.modulus_n_per_mm(d)[local.codes]) for d in Direction}
+    low = float(min(m.min() for m in logs.values()))
+    high = max(float(max(m.max() for m in logs.values())), low + 1e-9)
+    cell = min(_MAP_MM[0] / chart.columns, _MAP_MM[1] / chart.rows)
+    for direction, left in zip(Direction, (MARGIN_MM, 108.0), strict=True):
+        yield Label(left, 73.0, f"local modulus along the {direction}, N/mm", 3.0)
+        level = ((logs[direction] - low) / (high - low) * (_LEVELS - 1)).round().astype(int)
+        for row in range(chart.rows):
+            y = 75.5 + cell * (chart.rows - 1 - row)
+            for start, stop in _runs(level[row]):
+                width = cell * (stop - start)
+                fill = _colour(int(level[row, start]))
+                yield Box(left + cell * start, y, width, cell, fill=fill)
+    for step in range(_LEVELS):
+        yield Box(MARGIN_MM + 2.0 * step, 141.0, 2.0, 3.0, fill=_colour(step))
+    yield Label(MARGIN_MM, 148.0, f"{np.exp(low):.3g}", 2.8)
+    end = MARGIN_MM + 2.0 * _LEVELS
+    yield Label(end, 148.0, f"{np.exp(high):.3g} N/mm (logarithmic)", 2.8, "end")
+
+
+def _runs(values: NDArray[np.int_]) -> Iterator[tuple[int, int]]:
+    edges = [0, *(np.flatnonzero(np.diff(values)) + 1).tolist(), len(values)]
+    yield from pairwise(edges)
+
+
+def _colour(level: int) -> str:
+    place = np.linspace(0, _LEVELS - 1, len(_CIVIDIS))
+    rgb = [round(float(np.interp(level, place, channel))) for channel in _CIVIDIS.T]
+    return "#{:02x}{:02x}{:02x}".format(*rgb)
+
+
+def _plot(curves: dict[Direction, ChartCurve], said: str) -> Iterator[Shape]:
+    """Stress over strain, both directions."""
+    yield Label(MARGIN_MM, 158.0, "stress (N/mm) over strain, pulled one way, free the other", 3.0)
+    if not curves:
+        yield Label(MARGIN_MM, 164.0, said, 2.8)
+        return
+    left, top, width, height = MARGIN_MM + 10.0, 162.0, 150.0, 52.0
+    widest = max(float(c.strain[-1]) for c in curves.values())
+    tallest = float(next(iter(curves.values())).stress_n_per_mm[-1])
+    yield Box(left, top, width, height, stroke="#b5b0a8")
+    for share in (0.0, 0.5, 1.0):
+        x, y = left + width * share, top + height * (1 - share)
+        yield Label(x, top + height + 4.0, f"{widest * share:.2f}", 2.8, "middle")
+        yield Label(left - 1.5, y + 1.0, f"{tallest * share:.2f}", 2.8, "end")
+    for index, (direction, curve) in enumerate(curves.items()):
+        across = left + width * curve.strain / widest
+        up = top + height * (1 - curve.stress_n_per_mm / tallest)
+        lines = np.stack([across[:-1], up[:-1], across[1:], up[1:]], axis=1).tolist()
+        drawn = tuple((a, b, c, d) for a, b, c, d in lines)
+        ink = _DIRECTION_INK[direction]
+        yield Strokes(drawn, ink, 0.5)
+        line = top + 5.0 + 5.0 * index
+        yield Strokes(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
+        yield Label(left + 13.0, line, f"{direction} ({curve.provenance})", 2.8)
+
+
+def _assumptions(found: Prediction) -> Iterator[Shape]:
+    yield Label(MARGIN_MM, 228.0, "How, and what to keep in mind", 3.4)
+    said = [
+        f"Law: {found.method}.",
+        f"Shear modulus {found.shear_modulus_n_per_mm:g} N/mm: an assumption unless calibrated.",
+        "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
+        *found.notes,
+    ]
+    y = 234.0
+    for note in said:
+        for line in textwrap.wrap(note, _LINE_CHARACTERS):
+            if y < A4_MM[1] - 8.0:
+                yield Label(MARGIN_MM, y, line, 2.8)
+            y += 4.2
