@@ -25,6 +25,7 @@ from app.observing import Metrics, Observer
 from app.operations.stretch import warm_up
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.recent import RecentResults
+from app.schema import install_schema
 from app.security import Guard
 from app.settings import Settings
 from app.store.database import Database, StoreError
@@ -94,6 +95,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.stopping = False
     app.state.metrics = Metrics(_gauges(app))
     install_problem_handlers(app)
+    install_schema(app)
     for router in routers():
         app.include_router(router, prefix="/api/v1")
     app.include_router(relay.router)

@@ -23,6 +23,9 @@ from knitcore.errors import (
 log = logging.getLogger("knitcore.app")
 
 
+PROBLEM_TYPE = "application/problem+json"
+
+
 class Problem(BaseModel):
     """What every error response looks like."""
 
@@ -39,8 +42,10 @@ PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
     for status, text in {
         400: "The request cannot be read.",
         403: "The request comes from another site, or without the token.",
+        405: "The address knows no such method.",
         413: "The request is too large.",
         422: "An input cannot be used; the problem names the field and the remedy.",
+        429: "You are asking too often; Retry-After says when to come back.",
         503: "The service is busy or the computation took too long.",
     }.items()
 }
@@ -99,7 +104,7 @@ def problem_response(problem: Problem, headers: Mapping[str, str] | None = None)
         problem.model_dump(),
         status_code=problem.status,
         headers=headers,
-        media_type="application/problem+json",
+        media_type=PROBLEM_TYPE,
     )
 
 

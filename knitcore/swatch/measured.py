@@ -8,8 +8,10 @@ at rest. ``pitch_px`` may give another distance. A point of the cloth now at x w
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass, replace
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,7 +107,7 @@ def load_field(path: Path | str) -> MeasuredField:
             displacement = np.asarray(archive["displacement"], dtype=float)
             numbers = np.asarray(archive["frame"], dtype=int)
             pitch = float(archive["pitch_px"]) if "pitch_px" in archive else PITCH_PX
-    except (OSError, KeyError, ValueError, TypeError) as error:
+    except (OSError, EOFError, KeyError, ValueError, TypeError, BadZipFile, zlib.error) as error:
         raise InputError(
             "field",
             f"{path} cannot be read as a displacement field ({error}).",

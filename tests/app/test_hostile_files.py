@@ -1,0 +1,127 @@
+"""Two hundred files that are not what they say: every reader refuses them in words.
+
+KNITCORE_HOSTILE_FILES sets how many each reader gets.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import random
+import zipfile
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.operations.field import CompareRequest, run_compare
+from app.operations.fit import FitRequest, run_fit
+from app.operations.imports import ImportRequest, run_import
+from app.operations.measure import (
+    BendingRequest,
+    CompressionRequest,
+    run_bending,
+    run_compression,
+)
+from knitcore.errors import KnitcoreError
+
+FILES = int(os.environ.get("KNITCORE_HOSTILE_FILES", "40"))
+
+
+def _png(width: int, height: int) -> bytes:
+    out = io.BytesIO()
+    Image.new("L", (width, height), 255).save(out, "PNG")
+    return out.getvalue()
+
+
+def _bomb() -> bytes:
+    """A PNG that says it has 60,000 x 60,000 pixels."""
+    image = bytearray(_png(2, 2))
+    image[16:24] = (60_000).to_bytes(4, "big") * 2
+    return bytes(image)
+
+
+def _npz(**arrays: Any) -> bytes:
+    out = io.BytesIO()
+    np.savez(out, **arrays)
+    return out.getvalue()
+
+
+def _zip_bomb() -> bytes:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("displacement.npy", b"\x93NUMPY\x01\x00" + b"0" * 5_000_000)
+    return out.getvalue()
+
+
+SEEDS = [
+    b"",
+    b"\x89HDF\r\n\x1a\n" + bytes(200),
+    b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
+    b"PK\x03\x04" + bytes(100),
+    b"\x1f\x8b" + bytes(50),
+    b"strain,force\n1,2\nx,y\n",
+    b"\xff\xfe\x00\x00",
+    b'{"format": "knitcore-design", "version": 1, "chart": ' + b"[" * 2000,
+    b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/passwd">]><a>&b;</a>',
+    _png(40, 40),
+    _bomb(),
+    _npz(displacement=np.zeros((1, 2, 3, 3)), frame=np.zeros(1)),
+    _npz(displacement=np.array([{}], dtype=object), frame=np.zeros(1)),
+    _zip_bomb(),
+]
+NAMES = ["a.csv", "a.h5", "a.png", "a.xls", "a.xlsx", "a.npz", "a.json", "a.txt", "a.k", "../../a"]
+
+
+def _hostile(rng: random.Random) -> dict[str, Any]:
+    content = bytearray(rng.choice(SEEDS))
+    for _ in range(rng.randrange(4)):
+        if content:
+            content[rng.randrange(len(content))] = rng.randrange(256)
+    if rng.random() < 0.3:
+        content = content[: rng.randrange(len(content) + 1)]
+    return {"name": rng.choice(NAMES), "content": bytes(content)}
+
+
+def _request(kind: type[Any], **fields: Any) -> Any:
+    import base64
+
+    def coded(value: Any) -> Any:
+        if isinstance(value, dict) and "content" in value:
+            return value | {"content": base64.b64encode(value["content"]).decode()}
+        return [coded(v) for v in value] if isinstance(value, list) else value
+
+    return kind.model_validate({name: coded(value) for name, value in fields.items()})
+
+
+READERS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Any]] = {
+    "fit": lambda a, b: run_fit(_request(FitRequest, test_course=a, test_wale=b)),
+    "bending": lambda a, _: run_bending(
+        _request(BendingRequest, images=[a], linear_density_g_per_m=0.5, length_mm=30.0)
+    ),
+    "compression": lambda a, _: run_compression(_request(CompressionRequest, file=a)),
+    "compare": lambda a, _: run_compare(
+        _request(CompareRequest, field=a, direction="course", material="acrylic", fabric="garter"),
+        cancelled=lambda: False,
+    ),
+    "import": lambda a, _: run_import(_request(ImportRequest, file=a), cancelled=lambda: False),
+}
+
+
+@pytest.mark.parametrize("reader", list(READERS))
+@pytest.mark.filterwarnings("ignore")
+def test_a_hostile_file_is_refused_in_words(reader: str) -> None:
+    rng = random.Random(reader)  # noqa: S311 - repeatable, not secret
+    refused = 0
+    for _ in range(FILES):
+        first, second = _hostile(rng), _hostile(rng)
+        try:
+            READERS[reader](first, second)
+        except KnitcoreError as error:
+            refused += len(str(error)) > 10
+        except Exception as error:
+            told = f"{first['name']} {first['content'][:40]!r}"
+            raise AssertionError(f"{told} gives {type(error).__name__}: {error}") from error
+    assert refused > FILES * 0.8

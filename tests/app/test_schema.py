@@ -1,0 +1,64 @@
+"""The whole schema against the real service: no surprise, and no answer that is not documented."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, settings
+from schemathesis.specs.openapi import checks
+
+from tests.app.service import Service
+
+EXAMPLES = int(os.environ.get("KNITCORE_SCHEMA_EXAMPLES", "4"))
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    service = Service(tmp_path_factory.mktemp("schema"), job_timeout_s="1", workers="2")
+    service.start().close()
+    yield service.url
+    service.kill()
+
+
+@pytest.mark.timeout(150)
+def test_every_answer_is_documented(url: str) -> None:
+    schema = schemathesis.openapi.from_url(f"{url}/openapi.json")
+    strange: list[str] = []
+    count = 0
+    for found in schema.get_all_operations():
+        operation = found.ok()
+
+        @given(case=operation.as_strategy())
+        @settings(
+            max_examples=EXAMPLES,
+            deadline=None,
+            database=None,
+            phases=[Phase.explicit, Phase.generate],
+            suppress_health_check=list(HealthCheck),
+            derandomize=True,
+        )
+        def run(case: schemathesis.Case) -> None:
+            nonlocal count
+            count += 1
+            response = case.call(timeout=20)
+            assert response.status_code < 500 or response.status_code == 503, response.text
+            case.validate_response(
+                response,
+                checks=[
+                    checks.status_code_conformance,
+                    checks.content_type_conformance,
+                    checks.response_schema_conformance,
+                ],
+            )
+
+        try:
+            run()
+        except BaseExceptionGroup as group:
+            strange += [f"{operation.label}: {e}" for e in group.exceptions]
+        except Exception as error:
+            strange.append(f"{operation.label}: {error}")
+    assert not strange, "\n\n".join(strange)
+    assert count > 100
