@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
+from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.published.shape import PARAMETERS, unknown_names
 from knitcore.yarnlevel.published.stitch import Evaluation, Stitch
 from knitcore.yarnlevel.results import FloatArray
@@ -144,15 +145,16 @@ def minimise(
         # A box around the start keeps a line search from pulling yarn through yarn.
         reach = _REACH * problem.typical
         near_lower, near_upper = np.maximum(lower, x - reach), np.minimum(upper, x + reach)
-        result = minimize(
-            problem.energy,
-            x,
-            jac=problem.gradient,
-            method="SLSQP",
-            bounds=list(zip(near_lower, near_upper, strict=True)),
-            constraints=rules,
-            options={"ftol": tolerance, "maxiter": max_iterations},
-        )
+        with one_blas_thread():
+            result = minimize(
+                problem.energy,
+                x,
+                jac=problem.gradient,
+                method="SLSQP",
+                bounds=list(zip(near_lower, near_upper, strict=True)),
+                constraints=rules,
+                options={"ftol": tolerance, "maxiter": max_iterations},
+            )
         if not np.all(np.isfinite(result.x)):
             break
         x = np.clip(result.x, near_lower, near_upper)
