@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
@@ -13,6 +14,9 @@ from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
 from knitcore.mechanics.chart_curve import DEFAULT_STRESS_N_PER_MM, chart_curve
+from knitcore.mechanics.prediction import Provenance
+from knitcore.mechanics.uniaxial import free_strains_at_stress
+from knitcore.yarnlevel.known import known_repeat
 
 Stress = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 
@@ -58,6 +62,15 @@ def curve_of_chart(
     gauge: GaugeInput | None = None,
 ) -> CurveResult:
     """The curve of any chart and material."""
+    known = known_repeat(chart, material)
+    if known is not None:
+        stress = np.array(stress_n_per_mm)
+        strain = free_strains_at_stress(known.law, direction, stress)
+        return CurveResult(
+            stress_n_per_mm=stress.tolist(),
+            strain=strain.tolist(),
+            provenance=Provenance.YARN_LEVEL,
+        )
     relaxed = gauge.relaxed_size() if gauge else None
     curve = chart_curve(chart, material, direction, stress_n_per_mm, relaxed=relaxed)
     return CurveResult(

@@ -12,6 +12,7 @@ from knitcore.materials import material as find_material
 from knitcore.mechanics.prediction import predict
 from knitcore.mechanics.relaxed import RelaxedSize
 from knitcore.segments import segment_map
+from knitcore.yarnlevel.known import known_repeat
 
 IntervalResult = tuple[float, float]
 
@@ -89,7 +90,9 @@ def predict_chart(
     chart: StitchChart, material: Material, gauge: GaugeInput | None = None
 ) -> PredictResult:
     """The prediction of any chart and material."""
-    found = predict(chart, material, relaxed=gauge.relaxed_size() if gauge else None)
+    known = known_repeat(chart, material)
+    relaxed = gauge.relaxed_size() if gauge else known.relaxed if known else None
+    found = predict(chart, material, relaxed=relaxed, repeat_law=known.law if known else None)
     segments = segment_map(chart)
     counts = {direction: segments.counts(direction) for direction in Direction}
     return PredictResult(

@@ -34,8 +34,9 @@ UNFOLDING_LOG_SD = 0.4
 
 MODEL_POISSON_SD = 0.05
 
-YARN_LEVEL_LOG_SD = 0.17
-"""The yarn level meets the published simulations within an rms factor of 1.18."""
+YARN_LEVEL_LOG_SD = 0.37
+"""The yarn level misses the measured pure fabrics by a factor of 2.1 (rms); carrying a law over
+by ratio takes away what its phases have in common, and half of it, in logarithms, is kept."""
 
 
 def phase_log_sd(
