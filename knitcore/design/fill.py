@@ -1,7 +1,8 @@
 """Fill a field: a chart whose local moduli follow a map of wanted ones.
 
-First by patches (:mod:`knitcore.design.patches`): every region gets the repeat of an atlas whose
-effective moduli are nearest. Then every patch is shifted or turned over so that it fits its
+A map that is some chart's own gives that chart back (:mod:`knitcore.design.readback`). Any other
+map is filled by patches (:mod:`knitcore.design.patches`): every region gets the repeat of an atlas
+whose effective moduli are nearest. Then every patch is shifted or turned over so that it fits its
 neighbours, and at last single stitches along the borders are turned where that brings the local
 moduli of the quarter-cell composite nearer to the map. The same seed gives the same chart.
 """
@@ -18,6 +19,7 @@ from scipy import ndimage
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
 from knitcore.design.patches import patches_of, smooth, wanted_labels
+from knitcore.design.readback import chart_of_local_moduli
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
@@ -63,7 +65,7 @@ class FilledField:
     ----------
     chart : the stitches.
     patches : number of the patch of every stitch, into ``regions``.
-    regions : the patches.
+    regions : the patches; none if the map is a chart's own and was read back.
     local : local moduli of the chart.
     off_share : share of the stitches whose local moduli are off by more than 10 % in a wanted
         direction. Inside a repeat that mixes fabrics local moduli alternate, so for such repeats
@@ -115,6 +117,9 @@ def fill_field(
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
+    own = chart_of_local_moduli(wanted, stitch_table(material))
+    if own is not None:
+        return _read_back(own, material, wanted)
     chosen, cost = wanted_labels(atlas, *wanted)
     labels = smooth(cost, smallest_patch)
     patches = patches_of(labels)
@@ -132,6 +137,18 @@ def fill_field(
     local = local_moduli(chart, material)
     regions = _regions(patches, entries, atlas, wanted)
     return FilledField(chart, patches, regions, local, off_share(local, wanted), _messages(regions))
+
+
+def _read_back(chart: StitchChart, material: Material, wanted: Array) -> FilledField:
+    local = local_moduli(chart, material)
+    return FilledField(
+        chart,
+        np.zeros(chart.purl.shape, dtype=np.intp),
+        (),
+        local,
+        off_share(local, wanted),
+        ("The map is that of a chart, which was read back stitch by stitch.",),
+    )
 
 
 def off_share(local: LocalModuli, wanted: Array) -> float:

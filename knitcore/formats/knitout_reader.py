@@ -110,7 +110,17 @@ def _interpreted(program: str) -> tuple[list[Any], list[str]]:
         try:
             lines = _parser().parse_knitout_to_instructions(program)
             graph: Any = Knitout_Executer(lines).resulting_knit_graph
-        except (Knitout_Error, Knitting_Machine_Error) as error:
+        # The interpreter lets some mistakes in a program through as errors of Python itself.
+        except (
+            Knitout_Error,
+            Knitting_Machine_Error,
+            ArithmeticError,
+            AssertionError,
+            AttributeError,
+            LookupError,
+            TypeError,
+            ValueError,
+        ) as error:
             raise InputError(
                 "knitout", f"{_one_line(error)}.", "Mend that line: the machine stops there."
             ) from None

@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas import (
@@ -69,6 +72,20 @@ def test_a_stopped_build_goes_on_where_it_was(
     assert resumed.keys == ATLAS.keys
     assert np.array_equal(resumed.values, ATLAS.values)
     assert load_atlas(file).provenance == ATLAS.provenance
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(place=st.floats(0, 0.999), byte=st.integers(0, 255), data=st.data())
+def test_a_damaged_file_is_read_or_refused(
+    tmp_path: Path, place: float, byte: int, data: st.DataObject
+) -> None:
+    file = tmp_path / "atlas.npz"
+    save_atlas(ATLAS, file)
+    content = bytearray(file.read_bytes())
+    content[int(place * len(content))] = byte
+    file.write_bytes(content[: data.draw(st.integers(0, len(content)))] if byte % 2 else content)
+    with contextlib.suppress(InputError):
+        assert len(load_atlas(file).values) == len(ATLAS)
 
 
 def test_an_atlas_of_other_laws_is_not_continued(tmp_path: Path) -> None:

@@ -2,9 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.design.atlas import Atlas, build_atlas
+from knitcore.design.atlas import build_atlas
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import patches_of
 from knitcore.design.repeats import repeat_of_key, repeats_up_to
@@ -12,6 +13,7 @@ from knitcore.errors import CancelledError
 from knitcore.materials import material
 from knitcore.mechanics.local import local_moduli
 from knitcore.mechanics.prediction import predict
+from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic")
 ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 3))
@@ -31,16 +33,38 @@ def hidden_chart(seed: int, side: int = 40, patches: int = 6) -> StitchChart:
     return StitchChart(purl)
 
 
-def fill_like(chart: StitchChart, atlas: Atlas = ATLAS, **options: int) -> FilledField:
+def fill_like(chart: StitchChart, noise: float = 0.0, **options: int) -> FilledField:
+    """Fill the chart's own map, or one that was painted a little beside it."""
     local = local_moduli(chart, ACRYLIC)
-    course, wale = local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm
-    return fill_field(course, wale, ACRYLIC, atlas, **options)
+    factors = np.exp(np.random.default_rng(0).normal(0, noise, (2, *chart.purl.shape)))
+    course = local.modulus_course_n_per_mm * factors[0]
+    return fill_field(course, local.modulus_wale_n_per_mm * factors[1], ACRYLIC, ATLAS, **options)
+
+
+def off(field: FilledField, chart: StitchChart) -> float:
+    """Share of the stitches whose moduli are off by more than 10 % of the hidden chart's."""
+    hidden = local_moduli(chart, ACRYLIC)
+    ratios = [
+        field.local.modulus_course_n_per_mm / hidden.modulus_course_n_per_mm,
+        field.local.modulus_wale_n_per_mm / hidden.modulus_wale_n_per_mm,
+    ]
+    return float((np.abs(np.array(ratios) - 1) > 0.10).any(axis=0).mean())
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_hidden_chart_of_the_four_fabrics_is_found_again(seed: int) -> None:
-    """At most 5 % of the area off by more than 10 %."""
-    assert fill_like(hidden_chart(seed)).off_share <= 0.05
+    """At most 5 % of the area off by more than 10 %, even from a map that is not exact."""
+    chart = hidden_chart(seed)
+    assert off(fill_like(chart), chart) == 0
+    assert off(fill_like(chart, noise=0.05), chart) <= 0.05
+
+
+@given(chart=stitch_charts())
+def test_any_chart_is_read_back_from_its_own_map(chart: StitchChart) -> None:
+    """Up to swapping all knits and purls, which no modulus tells apart."""
+    found = fill_like(chart)
+    assert found.chart in (chart, chart.swap())
+    assert "read back" in found.messages[0]
 
 
 @pytest.mark.parametrize("index", range(0, len(ATLAS), 3))
@@ -48,16 +72,16 @@ def test_a_uniform_wish_is_met(index: int) -> None:
     """Within 5 %, by the prediction of the whole chart."""
     course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm")[index] for d in ("course", "wale"))
     field = fill_field(np.full((12, 12), course), np.full((12, 12), wale), ACRYLIC, ATLAS)
-    assert len(field.regions) == 1
+    assert len(field.regions) <= 1
     found = predict(field.chart, ACRYLIC)
     assert found.modulus_course_n_per_mm == pytest.approx(course, rel=0.05)
     assert found.modulus_wale_n_per_mm == pytest.approx(wale, rel=0.05)
-    assert field.messages == ()
+    assert not any("off" in message for message in field.messages)
 
 
 def test_the_same_seed_gives_the_same_chart() -> None:
     chart = hidden_chart(3, side=24)
-    assert fill_like(chart, seed=5).chart == fill_like(chart, seed=5).chart
+    assert fill_like(chart, 0.05, seed=5).chart == fill_like(chart, 0.05, seed=5).chart
 
 
 @pytest.mark.parametrize("smallest", [2, 5])
@@ -94,7 +118,7 @@ def test_it_tells_progress_and_stops_when_asked() -> None:
     told: list[float] = []
     chart = hidden_chart(1, side=20, patches=3)
     local = local_moduli(chart, ACRYLIC)
-    maps = local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm
+    maps = 1.05 * local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm
     fill_field(*maps, ACRYLIC, ATLAS, progress=told.append)
     assert told == sorted(told)
     assert 0 <= told[0] < told[-1] <= 1

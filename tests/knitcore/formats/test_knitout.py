@@ -51,6 +51,12 @@ def _without(line: str) -> str:
     return text.replace(line + "\n", "", 1)
 
 
+def _with(line: str, other: str) -> str:
+    text = knitout_program(StitchChart.of_fabric("stockinette", rows=3, columns=4)).text
+    assert line in text
+    return text.replace(line, other, 1)
+
+
 @pytest.mark.parametrize(
     ("program", "says"),
     [
@@ -58,9 +64,10 @@ def _without(line: str) -> str:
         (";!knitout-2\n;;Carriers: 1\nfly f1\n", "knitout"),
         (";!knitout-2\n;;Carriers: 1\nknit - f1 1\n", "knitout"),
         (_without("tuck - f2 1"), "needle 2 has 2 stitches"),
+        (_with("outhook 1", "outhook 0"), "Invalid carrier"),
         ("x" * 5_000_000, "too long"),
     ],
-    ids=["empty", "no instruction", "carrier not in", "gap", "long"],
+    ids=["empty", "no instruction", "carrier not in", "gap", "no such carrier", "long"],
 )
 def test_programs_that_cannot_be_read(program: str, says: str) -> None:
     with pytest.raises(InputError, match=says):
