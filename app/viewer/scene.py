@@ -15,7 +15,7 @@ from knitcore.geometry.tubes import TriangleMesh, tube
 
 Array = NDArray[np.float64]
 
-LEVELS = ((1_500, 48, 8), (10_000, 16, 6), (40_000, 10, 4))
+LEVELS = ((400, 40, 8), (1_500, 26, 6), (10_000, 16, 5), (40_000, 10, 4))
 """(largest number of stitches, points, sides): how finely each loop is drawn."""
 MAX_STITCHES = LEVELS[-1][0]
 """Beyond this the view shows the chart's plane and loops only in its middle."""

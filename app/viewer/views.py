@@ -122,7 +122,7 @@ def _new_view() -> View:
     scene.configure_environment_map(hdri=None)
     scene.configure_default_lights(enabled=False)
     scene.add_light_hemisphere(
-        "/light/sky", sky_color=(255, 252, 246), ground_color=(150, 145, 140), intensity=1.6
+        "/light/sky", sky_color=(255, 252, 246), ground_color=(150, 145, 140), intensity=0.9
     )
-    scene.add_light_directional("/light/key", intensity=1.7, position=(-60.0, 80.0, 120.0))
+    scene.add_light_directional("/light/key", intensity=1.2, position=(-60.0, 80.0, 120.0))
     return View(server, SceneWriter(server))
