@@ -53,7 +53,9 @@ def command(
         np.linspace(0, max_stress, points).tolist(),
         resolve_gauge(stitches_per_10_cm, rows_per_10_cm),
     )
-    lines = [f"{'N/mm':>8} {'strain':>8}"]
-    rows = zip(result.stress_n_per_mm, result.strain, strict=True)
-    lines += [f"{stress:8.4f} {strain:8.4f}" for stress, strain in rows]
+    lines = [f"{'N/mm':>8} {'strain':>8}   90 % interval"]
+    columns = (result.stress_n_per_mm, result.strain, result.strain_low, result.strain_high)
+    lines += [
+        f"{s:8.4f} {e:8.4f}   {a:.4f} to {b:.4f}" for s, e, a, b in zip(*columns, strict=True)
+    ]
     emit(result, "\n".join([*lines, f"source: {result.provenance}"]), as_json=as_json)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
@@ -13,8 +14,8 @@ from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
-from knitcore.mechanics.chart_curve import DEFAULT_STRESS_N_PER_MM, chart_curve
-from knitcore.mechanics.prediction import Provenance
+from knitcore.mechanics.chart_curve import DEFAULT_STRESS_N_PER_MM, ChartCurve, chart_curve
+from knitcore.mechanics.prediction import Provenance, predict
 from knitcore.mechanics.uniaxial import free_strains_at_stress
 from knitcore.yarnlevel.known import known_repeat
 
@@ -40,6 +41,8 @@ class CurveResult(BaseModel):
 
     stress_n_per_mm: list[float]
     strain: list[float]
+    strain_low: list[float] = Field(description="Lower end of the 90 % interval.")
+    strain_high: list[float] = Field(description="Upper end of the 90 % interval.")
     provenance: str
 
 
@@ -61,20 +64,34 @@ def curve_of_chart(
     stress_n_per_mm: list[float],
     gauge: GaugeInput | None = None,
 ) -> CurveResult:
-    """The curve of any chart and material."""
+    """The curve of any chart and material.
+
+    The interval takes the modulus' uncertainty as one of the whole scale of stress: the lock-up
+    strain, which the tests fix best, stays where it is.
+    """
     known = known_repeat(chart, material)
-    if known is not None:
-        stress = np.array(stress_n_per_mm)
-        strain = free_strains_at_stress(known.law, direction, stress)
-        return CurveResult(
-            stress_n_per_mm=stress.tolist(),
-            strain=strain.tolist(),
-            provenance=Provenance.YARN_LEVEL,
-        )
-    relaxed = gauge.relaxed_size() if gauge else None
-    curve = chart_curve(chart, material, direction, stress_n_per_mm, relaxed=relaxed)
+    relaxed = gauge.relaxed_size() if gauge else known.relaxed if known else None
+    law = known.law if known else None
+    modulus = predict(chart, material, relaxed=relaxed, repeat_law=law)
+    stress = np.array(stress_n_per_mm)
+
+    def at(stresses: NDArray[np.float64]) -> ChartCurve:
+        if law is not None:
+            strain = free_strains_at_stress(law, direction, stresses)
+            return ChartCurve(stresses, strain, Provenance.YARN_LEVEL)
+        return chart_curve(chart, material, direction, stresses, relaxed=relaxed)
+
+    value = modulus.modulus_n_per_mm(direction)
+    interval = (
+        modulus.modulus_course_interval
+        if direction is Direction.COURSE
+        else modulus.modulus_wale_interval
+    )
+    curve = at(stress)
     return CurveResult(
-        stress_n_per_mm=curve.stress_n_per_mm.tolist(),
+        stress_n_per_mm=stress.tolist(),
         strain=curve.strain.tolist(),
+        strain_low=at(stress * value / interval.high).strain.tolist(),
+        strain_high=at(stress * value / interval.low).strain.tolist(),
         provenance=curve.provenance,
     )
