@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve test test-postgres test-kill lint format types frontend-check bench docs stitches lock clean
+.PHONY: help install serve test test-postgres test-kill lint format types frontend-check bench bench-service docs stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -62,6 +62,9 @@ format: $(VENV)/.installed-dev ## Format the code
 
 bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
 	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+bench-service: $(VENV)/.installed-dev ## Fifty people paint at once; SECONDS=600 for ten minutes
+	$(BIN)/python benchmarks/service.py
 
 docs: $(VENV)/.installed-dev ## Run every example of the documentation
 	$(BIN)/pytest -q tests/test_docs.py

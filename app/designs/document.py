@@ -93,11 +93,22 @@ class Strokes(BaseModel):
     runs: list[Run] = Field(min_length=1, max_length=MAX_RUNS)
 
 
+class StitchKinds(BaseModel):
+    """Kinds of the stitches in a box; a material's `stitches` table says what each kind does."""
+
+    row: int = Field(description="Bottom row of the box, from 0.")
+    column: int = Field(description="Left column of the box, from 0.")
+    kinds: list[str] = Field(
+        description="A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15."
+    )
+
+
 class Painted(BaseModel):
     """The design's state after strokes were kept."""
 
     revision: int
     changed_at: AwareDatetime
+    map: StitchKinds = Field(description="What looks different now: the strokes and one around.")
 
 
 class VersionRequest(BaseModel):

@@ -23,7 +23,7 @@ from app.designs.document import (
     VersionSummary,
 )
 from app.designs.idempotency import Retry
-from app.designs.painting import paint
+from app.designs.painting import kinds_around, paint
 from app.problems import NotFoundError
 from app.store.database import Database
 from app.store.tables import design_versions, designs
@@ -139,7 +139,11 @@ class DesignStore:
                 "changed_at": now(),
             }
             connection.execute(update(designs).where(designs.c.id == row.id).values(values))
-            return Painted(revision=values["revision"], changed_at=moment(values["changed_at"]))
+            return Painted(
+                revision=values["revision"],
+                changed_at=moment(values["changed_at"]),
+                map=kinds_around(values["chart"], row.rows, row.columns, strokes.runs),
+            )
 
         return self._database.write(action)
 
