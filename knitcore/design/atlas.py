@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from knitcore.errors import CancelledError, InputError
 from knitcore.materials import Material
 from knitcore.mechanics.prediction import Prediction, predict
 from knitcore.segments import segment_map
+from knitcore.yarnlevel.known import STORED_MATERIALS, known_repeat
 
 Array = NDArray[np.float64]
 
@@ -151,7 +153,7 @@ def build_atlas(
                 save_atlas(_table(material, fingerprint, known), file)
             raise CancelledError(f"stopped after {done} of {len(keys)} repeats")
         if key not in known:
-            known[key] = _row(predict(repeat.tile(2, 2), material))
+            known[key] = _row(predict_repeat(repeat, material))
             fresh = True
         if file is not None and fresh and time.monotonic() - saved > SAVE_EVERY_S:
             save_atlas(_table(material, fingerprint, known), file)
@@ -163,8 +165,17 @@ def build_atlas(
     return _table(material, fingerprint, {key: known[key] for key in keys})
 
 
+def predict_repeat(repeat: StitchChart, material: Material) -> Prediction:
+    """What a large cloth of a repeat does, with its yarn-level law where the store has one."""
+    cloth = repeat.tile(2, 2)  # twice, so that nobody takes its edges for those of a swatch
+    stored = known_repeat(cloth, material)
+    if stored is None:
+        return predict(cloth, material)
+    return predict(cloth, material, relaxed=stored.relaxed, repeat_law=stored.law)
+
+
 def material_fingerprint(material: Material) -> str:
-    """A hash of everything about a material that predictions depend on."""
+    """A hash of the laws and stored stitches that the predictions of a material depend on."""
     content = {
         str(fabric): [
             asdict(record.law),
@@ -176,7 +187,10 @@ def material_fingerprint(material: Material) -> str:
         for fabric, record in sorted(material.fabrics.items())
     }
     text = json.dumps([material.identifier, content], sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()[:24]
+    digest = hashlib.sha256(text.encode())
+    if material.identifier in STORED_MATERIALS:
+        digest.update(files("knitcore.yarnlevel").joinpath("data/stitches.json").read_bytes())
+    return digest.hexdigest()[:24]
 
 
 def save_atlas(atlas: Atlas, file: Path) -> None:

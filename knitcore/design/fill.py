@@ -18,7 +18,7 @@ from scipy import ndimage
 
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
-from knitcore.design.patches import patches_of, smooth, wanted_labels
+from knitcore.design.patches import patches_of, smooth, unevenness, wanted_labels
 from knitcore.design.readback import chart_of_local_moduli
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction
@@ -117,10 +117,11 @@ def fill_field(
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    own = chart_of_local_moduli(wanted, stitch_table(material))
+    table = stitch_table(material)
+    own = chart_of_local_moduli(wanted, table)
     if own is not None:
         return _read_back(own, material, wanted)
-    chosen, cost = wanted_labels(atlas, *wanted)
+    chosen, cost = wanted_labels(atlas, unevenness(atlas, table), *wanted)
     labels = smooth(cost, smallest_patch)
     patches = patches_of(labels)
     first = np.unique(patches, return_index=True)[1]

@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from knitcore.design.atlas import Atlas
+from knitcore.fabric import Direction
+from knitcore.mechanics.local import StitchTable
+from knitcore.phases import surroundings
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
@@ -15,28 +18,50 @@ MOST_LABELS = 48
 """Repeats that one chart may mix."""
 _BIN = 0.02
 """Targets that differ by less (in logarithms) are looked up together."""
+_EVENNESS = 0.002
+"""Price of unevenness: at most as much as 4.5 % of one modulus."""
 _SWEEPS = 6
 
 
-def wanted_labels(atlas: Atlas, log_course: Array, log_wale: Array) -> tuple[Labels, Array]:
+def unevenness(atlas: Atlas, table: StitchTable) -> Array:
+    """How much the local moduli inside each repeat differ from its own, at most 1.
+
+    Mean squares of logarithms: 0 for pure fabrics, large where unlike stitches alternate.
+    """
+    local = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
+    own = _log_moduli(atlas)
+    squares = [
+        float(((local[:, surroundings(atlas.chart(k), periodic=True)].T - own[:, k]) ** 2).mean())
+        for k in range(len(atlas))
+    ]
+    return np.minimum(squares, 1.0)
+
+
+def _log_moduli(atlas: Atlas) -> Array:
+    names = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
+    return np.log(np.stack([atlas.column(name) for name in names]))
+
+
+def wanted_labels(
+    atlas: Atlas, uneven: Array, log_course: Array, log_wale: Array
+) -> tuple[Labels, Array]:
     """The best repeats for a map, and what each would cost at every stitch.
 
     Parameters
     ----------
     atlas : repeats to choose from.
+    uneven : see :func:`unevenness`; of repeats that are about as near the evener one is taken.
     log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN is no wish.
 
     Returns
     -------
     indices into the atlas (labels,), and (labels, rows, columns) squared deviations.
     """
-    have = np.log(
-        np.stack([atlas.column("modulus_course_n_per_mm"), atlas.column("modulus_wale_n_per_mm")])
-    )
+    have, price = _log_moduli(atlas), _EVENNESS * uneven
     binned = np.stack([np.round(log_course / _BIN), np.round(log_wale / _BIN)]).reshape(2, -1)
     kinds, counts = np.unique(np.nan_to_num(binned, nan=1e9), axis=1, return_counts=True)
     kinds = np.where(kinds == 1e9, np.nan, kinds) * _BIN
-    off = np.nansum((have[:, :, None] - kinds[:, None, :]) ** 2, axis=0)  # (repeats, kinds)
+    off = np.nansum((have[:, :, None] - kinds[:, None, :]) ** 2, axis=0) + price[:, None]
     # Small repeats come first in an atlas, so argmin prefers them among equals.
     best = np.argmin(off.round(6), axis=0)
     votes = np.bincount(best, weights=counts, minlength=len(atlas))
@@ -44,7 +69,7 @@ def wanted_labels(atlas: Atlas, log_course: Array, log_wale: Array) -> tuple[Lab
     chosen = np.sort(chosen[votes[chosen] > 0])
     wanted = np.stack([log_course, log_wale])
     cost = np.nansum((have[:, chosen, None, None] - wanted[:, None]) ** 2, axis=0)
-    return chosen, cost
+    return chosen, cost + price[chosen, None, None]
 
 
 def smooth(cost: Array, smallest: int) -> Labels:

@@ -15,12 +15,15 @@ from knitcore.design.atlas import (
     build_atlas,
     knitting_cost,
     load_atlas,
+    predict_repeat,
     save_atlas,
 )
 from knitcore.design.find import Quantity, Target, find_fabric
 from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
-from knitcore.materials import material
+from knitcore.materials import Material, material
+from knitcore.mechanics.prediction import Prediction
+from knitcore.yarnlevel.known import known_repeat
 
 ACRYLIC = material("acrylic")
 REPEATS = repeats_up_to(2, 3)
@@ -35,6 +38,15 @@ def test_pure_fabrics_have_their_measured_laws(fabric: Fabric) -> None:
     assert ATLAS.column("modulus_course_n_per_mm")[index] == pytest.approx(law.modulus_course)
     assert ATLAS.column("modulus_wale_n_per_mm")[index] == pytest.approx(law.modulus_wale)
     assert ATLAS.provenance[index] == "measured"
+
+
+def test_repeats_of_the_store_have_their_yarn_level_law() -> None:
+    basket = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
+    stored = known_repeat(basket.tile(2, 2), ACRYLIC)
+    assert stored is not None
+    atlas = build_atlas(ACRYLIC, [basket])
+    assert atlas.provenance == ("yarn level",)
+    assert atlas.column("modulus_course_n_per_mm")[0] == pytest.approx(stored.law.modulus_course)
 
 
 def test_intervals_hold_their_values() -> None:
@@ -60,13 +72,11 @@ def test_a_stopped_build_goes_on_where_it_was(
 
     computed: list[StitchChart] = []
 
-    def counting(chart: StitchChart, *_: object) -> object:
+    def counting(chart: StitchChart, _: Material) -> Prediction:
         computed.append(chart)
-        return predict(chart, ACRYLIC)
+        return predict_repeat(chart, ACRYLIC)
 
-    from knitcore.mechanics.prediction import predict
-
-    monkeypatch.setattr("knitcore.design.atlas.predict", counting)
+    monkeypatch.setattr("knitcore.design.atlas.predict_repeat", counting)
     resumed = build_atlas(ACRYLIC, REPEATS, file=file)
     assert len(computed) == len(REPEATS) - 5
     assert resumed.keys == ATLAS.keys

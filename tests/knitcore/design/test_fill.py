@@ -5,14 +5,13 @@ import pytest
 from hypothesis import given
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.design.atlas import build_atlas
+from knitcore.design.atlas import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import patches_of
 from knitcore.design.repeats import repeat_of_key, repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.materials import material
 from knitcore.mechanics.local import local_moduli
-from knitcore.mechanics.prediction import predict
 from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic")
@@ -73,7 +72,7 @@ def test_a_uniform_wish_is_met(index: int) -> None:
     course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm")[index] for d in ("course", "wale"))
     field = fill_field(np.full((12, 12), course), np.full((12, 12), wale), ACRYLIC, ATLAS)
     assert len(field.regions) <= 1
-    found = predict(field.chart, ACRYLIC)
+    found = predict_repeat(field.chart.repeat(), ACRYLIC)
     assert found.modulus_course_n_per_mm == pytest.approx(course, rel=0.05)
     assert found.modulus_wale_n_per_mm == pytest.approx(wale, rel=0.05)
     assert not any("off" in message for message in field.messages)
