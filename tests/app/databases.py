@@ -20,31 +20,36 @@ def postgres_programs() -> Path | None:
     return Path(found).parent if found else None
 
 
+def _run(*command: str) -> None:
+    # PostgreSQL refuses to run as root
+    as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
+    quiet = subprocess.DEVNULL
+    subprocess.run([*as_user, *command], check=True, stdout=quiet, stderr=quiet, cwd="/")
+
+
+def control(url: str, *arguments: str) -> None:
+    """``pg_ctl`` for the server at a URL of :func:`postgres`."""
+    programs = postgres_programs()
+    assert programs is not None
+    folder = Path(url.partition("host=")[2])
+    options = f"-c listen_addresses='' -c unix_socket_directories={folder} -c fsync=off"
+    if "start" in arguments:
+        arguments = ("-o", options, "-l", str(folder / "log"), *arguments)
+    _run(str(programs / "pg_ctl"), "-w", "-D", str(folder / "data"), *arguments)
+
+
 @contextlib.contextmanager
 def postgres(folder: Path) -> Iterator[str]:
     """A PostgreSQL of our own that listens on a socket in ``folder``; yields its URL."""
     programs = postgres_programs()
     assert programs is not None
-    as_user: list[str] = []
-    if os.geteuid() == 0:  # PostgreSQL refuses to run as root
+    if os.geteuid() == 0:
         shutil.chown(folder, "postgres")
-        as_user = ["runuser", "-u", "postgres", "--"]
-    data = folder / "data"
-    options = f"-c listen_addresses='' -c unix_socket_directories={folder} -c fsync=off"
-
-    def run(*command: str) -> None:
-        subprocess.run(
-            [*as_user, *command],
-            check=True,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            cwd="/",
-        )
-
-    run(str(programs / "initdb"), "-D", str(data), "-A", "trust", "-U", "knit", "-N")
-    start = ["-w", "-o", options, "-l", str(folder / "log"), "start"]
-    run(str(programs / "pg_ctl"), "-D", str(data), *start)
+    data = str(folder / "data")
+    _run(str(programs / "initdb"), "-D", data, "-A", "trust", "-U", "knit", "-N")
+    url = f"postgresql+psycopg://knit@/postgres?host={folder}"
+    control(url, "start")
     try:
-        yield f"postgresql+psycopg://knit@/postgres?host={folder}"
+        yield url
     finally:
-        run(str(programs / "pg_ctl"), "-D", str(data), "-m", "immediate", "stop")
+        control(url, "-m", "immediate", "stop")
