@@ -120,10 +120,11 @@ class GridFactor:
             try:
                 self._eliminate(cell_matrices, np.dtype(np.float32))
             except IndefiniteTangentError:
-                self._single = False
+                pass
             else:
                 return
         self._eliminate(cell_matrices, np.dtype(np.float64))
+        self._single = False  # single precision could not tell here, nor will it further on
 
     def solve(self, right_hand_side: Array) -> Array:
         """Solution (2 * corners,) to the factor's precision; 0 at the fixed unknowns."""
@@ -362,7 +363,7 @@ def _fix(
             schur[i, i] = 1.0
 
 
-@njit(cache=True, fastmath={"reassoc", "contract"})
+@njit(cache=True, fastmath={"reassoc", "contract", "nsz"})
 def _forward(
     factor: Block, tree: Indices, eliminated: Indices, border: Indices, v: Block, x: Block
 ) -> None:
@@ -391,11 +392,12 @@ def _forward(
         b0 += b
 
 
-@njit(cache=True, fastmath={"reassoc", "contract"})
+@njit(cache=True, fastmath={"reassoc", "contract", "nsz"})
 def _backward(
     factor: Block, tree: Indices, eliminated: Indices, border: Indices, v: Block, x: Block
 ) -> None:
     """Backward substitution in place."""
+    zero = x.dtype.type(0.0)
     e0, b0 = eliminated.size, border.size
     for box in range(tree.shape[0] - 1, -1, -1):
         offset, s, b = tree[box]
@@ -407,13 +409,15 @@ def _backward(
         for r in range(b):
             v[s + r] = x[border[b0 + r]]
         for i in range(s - 1, -1, -1):
-            y = v[i]
+            known = v[s : s + b]
             column = factor[below + i * b : below + i * b + b]
+            y = zero
             for r in range(b):
-                y -= column[r] * v[s + r]
-            column = factor[offset + i * s : offset + i * s + s]
-            for r in range(i + 1, s):
-                y -= column[r] * v[r]
-            v[i] = y / column[i]
+                y += column[r] * known[r]
+            known = v[i + 1 : s]
+            column = factor[offset + i * s + i + 1 : offset + i * s + s]
+            for r in range(s - i - 1):
+                y += column[r] * known[r]
+            v[i] = (v[i] - y) / factor[offset + i * s + i]
         for i in range(s):
             x[eliminated[e0 + i]] = v[i]

@@ -28,6 +28,8 @@ FORCING = 1e-2
 """Relative accuracy of the linear systems far from balance."""
 PATIENCE = 3
 """Conjugate gradient steps before the tangent is factorised anew."""
+CLOSE = 0.05
+"""Unbalanced force over the force at the clamps up to which an extrapolation is trusted."""
 HISTORY = 4
 """Equilibria used by the extrapolation."""
 
@@ -146,17 +148,13 @@ class PathSolver:
         """Equilibrium with the prescribed positions, near a balanced state."""
         iterations = 0
         guess = self._extrapolated(level, prescribed)
-        if guess is None:
-            lin = self._linearise(state)
-            move = np.where(self.fixed, prescribed - state.corners, 0.0)
-            force = lin.condensed_force() + lin.apply(move)
-            if not self._has_factor:
-                self._try_factorise(lin)
-            step = move + self._solve(lin, -force * self.free, 1e-3)
-            guess = state.moved(step, lin.centre_step(step))
-            guess.corners[self.fixed] = prescribed[self.fixed]
+        lin = None if guess is None else self._linearise(guess)
+        if guess is None or lin is None or not self._is_close(lin):
+            other = self._along_tangent(state, prescribed)
+            found = self._linearise(other)
             iterations += 1
-        lin = self._linearise(guess)
+            if guess is None or lin is None or self._residual(found)[0] < self._residual(lin)[0]:
+                guess, lin = other, found
         if not np.isfinite(lin.energy):
             raise StepError("A predicted fibre collapsed to a point.")
         state = guess
@@ -191,6 +189,24 @@ class PathSolver:
             ) from None
         self._history = [*self._history[1 - HISTORY :], (level, state)]
         return Equilibrium(state, lin.energy, np.where(self.fixed, lin.corner_force, 0), iterations)
+
+    def _is_close(self, lin: Linearisation) -> bool:
+        """Whether an extrapolated state is so near to balance that no other need be tried."""
+        free, limit = self._residual(lin)
+        return free * self.tolerance.relative <= CLOSE * limit
+
+    def _along_tangent(self, state: State, prescribed: Array) -> State:
+        """The state to which the tangent of a balanced one points; its factor is at hand."""
+        lin = self._linearise(state)
+        move = np.where(self.fixed, prescribed - state.corners, 0.0)
+        force = lin.condensed_force() + lin.apply(move)
+        if not self._has_factor:
+            self._try_factorise(lin)
+        step = move + self._solve(lin, -force * self.free, 1e-3)
+        guess = state.moved(step, lin.centre_step(step))
+        guess.corners[self.fixed] = prescribed[self.fixed]
+        self._spare = lin
+        return guess
 
     def _extrapolated(self, level: float, prescribed: Array) -> State | None:
         if len(self._history) < 3:
@@ -286,10 +302,12 @@ class PathSolver:
             r = r - a * q
             if float(np.linalg.norm(r)) <= goal:
                 return x
-            if count == PATIENCE and not self._factor_is_current:
+            renewed = count == PATIENCE and not self._factor_is_current
+            if renewed:
                 self._try_factorise(lin)
             z = self.factor.solve(r).reshape(r.shape)
             new = float(np.sum(r * z))
-            p = z + (new / rz) * p
+            # Directions of another preconditioner are not conjugate to the new ones: start afresh.
+            p = z if renewed else z + (new / rz) * p
             rz = new
         return x
