@@ -4,7 +4,7 @@ Each of them has a design of 100 x 100 stitches, and five times a second paints 
 stitches: it is durable when it is acknowledged, and the answer holds the map of what changed.
 Half of the time a stretch test runs beside them. Then 20 designs' views are opened and dropped.
 
-    make bench-service                     (SECONDS=600 for ten minutes)
+    make bench-service                     (SECONDS=1200 for ten minutes of each kind)
 """
 
 from __future__ import annotations
