@@ -18,9 +18,10 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
-from scipy.linalg import blas, lapack
+
+from knitcore.swatch import elimination
+from knitcore.threads import side_by_side
 
 Array = NDArray[np.float64]
 Block = NDArray[np.floating]
@@ -28,6 +29,10 @@ Indices = NDArray[np.int64]
 
 LEAF_CELLS = 8
 """Boxes are not halved below this many cells a side (measured optimum, flat from 6 to 10)."""
+
+
+SIDE_BY_SIDE = 500
+"""Boxes from which on the two branches of the tree are worth two threads."""
 
 
 class IndefiniteTangentError(Exception):
@@ -63,7 +68,7 @@ class _Box:
 
     shape: _Shape
     children: tuple[int, ...]
-    cells: Indices
+    first_cell: int
     eliminated: Indices
     border: Indices
     offset: int  # of its columns in the factor
@@ -94,14 +99,9 @@ class GridFactor:
         self._size = 0
         self._build(columns, rows)
         self._factor: Block = np.empty(0)
+        self._work: Block = np.empty(0)
         self._single = True
-        # The tree flattened for the compiled substitution.
-        self._eliminated = _concatenate([box.eliminated for box in self._boxes])
-        self._border = _concatenate([box.border for box in self._boxes])
-        self._tree = np.array(
-            [(box.offset, len(box.eliminated), len(box.border)) for box in self._boxes],
-            dtype=np.int64,
-        )
+        self._flatten()
 
     @property
     def entries(self) -> int:
@@ -130,57 +130,118 @@ class GridFactor:
         """Solution (2 * corners,) to the factor's precision; 0 at the fixed unknowns."""
         x = right_hand_side.ravel().astype(self._factor.dtype)
         x[self._fixed_numbers] = 0.0
-        v = np.empty(int(self._tree[:, 1:].sum(axis=1).max()), x.dtype)
-        _forward(self._factor, self._tree, self._eliminated, self._border, v, x)
-        _backward(self._factor, self._tree, self._eliminated, self._border, v, x)
+        count, half = len(self._boxes), self._half_way
+        tree = (self._factor, self._table, self._eliminated, self._border)
+        v, w = np.empty((2, self._widest), x.dtype)
+        if half == 0:
+            elimination.forward(0, count, *tree, v, x)
+            elimination.backward(0, count, *tree, v, x)
+            return x.astype(np.float64)
+        # Both branches add to the unknowns of the root, so each has its own copy on the way up.
+        root, second = self._boxes[-1].eliminated, self._second
+        other = x.copy()
+        other[root] = 0.0
+        side_by_side(
+            lambda: elimination.forward(0, half, *tree, v, x),
+            lambda: elimination.forward(half, count - 1, *tree, w, other),
+        )
+        x[root] += other[root]
+        x[second] = other[second]
+        elimination.forward(count - 1, count, *tree, v, x)
+        elimination.backward(count - 1, count, *tree, v, x)
+        side_by_side(
+            lambda: elimination.backward(0, half, *tree, v, x),
+            lambda: elimination.backward(half, count - 1, *tree, w, x),
+        )
         return x.astype(np.float64)
 
     def _eliminate(self, cell_matrices: Array, dtype: np.dtype[np.floating]) -> None:
         if self._factor.dtype != dtype or self._factor.size == 0:
             self._factor = np.empty(self._size, dtype)
-        single = dtype == np.float32
-        potrf = lapack.spotrf if single else lapack.dpotrf
-        trsm = blas.strsm if single else blas.dtrsm
-        syrk = blas.ssyrk if single else blas.dsyrk
-        pending: dict[int, Block] = {}
-        for number, box in enumerate(self._boxes):
-            s, b = len(box.eliminated), len(box.border)
-            pivot, below = self._columns_of(box)
-            pivot[:] = 0.0
-            below[:] = 0.0
-            schur = np.zeros((b, b), dtype, order="F")
-            if box.children:
-                for child, half in zip(box.children, box.shape.halves, strict=True):
-                    _extend_add(
-                        pending.pop(child),
-                        half.inner,
-                        half.inner_places,
-                        half.outer,
-                        half.outer_places,
-                        pivot,
-                        below,
-                        schur,
-                    )
-            else:
-                front = self._factor[box.offset : box.offset + s * (s + b)]
-                _add_cells(cell_matrices, box.cells, box.shape.places, front, schur)
-                _fix(self.fixed, box.eliminated, box.border, pivot, below, schur)
-            if s:
-                _, info = potrf(pivot, lower=1, clean=0, overwrite_a=1)
-                if info != 0:
-                    raise IndefiniteTangentError
-                if b:
-                    trsm(1.0, pivot, below, side=1, lower=1, trans_a=1, overwrite_b=1)
-                    schur = syrk(-1.0, below, beta=1.0, c=schur, lower=1, overwrite_c=1)
-            pending[number] = schur
+            self._work = np.empty(self._work_size, dtype)
+        count, half = len(self._boxes), self._half_way
+        scalars = np.array([1.0, -1.0], dtype)
 
-    def _columns_of(self, box: _Box) -> tuple[Block, Block]:
-        s, b = len(box.eliminated), len(box.border)
-        middle = box.offset + s * s
-        return (
-            self._factor[box.offset : middle].reshape((s, s), order="F"),
-            self._factor[middle : middle + b * s].reshape((b, s), order="F"),
+        def branch(first: int, last: int) -> bool:
+            return bool(
+                elimination.eliminate(
+                    first,
+                    last,
+                    elimination.ROUTINES[dtype],
+                    elimination.LETTERS,
+                    np.zeros(4, np.int32),
+                    scalars,
+                    self._table,
+                    self._shapes,
+                    self._lists,
+                    cell_matrices,
+                    self.fixed,
+                    self._eliminated,
+                    self._border,
+                    self._factor,
+                    self._work,
+                )
+            )
+
+        if half == 0:
+            definite = branch(0, count)
+        else:
+            both = side_by_side(lambda: branch(0, half), lambda: branch(half, count - 1))
+            definite = all(both) and branch(count - 1, count)
+        if not definite:
+            raise IndefiniteTangentError
+
+    def _flatten(self) -> None:
+        """The tree as plain tables, for compiled code."""
+        self._eliminated = _concatenate([box.eliminated for box in self._boxes])
+        self._border = _concatenate([box.border for box in self._boxes])
+        self._table = np.full((len(self._boxes), 10), -1, dtype=np.int64)
+        shapes: list[tuple[int, ...]] = []
+        lists: list[Indices] = []
+        numbers: dict[int, int] = {}
+        length = e0 = b0 = 0
+        for row, box in zip(self._table, self._boxes, strict=True):
+            shape = box.shape
+            if id(shape) not in numbers:
+                numbers[id(shape)] = len(shapes)
+                entry: list[int] = []
+                for half in shape.halves:
+                    entry += [length, len(half.inner), len(half.outer)]
+                    lists += [half.inner, half.inner_places, half.outer, half.outer_places]
+                    length += 2 * (len(half.inner) + len(half.outer))
+                entry += [0] * (6 - len(entry)) + [length, len(shape.cells)]
+                lists += [shape.cells, shape.places.ravel()]
+                length += 37 * len(shape.cells)
+                shapes.append(tuple(entry))
+            s, b = len(box.eliminated), len(box.border)
+            row[:3] = box.offset, s, b
+            row[3 : 3 + len(box.children)] = box.children
+            row[5] = numbers[id(shape)]
+            row[6] = box.first_cell
+            row[8:] = e0, b0
+            e0, b0 = e0 + s, b0 + b
+        self._shapes = np.array(shapes, dtype=np.int64)
+        self._lists = _concatenate(lists)
+        self._widest = int(self._table[:, 1:3].sum(axis=1).max())
+        children = self._boxes[-1].children
+        self._half_way = children[0] + 1 if len(self._boxes) >= SIDE_BY_SIDE else 0
+        self._second = _concatenate(
+            [box.eliminated for box in self._boxes[self._half_way : len(self._boxes) - 1]]
         )
+        # A Schur complement waits for its parent; below it are those of the boxes around it.
+        self._work_size = 0
+
+        def place(number: int, base: int) -> None:
+            self._table[number, 7] = base
+            base += len(self._boxes[number].border) ** 2
+            self._work_size = max(self._work_size, base)
+            for child in self._boxes[number].children:
+                if number == len(self._boxes) - 1:
+                    base = self._work_size  # the branches of the root do not share room
+                place(child, base)
+                base += len(self._boxes[child].border) ** 2
+
+        place(len(self._boxes) - 1, 0)
 
     def _build(self, columns: int, rows: int) -> None:
         """Append the boxes of the tree in the order of their elimination."""
@@ -200,7 +261,7 @@ class GridFactor:
             box = _Box(
                 shape,
                 tuple(children),
-                shape.cells + y0 * columns + x0,
+                y0 * columns + x0,
                 shape.eliminated + first,
                 shape.border + first,
                 self._size,
@@ -291,133 +352,4 @@ def _places(local: Indices, s: int, b: int) -> Indices:
 
 
 def _concatenate(arrays: list[Indices]) -> Indices:
-    return np.concatenate(arrays).astype(np.int64)
-
-
-@njit(cache=True)
-def _extend_add(
-    child: Block,
-    inner: Indices,
-    inner_places: Indices,
-    outer: Indices,
-    outer_places: Indices,
-    pivot: Block,
-    below: Block,
-    schur: Block,
-) -> None:
-    """Add the lower triangle of a child's Schur complement to its parent's front."""
-    for c in range(inner.size):
-        column, place = inner[c], inner_places[c]
-        for r in range(c, inner.size):
-            pivot[inner_places[r], place] += child[inner[r], column]
-        for r in range(outer.size):
-            row = outer[r]
-            below[outer_places[r], place] += child[max(row, column), min(row, column)]
-    for c in range(outer.size):
-        column, place = outer[c], outer_places[c]
-        for r in range(c, outer.size):
-            schur[outer_places[r], place] += child[outer[r], column]
-
-
-@njit(cache=True)
-def _add_cells(
-    matrices: Array, cells: Indices, places: Indices, front: Block, schur: Block
-) -> None:
-    """Add the lower triangles of cell matrices to a leaf: its columns in the factor, its border."""
-    border = schur.shape[0]
-    for n in range(cells.size):
-        k = 0
-        for i in range(8):
-            for j in range(i + 1):
-                place = places[n, k]
-                value = matrices[cells[n], i, j]
-                if place >= 0:
-                    front[place] += value
-                else:
-                    schur[(-place - 1) % border, (-place - 1) // border] += value
-                k += 1
-
-
-@njit(cache=True)
-def _fix(
-    fixed: NDArray[np.bool_],
-    eliminated: Indices,
-    border: Indices,
-    pivot: Block,
-    below: Block,
-    schur: Block,
-) -> None:
-    """Replace the rows and columns of fixed unknowns by those of the identity."""
-    s, b = eliminated.size, border.size
-    for i in range(s):
-        if fixed[eliminated[i]]:
-            pivot[i, :] = 0.0
-            pivot[:, i] = 0.0
-            below[:, i] = 0.0
-            pivot[i, i] = 1.0
-    for i in range(b):
-        if fixed[border[i]]:
-            below[i, :] = 0.0
-            schur[i, :] = 0.0
-            schur[:, i] = 0.0
-            schur[i, i] = 1.0
-
-
-@njit(cache=True, fastmath={"reassoc", "contract", "nsz"})
-def _forward(
-    factor: Block, tree: Indices, eliminated: Indices, border: Indices, v: Block, x: Block
-) -> None:
-    """Forward substitution in place; ``v`` has room for the unknowns of one front."""
-    e0 = b0 = 0
-    for box in range(tree.shape[0]):
-        offset, s, b = tree[box]
-        below = offset + s * s
-        for i in range(s):
-            v[i] = x[eliminated[e0 + i]]
-        v[s : s + b] = 0.0
-        for i in range(s):
-            column = factor[offset + i * s : offset + i * s + s]
-            y = v[i] / column[i]
-            v[i] = y
-            for r in range(i + 1, s):
-                v[r] -= column[r] * y
-            column = factor[below + i * b : below + i * b + b]
-            for r in range(b):
-                v[s + r] -= column[r] * y
-        for i in range(s):
-            x[eliminated[e0 + i]] = v[i]
-        for r in range(b):
-            x[border[b0 + r]] += v[s + r]
-        e0 += s
-        b0 += b
-
-
-@njit(cache=True, fastmath={"reassoc", "contract", "nsz"})
-def _backward(
-    factor: Block, tree: Indices, eliminated: Indices, border: Indices, v: Block, x: Block
-) -> None:
-    """Backward substitution in place."""
-    zero = x.dtype.type(0.0)
-    e0, b0 = eliminated.size, border.size
-    for box in range(tree.shape[0] - 1, -1, -1):
-        offset, s, b = tree[box]
-        below = offset + s * s
-        e0 -= s
-        b0 -= b
-        for i in range(s):
-            v[i] = x[eliminated[e0 + i]]
-        for r in range(b):
-            v[s + r] = x[border[b0 + r]]
-        for i in range(s - 1, -1, -1):
-            known = v[s : s + b]
-            column = factor[below + i * b : below + i * b + b]
-            y = zero
-            for r in range(b):
-                y += column[r] * known[r]
-            known = v[i + 1 : s]
-            column = factor[offset + i * s + i + 1 : offset + i * s + s]
-            for r in range(s - i - 1):
-                y += column[r] * known[r]
-            v[i] = (v[i] - y) / factor[offset + i * s + i]
-        for i in range(s):
-            x[eliminated[e0 + i]] = v[i]
+    return np.concatenate([np.empty(0), *arrays]).astype(np.int64)

@@ -190,7 +190,7 @@ def test_a_test_can_be_cancelled() -> None:
     assert seen == [(1, 5), (2, 5)]
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(1, 1), (2, 1), (3, 17), (20, 19)])
+@pytest.mark.parametrize(("columns", "rows"), [(1, 1), (2, 1), (3, 17), (20, 19), (140, 128)])
 def test_the_grid_factor_solves_like_a_sparse_solver(columns: int, rows: int) -> None:
     rng = np.random.default_rng(columns)
     half = rng.normal(size=(columns * rows, 8, 8))
@@ -214,3 +214,16 @@ def test_the_grid_factor_tells_indefinite_matrices() -> None:
     cells = np.tile(np.diag([1.0] * 7 + [-1.0]), (4, 1, 1))
     with pytest.raises(IndefiniteTangentError):
         GridFactor(2, 2, np.zeros(18, dtype=bool)).factorise(cells)
+
+
+@pytest.mark.parametrize("cell", [0, -1])
+def test_an_indefinite_cell_is_found_in_either_branch(cell: int) -> None:
+    """130 x 130 cells are many enough for two threads; a definite matrix works afterwards."""
+    cells = np.tile(np.eye(8), (130 * 130, 1, 1))
+    good = cells.copy()
+    cells[cell] *= -8.0
+    factor = GridFactor(130, 130, np.zeros(2 * 131**2, dtype=bool))
+    with pytest.raises(IndefiniteTangentError):
+        factor.factorise(cells)
+    factor.factorise(good)
+    assert factor.solve(np.ones(2 * 131**2))[[0, 2]] == pytest.approx([1.0, 0.5])
