@@ -5,14 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import ThreadpoolController
 
 from knitcore.swatch.sheet import Sheet, State
 from knitcore.swatch.solver import Equilibrium, PathSolver, StepError, Tolerance
+from knitcore.threads import one_blas_thread
 
 Array = NDArray[np.float64]
 
@@ -48,12 +47,6 @@ class Path:
         return np.array([e.reaction[nodes, axis].sum() for e in self.found])
 
 
-@cache
-def _blas() -> ThreadpoolController:
-    """The loaded BLAS: its threads cost more than they bring on the small blocks of a front."""
-    return ThreadpoolController()
-
-
 def run_path(
     sheet: Sheet,
     fixed: NDArray[np.bool_],
@@ -76,7 +69,7 @@ def run_path(
     found: list[Equilibrium] = []
     problem = None
     try:
-        with _blas().limit(limits=1, user_api="blas"):
+        with one_blas_thread():
             for equilibrium in solver.follow(start or sheet.reference, targets):
                 found.append(equilibrium)
                 if progress is not None:

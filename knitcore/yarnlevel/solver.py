@@ -11,14 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack
-from threadpoolctl import ThreadpoolController
 
 from knitcore.errors import CancelledError, UnravelledError
+from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.energy import CellEnergy, Terms
 from knitcore.yarnlevel.topology import Guard
 
@@ -136,7 +135,7 @@ def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
         moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
         accepted = indefinite = False
         for _ in range(60):
-            with _threads().limit(limits=1, user_api="blas"):
+            with one_blas_thread():
                 step = _step(gradient, hessian, free, all_free, held, remaining, damping)
             if step is None:
                 indefinite = True
@@ -188,12 +187,6 @@ def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
         state, pull, terms, gradient[-2:].copy(), guard.min_distance_mm, converged, steps,
         evaluations,
     )  # fmt: skip
-
-
-@cache
-def _threads() -> ThreadpoolController:
-    """Matrices of a few hundred rows: a second thread would only wait."""
-    return ThreadpoolController()
 
 
 def _step(
