@@ -159,15 +159,21 @@ def _invalid(error: RequestValidationError) -> Problem:
             field="body",
             remedy="Send one JSON object as /docs describes it.",
         )
-    field = ".".join(str(part) for part in first["loc"] if part != "body") or "body"
+    # Pydantic names the alternatives of a union as parts of the place; no caller wrote those.
+    parts = [str(part) for part in first["loc"] if part not in _NOT_FIELDS]
+    field = ".".join(parts) or "body"
+    missing = first["type"] == "missing"
     return Problem(
         type="input",
         title="This input cannot be used",
         status=422,
         detail=f"{field}: {first['msg']}.",
         field=field,
-        remedy="Send one JSON object as /docs describes it.",
+        remedy=f"Give {field}; /docs has an example." if missing else f"{first['msg']}; see /docs.",
     )
+
+
+_NOT_FIELDS = frozenset({"body", "path", "query", "float", "K/P text", "pure fabric"})
 
 
 def install_problem_handlers(app: FastAPI) -> None:

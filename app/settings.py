@@ -61,7 +61,7 @@ class Settings(BaseSettings):
         1800.0, gt=0, description="Longest run of one job in the background."
     )
     worker_memory_bytes: int = Field(
-        4_000_000_000, ge=500_000_000, description="Most memory of one process for heavy work."
+        32_000_000_000, ge=500_000_000, description="Most memory of one process for heavy work."
     )
     results_max_bytes: int = Field(
         1_000_000_000, ge=0, description="Most room for results of jobs, as they are stored."
@@ -72,7 +72,7 @@ class Settings(BaseSettings):
         max_length=80,
         description="Name of this process, if several share a database; it finds its jobs by it.",
     )
-    max_body_bytes: int = Field(4_000_000, gt=0, description="Largest request body.")
+    max_body_bytes: int = Field(32_000_000, gt=0, description="Largest request body.")
     max_viewers: int = Field(64, ge=1, description="3D views kept open at once.")
     viewer_idle_s: float = Field(300.0, gt=0, description="A view nobody watches closes after.")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from enum import StrEnum
@@ -118,15 +119,21 @@ def emit(result: BaseModel, text: str, *, as_json: bool) -> None:
     click.echo(result.model_dump_json() if as_json else text)
 
 
-def check_folder(path: Path | None, field: str) -> None:
-    """Refuse a file to write in a folder that does not exist, before anything is computed.
+def check_writable(path: Path | None, field: str) -> None:
+    """Refuse a file that cannot be written, before anything is computed.
 
     Raises
     ------
     InputError
-        If there is no such folder.
+        If there is no such folder, it cannot be written to, or the name is that of a folder.
     """
-    if path is not None and not path.parent.is_dir():
+    if path is None:
+        return
+    if not path.parent.is_dir():
         raise InputError(
             field, f"{path.parent} is no folder.", "Name a file in a folder that exists."
         )
+    if path.is_dir():
+        raise InputError(field, f"{path} is a folder.", "Name a file in it.")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise InputError(field, f"{path} cannot be written.", "Name a file that you may write.")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import check_folder, emit, json_option
+from app.cli.common import check_writable, emit, json_option
 from app.cli.materials import FILE_KINDS
 from app.operations.estimate import (
     EstimateInterval,
@@ -76,7 +76,7 @@ def command(
             "the bending modulus and a loop length are needed.",
             "Measure them: `knitcore measure bending`, and unravel ten stitches.",
         )
-    check_folder(out, "out")
+    check_writable(out, "out")
     product = _lengths(lengths, "loop_length_mm")
     own = _lengths(swatch_lengths, "swatch_loop_length_mm") if swatch_lengths else {}
     measured = [_swatch(text, own, product, swatch_setting) for text in swatches]

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import chart_argument, choice, emit, json_option, resolve_chart
+from app.cli.common import chart_argument, check_writable, choice, emit, json_option, resolve_chart
 from app.cli.materials import resolve_material
 from app.operations.export import ExportFacts, export_facts
-from knitcore.errors import InputError
 from knitcore.formats.design import read_design
 from knitcore.formats.export import ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
@@ -39,8 +38,7 @@ def command(
     as_json: bool,
 ) -> None:
     """Write CHART to a file: knitout is checked on a virtual machine before it is written."""
-    if not out.parent.is_dir():
-        raise InputError("out", f"there is no folder {out.parent}.", "Make it first.")
+    check_writable(out, "out")
     stitches = resolve_chart(chart, size)
     path = Path(chart)
     is_design = path.suffix.lower() == ".json"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import check_folder, choice, emit, json_option
+from app.cli.common import check_writable, choice, emit, json_option
 from app.operations.fit import FileFormat, FitResult, fit_paths, fit_result
 from knitcore.formats.law_files import LawFile, save_law
 from knitcore.measure.uniaxial import LawFit, Reduction
@@ -41,8 +41,8 @@ def command(
     as_json: bool,
 ) -> None:
     """Fit a law to a course-wise and a wale-wise stretch test (HDF5 or CSV)."""
-    check_folder(out, "out")
-    check_folder(residuals, "residuals")
+    check_writable(out, "out")
+    check_writable(residuals, "residuals")
     fit = fit_paths(test_course, test_wale, Reduction(reduction), file_format)
     if out is not None:
         source = f"fitted to {test_course.name} and {test_wale.name}, {fit.reduction} reduction"

@@ -8,6 +8,7 @@ import click
 
 from app.cli.common import (
     chart_argument,
+    check_writable,
     choice,
     direction_option,
     emit,
@@ -51,6 +52,7 @@ def command(
     """Pull CHART between two clamps: a simulated strip test, not a certified one."""
     if out is not None and out.suffix.lower() not in (".npz", ".vtu"):
         raise InputError("out", f"{out.name} is of no known kind.", "Use .npz or .vtu.")
+    check_writable(out, "out")
     stitches = resolve_chart(chart, size)
     options = StretchOptions(
         direction=Direction(direction),

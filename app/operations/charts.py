@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.fabric import Fabric
@@ -31,7 +31,13 @@ ChartText = Annotated[
         examples=["KPKP\nPKPK"],
     ),
 ]
-ChartInput = ChartText | PureFabricChart
+TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
+"""Names of the two ways to give a chart; errors leave them out of the field's name."""
+
+ChartInput = Annotated[
+    Annotated[ChartText, Tag(TEXT_TAG)] | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
+    Discriminator(lambda given: TEXT_TAG if isinstance(given, str) else FABRIC_TAG),
+]
 
 
 def to_chart(chart: ChartInput) -> StitchChart:

@@ -24,6 +24,7 @@ Array = NDArray[np.float32]
 MAX_STITCHES = 40_000
 """Largest chart of a test over REST; the command line takes larger ones."""
 MAX_STEPS = 60
+NEAR_LOCK_UP = 0.95
 
 
 class StretchOptions(BaseModel):
@@ -38,10 +39,10 @@ class StretchOptions(BaseModel):
     steps: int = Field(12, ge=1, le=1000)
     model: EnergyModel = EnergyModel.FULL
     shear_modulus_n_per_mm: float | None = Field(
-        None, gt=0, le=10, allow_inf_nan=False, description="Replaces the assumed C_xyxy."
+        None, ge=1e-4, le=10, allow_inf_nan=False, description="Replaces the assumed C_xyxy."
     )
-    width_mm: float | None = Field(None, gt=0, le=10_000, description="Size course-wise.")
-    length_mm: float | None = Field(None, gt=0, le=10_000, description="Size wale-wise.")
+    width_mm: float | None = Field(None, ge=1, le=10_000, description="Size course-wise.")
+    length_mm: float | None = Field(None, ge=1, le=10_000, description="Size wale-wise.")
 
 
 class StretchRequest(StretchOptions):
@@ -196,8 +197,22 @@ def stretch_curve(chart: StitchChart, options: StretchOptions, test: StripTest) 
         length_mm=test.sheet.grid.length_mm,
         shear_modulus_assumed=options.shear_modulus_n_per_mm is None,
         nearest_lock_up=_nearest(chart, test),
-        messages=[test.problem] if test.problem else [],
+        messages=_messages(test),
     )
+
+
+def _messages(test: StripTest) -> list[str]:
+    """What went wrong, and what a careful reader should know."""
+    messages = [test.problem] if test.problem else []
+    used = float(test.utilisation.max(initial=0.0))
+    if used >= 1:
+        messages.append(
+            f"alpha times strain reaches {used:.2f}: the cloth locks at 1. The published model "
+            "leaves the lock-up out, so it goes on where no cloth can follow."
+        )
+    elif used >= NEAR_LOCK_UP:
+        messages.append(f"Some stitches are at {used:.0%} of their lock-up.")
+    return messages
 
 
 def warm_up(*, cancelled: Callable[[], bool]) -> None:
@@ -245,7 +260,9 @@ def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> S
 
 def _rounded(values: NDArray[np.float64]) -> list[list[float]]:
     """A list per step; four digits are finer than any colour."""
-    lists: list[list[float]] = np.round(values.reshape(len(values), -1), 4).tolist()
+    lists: list[list[float]] = np.round(
+        values.reshape(len(values), math.prod(values.shape[1:])), 4
+    ).tolist()
     return lists
 
 

@@ -143,7 +143,7 @@ def sweep_chart(
         cell_course_mm=zero.cell_course_mm,
         cell_wale_mm=zero.cell_wale_mm,
         law=None if law is None else LawResult(**_law_fields(law)),
-        converged=main.converged,
+        converged=main.converged and len(main.strain) == options.points,
         seconds=seconds,
         yarn=yarn_result(used),
         notes=notes,

@@ -88,6 +88,12 @@ def load_material_file(path: str | Path) -> Material:
         raise InputError(
             "material", f"{file} holds no material.", "Begin with identifier, name and fabrics."
         )
+    if "fabrics" not in data and ("law" in data or "alpha_xx" in data or "laws" in data):
+        raise InputError(
+            "material",
+            f"{file.name} is one law, not a material.",
+            "A material file has the laws of its fabrics under `fabrics`; see docs/materials.md.",
+        )
     return material_from_mapping(data)
 
 

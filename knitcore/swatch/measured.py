@@ -110,7 +110,7 @@ def load_field(path: Path | str) -> MeasuredField:
     except (OSError, EOFError, KeyError, ValueError, TypeError, BadZipFile, zlib.error) as error:
         raise InputError(
             "field",
-            f"{path} cannot be read as a displacement field ({error}).",
+            f"{Path(path).name} cannot be read as a displacement field.",
             "Give an .npz with displacement (frames, 2, rows, columns) and frame (frames,).",
         ) from error
     return measured_field(displacement, numbers, pitch)
@@ -136,6 +136,8 @@ def measured_field(
             f"displacement has shape {displacement.shape}, frame {numbers.shape}.",
             "Use (frames, 2, rows, columns) and (frames,).",
         )
+    if len(np.unique(numbers)) < len(numbers):
+        raise InputError("field", "frame numbers repeat.", "Number each picture once.")
     if not (np.isfinite(pitch_px) and pitch_px > 0):
         raise InputError("field", f"pitch_px is {pitch_px}.", "Give a distance above 0 px.")
     lost = ~np.isfinite(displacement).all(axis=1, keepdims=True)  # some programs mark it so

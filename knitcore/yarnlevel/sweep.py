@@ -75,9 +75,13 @@ def sweep(
     last = _held(zero, along, rest, cancel)
     for target in rest * (1.0 + strain):
         try:
-            last = _held(last, along, float(target), cancel)
+            last = _walked(last, along, float(target), cancel)
         except (ConvergenceError, UnravelledError) as error:
-            notes.append(f"Stopped at strain {target / rest - 1.0:.3g}: {error}")
+            reached = last.cell_mm(along) / rest - 1.0
+            notes.append(
+                f"Stopped between strain {reached:.3g} and {target / rest - 1.0:.3g}: {error} "
+                "Ask for less, or for more points."
+            )
             break
         outward.append(last)
         stress = last.force_n[along.axis] / width
@@ -103,6 +107,20 @@ def sweep(
         )
     stress_n_per_mm = np.array([cell.force_n[along.axis] / width for cell in best])
     return Sweep(along, zero, tuple(best), stress_n_per_mm, tuple(sorted(jumps)), tuple(notes))
+
+
+def _walked(
+    cell: RelaxedRepeat, along: Direction, size_mm: float, cancel: Cancel | None, halvings: int = 3
+) -> RelaxedRepeat:
+    """As :func:`_held`, in smaller steps where one is too long."""
+    try:
+        return _held(cell, along, size_mm, cancel)
+    except (ConvergenceError, UnravelledError):
+        if halvings == 0:
+            raise
+        middle = (cell.cell_mm(along) + size_mm) / 2.0
+        half = _walked(cell, along, middle, cancel, halvings - 1)
+        return _walked(half, along, size_mm, cancel, halvings - 1)
 
 
 def _held(

@@ -113,6 +113,8 @@ def test_bad_input_ends_with_code_2_and_a_word_on_stderr(arguments: list[str], s
         ({"chart": "K", "material": "steel"}, "material"),
         ({"chart": {"fabric": "garter", "columns": 0, "rows": 1}, "material": "acrylic"}, "chart"),
         ({"chart": "K"}, "material"),
+        ({"chart": {"fabric": "velvet", "columns": 3, "rows": 3}, "material": "cotton"}, "chart"),
+        ({"chart": 5, "material": "cotton"}, "chart"),
     ],
 )
 def test_bad_requests_name_the_field(
@@ -121,4 +123,5 @@ def test_bad_requests_name_the_field(
     problem = client.post("/api/v1/predict", json=body).json()
     assert problem["status"] == 422
     assert problem["field"].split(".")[0] == field
+    assert "constrained" not in problem["field"]
     assert problem["remedy"]

@@ -310,7 +310,7 @@ def test_websockets_from_another_site_are_refused(client: TestClient) -> None:
 
 
 def test_large_bodies_are_refused(client: TestClient) -> None:
-    response = client.post("/api/v1/charts/parse", content=b"x" * 5_000_000)
+    response = client.post("/api/v1/charts/parse", content=b"x" * 33_000_000)
     assert response.status_code == 413
     assert response.json()["field"] == "body"
 

@@ -55,6 +55,9 @@ def test_the_command_line_gives_the_same_curve(client: TestClient, tmp_path: Pat
         ({"chart": "K?"}, "chart"),
         ({"chart": {"fabric": "rib", "columns": 900, "rows": 900}}, "chart"),
         ({"width_mm": 0}, "width_mm"),
+        ({"width_mm": 1e-9}, "width_mm"),
+        ({"length_mm": 1e-300}, "length_mm"),
+        ({"shear_modulus_n_per_mm": 1e-300}, "shear_modulus_n_per_mm"),
     ],
 )
 def test_what_cannot_be_pulled_names_field_and_remedy(
@@ -72,3 +75,19 @@ def test_beyond_the_lock_up_the_limit_is_named() -> None:
     assert result.exit_code == 2
     assert "lock-up" in result.stderr
     assert "Use at most 0.3" in result.stderr
+
+
+def test_the_published_model_says_when_it_leaves_the_cloth_behind(client: TestClient) -> None:
+    body = ASKED | {"model": "published", "strain": 1.5}
+    answer = client.post("/api/v1/stretch", json=body).json()
+    assert any("the cloth locks at 1" in message for message in answer["messages"])
+
+
+@pytest.mark.parametrize("out", ["nowhere/fields.npz", ".", "fields.doc"])
+def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, out: str) -> None:
+    arguments = ["garter", "--size", "9x6", "--material", "acrylic", "--direction", "wale"]
+    arguments += ["--strain", "0.2", "--out", str(tmp_path / out), "--json"]
+    result = CliRunner().invoke(main, ["stretch", *arguments])
+    assert result.exit_code == 2
+    assert "out" in result.stderr
+    assert result.stdout == ""

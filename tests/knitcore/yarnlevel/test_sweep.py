@@ -55,7 +55,7 @@ def test_the_law_of_a_sample_is_near_the_published_simulation(zero):
 def test_yarn_pulled_straight_ends_the_sweep_with_a_note(zero):
     curve = sweep(zero, "course", 5.0, points=12, back=False)
     assert len(curve.cells) < 12
-    assert any("Stopped at strain" in note for note in curve.notes)
+    assert any("Stopped between strain" in note for note in curve.notes)
     assert max(c.cell_course_mm for c in curve.cells) < 12.28
 
 
