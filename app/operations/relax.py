@@ -169,7 +169,11 @@ def relaxed_cell(
     """Relax in the branch that is asked for."""
     if options.branch is Branch.PUBLISHED:
         return relax_published(
-            pure_fabric(repeat), used.yarn, used.loop_length_mm, convention=options.convention
+            pure_fabric(repeat),
+            used.yarn,
+            used.loop_length_mm,
+            convention=options.convention,
+            cancel=cancelled,
         )
     return relax(
         repeat,

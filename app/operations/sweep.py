@@ -163,7 +163,7 @@ def _sweep(
     return sweep_published(
         pure_fabric(repeat), used.yarn, used.loop_length_mm, direction, max_strain, points,
         options.convention, zero=zero,
-        max_stress_n_per_mm=math.inf if max_stress is None else max_stress,
+        max_stress_n_per_mm=math.inf if max_stress is None else max_stress, cancel=cancelled,
     )  # fmt: skip
 
 

@@ -43,6 +43,8 @@ export function drawRulers(context, view, grid, palette) {
     if (number !== 1 && number % step !== 0) continue;
     const x = view.x + (grid.columns - number + 0.5) * view.cellWidth;
     if (x < MARGIN.left - 4 || x > view.width - MARGIN.right + 4) continue;
+    const half = context.measureText(String(number)).width / 2;
+    if (x - half < left + 2 || x + half > right - 2) continue; // the sides' names stand there
     context.fillText(String(number), x, base);
   }
   context.textAlign = "right";
