@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -204,4 +205,5 @@ def pure_fabric(repeat: StitchChart) -> Fabric:
 
 
 def _or_none(value: float) -> float | None:
-    return value if value == value else None  # noqa: PLR0124 - nan marks a failed start
+    """None where a failed start left NaN."""
+    return None if math.isnan(value) else value

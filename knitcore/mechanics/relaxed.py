@@ -141,7 +141,7 @@ def carried_over(
     -------
     RelaxedSize, or None if the material lacks the pure fabric that the repeat resembles.
     """
-    reference = _reference(repeat)
+    reference = reference_fabric(repeat)
     record = material.fabrics.get(reference)
     if record is None:
         return None
@@ -165,7 +165,7 @@ _PURE_CHARTS = {
 }
 
 
-def _reference(chart: StitchChart) -> Fabric:
+def reference_fabric(chart: StitchChart) -> Fabric:
     """The pure fabric with odd segments where the repeat has any."""
     phases = quarter_phases(chart, periodic=True)
     course_odd, wale_odd = bool((phases >= 2).any()), bool((phases % 2).any())

@@ -271,13 +271,24 @@ class PathSolver:
 
     def _try_factorise(self, lin: Linearisation) -> None:
         """Factorise a tangent on the way, where it may be indefinite; if so, that of the sheet at
-        rest, which never is.
+        rest, which is positive definite as far as numbers can tell.
+
+        Raises
+        ------
+        StepError
+            If the cells' proportions or stiffnesses are too extreme to tell even that.
         """
         try:
             self._factorise(lin)
         except IndefiniteTangentError:
             at_rest = self.sheet.at_rest
-            self._factorise(at_rest.linearise(at_rest.reference))
+            try:
+                self._factorise(at_rest.linearise(at_rest.reference))
+            except IndefiniteTangentError:
+                raise StepError(
+                    "Not even the sheet at rest can be factorised: its sizes or stiffnesses "
+                    "differ by more than double precision can hold."
+                ) from None
             self._factor_is_current = False
 
     def _solve(self, lin: Linearisation, force: Array, relative: float) -> Array:

@@ -12,12 +12,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES, Fabric
+from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.mechanics.carry import carried_law
 from knitcore.mechanics.composite import layout_of
 from knitcore.mechanics.constitutive import ConstitutiveLaw
-from knitcore.mechanics.relaxed import RelaxedSize, SizeSource
+from knitcore.mechanics.relaxed import RelaxedSize, SizeSource, reference_fabric
 from knitcore.phases import quarter_phases
 from knitcore.yarnlevel.store import StoredStitch, stored_stitch
 
@@ -70,7 +70,7 @@ def known_repeat(chart: StitchChart, material: Material) -> KnownRepeat | None:
         return None
     pure = {fabric: _pure(fabric, material.identifier) for fabric in Fabric}
     laws = {f: s.law for f, s in pure.items() if s is not None and s.law is not None}
-    reference = _reference(repeat)
+    reference = reference_fabric(repeat)
     like = pure[reference]
     if like is None or len(laws) < len(Fabric):
         return None
@@ -87,9 +87,3 @@ def known_repeat(chart: StitchChart, material: Material) -> KnownRepeat | None:
 
 def _pure(fabric: Fabric, material: str) -> StoredStitch | None:
     return stored_stitch(StitchChart.of_fabric(fabric, rows=2, columns=2), material)
-
-
-def _reference(repeat: StitchChart) -> Fabric:
-    """The pure fabric with odd segments where the repeat has any."""
-    phases = quarter_phases(repeat, periodic=True)
-    return PHASES[2 * int((phases >= 2).any()) + int((phases % 2).any())]

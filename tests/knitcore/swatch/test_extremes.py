@@ -1,0 +1,19 @@
+"""Sizes and stiffnesses beyond what numbers can hold end in words, not in a traceback."""
+
+from __future__ import annotations
+
+import pytest
+
+from knitcore import StitchChart
+from knitcore.materials import material
+from knitcore.swatch import strip_test
+
+
+@pytest.mark.parametrize("extreme", [{"shear_modulus": 1e-300}, {"width_mm": 1e-9}])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_what_cannot_be_factorised_is_no_result(extreme: dict[str, float]) -> None:
+    chart = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
+    test = strip_test(chart, material("acrylic"), "wale", 0.1, steps=2, **extreme)
+    assert not test.converged
+    assert test.problem
+    assert test.steps == len(test.strain) == 0
