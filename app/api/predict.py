@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from app.operations.curve import CurveRequest, CurveResult, curve_request
+from app.operations.curve import CurveRequest, CurveResult, run_curve
 from app.operations.predict import PredictRequest, PredictResult, predict_request
 
 router = APIRouter(tags=["mechanics"])
@@ -19,4 +19,4 @@ def post_predict(request: PredictRequest) -> PredictResult:
 @router.post("/curve", summary="Stress-strain curve of a chart")
 def post_curve(request: CurveRequest) -> CurveResult:
     """Strain at each stress, for pure fabrics, ribs, welts and repeats of up to 256 stitches."""
-    return curve_request(request)
+    return run_curve(request)

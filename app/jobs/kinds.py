@@ -5,10 +5,19 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.operations.atlas import (
+    AtlasRequest,
+    AtlasResult,
+    FindRequest,
+    FindResult,
+    run_atlas,
+    run_find,
+)
+from app.operations.curve import CurveRequest, CurveResult, run_curve
 from app.operations.field import (
     CalibrateRequest,
     CalibrateResult,
@@ -17,71 +26,93 @@ from app.operations.field import (
     run_calibrate,
     run_compare,
 )
+from app.operations.fill import FillRequest, FillResult, run_fill
 from app.operations.fit import FitRequest, FitResult, run_fit
-from app.operations.measure import BendingRequest, BendingResult, run_bending
+from app.operations.measure import (
+    BendingRequest,
+    BendingResult,
+    CompressionRequest,
+    CompressionResult,
+    run_bending,
+    run_compression,
+)
 from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
 
+Kind = TypeVar("Kind", bound=str)
+Request = TypeVar("Request", bound=BaseModel)
 
-class StretchJob(BaseModel):
+
+class JobOf(BaseModel, Generic[Kind, Request]):
+    """An operation and what it is asked."""
+
+    model_config = ConfigDict(extra="forbid")
+    kind: Kind
+    request: Request
+
+
+class StretchJob(JobOf[Literal["stretch"], StretchRequest]):
     """A stretch test."""
 
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["stretch"]
-    request: StretchRequest
+
+class CurveJob(JobOf[Literal["curve"], CurveRequest]):
+    """The stress-strain curve of a chart."""
 
 
-class RelaxJob(BaseModel):
+class RelaxJob(JobOf[Literal["relax"], RelaxRequest]):
     """A relaxation at the yarn level."""
 
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["relax"]
-    request: RelaxRequest
 
-
-class SweepJob(BaseModel):
+class SweepJob(JobOf[Literal["sweep"], SweepRequest]):
     """A stretch sweep at the yarn level."""
 
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["sweep"]
-    request: SweepRequest
+
+class AtlasJob(JobOf[Literal["atlas"], AtlasRequest]):
+    """The constants of all small repeats of a material."""
 
 
-class FitJob(BaseModel):
+class FindJob(JobOf[Literal["find"], FindRequest]):
+    """Fabrics that do what is wanted."""
+
+
+class FillJob(JobOf[Literal["fill"], FillRequest]):
+    """A chart for a map of wanted stiffness."""
+
+
+class FitJob(JobOf[Literal["fit"], FitRequest]):
     """A law from two stretch tests."""
 
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["fit"]
-    request: FitRequest
 
-
-class BendingJob(BaseModel):
+class BendingJob(JobOf[Literal["bending"], BendingRequest]):
     """A bending modulus from photos."""
 
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["bending"]
-    request: BendingRequest
+
+class CompressionJob(JobOf[Literal["compression"], CompressionRequest]):
+    """Contact constants from compression tests."""
 
 
-class CompareJob(BaseModel):
+class CompareJob(JobOf[Literal["compare"], CompareRequest]):
     """A law beside a measured displacement field."""
 
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["compare"]
-    request: CompareRequest
 
-
-class CalibrateJob(BaseModel):
+class CalibrateJob(JobOf[Literal["calibrate"], CalibrateRequest]):
     """A law calibrated on a measured displacement field."""
-
-    model_config = ConfigDict(extra="forbid")
-    kind: Literal["calibrate"]
-    request: CalibrateRequest
 
 
 JobRequest = Annotated[
-    StretchJob | RelaxJob | SweepJob | FitJob | BendingJob | CompareJob | CalibrateJob,
+    StretchJob
+    | CurveJob
+    | RelaxJob
+    | SweepJob
+    | AtlasJob
+    | FindJob
+    | FillJob
+    | FitJob
+    | BendingJob
+    | CompressionJob
+    | CompareJob
+    | CalibrateJob,
     Field(discriminator="kind"),
 ]
 
@@ -113,10 +144,15 @@ class JobKind:
 
 KINDS: dict[str, JobKind] = {
     "stretch": JobKind(StretchRequest, StretchResult, run_stretch, _json_of_run),
+    "curve": JobKind(CurveRequest, CurveResult, run_curve),
     "relax": JobKind(RelaxRequest, RelaxResult, run_relax),
     "sweep": JobKind(SweepRequest, SweepResult, run_sweep),
+    "atlas": JobKind(AtlasRequest, AtlasResult, run_atlas),
+    "find": JobKind(FindRequest, FindResult, run_find),
+    "fill": JobKind(FillRequest, FillResult, run_fill),
     "fit": JobKind(FitRequest, FitResult, run_fit),
     "bending": JobKind(BendingRequest, BendingResult, run_bending),
+    "compression": JobKind(CompressionRequest, CompressionResult, run_compression),
     "compare": JobKind(CompareRequest, CompareResult, run_compare),
     "calibrate": JobKind(CalibrateRequest, CalibrateResult, run_calibrate),
 }

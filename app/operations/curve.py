@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
@@ -46,8 +47,9 @@ class CurveResult(BaseModel):
     provenance: str
 
 
-def curve_request(request: CurveRequest) -> CurveResult:
+def run_curve(request: CurveRequest, *, cancelled: Callable[[], bool] | None = None) -> CurveResult:
     """The curve that a request asks for."""
+    del cancelled  # milliseconds
     return curve_of_chart(
         to_chart(request.chart),
         find_material(request.material),
