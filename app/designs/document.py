@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, model_validator
 
 from app.operations.charts import ChartText
 from knitcore.chart import MAX_STITCHES_PER_SIDE
+from knitcore.formats.design import FORMAT, VERSION, migrated
+from knitcore.formats.layout import DesignLayout
 
 Name = Annotated[
     str,
@@ -23,17 +25,25 @@ Note = Annotated[str, Field(max_length=20_000, pattern=r"^[^\x00]*$")]
 MAX_RUNS = 20_000
 
 
-class DesignDocument(BaseModel):
-    """A design as a file holds it; ``knitcore`` reads the same on the command line."""
+class DesignDocument(DesignLayout):
+    """A design as a file holds it; ``knitcore`` reads the same on the command line.
+
+    Documents of older versions are taken, too, and come back as this one.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
-    format: Literal["knitcore-design"] = "knitcore-design"
-    version: Literal[1] = 1
+    format: Literal["knitcore-design"] = FORMAT
+    version: Literal[2] = VERSION
     name: Name
     material: MaterialId
     chart: ChartText
     note: Note = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _migrated(cls, data: Any) -> Any:
+        return migrated(data) if isinstance(data, dict) else data
 
 
 class DesignSummary(BaseModel):

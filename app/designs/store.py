@@ -29,13 +29,14 @@ from app.store.database import Database
 from app.store.tables import design_versions, designs
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.formats.layout import DesignLayout, check_layout
 
 MAX_DESIGNS = 5_000
 MAX_VERSIONS = 500
 DELETED_KEPT_S = 30 * 86_400.0
 """How long a deleted design can be recovered."""
 
-_SUMMARY = [c for c in designs.c if c.name not in ("chart", "note", "owner")]
+_SUMMARY = [c for c in designs.c if c.name not in ("chart", "note", "layout", "owner")]
 _VERSION_SUMMARY = [
     design_versions.c[n] for n in ("number", "name", "automatic", "revision", "created_at")
 ]
@@ -204,9 +205,7 @@ class DesignStore:
             automatic=row.automatic,
             revision=row.revision,
             created_at=moment(row.created_at),
-            document=DesignDocument(
-                name=row.design_name, material=row.material, chart=row.chart, note=row.note
-            ),
+            document=document_of(row, row.design_name),
         )
 
     def restore(self, owner: str, design: str, number: int, if_match: str | None) -> Design:
@@ -223,6 +222,7 @@ class DesignStore:
                 "material": kept.material,
                 "chart": kept.chart,
                 "note": kept.note,
+                "layout": kept.layout,
                 "rows": chart.rows,
                 "columns": chart.columns,
             }
@@ -306,19 +306,24 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
 
 def copied(row: Row[Any]) -> dict[str, Any]:
     """The content of a design for a copy of it."""
-    kept = ("material", "chart", "note", "rows", "columns")
+    kept = ("material", "chart", "note", "layout", "rows", "columns")
     return {n: getattr(row, n) for n in kept} | {"name": f"{row.name[:190]} (copy)"}
 
 
 def full(row: Row[Any]) -> Design:
     """A row as clients get it."""
-    return Design(**_public(row, "owner", "chart", "note"), document=document_of(row))
+    return Design(**_public(row, "owner", "chart", "note", "layout"), document=document_of(row))
 
 
-def document_of(row: Row[Any]) -> DesignDocument:
-    """The document in a row."""
+def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
+    """The document in a row, by default with the row's name."""
+    layout = DesignLayout.model_validate_json(row.layout)
     return DesignDocument.model_construct(
-        name=row.name, material=row.material, chart=row.chart, note=row.note
+        name=row.name if name is None else name,
+        material=row.material,
+        chart=row.chart,
+        note=row.note,
+        **dict(layout),
     )
 
 
@@ -330,11 +335,13 @@ def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> D
 
 def _content(document: DesignDocument) -> dict[str, Any]:
     chart = StitchChart.parse(document.chart)
+    check_layout(chart, document)
     return {
         "name": document.name,
         "material": document.material,
         "chart": chart.text,
         "note": document.note,
+        "layout": document.model_dump_json(include=set(DesignLayout.model_fields)),
         "rows": chart.rows,
         "columns": chart.columns,
     }
@@ -358,6 +365,7 @@ def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) 
         "material": row.material,
         "chart": row.chart,
         "note": row.note,
+        "layout": row.layout,
         "revision": row.revision,
         "created_at": now(),
     }

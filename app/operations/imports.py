@@ -11,6 +11,13 @@ from app.operations.charts import ChartResult, ParsedChart, ParseRequest, parse_
 from app.operations.uploads import UploadedFile, stored
 from knitcore.formats.chart_files import read_chart
 from knitcore.formats.design import read_design
+from knitcore.formats.layout import (
+    DesignLayout,
+    DesignRegion,
+    DesignRepeat,
+    ShelfPattern,
+    layout_notes,
+)
 
 
 class ImportRequest(BaseModel):
@@ -34,6 +41,10 @@ class ImportResult(BaseModel):
     material: str | None = None
     note: str | None = None
     outline: str | None = Field(None, description="Lines of x (stitch) and . (no stitch).")
+    regions: list[DesignRegion] = Field([], description="As in the project file.")
+    repeats: list[DesignRepeat] = []
+    shelf: list[ShelfPattern] = []
+    notes: list[str] = Field([], description="What may not be as meant, such as a lost region.")
 
 
 def import_path(path: Path) -> ImportResult:
@@ -52,8 +63,10 @@ def import_path(path: Path) -> ImportResult:
     if path.suffix.lower() != ".json":
         return result
     design = read_design(path)
+    kept = ("name", "material", "note", *DesignLayout.model_fields)
     return result.model_copy(
-        update=design.model_dump(include={"name", "material", "note", "outline"})
+        update={name: getattr(design, name) for name in kept}
+        | {"notes": list(layout_notes(chart, design))}
     )
 
 

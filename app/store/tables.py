@@ -35,6 +35,7 @@ designs = Table(
     Column("material", String(80), nullable=False),
     Column("chart", Text, nullable=False),  # canonical text, the top row first
     Column("note", Text, nullable=False, server_default=""),
+    Column("layout", Text, nullable=False, server_default="{}"),  # JSON of a DesignLayout
     Column("rows", Integer, nullable=False),
     Column("columns", Integer, nullable=False),
     Column("revision", Integer, nullable=False),
@@ -55,6 +56,7 @@ design_versions = Table(
     Column("material", String(80), nullable=False),
     Column("chart", Text, nullable=False),
     Column("note", Text, nullable=False),
+    Column("layout", Text, nullable=False, server_default="{}"),
     Column("revision", Integer, nullable=False),
     Column("created_at", Float, nullable=False),
 )

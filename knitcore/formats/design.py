@@ -2,11 +2,12 @@
 
 ::
 
-    {"format": "knitcore-design", "version": 1, "name": "Cuff", "material": "acrylic",
-     "chart": "KPKP\\nPKPK", "note": ""}
+    {"format": "knitcore-design", "version": 2, "name": "Cuff", "material": "acrylic",
+     "chart": "KPKP\\nPKPK", "note": "", "outline": null, "regions": [], "repeats": [], "shelf": []}
 
-Only ``format``, ``version`` and ``chart`` (K/P lines, top row first) are needed. The schema is
-:func:`design_schema`; older versions are brought up to date by :data:`MIGRATIONS`.
+Only ``format``, ``version`` and ``chart`` (K/P lines, top row first) are needed; what the rest
+means is in :mod:`knitcore.formats.layout`. The schema is :func:`design_schema`; older versions are
+brought up to date by :data:`MIGRATIONS`.
 """
 
 from __future__ import annotations
@@ -16,27 +17,33 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, ValidationError
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.formats.layout import MAX_TEXT, DesignLayout, check_layout
 from knitcore.garment.shaped import ShapedChart
 
 FORMAT: Final = "knitcore-design"
-VERSION: Final = 1
-MAX_TEXT = 1_200_000
-
-MIGRATIONS: dict[int | None, Callable[[dict[str, Any]], dict[str, Any]]] = {}
-"""From each older version to the next one. Version 1 is the first, so there is none yet."""
+VERSION: Final = 2
 
 
-class DesignFile(BaseModel):
+def _from_version_1(data: dict[str, Any]) -> dict[str, Any]:
+    """Version 2 added regions, repeats and the shelf, which may be left out."""
+    return data | {"version": 2}
+
+
+MIGRATIONS: dict[int | None, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _from_version_1}
+"""From each older version to the next one."""
+
+
+class DesignFile(DesignLayout):
     """A design as a file holds it."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, title="Knitcore design")
 
     format: Literal["knitcore-design"] = FORMAT
-    version: Literal[1] = VERSION
+    version: Literal[2] = VERSION
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     material: str | None = Field(
         None,
@@ -47,12 +54,6 @@ class DesignFile(BaseModel):
     )
     chart: str = Field(max_length=MAX_TEXT, description="K/P lines, the top row first, face side.")
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$")
-    outline: str | None = Field(
-        None,
-        max_length=MAX_TEXT,
-        description="Lines of x (stitch) and . (no stitch), the top row first; a full rectangle "
-        "if left out.",
-    )
 
     def to_shaped(self) -> ShapedChart:
         """The chart with its outline."""
@@ -66,8 +67,15 @@ class DesignFile(BaseModel):
 
 
 def write_design(design: DesignFile) -> str:
-    """The text of the file."""
-    return json.dumps(design.model_dump(exclude_none=True), indent=1, ensure_ascii=False) + "\n"
+    """The text of the file: a line for each field, and for each item of its lists."""
+    fields = []
+    for name, value in design.model_dump().items():
+        written = json.dumps(value, ensure_ascii=False)
+        if isinstance(value, list) and value:
+            items = ",\n  ".join(json.dumps(item, ensure_ascii=False) for item in value)
+            written = f"[\n  {items}\n ]"
+        fields.append(f' "{name}": {written}')
+    return "{\n" + ",\n".join(fields) + "\n}\n"
 
 
 def read_design(file: Path) -> DesignFile:
@@ -93,15 +101,13 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
         raise InputError(
             "chart", f"{name} is not a design.", f'A design says "format": "{FORMAT}".'
         )
-    data = dict(content)
-    while (version := _version(data)) != VERSION:
-        if version not in MIGRATIONS:
-            raise InputError(
-                "version",
-                f"{name} is of version {data.get('version')!r}.",
-                f"This program reads versions up to {VERSION}.",
-            )
-        data = MIGRATIONS[version](data)
+    data = migrated(dict(content))
+    if _version(data) != VERSION:
+        raise InputError(
+            "version",
+            f"{name} is of version {data.get('version')!r}.",
+            f"This program reads versions up to {VERSION}.",
+        )
     if not isinstance(data.get("chart"), str):
         raise InputError("chart", f"{name} holds no chart text.", "Export the design again.")
     try:
@@ -110,8 +116,15 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise InputError(where, f"{name}: {first['msg']}.", "See the published schema.") from None
-    design.to_shaped()
+    check_layout(design.to_chart(), design)
     return design
+
+
+def migrated(data: dict[str, Any]) -> dict[str, Any]:
+    """The content of a design file as the newest version that is known has it."""
+    while (version := _version(data)) in MIGRATIONS:
+        data = MIGRATIONS[version](data)
+    return data
 
 
 def _version(data: Mapping[str, Any]) -> int | None:

@@ -54,11 +54,7 @@ class ShapedChart:
     @classmethod
     def parse(cls, chart: str, outline: str) -> ShapedChart:
         """From K/P lines and lines of ``x`` (stitch) and ``.`` (no stitch), the top row first."""
-        marks = [line.strip() for line in outline.splitlines() if line.strip()]
-        if not marks or len({len(line) for line in marks}) > 1 or set("".join(marks)) - set("x."):
-            raise InputError("outline", "it is no grid of x and dots.", "Write x or . per stitch.")
-        inside = np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
-        return cls(StitchChart.parse(chart), inside)
+        return cls(StitchChart.parse(chart), outline_marks(outline))
 
     @property
     def outline(self) -> str:
@@ -85,6 +81,20 @@ class ShapedChart:
 
     def __hash__(self) -> int:
         return hash((self.stitch.tobytes(), self.chart.purl[self.stitch].tobytes()))
+
+
+def outline_marks(outline: str) -> NDArray[np.bool_]:
+    """Which cells are stitches, bool (rows, columns), row 0 at the bottom.
+
+    Raises
+    ------
+    InputError
+        If it is no grid of ``x`` and ``.``.
+    """
+    marks = [line.strip() for line in outline.splitlines() if line.strip()]
+    if not marks or len({len(line) for line in marks}) > 1 or set("".join(marks)) - set("x."):
+        raise InputError("outline", "it is no grid of x and dots.", "Write x or . per stitch.")
+    return np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
 
 
 def check_outline(stitch: NDArray[np.bool_]) -> None:

@@ -241,3 +241,46 @@ def test_the_secret_of_a_link_is_not_in_the_database(database: Database) -> None
         kept = connection.exec_driver_sql("SELECT * FROM shares").all()
     assert len(kept) == 1
     assert token not in str(kept)
+
+
+LAYOUT = RIB.model_validate(
+    {
+        "version": 1,
+        "name": "Shaped",
+        "material": "acrylic",
+        "chart": "KPKP\nKPKP",
+        "outline": "xxx.\nxxxx",
+        "regions": [
+            {"id": "a", "name": "A", "colour": "#112233", "fill": "KP", "runs": [[0, 0, 2]]},
+            {"id": "b", "name": "B", "colour": "#445566", "yarn": "blue", "runs": [[0, 1, 3]]},
+        ],
+        "repeats": [
+            {
+                "id": "m",
+                "name": "rib",
+                "motif": "KP",
+                "placements": [{"row": 0, "column": 0, "rows": 2, "columns": 4}],
+            }
+        ],
+        "shelf": [{"name": "mine", "motif": "KP/PK"}],
+    }
+)
+
+
+def test_outline_regions_repeats_and_shelf_are_kept_everywhere(designs: DesignStore) -> None:
+    made = designs.create("ada", LAYOUT)
+    assert made.document == LAYOUT
+    assert made.document.version == 2
+    designs.keep_version("ada", made.id, "shaped")
+    designs.paint("ada", made.id, _strokes((0, 0, "P")))
+    painted = designs.get("ada", made.id).document
+    assert painted == LAYOUT.model_copy(update={"chart": "KPKP\nPPKP"})
+    assert designs.duplicate("ada", made.id).document.regions == LAYOUT.regions
+    assert designs.replace("ada", made.id, RIB, "*").document == RIB
+    assert designs.version("ada", made.id, 1).document == LAYOUT
+    assert designs.restore("ada", made.id, 1, "*").document == LAYOUT
+
+
+def test_a_layout_must_belong_to_its_chart(designs: DesignStore) -> None:
+    with pytest.raises(InputError, match="4x2 cells, the chart 2x1"):
+        designs.create("ada", LAYOUT.model_copy(update={"chart": "KP"}))

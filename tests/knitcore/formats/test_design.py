@@ -40,12 +40,23 @@ def test_an_older_version_is_brought_up_to_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def from_version_0(data: dict[str, Any]) -> dict[str, Any]:
-        return {**data, "version": 1, "chart": data["chart"].replace(".", "P")}
+        return {**data, "version": 1, "chart": data["chart"].replace(".", "P")}  # and 1 to 2
 
     monkeypatch.setitem(designs.MIGRATIONS, 0, from_version_0)
     file = tmp_path / "design.json"
     file.write_text(json.dumps({"format": "knitcore-design", "version": 0, "chart": "K."}))
     assert read_design(file).chart == "KP"
+    assert read_design(file).version == designs.VERSION
+
+
+def test_version_1_is_read_and_written_as_version_2(tmp_path: Path) -> None:
+    file = tmp_path / "design.json"
+    old = {"format": "knitcore-design", "version": 1, "chart": "KP", "name": "Old", "outline": "xx"}
+    file.write_text(json.dumps(old))
+    design = read_design(file)
+    assert (design.version, design.name, design.outline, design.regions) == (2, "Old", "xx", [])
+    file.write_text(write_design(design))
+    assert read_design(file) == design
 
 
 @pytest.mark.parametrize(
@@ -54,7 +65,7 @@ def test_an_older_version_is_brought_up_to_date(
         ({"colour": "red"}, "colour"),
         ({"name": ""}, "name"),
         ({"chart": "KX"}, "neither K nor P"),
-        ({"version": 2}, "version 2"),
+        ({"version": 3}, "version 3"),
         ({"version": True}, "version"),
         ({"version": [1]}, "version"),
         ({"format": "other"}, "not a design"),
