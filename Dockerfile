@@ -1,3 +1,8 @@
+FROM node:20-bookworm-slim AS page
+WORKDIR /page
+COPY frontend .
+RUN npm ci --no-audit --no-fund && node build.mjs
+
 FROM debian:bookworm-slim
 RUN apt-get update \
  && apt-get install -y --no-install-recommends python3 python3-venv make \
@@ -6,6 +11,7 @@ RUN apt-get update \
  && mkdir -p /var/lib/knitcore && chown knit:knit /var/lib/knitcore && chmod 700 /var/lib/knitcore
 WORKDIR /srv/knitcore
 COPY --chown=knit:knit . .
+COPY --from=page --chown=knit:knit /page/dist frontend/dist
 RUN chown knit:knit /srv/knitcore
 USER knit
 RUN make install

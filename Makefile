@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install serve test test-postgres test-kill lint format types frontend-check bench bench-service docs stitches lock clean
+.PHONY: help install page serve test test-postgres test-kill lint format types frontend-check bench bench-service docs stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -29,14 +29,22 @@ frontend/node_modules/.installed: frontend/package.json frontend/package-lock.js
 	cd frontend && npm ci --no-audit --no-fund --loglevel=error
 	touch $@
 
-install: $(VENV)/.installed ## Make .venv with the product in it
+# The page also runs as its sources: without Node, or without a way to its packages, it gets those.
+PAGE_SOURCES := $(shell find frontend \( -name node_modules -o -name dist -o -name tests \) -prune -o -type f -print)
+frontend/dist/index.html: $(PAGE_SOURCES)
+	@( $(MAKE) --no-print-directory frontend/node_modules/.installed && node frontend/build.mjs ) \
+		|| echo "The page could not be bundled (it needs Node 18 or newer): its sources are served instead."
+
+page: frontend/dist/index.html ## Bundle the page
+
+install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
 # --- running ----------------------------------------------------------------------------------
 serve: install   ## Run the tool and print its address
 	$(BIN)/knitcore serve
 
 # --- checking ---------------------------------------------------------------------------------
-test: $(VENV)/.installed-dev frontend-check ## Run every test (browser tests install Chromium if missing)
+test: $(VENV)/.installed-dev frontend-check page ## Run every test (browser tests install Chromium if missing)
 	scripts/ensure-chromium
 	$(BIN)/pytest -n 2 --dist loadgroup
 
@@ -81,4 +89,4 @@ lock: $(VENV)/.installed-dev ## Pin the dependencies again
 		--extra dev pyproject.toml -c requirements.lock -o requirements-dev.lock
 
 clean:           ## Remove what was installed and built
-	rm -rf $(VENV) frontend/node_modules build *.egg-info
+	rm -rf $(VENV) frontend/node_modules frontend/dist build *.egg-info

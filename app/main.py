@@ -7,12 +7,8 @@ import contextlib
 import logging
 import os
 from collections.abc import AsyncIterator, Callable
-from pathlib import Path
 
-import plotly
 from fastapi import FastAPI
-from fastapi.responses import FileResponse
-from fastapi.staticfiles import StaticFiles
 
 from app import health
 from app.api import routers
@@ -23,6 +19,7 @@ from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.observing import Metrics, Observer
 from app.operations.stretch import warm_up
+from app.page import serve_page
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.recent import RecentResults
 from app.schema import install_schema
@@ -36,8 +33,6 @@ from app.viewer.views import Views
 
 log = logging.getLogger("knitcore.app")
 
-FRONTEND = Path(__file__).resolve().parent.parent / "frontend"
-PLOTLY_SCRIPT = Path(plotly.__file__).parent / "package_data" / "plotly.min.js"
 JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
 
@@ -100,7 +95,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.include_router(router, prefix="/api/v1")
     app.include_router(relay.router)
     app.include_router(health.router)
-    _serve_page(app)
+    serve_page(app)
     app.add_middleware(Guard, settings=chosen)
     app.add_middleware(Observer, metrics=app.state.metrics)
     return app
@@ -117,18 +112,6 @@ def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
             lambda: state.compute.turns.waiting(background=False),
         ),
     }
-
-
-def _serve_page(app: FastAPI) -> None:
-    @app.get("/", include_in_schema=False)
-    async def page() -> FileResponse:
-        return FileResponse(FRONTEND / "index.html", headers={"Cache-Control": "no-cache"})
-
-    @app.get("/static/plotly.min.js", include_in_schema=False)
-    async def plotly_script() -> FileResponse:
-        return FileResponse(PLOTLY_SCRIPT, headers={"Cache-Control": "public, max-age=86400"})
-
-    app.mount("/static", StaticFiles(directory=FRONTEND), name="static")
 
 
 async def _close_idle_views(views: Views) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
+ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM = Path("/usr/bin/chromium")
 FLAGS = [
     "--no-sandbox",
@@ -42,14 +43,21 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session")
-def service() -> Iterator[str]:
+def bundle() -> None:
+    """The page as people get it; `make test` has installed what bundling needs."""
+    if (ROOT / "frontend/node_modules/esbuild").exists():
+        subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
+
+
+@pytest.fixture(scope="session")
+def service(bundle: None) -> Iterator[str]:
     """Address of a running service."""
     process = subprocess.Popen(
         [sys.executable, "-m", "app.cli.main", "serve", "--port", "0"],
         stdout=subprocess.PIPE,
         text=True,
         env=os.environ | {"PYTHONUNBUFFERED": "1"},
-        cwd=Path(__file__).resolve().parents[2],
+        cwd=ROOT,
     )
     assert process.stdout is not None
     with process.stdout:
