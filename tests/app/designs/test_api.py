@@ -130,7 +130,7 @@ def test_links_over_rest(client: TestClient, made: str) -> None:
         ({"name": ""}, "name"),
         ({"name": "a\u0000b"}, "name"),
         ({"name": "x" * 201}, "name"),
-        ({"version": 2}, "version"),
+        ({"version": 3}, "version"),
         ({"format": "other"}, "format"),
         ({"owner": "eve"}, "owner"),
         ({"note": "a\u0000b"}, "note"),
