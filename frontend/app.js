@@ -10,10 +10,8 @@ import { Grid, isChartText } from "./core/grid.js";
 import { Ink } from "./core/ink.js";
 import { Latest } from "./core/latest.js";
 import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/store.js";
-import { byId, isTyping } from "./dom.js";
-import { helpDialog, importDialog, paletteDialog, resizeDialog } from "./panels/dialogs.js";
-import { fabricview } from "./panels/fabricview.js";
-import { inspector } from "./panels/inspector.js";
+import { byId, firstPaint, isTyping } from "./dom.js";
+import { panelsForLater } from "./panels/later.js";
 import { messages } from "./panels/messages.js";
 import { overlaybar } from "./panels/overlaybar.js";
 import { rail } from "./panels/rail.js";
@@ -44,8 +42,7 @@ const studio = new Studio(
 const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"), studio);
 new Painter(view, studio);
 
-/** @type {Record<string, () => void>} */
-const dialogs = {};
+const open = panelsForLater(studio);
 /** @type {(() => void)[]} */
 const themed = [];
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -54,7 +51,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const context = {
   studio,
   view,
-  open: (name) => dialogs[name](),
+  open: (name) => void open(name, context),
   toggleTheme: () => {
     const root = document.documentElement;
     const now = root.dataset.theme ?? (dark.matches ? "dark" : "light");
@@ -76,15 +73,8 @@ messages(byId("messages"), byId("offline"), studio);
 themed.push(
   overlaybar(byId("overlays"), studio, view),
   shelf(byId("shelf"), studio, context),
-  inspector(byId("inspector"), studio),
 );
 stretchdrawer(byId("stretch"), studio, stretcher);
-Object.assign(dialogs, {
-  resize: resizeDialog(studio),
-  import: importDialog(studio),
-  palette: paletteDialog(context),
-  help: helpDialog(),
-});
 split(byId("split-columns"), "--side-width", {
   axis: "x",
   least: 380,
@@ -102,7 +92,17 @@ listenToImports(studio, isTyping);
 startAutosave(studio);
 
 const predictAgain = startPredictor(studio);
-const showAgain = fabricview(byId("fabric"), studio);
+/** The 3D view and the plots are heavy: the chart is there to be painted on before they come. */
+let showAgain = () => {};
+void firstPaint().then(async () => {
+  const [{ inspector }, { fabricview }] = await Promise.all([
+    import("./panels/inspector.js"),
+    import("./panels/fabricview.js"),
+  ]);
+  themed.push(inspector(byId("inspector"), studio));
+  byId("fabric").replaceChildren();
+  showAgain = fabricview(byId("fabric"), studio);
+});
 
 const material = new Latest(0);
 const loadMaterial = () =>

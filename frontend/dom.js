@@ -61,3 +61,12 @@ export function isTyping() {
     (active instanceof HTMLInputElement && !["range", "checkbox", "radio"].includes(active.type))
   );
 }
+
+/** Until the page has been seen once; a page in the background waits no longer than a moment. */
+export function firstPaint() {
+  return new Promise((resolve) => {
+    const soon = () => setTimeout(resolve);
+    requestAnimationFrame(() => requestAnimationFrame(soon));
+    setTimeout(soon, 500);
+  });
+}

@@ -3,10 +3,12 @@
  * it. Panels watch the signals and change them; none knows another.
  *
  * @import {Box} from "./core/grid.js"
+ * @import {History} from "./core/history.js"
  * @import {Symmetry} from "./core/ink.js"
  * @import {Overlay} from "./chart/overlays.js"
  * @import {Tool} from "./tools/tool.js"
- * @import {Direction, Material, MaterialSummary, Prediction, Problem, StitchKind, Stretch} from "./types.js"
+ * @import {DesignDocument, DesignLayout, Direction, Material, MaterialSummary, Prediction, Problem,
+ *   StitchKind, Stretch} from "./types.js"
  *
  * @typedef {{value: Prediction | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
  * @typedef {{value: Stretch | null, direction: Direction, busy: boolean, stale: boolean,
@@ -14,12 +16,16 @@
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
+import { Grid } from "./core/grid.js";
 import { FLIP, Ink } from "./core/ink.js";
 import { Signal } from "./core/signal.js";
 import { loadSettings, saveSettings } from "./core/store.js";
 import { ChartDocument } from "./core/document.js";
 import { OVERLAYS } from "./chart/overlays.js";
 import { TOOLS } from "./tools/registry.js";
+
+/** @type {DesignLayout} */
+export const NO_LAYOUT = { outline: null, regions: [], repeats: [], shelf: [] };
 
 const SETTINGS = {
   overlay: "fabrics",
@@ -32,13 +38,16 @@ const SETTINGS = {
 export class Studio {
   /**
    * @param {ChartDocument} document
-   * @param {{id: string, name: string, material: string}} design
+   * @param {{id: string, name: string, material: string, note?: string} & Partial<DesignLayout>} design
    */
   constructor(document, design) {
     const settings = loadSettings(SETTINGS);
     this.document = document;
     this.designId = design.id;
     this.name = new Signal(design.name);
+    this.note = new Signal(design.note ?? "");
+    /** What the design holds beside its chart. @type {Signal<DesignLayout>} */
+    this.layout = new Signal(layoutOf(design));
 
     /** @type {Signal<string>} */
     this.materialId = new Signal(design.material);
@@ -85,6 +94,36 @@ export class Studio {
     this.symbols.listen((symbols) => saveSettings({ symbols }));
     this.tool.listen(({ id }) => saveSettings({ tool: id }));
     this.size.listen((size) => saveSettings({ size }));
+  }
+
+  /** The design as a project file holds it. @returns {DesignDocument} */
+  toDocument() {
+    return {
+      format: "knitcore-design",
+      version: 2,
+      name: this.name.value,
+      material: this.materialId.value,
+      chart: this.document.grid.text,
+      note: this.note.value,
+      ...this.layout.value,
+    };
+  }
+
+  /**
+   * Show another design in place of this one.
+   *
+   * @param {DesignDocument} design
+   * @param {string} id
+   * @param {History} [history] a new one if left out
+   */
+  open(design, id, history) {
+    this.designId = id;
+    this.name.value = design.name;
+    this.note.value = design.note;
+    this.layout.value = layoutOf(design);
+    this.selection.value = null;
+    this.materialId.value = design.material;
+    this.document.open(Grid.fromText(design.chart), history);
   }
 
   /** What the service has to know of the design. */
@@ -148,3 +187,11 @@ export class Studio {
     this.message.value = { kind: "info", title };
   }
 }
+
+/** @param {Partial<DesignLayout>} design @returns {DesignLayout} */
+const layoutOf = ({ outline = null, regions = [], repeats = [], shelf = [] }) => ({
+  outline,
+  regions,
+  repeats,
+  shelf,
+});

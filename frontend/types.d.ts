@@ -115,6 +115,48 @@ export interface View {
   url: string;
 }
 
+/** A part of the chart with a fill or a yarn of its own; later regions lie on top. */
+export interface DesignRegion {
+  id: string;
+  name: string;
+  colour: string;
+  yarn: string | null;
+  fill: string | null;
+  /** [row, column, length] of stitches beside each other; row 0 is the bottom. */
+  runs: [number, number, number][];
+  locked: boolean;
+  hidden: boolean;
+}
+
+/** A motif whose placements all follow it. */
+export interface DesignRepeat {
+  id: string;
+  name: string;
+  motif: string;
+  edge_columns: number;
+  edge_rows: number;
+  placements: { row: number; column: number; rows: number; columns: number }[];
+}
+
+/** What a design holds beside its chart and its names. */
+export interface DesignLayout {
+  outline: string | null;
+  regions: DesignRegion[];
+  repeats: DesignRepeat[];
+  shelf: { name: string; motif: string }[];
+}
+
+/** A design as the project file holds it. */
+export interface DesignDocument extends DesignLayout {
+  format: "knitcore-design";
+  version: 2;
+  name: string;
+  material: string;
+  /** K/P lines, top row first. */
+  chart: string;
+  note: string;
+}
+
 /** Problem details (RFC 9457). */
 export interface Problem {
   type: string;

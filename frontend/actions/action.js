@@ -5,7 +5,7 @@
  * @import {Studio} from "../studio.js"
  * @import {IconName} from "../icons.js"
  *
- * @typedef {{studio: Studio, view: ChartView, open: (dialog: "help" | "palette" | "import" | "resize") => void,
+ * @typedef {{studio: Studio, view: ChartView, open: (panel: import("../panels/later.js").PanelName) => void,
  *   toggleTheme: () => void}} ActionContext
  *
  * @typedef {object} Action

@@ -119,6 +119,19 @@ export class ChartDocument {
     this.#settle();
   }
 
+  /**
+   * Show the chart of another design, with its own history.
+   *
+   * @param {Grid} grid
+   * @param {History} [history]
+   */
+  open(grid, history = new History()) {
+    this.cancel();
+    this.history = history;
+    this.#load(grid);
+    this.#settle();
+  }
+
   /** @returns {string | undefined} what was undone */
   undo() {
     this.cancel();

@@ -1,0 +1,55 @@
+/**
+ * A chart from outside.
+ *
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { importFile, importText } from "../../services/importer.js";
+import { dialog } from "./dialog.js";
+
+/** @param {Studio} studio */
+export function create(studio) {
+  const text = h("textarea", {
+    id: "import-text",
+    class: "import-text",
+    rows: 10,
+    spellcheck: false,
+    placeholder: "KPKPKP\nPKPKPK",
+    "aria-label": "Chart as lines of K and P, top row first",
+  });
+  const problem = h("div", { class: "problem", role: "alert", id: "import-problem", hidden: true });
+  /** @param {Promise<import("../../types.js").Problem | null>} outcome */
+  const settle = async (outcome) => {
+    const wrong = await outcome;
+    problem.hidden = wrong === null;
+    if (wrong) {
+      problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
+    } else element.close();
+  };
+  const file = h("input", {
+    type: "file",
+    id: "import-file",
+    accept: ".txt,.png,text/plain,image/png",
+    class: "visually-hidden",
+    onchange: () => file.files?.[0] && void settle(importFile(studio, file.files[0])),
+  });
+  const element = dialog(
+    "import-dialog",
+    "Import a chart",
+    h("p", { class: "muted" }, "Lines of K and P (or | and •), the top row first, as seen from the face. A text or PNG file (one pixel a stitch, dark = purl) can also be dropped anywhere on the page."),
+    text,
+    problem,
+    h("div", { class: "dialog-buttons" },
+      h("label", { class: "button", for: "import-file" }, "Choose a file …"),
+      file,
+      h("button", { class: "button primary", type: "button", id: "import-apply", onclick: () => void settle(importText(studio, text.value)) }, "Import")),
+  );
+  return () => {
+    problem.hidden = true;
+    text.value = "";
+    element.showModal();
+    text.focus();
+  };
+}

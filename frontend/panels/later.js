@@ -1,0 +1,50 @@
+/**
+ * Panels that most visits do not open: each is loaded when it is opened for the first time. A module
+ * exports `create`, which makes the panel once and returns the function that shows it.
+ *
+ * @import {ActionContext} from "../actions/action.js"
+ * @import {Studio} from "../studio.js"
+ *
+ * @typedef {{create: (studio: Studio, context: ActionContext) => () => void}} PanelModule
+ * @typedef {keyof typeof PANELS} PanelName
+ */
+
+const PANELS = {
+  /** @returns {Promise<PanelModule>} */
+  help: () => import("./dialogs/help.js"),
+  /** @returns {Promise<PanelModule>} */
+  import: () => import("./dialogs/import.js"),
+  /** @returns {Promise<PanelModule>} */
+  palette: () => import("./dialogs/palette.js"),
+  /** @returns {Promise<PanelModule>} */
+  resize: () => import("./dialogs/resize.js"),
+};
+
+/**
+ * @param {Studio} studio
+ * @returns {(name: PanelName, context: ActionContext) => Promise<void>} opens a panel
+ */
+export function panelsForLater(studio) {
+  /** @type {Map<PanelName, () => void>} */
+  const made = new Map();
+  return async (name, context) => {
+    let show = made.get(name);
+    if (!show) {
+      try {
+        show = (await PANELS[name]()).create(studio, context);
+      } catch (error) {
+        if (!(error instanceof TypeError)) throw error; // what import() says when it cannot load
+        studio.tellProblem({
+          type: "offline",
+          status: 0,
+          title: "This panel could not be loaded",
+          detail: "The service cannot be reached, or it has been updated since the page was opened.",
+          remedy: "Your design is safe. Try again in a moment, or reload the page.",
+        });
+        return;
+      }
+      made.set(name, show);
+    }
+    show();
+  };
+}
