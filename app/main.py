@@ -21,6 +21,7 @@ from app.observing import Metrics, Observer
 from app.operations.stretch import warm_up
 from app.page import serve_page
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
+from app.processes import processes
 from app.recent import RecentResults
 from app.schema import install_schema
 from app.security import Guard
@@ -30,6 +31,7 @@ from app.store.schema import migrate
 from app.tokens import Login, Tokens
 from app.viewer import relay
 from app.viewer.views import Views
+from app.work import Place
 
 log = logging.getLogger("knitcore.app")
 
@@ -53,13 +55,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
             os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
         app.state.database = await asyncio.to_thread(_open_database, chosen)
         app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
-        app.state.compute = Compute(
-            chosen.workers, chosen.job_timeout_s, chosen.worker_memory_bytes
-        )
+        app.state.compute = Compute(_places(chosen), chosen.job_timeout_s)
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.viewer_page = relay.viewer_page()
-        app.state.compute.warm_up(warm_up)
         job_store = JobStore(app.state.database, chosen.process_name)
         app.state.jobs = JobRunner(
             job_store, app.state.compute, app.state.recent, chosen.background_timeout_s
@@ -120,6 +119,19 @@ async def _close_idle_views(views: Views) -> None:
         closed = await asyncio.to_thread(views.close_idle)
         if closed:
             log.info("closed %d idle 3D views, %d left", closed, len(views))
+
+
+def _places(settings: Settings) -> list[Place]:
+    """Where heavy work is done."""
+    if settings.scheduler is not None:
+        from app.cluster import Cluster, ClusterPlace  # its library is needed here only
+
+        cluster = Cluster(settings.scheduler)
+        return [ClusterPlace(cluster) for _ in range(settings.workers)]
+    workers = processes(settings.workers, settings.worker_memory_bytes)
+    for worker in workers:
+        worker.warm_up(warm_up)
+    return list(workers)
 
 
 def _open_database(settings: Settings) -> Database:

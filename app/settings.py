@@ -56,12 +56,21 @@ class Settings(BaseSettings):
         ge=1,
         description="Processes for heavy work; one stays free of background jobs.",
     )
+    scheduler: str | None = Field(
+        None,
+        pattern=r"^(tcp|tls)://\S+:\d+$",
+        description="Dask scheduler that does the heavy work instead, such as tcp://host:8786.",
+    )
     job_timeout_s: float = Field(120.0, gt=0, description="Longest run of one computation.")
     background_timeout_s: float = Field(
         1800.0, gt=0, description="Longest run of one job in the background."
     )
     worker_memory_bytes: int = Field(
-        32_000_000_000, ge=500_000_000, description="Most memory of one process for heavy work."
+        default_factory=lambda: max(
+            4_000_000_000, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
+        ),
+        ge=500_000_000,
+        description="Most memory of one process for heavy work; half of the machine's by default.",
     )
     results_max_bytes: int = Field(
         1_000_000_000, ge=0, description="Most room for results of jobs, as they are stored."

@@ -7,7 +7,7 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.compute import AbandonedError, Compute
+from app.compute import Compute
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, content_key
 from app.jobs.store import JobStore
@@ -15,6 +15,7 @@ from app.operations.stretch import StretchRequest, stretch_key
 from app.problems import Problem, ServiceError, problem_of
 from app.recent import RecentResults
 from app.store.database import StoreError
+from app.work import AbandonedError
 
 log = logging.getLogger("knitcore.jobs")
 

@@ -84,3 +84,12 @@ def work(wish: Wish, *, cancelled: Any, progress: Any) -> Answer:
             break
         time.sleep(0.01)
     return Answer(value=42)
+
+
+def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[..., None]) -> int:
+    """Is killed in mid-job the first time; the second time it ends."""
+    progress(1, 2)
+    if not Path(mark).exists():
+        Path(mark).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return os.getpid()

@@ -11,21 +11,17 @@ from pathlib import Path
 import pytest
 
 from app import compute as compute_module
-from app.compute import (
-    AbandonedError,
-    Compute,
-    MemoryLimitError,
-    TimeLimitError,
-    WorkerDiedError,
-)
+from app.compute import Compute
 from app.problems import UnavailableError
+from app.processes import ProcessPlace, processes
+from app.work import AbandonedError, MemoryLimitError, TimeLimitError, WorkerDiedError
 from knitcore import InputError
 from tests.app import jobs
 
 
 @pytest.fixture
 def compute() -> Iterator[Compute]:
-    pool = Compute(workers=1, timeout_s=30.0)
+    pool = Compute(processes(1), timeout_s=30.0)
     yield pool
     pool.close()
 
@@ -70,7 +66,7 @@ def test_a_stubborn_job_costs_its_process_only(
 
 
 def test_a_job_may_not_eat_the_machine() -> None:
-    compute = Compute(workers=1, timeout_s=30.0, memory_bytes=1_000_000_000)
+    compute = Compute(processes(1, memory_bytes=1_000_000_000), timeout_s=30.0)
     try:
         with pytest.raises(MemoryLimitError, match="1 GB"):
             asyncio.run(compute.run(never, jobs.eat, 2_000_000_000))
@@ -80,7 +76,7 @@ def test_a_job_may_not_eat_the_machine() -> None:
 
 
 def test_a_worker_that_dies_costs_its_own_job_only(tmp_path: Path) -> None:
-    compute = Compute(workers=2, timeout_s=30.0)
+    compute = Compute(processes(2), timeout_s=30.0)
     mark = tmp_path / "mark"
 
     async def both() -> str:
@@ -97,15 +93,18 @@ def test_a_worker_that_dies_costs_its_own_job_only(tmp_path: Path) -> None:
         compute.close()
 
 
-def test_a_worker_that_is_killed_while_idle_costs_nothing(compute: Compute) -> None:
+def test_a_worker_that_is_killed_while_idle_costs_nothing() -> None:
+    place = ProcessPlace(4_000_000_000)
+    compute = Compute([place], timeout_s=30.0)
     asyncio.run(compute.run(never, jobs.add, 1, 1))
-    executor = compute.workers[0]._executor
+    executor = place._executor
     (process,) = executor._processes.values()
     os.kill(process.pid, signal.SIGKILL)
     process.join(10)
     while not executor._broken:
         pass
     assert asyncio.run(compute.run(never, jobs.add, 1, 2)) == 3
+    compute.close()
 
 
 def test_progress_is_told_from_zero_upwards(compute: Compute) -> None:

@@ -21,6 +21,7 @@ from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.main import create_app
 from app.problems import NotFoundError
+from app.processes import processes
 from app.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
@@ -48,7 +49,7 @@ def database(tmp_path: Path) -> Iterator[Database]:
 
 @pytest.fixture(scope="module")
 def compute() -> Iterator[Compute]:
-    pool = Compute(workers=2, timeout_s=60)
+    pool = Compute(processes(2), timeout_s=60)
     yield pool
     pool.close()
 

@@ -3,7 +3,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fastapi.testclient import TestClient
+from pydantic import ValidationError
 
+from app.cluster import ClusterPlace
+from app.main import create_app
 from app.settings import Settings
 
 SERVING = Path(__file__).resolve().parents[2] / "docs" / "serving.md"
@@ -32,3 +36,16 @@ def test_loopback_is_known(host: str, loopback: bool) -> None:
 
 def test_no_token_in_what_is_logged() -> None:
     assert "a-long-enough-token" not in repr(Settings(token="a-long-enough-token"))
+
+
+def test_a_scheduler_takes_the_work_away_from_this_machine(tmp_path: Path) -> None:
+    app = create_app(Settings(scheduler="tcp://127.0.0.1:9", workers=3, data_dir=tmp_path))
+    with TestClient(app, base_url="http://127.0.0.1") as client:  # it need not be there yet
+        places = app.state.compute._places
+        assert [type(place) for place in places] == [ClusterPlace] * 3
+        assert client.get("/readyz").status_code == 200
+
+
+def test_a_scheduler_has_an_address() -> None:
+    with pytest.raises(ValidationError, match="scheduler"):
+        Settings(scheduler="somewhere")

@@ -1,0 +1,152 @@
+"""Jobs on a real Dask cluster: a scheduler and two worker processes on loopback."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app import compute as compute_module
+from app.cluster import Cluster, ClusterError, ClusterPlace
+from app.compute import Compute
+from app.work import AbandonedError, TimeLimitError, WorkerDiedError
+from knitcore import InputError
+from tests.app import jobs
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def _dask(name: str, folder: Path, *arguments: str) -> subprocess.Popen[bytes]:
+    with (folder / f"{name}.log").open("w") as log:
+        return subprocess.Popen(
+            [sys.executable, "-m", f"distributed.cli.dask_{name}", "--no-dashboard", *arguments],
+            env=os.environ
+            | {"PYTHONPATH": str(ROOT), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"},
+            stdout=log,
+            stderr=log,
+        )
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    folder = tmp_path_factory.mktemp("dask")
+    file = folder / "scheduler.json"
+    running = [
+        _dask("scheduler", folder, "--host=127.0.0.1", "--port=0", f"--scheduler-file={file}")
+    ]
+    deadline = time.monotonic() + 60
+    while not file.exists() or not file.read_text():
+        assert time.monotonic() < deadline, (folder / "scheduler.log").read_text()
+        time.sleep(0.05)
+    found: str = json.loads(file.read_text())["address"]
+    one = ("--nworkers=2", "--nthreads=1", f"--local-directory={folder}")
+    running.append(_dask("worker", folder, found, *one))
+    yield found
+    for process in reversed(running):
+        process.terminate()
+        process.wait(20)
+
+
+@pytest.fixture(scope="module")
+def compute(address: str) -> Iterator[Compute]:
+    cluster = Cluster(address)
+    yield Compute([ClusterPlace(cluster), ClusterPlace(cluster)], timeout_s=60.0)
+    cluster.close()
+
+
+async def never() -> bool:
+    return False
+
+
+def test_results_errors_and_progress_come_back(compute: Compute) -> None:
+    shares: list[float] = []
+
+    async def told(share: float) -> None:
+        shares.append(share)
+
+    assert asyncio.run(compute.run(never, jobs.add, 2, 3)) == 5
+    with pytest.raises(InputError, match="Use less"):
+        asyncio.run(compute.run(never, jobs.refuse))
+    assert asyncio.run(compute.run(never, jobs.climb, 6, 0.3, told=told)) == 6
+    assert shares == sorted(shares)
+    assert len(set(shares)) >= 3
+    assert 0 <= shares[0] < shares[-1] <= 1
+
+
+def test_an_abandoned_job_and_one_beyond_its_time_are_stopped(
+    compute: Compute, tmp_path: Path
+) -> None:
+    mark = tmp_path / "mark"
+    begun: list[float] = []
+
+    async def told(share: float) -> None:
+        begun.append(share)
+
+    async def once_begun() -> bool:
+        return bool(begun)
+
+    with pytest.raises(AbandonedError):
+        asyncio.run(compute.run(once_begun, jobs.until_cancelled, str(mark), told=told))
+    assert mark.read_text() == "stopped"
+    mark.unlink()
+    with pytest.raises(TimeLimitError):
+        asyncio.run(compute.run(never, jobs.until_cancelled, str(mark), timeout_s=0.2))
+    assert mark.read_text() == "stopped"
+
+
+def test_a_worker_killed_in_mid_job_costs_a_retry(compute: Compute, tmp_path: Path) -> None:
+    """The other worker goes on with its own job, and takes this one over."""
+    mark, done = tmp_path / "mark", tmp_path / "done"
+
+    async def both() -> tuple[str, int]:
+        other = asyncio.create_task(compute.run(never, jobs.until_told, str(done), "alive"))
+        retried = await compute.run(never, jobs.die_once, str(mark))
+        done.touch()
+        return await other, retried
+
+    alive, process = asyncio.run(both())
+    assert alive == "alive"
+    assert mark.exists()
+    assert process != os.getpid()
+
+
+def test_a_job_that_kills_its_workers_fails_alone(compute: Compute) -> None:
+    with pytest.raises(WorkerDiedError, match="lost"):
+        asyncio.run(compute.run(never, jobs.die))
+    assert asyncio.run(compute.run(never, jobs.add, 20, 22)) == 42
+
+
+def test_a_stubborn_job_costs_its_process_only(
+    compute: Compute, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compute_module, "GRACE_S", 0.2)
+    with pytest.raises(TimeLimitError):
+        asyncio.run(compute.run(never, jobs.stubborn, 600.0, timeout_s=0.2))
+    pair = asyncio.run(_two(compute))
+    assert pair == [4, 6]
+
+
+async def _two(compute: Compute) -> list[int]:
+    """Both workers are free again."""
+    runs = (compute.run(never, jobs.add, n, n) for n in (2, 3))
+    return await asyncio.gather(*runs)
+
+
+def test_a_cluster_that_is_away_is_said_and_found_again(
+    address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.cluster.CONNECT_S", 0.5)
+    cluster = Cluster("tcp://127.0.0.1:9")
+    compute = Compute([ClusterPlace(cluster)], timeout_s=60.0)
+    with pytest.raises(ClusterError, match="cannot be reached"):
+        asyncio.run(compute.run(never, jobs.add, 1, 1))
+    monkeypatch.setattr(cluster, "_address", address)
+    assert asyncio.run(compute.run(never, jobs.add, 1, 1)) == 2
+    cluster.close()
