@@ -48,7 +48,8 @@ def yarn_for(of: Material, chart: StitchChart) -> ChartYarn:
         If the material has no loop length, or neither a diameter nor a bending modulus.
     """
     shares = phase_shares(chart)
-    tuned = {s.fabric: s for s in load_samples() if s.yarn_id == of.identifier}
+    yarn_id = of.identifier.partition(":")[0]  # variants are of the same yarn
+    tuned = {s.fabric: s for s in load_samples() if s.yarn_id == yarn_id}
     if tuned:
         parts = [(share, tuned[f].yarn, tuned[f].loop_length_mm) for f, share in shares.items()]
         words = "simulation parameters of the paper (Supplementary Table 7)"
