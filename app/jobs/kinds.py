@@ -9,14 +9,7 @@ from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.atlas import (
-    AtlasRequest,
-    AtlasResult,
-    FindRequest,
-    FindResult,
-    run_atlas,
-    run_find,
-)
+from app.operations.atlas import AtlasRequest, AtlasResult, run_atlas
 from app.operations.curve import CurveRequest, CurveResult, run_curve
 from app.operations.field import (
     CalibrateRequest,
@@ -27,6 +20,7 @@ from app.operations.field import (
     run_compare,
 )
 from app.operations.fill import FillRequest, FillResult, run_fill
+from app.operations.find import FindRequest, FindResult, run_find
 from app.operations.fit import FitRequest, FitResult, run_fit
 from app.operations.measure import (
     BendingRequest,

@@ -19,6 +19,9 @@ from app.work import AbandonedError
 
 log = logging.getLogger("knitcore.jobs")
 
+BEAT_S = 2.0
+"""How often other processes hear of this one's jobs, and it of what they cancelled."""
+BEATS_TO_LOOK_ROUND = 10
 STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
 """A database that is away for half a minute costs no result."""
 
@@ -51,12 +54,12 @@ class JobRunner:
         self._timeout_s = timeout_s
         self._runs: dict[str, _Run] = {}
         self._stopping = False
+        self._heart: asyncio.Task[None] | None = None
 
     async def resume(self) -> None:
         """After a start: go on with what waited, and say of the rest that it was interrupted."""
-        for job, owner in await asyncio.to_thread(self.store.adopt):
-            kind, request = await asyncio.to_thread(self.store.request_of, owner, job)
-            self._start(job, owner, kind, request)
+        await self._go_on(await asyncio.to_thread(self.store.adopt))
+        self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
 
     async def submit(self, owner: str, kind: str, request: str) -> JobStatus:
         """Take a job on; if its result is known, it is done at once."""
@@ -99,9 +102,34 @@ class JobRunner:
         """Put what runs back in line for the next start."""
         self._stopping = True
         tasks = [run.task for run in self._runs.values()]
+        if self._heart is not None:
+            tasks.append(self._heart)
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _go_on(self, waiting: list[tuple[str, str]]) -> None:
+        for job, owner in waiting:
+            kind, request = await asyncio.to_thread(self.store.request_of, owner, job)
+            self._start(job, owner, kind, request)
+
+    async def _beat(self) -> None:
+        """Share with the other processes of this service, until it stops."""
+        beats = 0
+        while True:
+            await asyncio.sleep(BEAT_S)
+            try:
+                shares = {job: run.progress for job, run in self._runs.items()}
+                for job in await asyncio.to_thread(self.store.beat, shares):
+                    if job in self._runs:
+                        self._runs[job].cancelled = True
+                beats += 1
+                if beats == BEATS_TO_LOOK_ROUND:
+                    beats = 0
+                    await self._go_on(await asyncio.to_thread(self.store.adopt_orphans))
+            except ServiceError as error:
+                log.warning("the other processes cannot be told of the jobs here: %s", error)
+                beats = 0  # after an outage nobody was seen for a while: first let them tell
 
     def _start(self, job: str, owner: str, kind: str, request: str) -> None:
         task = asyncio.create_task(self._work(job, owner, kind, request), name=f"job {job}")

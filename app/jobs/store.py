@@ -4,9 +4,21 @@ from __future__ import annotations
 
 import gzip
 import secrets
+from collections.abc import Mapping
 from typing import Any
 
-from sqlalchemy import Connection, Row, func, insert, select, tuple_, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Row,
+    and_,
+    bindparam,
+    func,
+    insert,
+    select,
+    tuple_,
+    update,
+)
 
 from app.designs.store import moment, now
 from app.jobs.document import JobPage, JobState, JobStatus
@@ -17,6 +29,8 @@ from knitcore.errors import InputError
 
 OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
+ORPHANED_S = 60.0
+"""A process that was not seen for so long is gone; the others look after its jobs."""
 INTERRUPTED = Problem(
     type="interrupted",
     title="The service stopped in the middle of this job",
@@ -51,6 +65,7 @@ class JobStore:
             "key": key,
             "state": state.value,
             "created_at": at,
+            "seen_at": at,
             "finished_at": at if state.is_final else None,
         }
 
@@ -99,7 +114,7 @@ class JobStore:
 
     def wait_again(self, job: str) -> bool:
         """A running job goes back in line."""
-        return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None)
+        return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None, progress=0.0)
 
     def end(self, job: str, state: JobState, problem: Problem | None = None) -> bool:
         """Close an open job; False if it was closed before."""
@@ -122,12 +137,18 @@ class JobStore:
 
     def adopt(self) -> list[tuple[str, str]]:
         """After a start: interrupt what ran when the service went; (id, owner) of what waits."""
+        return self._take(jobs.c.process == self._process)
 
+    def adopt_orphans(self) -> list[tuple[str, str]]:
+        """The same for jobs of other processes that have not been seen for a while."""
+        gone = jobs.c.seen_at < now() - ORPHANED_S
+        return self._take(and_(jobs.c.process != self._process, gone))
+
+    def _take(self, which: ColumnElement[bool]) -> list[tuple[str, str]]:
         def action(connection: Connection) -> list[tuple[str, str]]:
-            mine = jobs.c.process == self._process
             connection.execute(
                 update(jobs)
-                .where(mine, jobs.c.state == JobState.RUNNING.value)
+                .where(which, jobs.c.state == JobState.RUNNING.value)
                 .values(
                     state=JobState.INTERRUPTED.value,
                     problem=INTERRUPTED.model_dump_json(),
@@ -135,11 +156,39 @@ class JobStore:
                 )
             )
             waiting = connection.execute(
-                select(jobs.c.id, jobs.c.owner)
-                .where(mine, jobs.c.state == JobState.WAITING.value)
-                .order_by(jobs.c.created_at)
+                update(jobs)
+                .where(which, jobs.c.state == JobState.WAITING.value)
+                .values(process=self._process, seen_at=now())
+                .returning(jobs.c.id, jobs.c.owner, jobs.c.created_at)
             )
-            return [(row.id, row.owner) for row in waiting]
+            rows = sorted(waiting, key=lambda row: row.created_at)
+            return [(row.id, row.owner) for row in rows]
+
+        return self._database.write(action)
+
+    def beat(self, shares: Mapping[str, float]) -> set[str]:
+        """Tell the other processes how far this one's open jobs are, and that it lives.
+
+        Returns those that are not open any more: they were cancelled through another process, or
+        taken over by one that believed this one dead.
+        """
+
+        def action(connection: Connection) -> set[str]:
+            told = (
+                update(jobs)
+                .where(
+                    jobs.c.id == bindparam("job"),
+                    jobs.c.process == self._process,
+                    jobs.c.state.in_(OPEN),
+                )
+                .values(progress=bindparam("share"), seen_at=now())
+                .returning(jobs.c.id)
+            )
+            open_ = (
+                connection.execute(told, {"job": job, "share": share}).scalar()
+                for job, share in shares.items()
+            )
+            return set(shares) - {job for job in open_ if job is not None}
 
         return self._database.write(action)
 
@@ -216,7 +265,7 @@ def _status(row: Row[Any]) -> JobStatus:
         id=row.id,
         kind=row.kind,
         state=state,
-        progress=1.0 if state is JobState.DONE else 0.0,
+        progress=1.0 if state is JobState.DONE else row.progress,
         problem=None if row.problem is None else Problem.model_validate_json(row.problem),
         created_at=moment(row.created_at),
         started_at=None if row.started_at is None else moment(row.started_at),

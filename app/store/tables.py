@@ -96,6 +96,8 @@ jobs = Table(
     Column("created_at", Float, nullable=False),
     Column("started_at", Float),
     Column("finished_at", Float),
+    Column("progress", Float, nullable=False, server_default="0"),
+    Column("seen_at", Float, nullable=False, server_default="0"),  # when its process lived
     Index(None, "owner", "created_at", "id"),
     Index(None, "process", "state"),
 )

@@ -1,0 +1,136 @@
+"""Several processes of one service: each knows, cancels and survives the others' jobs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from app.compute import Compute
+from app.jobs import runner as runner_module
+from app.jobs import store as store_module
+from app.jobs.document import JobState
+from app.jobs.kinds import KINDS, JobKind
+from app.jobs.runner import JobRunner
+from app.jobs.store import JobStore
+from app.processes import processes
+from app.recent import RecentResults
+from app.store.database import Database, StoreError
+from tests.app.jobs import Answer, Wish, work
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(KINDS, "work", JobKind(Wish, Answer, work))
+    monkeypatch.setattr(runner_module, "BEAT_S", 0.05)
+
+
+@pytest.fixture(scope="module")
+def compute() -> Iterator[Compute]:
+    pool = Compute(processes(1), timeout_s=60)
+    yield pool
+    pool.close()
+
+
+def _runner(database: Database, compute: Compute, name: str) -> JobRunner:
+    return JobRunner(JobStore(database, name), compute, RecentResults(), 60.0)
+
+
+async def _until(true: Callable[[], Awaitable[bool]]) -> None:
+    async with asyncio.timeout(30):
+        while not await true():
+            await asyncio.sleep(0.02)
+
+
+def _wish(what: str, mark: Path | str = "/nonexistent") -> str:
+    return Wish(what=what, mark=str(mark)).model_dump_json()
+
+
+def test_another_process_sees_the_progress_and_cancels(
+    database: Database, compute: Compute
+) -> None:
+    async def scenario() -> None:
+        here, there = (_runner(database, compute, name) for name in ("here", "there"))
+        await here.resume()
+        await there.resume()
+        job = (await here.submit("ada", "work", _wish("wait"))).id
+
+        async def told() -> bool:
+            return (await there.status("ada", job)).progress == 0.25
+
+        await _until(told)
+        assert (await there.cancel("ada", job)).state is JobState.CANCELLED
+
+        async def stopped() -> bool:
+            return here.counts()["running"] == 0
+
+        await _until(stopped)
+        assert (await here.status("ada", job)).state is JobState.CANCELLED
+        await here.close()
+        await there.close()
+
+    asyncio.run(scenario())
+
+
+def test_jobs_of_a_process_that_is_gone_are_taken_over(
+    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> None:
+        gone, alive = JobStore(database, "gone"), JobStore(database, "alive")
+        monkeypatch.setattr(store_module, "now", lambda: 1000.0)
+        ran = gone.add("ada", "work", _wish("wait"), "k1", JobState.WAITING)
+        assert gone.begin(ran.id)
+        waited = gone.add("ada", "work", _wish("answer"), "k2", JobState.WAITING)
+        monkeypatch.setattr(store_module, "now", lambda: 1055.0)
+        theirs = alive.add("ada", "work", _wish("wait"), "k1", JobState.WAITING)
+        assert alive.begin(theirs.id)
+        monkeypatch.setattr(store_module, "now", lambda: 1070.0)
+        runner = _runner(database, compute, "here")
+        await runner.resume()
+
+        async def done() -> bool:
+            return (await runner.status("ada", waited.id)).state is JobState.DONE
+
+        await _until(done)
+        assert (await runner.status("ada", ran.id)).state is JobState.INTERRUPTED
+        assert (await runner.status("ada", theirs.id)).state is JobState.RUNNING
+        assert gone.beat({ran.id: 0.5, waited.id: 0.5}) == {ran.id, waited.id}
+        assert alive.beat({theirs.id: 0.5}) == set()
+        await runner.close()
+
+    asyncio.run(scenario())
+
+
+def test_after_an_outage_nobody_is_taken_for_dead_at_once(
+    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> list[str]:
+        runner = _runner(database, compute, "here")
+        calls: list[str] = []
+        real = runner.store.beat
+
+        def beat(shares: dict[str, float]) -> set[str]:
+            calls.append("beat")
+            if len(calls) == runner_module.BEATS_TO_LOOK_ROUND:
+                raise StoreError("away")
+            return real(shares)
+
+        def look_round() -> list[tuple[str, str]]:
+            calls.append("look round")
+            return []
+
+        monkeypatch.setattr(runner.store, "beat", beat)
+        monkeypatch.setattr(runner.store, "adopt_orphans", look_round)
+        await runner.resume()
+
+        async def looked() -> bool:
+            return "look round" in calls
+
+        await _until(looked)
+        await runner.close()
+        return calls
+
+    calls = asyncio.run(scenario())
+    assert calls.index("look round") == 2 * runner_module.BEATS_TO_LOOK_ROUND
