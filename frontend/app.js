@@ -32,7 +32,7 @@ const FIRST_STRAIN = 0.3;
 
 const kept = loadDesign();
 const chart = kept
-  ? new ChartDocument(Grid.fromText(kept.chart), loadHistory())
+  ? ChartDocument.read(kept, loadHistory())
   : new ChartDocument(exampleGrid());
 const studio = new Studio(
   chart,

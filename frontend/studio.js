@@ -7,8 +7,8 @@
  * @import {Symmetry} from "./core/ink.js"
  * @import {Overlay} from "./chart/overlays.js"
  * @import {Tool} from "./tools/tool.js"
- * @import {DesignDocument, DesignLayout, Direction, Material, MaterialSummary, Prediction, Problem,
- *   StitchKind, Stretch} from "./types.js"
+ * @import {DesignDocument, Direction, Material, MaterialSummary, Prediction, Problem, StitchKind,
+ *   Stretch} from "./types.js"
  *
  * @typedef {{value: Prediction | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
  * @typedef {{value: Stretch | null, direction: Direction, busy: boolean, stale: boolean,
@@ -16,16 +16,12 @@
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
-import { Grid } from "./core/grid.js";
 import { FLIP, Ink } from "./core/ink.js";
 import { Signal } from "./core/signal.js";
 import { loadSettings, saveSettings } from "./core/store.js";
 import { ChartDocument } from "./core/document.js";
 import { OVERLAYS } from "./chart/overlays.js";
 import { TOOLS } from "./tools/registry.js";
-
-/** @type {DesignLayout} */
-export const NO_LAYOUT = { outline: null, regions: [], repeats: [], shelf: [] };
 
 const SETTINGS = {
   overlay: "fabrics",
@@ -38,7 +34,7 @@ const SETTINGS = {
 export class Studio {
   /**
    * @param {ChartDocument} document
-   * @param {{id: string, name: string, material: string, note?: string} & Partial<DesignLayout>} design
+   * @param {{id: string, name: string, material: string, note?: string}} design
    */
   constructor(document, design) {
     const settings = loadSettings(SETTINGS);
@@ -46,8 +42,6 @@ export class Studio {
     this.designId = design.id;
     this.name = new Signal(design.name);
     this.note = new Signal(design.note ?? "");
-    /** What the design holds beside its chart. @type {Signal<DesignLayout>} */
-    this.layout = new Signal(layoutOf(design));
 
     /** @type {Signal<string>} */
     this.materialId = new Signal(design.material);
@@ -103,9 +97,8 @@ export class Studio {
       version: 2,
       name: this.name.value,
       material: this.materialId.value,
-      chart: this.document.grid.text,
       note: this.note.value,
-      ...this.layout.value,
+      ...this.document.content,
     };
   }
 
@@ -120,10 +113,9 @@ export class Studio {
     this.designId = id;
     this.name.value = design.name;
     this.note.value = design.note;
-    this.layout.value = layoutOf(design);
     this.selection.value = null;
     this.materialId.value = design.material;
-    this.document.open(Grid.fromText(design.chart), history);
+    this.document.open(design, history);
   }
 
   /** What the service has to know of the design. */
@@ -187,11 +179,3 @@ export class Studio {
     this.message.value = { kind: "info", title };
   }
 }
-
-/** @param {Partial<DesignLayout>} design @returns {DesignLayout} */
-const layoutOf = ({ outline = null, regions = [], repeats = [], shelf = [] }) => ({
-  outline,
-  regions,
-  repeats,
-  shelf,
-});

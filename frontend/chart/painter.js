@@ -8,6 +8,7 @@
  */
 
 import { inked } from "../core/ink.js";
+import { Brush } from "../core/stroke.js";
 
 /** @type {Cell} */
 const CORNER = [0, 0];
@@ -128,7 +129,7 @@ export class Painter {
     });
     const origin = tool.origin?.(gesture) ?? CORNER;
     studio.document.paint(
-      inked(grid, cells, this.#ink, origin, studio.symmetry.value),
+      Brush.of(grid.purl.length, inked(grid, cells, this.#ink, origin, studio.symmetry.value)),
       tool.mode === "shape",
     );
   }

@@ -131,6 +131,11 @@ export class Grid {
     );
   }
 
+  /** Turned by half a turn in its plane. */
+  rotated() {
+    return this.mirrored().flipped();
+  }
+
   /** Every knit a purl and every purl a knit. */
   swapped() {
     return new Grid(this.rows, this.columns, this.purl.map((p) => 1 - p));

@@ -1,40 +1,26 @@
 /**
- * Undo and redo as deltas. A stitch is K or P, so a stroke is the set of stitches that it flipped,
- * and flipping them again takes it back; only a change of size keeps the two charts.
+ * Undo and redo as deltas. Bitmaps (stitches, outline, a region's cells, a motif) are flipped, and
+ * flipping again takes it back; lists are exchanged, naming by id what stayed; only a change of size
+ * keeps both charts.
  *
- * @typedef {{label: string, runs: number[]}} FlipStep stitches as [start, length, start, length, …]
- * @typedef {{label: string, before: string, after: string}} ReplaceStep
- * @typedef {FlipStep | ReplaceStep} Step
+ * @import {RegionItem, RepeatItem, ShelfItem} from "./design.js"
+ *
+ * @typedef {{on: string, runs: number[]}} FlipPatch on "stitches", "outline", "region:ID", "motif:ID";
+ *   [start, length, start, length, …]
+ * @typedef {RegionItem | RepeatItem | ShelfItem | string} Entry a string is the id of what stays
+ * @typedef {{list: "regions" | "repeats" | "shelf", before: Entry[], after: Entry[]}} ListPatch
+ * @typedef {{rows: number, columns: number, stitches: string, outline: string | null,
+ *   regions: RegionItem[], repeats: RepeatItem[], shelf?: ShelfItem[]}} Snapshot bitmaps are packed
+ * @typedef {{before: Snapshot, after: Snapshot}} WholePatch
+ * @typedef {FlipPatch | ListPatch | WholePatch} Patch
+ * @typedef {{label: string, patches: Patch[]}} Step
  */
+
+import { pack } from "./bits.js";
+import { Grid } from "./grid.js";
 
 /** Steps beyond this number are forgotten. */
 const MAX_STEPS = 500;
-
-/**
- * @param {Iterable<number>} indices
- * @returns {number[]}
- */
-export function toRuns(indices) {
-  const sorted = Uint32Array.from(indices).sort();
-  /** @type {number[]} */
-  const runs = [];
-  for (const i of sorted) {
-    const end = runs.length && runs[runs.length - 2] + runs[runs.length - 1];
-    if (runs.length && i === end) runs[runs.length - 1]++;
-    else runs.push(i, 1);
-  }
-  return runs;
-}
-
-/**
- * @param {number[]} runs
- * @returns {Generator<number>}
- */
-export function* fromRuns(runs) {
-  for (let k = 0; k < runs.length; k += 2) {
-    for (let i = runs[k]; i < runs[k] + runs[k + 1]; i++) yield i;
-  }
-}
 
 export class History {
   /**
@@ -86,9 +72,28 @@ export class History {
   static parse(json) {
     try {
       const { done, undone } = JSON.parse(json ?? "");
-      return Array.isArray(done) && Array.isArray(undone) ? new History(done, undone) : new History();
+      return new History(done.map(migrated), undone.map(migrated));
     } catch {
       return new History(); // none kept, or spoilt: the chart itself is kept apart
     }
   }
+}
+
+/**
+ * A step as it is written now; earlier pages kept only flips of stitches and whole charts.
+ *
+ * @param {Step | {label: string, runs: number[]} | {label: string, before: string, after: string}} step
+ * @returns {Step}
+ */
+function migrated(step) {
+  if ("patches" in step) return step;
+  const { label } = step;
+  if ("runs" in step) return { label, patches: [{ on: "stitches", runs: step.runs }] };
+  return { label, patches: [{ before: bare(step.before), after: bare(step.after) }] };
+}
+
+/** @param {string} chart @returns {Snapshot} */
+function bare(chart) {
+  const { rows, columns, purl } = Grid.fromText(chart);
+  return { rows, columns, stitches: pack(purl), outline: null, regions: [], repeats: [] };
 }

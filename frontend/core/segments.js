@@ -32,17 +32,18 @@ export const QUARTERS = Array.from({ length: 16 }, (_, code) => {
  * @param {Grid} grid
  * @param {Uint8Array} codes one for each stitch
  * @param {Box} [box]
+ * @param {Uint8Array | null} [outline] 0 where there is no stitch: an edge, too
  */
-export function updateSurroundings(grid, codes, { row0, column0, row1, column1 } = grid.box) {
+export function updateSurroundings(grid, codes, box = grid.box, outline = null) {
   const { rows, columns, purl } = grid;
-  for (let row = row0; row < row1; row++) {
-    for (let column = column0; column < column1; column++) {
+  for (let row = box.row0; row < box.row1; row++) {
+    for (let column = box.column0; column < box.column1; column++) {
       const i = row * columns + column;
       const own = purl[i];
-      const right = column + 1 < columns ? purl[i + 1] ^ own : -1;
-      const left = column > 0 ? purl[i - 1] ^ own : Math.max(right, 0);
-      const above = row + 1 < rows ? purl[i + columns] ^ own : -1;
-      const below = row > 0 ? purl[i - columns] ^ own : Math.max(above, 0);
+      const right = column + 1 < columns && outline?.[i + 1] !== 0 ? purl[i + 1] ^ own : -1;
+      const left = column > 0 && outline?.[i - 1] !== 0 ? purl[i - 1] ^ own : Math.max(right, 0);
+      const above = row + 1 < rows && outline?.[i + columns] !== 0 ? purl[i + columns] ^ own : -1;
+      const below = row > 0 && outline?.[i - columns] !== 0 ? purl[i - columns] ^ own : Math.max(above, 0);
       codes[i] =
         left * LEFT +
         (right < 0 ? left : right) * RIGHT +
@@ -54,11 +55,12 @@ export function updateSurroundings(grid, codes, { row0, column0, row1, column1 }
 
 /**
  * @param {Grid} grid
+ * @param {Uint8Array | null} [outline]
  * @returns {Uint8Array}
  */
-export function surroundings(grid) {
+export function surroundings(grid, outline = null) {
   const codes = new Uint8Array(grid.purl.length);
-  updateSurroundings(grid, codes);
+  updateSurroundings(grid, codes, grid.box, outline);
   return codes;
 }
 

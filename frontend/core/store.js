@@ -2,14 +2,12 @@
  * What the browser keeps: the design and the page's settings. Written after every step, so a reload,
  * a crash of the service or a failed request loses nothing.
  *
- * @typedef {object} Design
- * @property {string} id
- * @property {string} name
- * @property {string} material
- * @property {string} chart K/P lines, top row first
+ * @import {Content} from "./design.js"
+ *
+ * @typedef {{id: string, name: string, material: string, note?: string} & Content} Design
  */
 
-import { isChartText } from "./grid.js";
+import { salvageContent } from "./design.js";
 import { History } from "./history.js";
 
 const DESIGN = "knitcore.design";
@@ -21,7 +19,8 @@ const HISTORY_LIMIT = 1_000_000;
 export function loadDesign() {
   try {
     const design = JSON.parse(localStorage.getItem(DESIGN) ?? "null");
-    return design && typeof design.id === "string" && isChartText(design.chart) ? design : null;
+    const content = design && typeof design.id === "string" ? salvageContent(design) : null;
+    return content && { ...design, ...content };
   } catch {
     return null; // nothing kept, or storage is closed to us
   }

@@ -18,10 +18,9 @@ export function startAutosave(studio) {
     clearTimeout(timer);
     timer = undefined;
     delete root.dataset.unsaved;
-    const { document: chart, designId, name, materialId } = studio;
     const kept = saveDesign(
-      { id: designId, name: name.value, material: materialId.value, chart: chart.grid.text },
-      chart.history,
+      { id: studio.designId, ...studio.toDocument() },
+      studio.document.history,
     );
     if (!kept && !warned) {
       warned = true;

@@ -2,20 +2,25 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { ChartDocument } from "../core/document.js";
 import { Grid } from "../core/grid.js";
-import { History, fromRuns, toRuns } from "../core/history.js";
+import { flip, pack, toRuns, unpack } from "../core/bits.js";
+import { History } from "../core/history.js";
 import { surroundings } from "../core/segments.js";
+import { Brush } from "../core/stroke.js";
 import { random } from "./random.js";
 
 /** @param {ChartDocument} chart @param {[number, number][]} cells @param {boolean} [fresh] */
 function stroke(chart, cells, fresh = false) {
   chart.begin();
-  chart.paint(new Map(cells), fresh);
+  chart.paint(Brush.of(chart.grid.purl.length, cells), fresh);
   chart.commit("Pencil");
 }
 
-test("runs hold a set of stitches", () => {
-  assert.deepEqual(toRuns([5, 3, 4, 9]), [3, 3, 9, 1]);
-  assert.deepEqual([...fromRuns([3, 3, 9, 1])], [3, 4, 5, 9]);
+test("runs and packed text hold a bitmap", () => {
+  const bitmap = Uint8Array.of(0, 0, 0, 1, 1, 1, 0, 0, 0, 1);
+  assert.deepEqual(toRuns(bitmap), [3, 3, 9, 1]);
+  assert.deepEqual(unpack(pack(bitmap), 10), bitmap);
+  flip(bitmap, [3, 3, 9, 1]);
+  assert.equal(bitmap.indexOf(1), -1);
 });
 
 test("a stroke is one step; undo and redo go to and fro", () => {
@@ -37,9 +42,9 @@ test("a stroke is one step; undo and redo go to and fro", () => {
 test("a shape being dragged leaves only its last form", () => {
   const chart = new ChartDocument(Grid.fromText("PKK"));
   chart.begin();
-  chart.paint(new Map([[0, 1], [1, 1], [2, 1]]), true);
+  chart.paint(Brush.of(3, [[0, 1], [1, 1], [2, 1]]), true);
   assert.equal(chart.grid.text, "PPP");
-  chart.paint(new Map([[0, 0], [1, 1]]), true);
+  chart.paint(Brush.of(3, [[0, 0], [1, 1]]), true);
   assert.equal(chart.grid.text, "KPK");
   chart.commit("Rectangle");
   chart.undo();
@@ -50,7 +55,7 @@ test("a stroke that changes nothing, and one that is given up, are no steps", ()
   const chart = new ChartDocument(Grid.fromText("PK"));
   stroke(chart, [[0, 1]]);
   chart.begin();
-  chart.paint(new Map([[1, 1]]), false);
+  chart.paint(Brush.of(2, [[1, 1]]), false);
   chart.cancel();
   assert.equal(chart.grid.text, "PK");
   assert.equal(chart.history.done.length, 0);

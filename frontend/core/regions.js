@@ -1,0 +1,88 @@
+/**
+ * Named parts of the chart. Later regions lie on top of earlier ones.
+ *
+ * @import {RegionItem} from "./design.js"
+ */
+
+import { rowRuns } from "./bits.js";
+import { motifGrid, motifText } from "./motif.js";
+import { Grid } from "./grid.js";
+
+/**
+ * @typedef {object} RegionLook
+ * @property {string} name
+ * @property {string} colour #rrggbb
+ * @property {string | null} yarn of intarsia; null is the main yarn
+ * @property {Grid | null} fill repeat that fills it, laid from the chart's corner
+ * @property {boolean} locked its stitches cannot be painted
+ * @property {boolean} hidden its outline is not drawn
+ */
+
+/** The look never changes: {@link Region.with} makes another one. The cells do, while painting. */
+export class Region {
+  /**
+   * @param {string} id
+   * @param {RegionLook} look
+   * @param {Uint8Array} cells 1 where the stitch belongs to the region
+   */
+  constructor(id, look, cells) {
+    this.id = id;
+    this.name = look.name;
+    this.colour = look.colour;
+    this.yarn = look.yarn;
+    this.fill = look.fill;
+    this.locked = look.locked;
+    this.hidden = look.hidden;
+    this.cells = cells;
+  }
+
+  /** The same stitches, told apart otherwise. @param {Partial<RegionLook>} changes */
+  with(changes) {
+    return new Region(this.id, { ...this, ...changes }, this.cells);
+  }
+
+  /** @param {Uint8Array} cells */
+  withCells(cells) {
+    return new Region(this.id, this, cells);
+  }
+
+  get count() {
+    let count = 0;
+    for (const cell of this.cells) count += cell;
+    return count;
+  }
+
+  /**
+   * The stitch that its fill puts at a place.
+   *
+   * @param {number} row
+   * @param {number} column
+   */
+  filling(row, column) {
+    const fill = /** @type {Grid} */ (this.fill);
+    return fill.purl[(row % fill.rows) * fill.columns + (column % fill.columns)];
+  }
+
+  /**
+   * @param {RegionItem} item
+   * @param {number} rows
+   * @param {number} columns
+   */
+  static read(item, rows, columns) {
+    const cells = new Uint8Array(rows * columns);
+    for (const [row, column, length] of item.runs) {
+      cells.fill(1, row * columns + column, row * columns + column + length);
+    }
+    return new Region(item.id, { ...item, fill: item.fill === null ? null : motifGrid(item.fill) }, cells);
+  }
+
+  /**
+   * @param {number} columns
+   * @returns {RegionItem}
+   */
+  written(columns) {
+    const { id, name, colour, yarn, fill, locked, hidden } = this;
+    const runs = rowRuns(this.cells, columns);
+    return { id, name, colour, yarn, fill: fill && motifText(fill), runs, locked, hidden };
+  }
+}
