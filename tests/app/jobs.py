@@ -11,6 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from app.jobs.kinds import KINDS
 from knitcore import InputError
 
 
@@ -93,3 +94,18 @@ def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[...
         Path(mark).touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return os.getpid()
+
+
+def killed_in_the_middle(kind: str, request: BaseModel, **given: Any) -> Any:
+    """The operation of a kind, whose process is killed while it works.
+
+    It dies when the operation first looks whether it was cancelled; one that is too short to look
+    dies before it can answer.
+    """
+
+    def kill(*_: Any) -> bool:
+        os.kill(os.getpid(), signal.SIGKILL)
+        return False
+
+    KINDS[kind].function(request, cancelled=kill)
+    return kill()

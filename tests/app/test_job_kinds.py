@@ -1,0 +1,94 @@
+"""Every kind of job: it answers, and a worker killed in the middle of it costs that job only."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.compute import Compute
+from app.jobs.document import JobState, JobStatus
+from app.jobs.kinds import KINDS
+from app.jobs.runner import JobRunner
+from app.jobs.store import JobStore
+from app.processes import processes
+from app.recent import RecentResults
+from app.store.database import Database
+from app.store.schema import migrate
+from tests.app.job_requests import job_requests
+from tests.app.jobs import killed_in_the_middle
+
+SLOW = frozenset({"relax", "sweep", "characterise"})
+"""Their own tests wait for what they answer."""
+
+
+@pytest.fixture(scope="module")
+def requests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
+    return job_requests(tmp_path_factory.mktemp("requests"))
+
+
+@pytest.fixture(scope="module")
+def compute() -> Iterator[Compute]:
+    pool = Compute(processes(1), timeout_s=60)
+    yield pool
+    pool.close()
+
+
+@pytest.fixture
+def runner(tmp_path: Path, compute: Compute) -> Iterator[JobRunner]:
+    database = Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")
+    migrate(database)
+    yield JobRunner(JobStore(database, "main"), compute, RecentResults(), 60.0)
+    database.close()
+
+
+async def _ended(runner: JobRunner, job: str) -> JobStatus:
+    async with asyncio.timeout(60):
+        while not (status := await runner.status("ada", job)).state.is_final:
+            await asyncio.sleep(0.02)
+    return status
+
+
+def test_every_kind_is_tried(requests: dict[str, dict[str, Any]]) -> None:
+    assert set(requests) == set(KINDS)
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_a_worker_killed_in_mid_job_costs_that_job_only(
+    runner: JobRunner,
+    requests: dict[str, dict[str, Any]],
+    kind: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    described = KINDS[kind]
+    request = described.request.model_validate(requests[kind]).model_dump_json()
+
+    async def scenario() -> None:
+        with monkeypatch.context() as patch:
+            deadly = vars(described) | {"function": partial(killed_in_the_middle, kind)}
+            patch.setitem(KINDS, kind, type(described)(**deadly))
+            job = await runner.submit("ada", kind, request)
+            other = await runner.submit("ada", "curve", _curve(requests))
+            failed = await _ended(runner, job.id)
+        assert failed.state is JobState.FAILED
+        assert failed.problem is not None
+        assert "died" in failed.problem.detail
+        assert (await _ended(runner, other.id)).state is (
+            JobState.FAILED if kind == "curve" else JobState.DONE
+        )
+        if kind not in SLOW:
+            again = await runner.again("ada", job.id)
+            assert (await _ended(runner, again.id)).state is JobState.DONE
+            answer = await asyncio.to_thread(runner.store.result, "ada", again.id)
+            assert answer is not None
+            described.result.model_validate_json(answer)
+
+    asyncio.run(scenario())
+
+
+def _curve(requests: dict[str, dict[str, Any]]) -> str:
+    return KINDS["curve"].request.model_validate(requests["curve"]).model_dump_json()
