@@ -21,8 +21,8 @@ from pydantic import ConfigDict, Field, ValidationError
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.formats.layout import MAX_TEXT, DesignLayout, check_layout
-from knitcore.garment.shaped import ShapedChart
+from knitcore.formats.layout import MAX_TEXT, DesignLayout, check_layout, piece_of
+from knitcore.garment.piece import Piece
 
 FORMAT: Final = "knitcore-design"
 VERSION: Final = 2
@@ -35,6 +35,9 @@ def _from_version_1(data: dict[str, Any]) -> dict[str, Any]:
 
 MIGRATIONS: dict[int | None, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _from_version_1}
 """From each older version to the next one."""
+
+
+_HEADER = ("format", "version", "name", "material", "note", "chart")
 
 
 class DesignFile(DesignLayout):
@@ -55,11 +58,9 @@ class DesignFile(DesignLayout):
     chart: str = Field(max_length=MAX_TEXT, description="K/P lines, the top row first, face side.")
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$")
 
-    def to_shaped(self) -> ShapedChart:
-        """The chart with its outline."""
-        if self.outline is None:
-            return ShapedChart.rectangle(self.to_chart())
-        return ShapedChart.parse(self.chart, self.outline)
+    def to_piece(self) -> Piece:
+        """The chart with its outline and its yarns."""
+        return piece_of(self.to_chart(), self)
 
     def to_chart(self) -> StitchChart:
         """The chart itself."""
@@ -69,7 +70,8 @@ class DesignFile(DesignLayout):
 def write_design(design: DesignFile) -> str:
     """The text of the file: a line for each field, and for each item of its lists."""
     fields = []
-    for name, value in design.model_dump().items():
+    for name in (*_HEADER, *DesignLayout.model_fields):
+        value = design.model_dump(include={name})[name]
         written = json.dumps(value, ensure_ascii=False)
         if isinstance(value, list) and value:
             items = ",\n  ".join(json.dumps(item, ensure_ascii=False) for item in value)

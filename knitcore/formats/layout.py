@@ -15,7 +15,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
-from knitcore.garment.shaped import check_outline, outline_marks
+from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
+from knitcore.garment.shaped import ShapedChart, check_outline, outline_marks
 
 MAX_TEXT = 1_200_000
 MAX_ITEMS = 200
@@ -48,7 +49,7 @@ class DesignRegion(_Part):
     id: Identifier
     name: ItemName
     colour: Colour
-    yarn: ItemName | None = Field(None, description="Intarsia yarn; None is the main yarn.")
+    yarn: ItemName | None = Field(None, description="Intarsia yarn; None leaves the yarn beneath.")
     fill: Motif | None = Field(None, description="Repeat that fills it, from the chart's corner.")
     runs: list[tuple[Place, Place, Length]] = Field(
         max_length=MAX_RUNS,
@@ -147,6 +148,48 @@ def runs_of(cells: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
     edges = np.diff(np.pad(cells.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     starts, stops = np.argwhere(edges == 1).tolist(), np.argwhere(edges == -1)[:, 1].tolist()
     return [(row, start, stop - start) for (row, start), stop in zip(starts, stops, strict=True)]
+
+
+def piece_of(chart: StitchChart, layout: DesignLayout) -> Piece:
+    """What a design knits: regions with a yarn colour their stitches, the later ones on top.
+
+    Raises
+    ------
+    InputError
+        If the outline falls apart, or the layout does not belong to the chart.
+    """
+    check_layout(chart, layout)
+    shaped = ShapedChart.rectangle(chart)
+    if layout.outline is not None:
+        shaped = ShapedChart(chart, outline_marks(layout.outline))
+    yarns = [MAIN_YARN]
+    yarn_of = np.zeros(chart.purl.shape, dtype=np.intp)
+    names: dict[str, int] = {}
+    for region in layout.regions:
+        if region.yarn is None:
+            continue
+        if region.yarn not in names:  # a yarn has the colour of its first region
+            names[region.yarn] = len(yarns)
+            yarns.append(PieceYarn(region.yarn, region.colour.lower()))
+        yarn_of[region_cells(region, chart.rows, chart.columns)] = names[region.yarn]
+    return Piece(shaped, tuple(yarns), yarn_of)
+
+
+def layout_of(piece: Piece) -> DesignLayout:
+    """A layout from which :func:`piece_of` makes the piece again."""
+    regions = [
+        DesignRegion(
+            id=f"yarn-{index + 1}",
+            name=yarn.name,
+            colour=yarn.colour,
+            yarn=yarn.name,
+            runs=runs_of(piece.cells(index)),
+        )
+        for index, yarn in enumerate(piece.yarns)
+        if yarn != MAIN_YARN
+    ]
+    outline = None if piece.is_rectangle else piece.shaped.outline
+    return DesignLayout(outline=outline, regions=regions)
 
 
 def check_layout(chart: StitchChart, layout: DesignLayout) -> None:

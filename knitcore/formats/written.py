@@ -9,7 +9,16 @@
     Rows 11-14: Knit. (7 sts)
     Bind off.
 
-In the round rows are rounds (``Rnd 1: …``) and have no side.
+In the round rows are rounds (``Rnd 1: …``) and have no side. Outlines are shaped at the edges: one
+stitch by a decrease or by ``m1``, more by casting on and binding off; where the working yarn is at
+the other end of the row, by a separate strand. Several yarns are named before the first row, and
+rows say ``with A k10, with B …``::
+
+    Row 5 (RS): Bind off 3 sts, k9. (9 sts)
+    Row 6 (WS): Ssk, k5, k2tog. (7 sts)
+    Row 7 (RS): K1, m1, k5, m1, k1. (9 sts)
+    Row 8 (WS): With a separate strand cast on 3 sts at the end, knit. (12 sts)
+    Row 9 (RS): K9, bind off the last 3 sts with a separate strand. (9 sts)
 """
 
 from __future__ import annotations
@@ -20,19 +29,28 @@ from functools import lru_cache
 import numpy as np
 
 from knitcore.chart import StitchChart
-from knitcore.worked import Construction, Side, as_worked
+from knitcore.garment.piece import MAIN_YARN, Piece, yarn_name
+from knitcore.garment.worked_piece import PieceRow, groups, piece_rows
+from knitcore.worked import Construction, Side
 
 LATER_USE = 2
 """A bracket is used where its stitches occur at least so often."""
+LEAST_TO_INCREASE = 4
+"""Rows of fewer stitches cast on instead of making one between two stitches."""
 
 
 def write_rows(
-    chart: StitchChart,
+    chart: StitchChart | Piece,
     construction: Construction = Construction.FLAT,
     *,
     first_side: Side = Side.RS,
 ) -> str:
-    """The instructions of a chart; :func:`knitcore.formats.written_reader.read_rows` reads them.
+    """The instructions of a chart; :mod:`knitcore.formats.written_reader` reads them.
+
+    Raises
+    ------
+    InputError
+        If its outline or yarns cannot be worked in the round.
 
     Examples
     --------
@@ -42,16 +60,20 @@ def write_rows(
     Bind off.
     <BLANKLINE>
     """
-    worked = as_worked(chart, construction, first_side=first_side)
-    rows = [row.purls for row in worked.rows]
-    count = _stitches(chart.columns)
+    piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    rows = piece_rows(piece, construction, first_side=first_side)
+    count = _stitches(len(rows[0].purls))
     if construction is Construction.ROUND:
         lines = [f"Cast on {count} and join in the round."]
     else:
         side = "right" if first_side is Side.RS else "wrong"
         lines = [f"Cast on {count}. Worked flat; row 1 is a {side}-side row."]
-    sides = [row.side for row in worked.rows]
-    lines += _Writer(rows, sides, construction).block(0, len(rows))
+    if piece.yarns != (MAIN_YARN,):
+        lines += [
+            f"Yarn {yarn_name(index)}: {yarn.name} ({yarn.colour})"
+            for index, yarn in enumerate(piece.yarns)
+        ]
+    lines += _Writer(rows, construction, several=len(piece.yarns) > 1).block(0, len(rows))
     return "\n".join([*lines, "Bind off.", ""])
 
 
@@ -59,16 +81,14 @@ class _Writer:
     """Rows, and how long each repeats the rows a period before it."""
 
     def __init__(
-        self,
-        rows: Sequence[tuple[bool, ...]],
-        sides: Sequence[Side],
-        construction: Construction,
+        self, rows: Sequence[PieceRow], construction: Construction, *, several: bool
     ) -> None:
-        self._rows, self._sides = rows, sides
+        self._rows, self._several = rows, several
         self._flat = construction is Construction.FLAT
         self._name = "Row" if self._flat else "Rnd"
-        known: dict[tuple[bool, ...], int] = {}
-        codes = np.array([known.setdefault(row, len(known)) for row in rows])
+        known: dict[tuple[object, ...], int] = {}
+        keys = [(row.first, row.last, row.purls, row.yarns) for row in rows]
+        codes = np.array([known.setdefault(key, len(known)) for key in keys])
         # A flat repeat of an odd number of rows would turn right-side rows to wrong-side ones.
         periods = [p for p in range(1, len(rows) // 2 + 1) if p == 1 or not (self._flat and p % 2)]
         self._runs = {p: _run_lengths(codes[p:] == codes[:-p]) for p in periods}
@@ -103,15 +123,81 @@ class _Writer:
         return best
 
     def _line(self, start: int, stop: int) -> str:
-        side = f" ({self._sides[start]})" if self._flat and stop - start == 1 else ""
-        words = row_words(self._rows[start])
-        count = _stitches(len(self._rows[start]))
+        row = self._rows[start]
+        side = f" ({row.side})" if self._flat and stop - start == 1 else ""
+        words = piece_row_words(row, several=self._several)
+        count = _stitches(len(row.purls))
         return f"{self._range(start, stop)}{side}: {words[0].upper()}{words[1:]}. ({count})"
 
     def _range(self, start: int, stop: int) -> str:
         if stop - start == 1:
             return f"{self._name} {start + 1}"
         return f"{self._name}s {start + 1}-{stop}"
+
+
+def piece_row_words(row: PieceRow, *, several: bool) -> str:
+    """One row of a piece in words; with ``several`` yarns each stretch says its own."""
+    forms, before, after = _edge_forms(row)
+    parts = list(before)
+    stretches = groups(row.yarns)
+    for start, stop, yarn in stretches:
+        plain = len(stretches) == 1 and not after and not any(forms)
+        words = row_words(row.purls) if plain else _bracketed(row.purls, forms, start, stop)
+        parts.append(f"with {yarn_name(yarn)} {words}" if several else words)
+    return ", ".join([*parts, *after])
+
+
+def _edge_forms(row: PieceRow) -> tuple[list[str], list[str], list[str]]:
+    """How each stitch is made ("" if it is just worked), and what is said before and after."""
+    count = len(row.purls)
+    forms = [""] * count
+    before: list[str] = []
+    after: list[str] = []
+    if row.first == row.last == -1 and count == 1:
+        return ["k3tog"], before, after
+    increase = count >= LEAST_TO_INCREASE
+    if row.first == -1:
+        forms[0] = "ssk"
+    elif row.first == 1 and increase:
+        forms[1] = "m1"
+    elif row.first:
+        verb = "cast on" if row.first > 0 else "bind off"
+        before.append(f"{verb} {_stitches(abs(row.first))}")
+    if row.last == -1:
+        forms[-1] = "k2tog"
+    elif row.last == 1 and increase:
+        forms[-2] = "m1"
+    elif row.last > 0:
+        before.append(f"with a separate strand cast on {_stitches(row.last)} at the end")
+    elif row.last:
+        after.append(f"bind off the last {_stitches(-row.last)} with a separate strand")
+    return forms, before, after
+
+
+_PURLED = {"ssk": "ssp", "k2tog": "p2tog", "k3tog": "p3tog", "m1": "m1p"}
+
+
+def _bracketed(purls: Sequence[bool], forms: Sequence[str], start: int, stop: int) -> str:
+    """A stretch of a row, its repeat in brackets: it says how many stitches it has."""
+    parts, plain = [], start
+    for index in range(start, stop):
+        if forms[index]:
+            parts += [_in_brackets(tuple(purls[plain:index]))] if index > plain else []
+            parts.append(_PURLED[forms[index]] if purls[index] else forms[index])
+            plain = index + 1
+    parts += [_in_brackets(tuple(purls[plain:stop]))] if stop > plain else []
+    return ", ".join(parts)
+
+
+@lru_cache(maxsize=4096)
+def _in_brackets(purls: tuple[bool, ...]) -> str:
+    start, period, times = _longest_repeat(purls)
+    if times < LATER_USE:
+        return _plain(purls)
+    unit, end = purls[start : start + period], start + period * times
+    often = "twice" if times == 2 else f"{times} times"
+    parts = [_plain(purls[:start]), f"({_plain(unit)}) {often}", _plain(purls[end:])]
+    return ", ".join(part for part in parts if part)
 
 
 @lru_cache(maxsize=4096)

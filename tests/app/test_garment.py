@@ -41,7 +41,7 @@ def test_rest_and_command_line_agree(
     )
     assert told.exit_code == 0, told.output
     assert json.loads(told.stdout) == asked.json()
-    assert read_design(out).to_shaped().stitches == asked.json()["stitches"]
+    assert read_design(out).to_piece().shaped.stitches == asked.json()["stitches"]
 
 
 def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:

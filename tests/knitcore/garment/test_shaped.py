@@ -27,7 +27,7 @@ def shaped_charts(draw: st.DrawFn) -> ShapedChart:
 def test_text_and_project_file_keep_chart_and_outline(shaped: ShapedChart) -> None:
     assert ShapedChart.parse(shaped.chart.text, shaped.outline) == shaped
     design = DesignFile(chart=shaped.chart.text, outline=shaped.outline)
-    assert design_from_mapping(design.model_dump(exclude_none=True)).to_shaped() == shaped
+    assert design_from_mapping(design.model_dump(exclude_none=True)).to_piece().shaped == shaped
 
 
 @given(shaped=shaped_charts())

@@ -1,0 +1,138 @@
+"""A piece of knitting: a chart, its outline, and which yarn knits each stitch (intarsia)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.garment.shaped import ShapedChart
+
+
+@dataclass(frozen=True)
+class PieceYarn:
+    """A yarn of a piece: its name, and its colour as ``#rrggbb``."""
+
+    name: str
+    colour: str
+
+
+MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
+"""What knits stitches for which no yarn is named."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Stitches beside each other in one row, of one yarn: columns ``start`` … ``stop - 1``."""
+
+    start: int
+    stop: int
+    yarn: int
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """What is knitted.
+
+    Parameters
+    ----------
+    shaped : chart and outline.
+    yarns : those that are used, each once.
+    yarn_of : int (rows, columns), index into ``yarns``; 0 outside the outline.
+
+    Raises
+    ------
+    InputError
+        If the yarns have another size than the chart.
+    """
+
+    shaped: ShapedChart
+    yarns: tuple[PieceYarn, ...]
+    yarn_of: NDArray[np.intp]
+
+    def __post_init__(self) -> None:
+        if self.yarn_of.shape != self.shaped.stitch.shape:
+            raise InputError("yarns", "they have another size than the chart.", "Give all cells.")
+        used = np.unique(self.yarn_of[self.shaped.stitch]).tolist()
+        renumbered = np.zeros(len(self.yarns), dtype=np.intp)
+        renumbered[used] = np.arange(len(used))
+        inside = np.where(self.shaped.stitch, renumbered[self.yarn_of], 0)
+        inside.setflags(write=False)
+        object.__setattr__(self, "yarn_of", inside)
+        object.__setattr__(self, "yarns", tuple(self.yarns[index] for index in used))
+
+    @classmethod
+    def plain(cls, chart: StitchChart | ShapedChart, yarn: PieceYarn = MAIN_YARN) -> Piece:
+        """A piece of one yarn."""
+        shaped = chart if isinstance(chart, ShapedChart) else ShapedChart.rectangle(chart)
+        return cls(shaped, (yarn,), np.zeros(shaped.stitch.shape, dtype=np.intp))
+
+    @property
+    def chart(self) -> StitchChart:
+        """K/P of every cell."""
+        return self.shaped.chart
+
+    @property
+    def is_rectangle(self) -> bool:
+        """Whether every cell is a stitch."""
+        return bool(self.shaped.stitch.all())
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is a rectangle of the main yarn: nothing but its chart."""
+        return self.is_rectangle and self.yarns == (MAIN_YARN,)
+
+    def stretches(self, row: int) -> tuple[Stretch, ...]:
+        """The yarns of a row from left to right."""
+        first, last = self.shaped.spans[row]
+        yarns = self.yarn_of[row, first:last]
+        edges = [0, *(np.flatnonzero(np.diff(yarns)) + 1).tolist(), last - first]
+        return tuple(Stretch(first + a, first + b, int(yarns[a])) for a, b in pairwise(edges))
+
+    def cells(self, yarn: int) -> NDArray[np.bool_]:
+        """The stitches of one yarn."""
+        cells: NDArray[np.bool_] = self.shaped.stitch & (self.yarn_of == yarn)
+        return cells
+
+    def cropped(self) -> Piece:
+        """Without columns in which no row has a stitch."""
+        used = np.flatnonzero(self.shaped.stitch.any(axis=0))
+        columns = slice(int(used[0]), int(used[-1]) + 1)
+        shaped = ShapedChart(
+            StitchChart(self.chart.purl[:, columns]), self.shaped.stitch[:, columns]
+        )
+        return Piece(shaped, self.yarns, self.yarn_of[:, columns])
+
+    def __eq__(self, other: object) -> bool:
+        """Alike in every stitch: its kind and its yarn's name and colour."""
+        if not isinstance(other, Piece) or self.shaped != other.shaped:
+            return False
+        mine, theirs = set(self.yarns), set(other.yarns)
+        return mine == theirs and all(
+            np.array_equal(self.cells(self.yarns.index(y)), other.cells(other.yarns.index(y)))
+            for y in mine
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.shaped, frozenset(self.yarns)))
+
+
+def yarn_name(index: int) -> str:
+    """Knitters' short name of a yarn: A, B, … Z, AA, …
+
+    Examples
+    --------
+    >>> [yarn_name(i) for i in (0, 25, 26)]
+    ['A', 'Z', 'AA']
+    """
+    letters = ""
+    index += 1
+    while index:
+        index, rest = divmod(index - 1, 26)
+        letters = chr(ord("A") + rest) + letters
+    return letters
