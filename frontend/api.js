@@ -57,22 +57,27 @@ async function problemOf(response) {
 /**
  * @template T
  * @param {string} path below /api/v1
- * @param {{method?: string, body?: unknown, signal?: AbortSignal}} [options]
- * @returns {Promise<T>}
+ * @param {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
+ *   keepalive?: boolean}} [options]
+ * @returns {Promise<T>} undefined where the service has nothing to say (204, 304)
  */
-async function call(path, { method = "GET", body, signal } = {}) {
+export async function call(path, { method = "GET", body, signal, headers = {}, keepalive } = {}) {
   /** @type {Response} */
   let response;
   try {
     response = await fetch(`/api/v1${path}`, {
       method,
       signal,
-      headers: body === undefined ? {} : { "Content-Type": "application/json" },
+      keepalive,
+      headers: body === undefined ? headers : { ...headers, "Content-Type": "application/json" },
       body: body === undefined ? undefined : JSON.stringify(body),
     });
   } catch (error) {
     if (isAbort(error)) throw error;
     throw new ApiError(UNREACHABLE);
+  }
+  if (response.status === 204 || response.status === 304) {
+    return /** @type {T} */ (undefined);
   }
   if (!response.ok) throw new ApiError(await problemOf(response));
   return /** @type {Promise<T>} */ (response.json());

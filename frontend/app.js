@@ -11,6 +11,8 @@ import { Ink } from "./core/ink.js";
 import { Latest } from "./core/latest.js";
 import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/store.js";
 import { byId, firstPaint, isTyping } from "./dom.js";
+import { openAddressed } from "./keeping/address.js";
+import { Keeper } from "./keeping/keeper.js";
 import { panelsForLater } from "./panels/later.js";
 import { messages } from "./panels/messages.js";
 import { overlaybar } from "./panels/overlaybar.js";
@@ -19,7 +21,6 @@ import { shelf } from "./panels/shelf.js";
 import { split } from "./panels/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
 import { topbar } from "./panels/topbar.js";
-import { startAutosave } from "./services/autosave.js";
 import { watchConnection } from "./services/connection.js";
 import { listenToImports } from "./services/importer.js";
 import { startPredictor } from "./services/predictor.js";
@@ -42,6 +43,7 @@ const studio = new Studio(
 const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"), studio);
 new Painter(view, studio);
 
+const keeper = new Keeper(studio, kept?.remote ?? null);
 const open = panelsForLater(studio);
 /** @type {(() => void)[]} */
 const themed = [];
@@ -51,6 +53,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const context = {
   studio,
   view,
+  keeper,
   open: (name) => void open(name, context),
   toggleTheme: () => {
     const root = document.documentElement;
@@ -89,12 +92,13 @@ split(byId("split-rows"), "--inspector-height", {
 });
 listenToKeys(context, isTyping);
 listenToImports(studio, isTyping);
-startAutosave(studio);
 
 const predictAgain = startPredictor(studio);
 /** The 3D view and the plots are heavy: the chart is there to be painted on before they come. */
 let showAgain = () => {};
 void firstPaint().then(async () => {
+  performance.mark("studio");
+  void keeper.catchUp();
   const [{ inspector }, { fabricview }] = await Promise.all([
     import("./panels/inspector.js"),
     import("./panels/fabricview.js"),
@@ -140,7 +144,8 @@ watchConnection(studio, () => {
   showAgain();
 });
 
-if (!kept) {
+const elsewhere = openAddressed(studio, keeper);
+if (!kept && !elsewhere) {
   void stretcher.run("wale", FIRST_STRAIN).then(() => {
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) stretcher.play();
   });

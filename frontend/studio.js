@@ -2,7 +2,7 @@
  * The state that the panels share: the chart, how it is shown and painted, what the service says of
  * it. Panels watch the signals and change them; none knows another.
  *
- * @import {Box} from "./core/grid.js"
+ * @import {Selection} from "./core/selection.js"
  * @import {History} from "./core/history.js"
  * @import {Symmetry} from "./core/ink.js"
  * @import {Overlay} from "./chart/overlays.js"
@@ -16,17 +16,18 @@
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
+import { Grid } from "./core/grid.js";
 import { FLIP, Ink } from "./core/ink.js";
 import { Signal } from "./core/signal.js";
 import { loadSettings, saveSettings } from "./core/store.js";
 import { ChartDocument } from "./core/document.js";
+import { Editing } from "./chart/editing.js";
 import { OVERLAYS } from "./chart/overlays.js";
 import { TOOLS } from "./tools/registry.js";
 
 const SETTINGS = {
   overlay: "fabrics",
   rectangles: false,
-  symbols: /** @type {"symbols" | "loops"} */ ("symbols"),
   tool: "pencil",
   size: 1,
 };
@@ -54,15 +55,14 @@ export class Studio {
     this.shelf = new Signal(/** @type {Ink[]} */ ([]));
     this.size = new Signal(settings.size);
     this.symmetry = new Signal(/** @type {Symmetry} */ ("none"));
-    this.selection = new Signal(/** @type {Box | null} */ (null));
+    this.selection = new Signal(/** @type {Selection | null} */ (null));
+    this.editing = new Editing(document, this.selection);
 
     /** @type {Signal<Overlay>} */
     this.overlay = new Signal(
       OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1],
     );
     this.rectangles = new Signal(settings.rectangles);
-    /** @type {Signal<"symbols" | "loops">} */
-    this.symbols = new Signal(settings.symbols);
 
     this.prediction = new Signal(
       /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),
@@ -85,7 +85,6 @@ export class Studio {
       if (id !== "strain" && id !== "utilisation") saveSettings({ overlay: id });
     });
     this.rectangles.listen((rectangles) => saveSettings({ rectangles }));
-    this.symbols.listen((symbols) => saveSettings({ symbols }));
     this.tool.listen(({ id }) => saveSettings({ tool: id }));
     this.size.listen((size) => saveSettings({ size }));
   }
@@ -116,6 +115,23 @@ export class Studio {
     this.selection.value = null;
     this.materialId.value = design.material;
     this.document.open(design, history);
+  }
+
+  /**
+   * Take over what somebody else changed in this design, as a step that can be undone.
+   *
+   * @param {DesignDocument} design
+   */
+  follow(design) {
+    const { content } = this.document;
+    this.name.value = design.name;
+    this.note.value = design.note;
+    this.materialId.value = design.material;
+    const label = "Changes from elsewhere";
+    /** @param {Partial<DesignDocument>} part */
+    const rest = ({ outline, regions, repeats, shelf }) => JSON.stringify([outline, regions, repeats, shelf]);
+    if (rest(content) === rest(design)) this.document.replace(Grid.fromText(design.chart), label);
+    else this.document.load(design, label);
   }
 
   /** What the service has to know of the design. */

@@ -2,10 +2,11 @@
  * What an action is. Shortcuts, the command palette and help read the registry.
  *
  * @import {ChartView} from "../chart/view.js"
+ * @import {Keeper} from "../keeping/keeper.js"
  * @import {Studio} from "../studio.js"
  * @import {IconName} from "../icons.js"
  *
- * @typedef {{studio: Studio, view: ChartView, open: (panel: import("../panels/later.js").PanelName) => void,
+ * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: import("../panels/later.js").PanelName) => void,
  *   toggleTheme: () => void}} ActionContext
  *
  * @typedef {object} Action

@@ -4,7 +4,8 @@
  *
  * @import {Content} from "./design.js"
  *
- * @typedef {{id: string, name: string, material: string, note?: string} & Content} Design
+ * @typedef {{id: string, name: string, material: string, note?: string,
+ *   remote?: {id: string, revision: number} | null} & Content} Design
  */
 
 import { salvageContent } from "./design.js";

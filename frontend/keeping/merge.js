@@ -1,0 +1,150 @@
+/**
+ * Two changed copies of a design made one. What only one side changed is taken from that side, stitch
+ * by stitch in the chart and item by item in lists; what both changed differently is a conflict.
+ *
+ * @import {DesignDocument} from "../types.js"
+ *
+ * @typedef {"name" | "material" | "note" | "chart" | "outline" | "regions" | "repeats" | "shelf"} Part
+ * @typedef {{document: DesignDocument, conflicts: Part[]}} Merged in a conflict `document` has our side
+ */
+
+const PLAIN = /** @type {const} */ (["name", "material", "note", "outline"]);
+const LISTS = /** @type {const} */ (["regions", "repeats", "shelf"]);
+
+/**
+ * @param {DesignDocument} base what both sides began with
+ * @param {DesignDocument} mine
+ * @param {DesignDocument} theirs
+ * @returns {Merged}
+ */
+export function merge(base, mine, theirs) {
+  /** @type {Part[]} */
+  const conflicts = [];
+  /** @type {DesignDocument} */
+  const document = { ...mine };
+  /** @param {Part} part @param {unknown} value */
+  const take = (part, value) => {
+    if (value === undefined) conflicts.push(part);
+    else Object.assign(document, { [part]: value });
+  };
+  for (const part of PLAIN) take(part, either(base[part], mine[part], theirs[part]));
+  take("chart", mergeCharts(base.chart, mine.chart, theirs.chart));
+  for (const part of LISTS) {
+    /** @param {DesignDocument} side @returns {{id?: string, name: string}[]} */
+    const items = (side) => side[part];
+    take(part, mergeItems(items(base), items(mine), items(theirs)));
+  }
+  return { document, conflicts };
+}
+
+/**
+ * Whether two documents are the same.
+ *
+ * @param {DesignDocument} one
+ * @param {DesignDocument} other
+ */
+export function same(one, other) {
+  return (
+    [...PLAIN, /** @type {const} */ ("chart")].every((part) => one[part] === other[part]) &&
+    LISTS.every((part) => alike(one[part], other[part]))
+  );
+}
+
+/**
+ * Stitches that differ between two charts of one size, as runs of what they become; null if the
+ * charts are of different sizes.
+ *
+ * @param {string} before K/P lines, top row first
+ * @param {string} after
+ * @returns {{rows: number, columns: number, runs: {row: number, column: number, stitches: string}[]} | null}
+ */
+export function strokesBetween(before, after) {
+  if (!sameShape(before, after)) return null;
+  const columns = before.includes("\n") ? before.indexOf("\n") : before.length;
+  const rows = (before.length + 1) / (columns + 1);
+  const runs = [];
+  for (let i = 0; i < after.length; i++) {
+    if (before[i] === after[i]) continue;
+    const start = i;
+    while (i + 1 < after.length && before[i + 1] !== after[i + 1]) i++;
+    const line = Math.floor(start / (columns + 1));
+    runs.push({ row: rows - 1 - line, column: start % (columns + 1), stitches: after.slice(start, i + 1) });
+  }
+  return { rows, columns, runs };
+}
+
+/**
+ * @param {string} base
+ * @param {string} mine
+ * @param {string} theirs
+ * @returns {string | undefined} undefined in a conflict: both changed, and not on the same grid
+ */
+function mergeCharts(base, mine, theirs) {
+  const whole = either(base, mine, theirs);
+  if (whole !== undefined) return whole;
+  if (!sameShape(base, mine) || !sameShape(base, theirs)) return undefined;
+  let chart = "";
+  for (let i = 0; i < mine.length; i++) chart += mine[i] === base[i] ? theirs[i] : mine[i];
+  return chart; // a stitch is K or P: where both changed it, both made it the same
+}
+
+/**
+ * @typedef {{id?: string, name: string}} Item
+ * @param {Item[]} base
+ * @param {Item[]} mine
+ * @param {Item[]} theirs
+ * @returns {Item[] | undefined}
+ */
+function mergeItems(base, mine, theirs) {
+  const whole = either(base, mine, theirs);
+  if (whole !== undefined) return whole;
+  /** @param {Item[]} items */
+  const keyed = (items) => new Map(items.map((item) => [item.id ?? item.name, item]));
+  const [was, ours, others] = [keyed(base), keyed(mine), keyed(theirs)];
+  const order = [...others.keys(), ...[...ours.keys()].filter((key) => !others.has(key))];
+  const merged = [];
+  for (const key of order) {
+    const [before, own, other] = [was.get(key), ours.get(key), others.get(key)];
+    const item = either(before ?? null, own ?? null, other ?? null);
+    if (item === undefined) return undefined;
+    if (item !== null) merged.push(item);
+  }
+  return merged;
+}
+
+/**
+ * The side that changed, or what both agree on; undefined if both changed differently.
+ *
+ * @template T
+ * @param {T} base
+ * @param {T} mine
+ * @param {T} theirs
+ * @returns {T | undefined}
+ */
+function either(base, mine, theirs) {
+  if (alike(mine, theirs) || alike(theirs, base)) return mine;
+  return alike(mine, base) ? theirs : undefined;
+}
+
+/**
+ * Whether two values say the same, in whatever order their fields are.
+ *
+ * @param {unknown} one
+ * @param {unknown} other
+ */
+function alike(one, other) {
+  if (one === other) return true;
+  if (typeof one !== "object" || typeof other !== "object") return false;
+  return JSON.stringify(one, inOrder) === JSON.stringify(other, inOrder);
+}
+
+/** @param {string} _key @param {unknown} value */
+function inOrder(_key, value) {
+  if (typeof value !== "object" || value === null || Array.isArray(value)) return value;
+  return Object.fromEntries(Object.entries(value).sort(([a], [b]) => (a < b ? -1 : 1)));
+}
+
+/** @param {string} one @param {string} other */
+function sameShape(one, other) {
+  return one.length === other.length && one.indexOf("\n") === other.indexOf("\n");
+}
