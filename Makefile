@@ -71,7 +71,7 @@ format: $(VENV)/.installed-dev ## Format the code
 bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
 	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
-bench-service: $(VENV)/.installed-dev ## Fifty people paint at once; SECONDS=1200 for ten minutes of each kind
+bench-service: $(VENV)/.installed-dev ## Fifty people paint at once; SECONDS=600 for ten minutes
 	$(BIN)/python benchmarks/service.py
 
 docs: $(VENV)/.installed-dev ## Run every example of the documentation

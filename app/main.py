@@ -10,7 +10,7 @@ from collections.abc import AsyncIterator, Callable
 
 from fastapi import FastAPI
 
-from app import health
+from app import health, memory
 from app.api import routers
 from app.compute import Compute
 from app.designs.idempotency import forget_old_keys
@@ -65,11 +65,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         )
         await app.state.jobs.resume()
         janitors = [
-            asyncio.create_task(_close_idle_views(app.state.views)),
+            asyncio.create_task(_close_idle_views(app.state.views, chosen.viewer_idle_s)),
             asyncio.create_task(
                 _tidy_store(app.state.database, job_store, chosen.results_max_bytes)
             ),
         ]
+        await asyncio.to_thread(memory.settle)
         yield
         for janitor in janitors:
             janitor.cancel()
@@ -113,11 +114,12 @@ def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
     }
 
 
-async def _close_idle_views(views: Views) -> None:
+async def _close_idle_views(views: Views, idle_s: float) -> None:
     while True:
-        await asyncio.sleep(JANITOR_PERIOD_S)
+        await asyncio.sleep(min(JANITOR_PERIOD_S, idle_s))
         closed = await asyncio.to_thread(views.close_idle)
         if closed:
+            await asyncio.to_thread(memory.give_back)
             log.info("closed %d idle 3D views, %d left", closed, len(views))
 
 

@@ -1,0 +1,62 @@
+"""Views that were opened, looked at and dropped leave nothing behind."""
+
+from __future__ import annotations
+
+import gc
+import os
+import threading
+import time
+from pathlib import Path
+
+import viser
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app import memory
+from app.main import create_app
+from app.settings import Settings
+
+ROUNDS, VIEWS = 3, 3
+CHART = {"fabric": "rib", "columns": 6, "rows": 6}
+
+
+def _held() -> tuple[int, int]:
+    return threading.active_count(), len(os.listdir("/proc/self/fd"))
+
+
+def _servers() -> int:
+    return sum(type(thing) is viser.ViserServer for thing in gc.get_objects())
+
+
+def _look(client: TestClient) -> None:
+    """Open some views, look at each, and go away."""
+    for number in range(VIEWS):
+        body = {"chart": CHART, "material": "acrylic"}
+        assert client.put(f"/api/v1/views/dropped-{number}", json=body).status_code == 200
+        protocol = [f"viser-v{viser.__version__}"]
+        address = f"ws://127.0.0.1/view/dropped-{number}"
+        with client.websocket_connect(address, subprotocols=protocol) as socket:
+            assert socket.receive_bytes()
+
+
+def _dropped(app: FastAPI, most: tuple[int, int] | None = None) -> None:
+    """Close all views, and wait until no more is held than ``most``."""
+    app.state.views.close()
+    deadline = time.monotonic() + 30
+    while most and any(now > m for now, m in zip(_held(), most, strict=True)):
+        assert time.monotonic() < deadline, _held()
+        time.sleep(0.05)
+
+
+def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:
+    app = create_app(Settings(workers=1, data_dir=tmp_path))
+    with TestClient(app, base_url="http://127.0.0.1") as client:
+        _look(client)  # what is loaded for the first views stays
+        _dropped(app)
+        time.sleep(0.5)
+        start = _held()
+        for _ in range(ROUNDS):
+            _look(client)
+            _dropped(app, start)
+    memory.give_back()
+    assert _servers() == 0
