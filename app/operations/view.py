@@ -11,19 +11,17 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.operations.charts import ChartInput, to_chart
 from app.operations.stretch import StretchRun
 from app.viewer.colours import diverging, fabric_mix, sequential
-from app.viewer.scene import FabricScene
+from app.viewer.fabric import FabricScene
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
-from knitcore.geometry.lattice import flat_lattice, stretched_sizes_mm
+from knitcore.geometry.lattice import flat_lattice
+from knitcore.geometry.placing import at_rest, carried
+from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
 from knitcore.mechanics.local import stitch_table
 from knitcore.phases import surroundings
-
-RADIUS_SHARE = 0.17
-"""Tubes are never thicker than this share of a stitch's smaller side: yarn in cloth is squeezed,
-round tubes of its free diameter would pass through each other."""
 
 
 class Colour(StrEnum):
@@ -74,17 +72,15 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
         If the test is not known any more, or belongs to another chart.
     """
     chart, material = to_chart(request.chart), find_material(request.material)
-    lattice = flat_lattice(chart, material)
-    centres, sizes = lattice.centres_mm, lattice.sizes_mm
+    shapes = stitch_shapes(chart, material)
+    placement = at_rest(shapes)
     step = _checked_step(request, stretch, chart)
     if stretch is not None:
         centres = stretch.positions_mm[step].astype(float)
-        sizes = stretched_sizes_mm(centres, lattice)
+        placement = carried(shapes, centres, flat_lattice(chart, material))
     return FabricScene(
-        chart=chart,
-        centres_mm=centres,
-        sizes_mm=sizes,
-        yarn_radius_mm=_radius_mm(material),
+        shapes=shapes,
+        placement=placement,
         colours=_colours(request.colour, chart, material, stretch, step),
         rectangles_mm=_rectangles_mm(chart, material) if request.rectangles else None,
     )
@@ -103,13 +99,6 @@ def _checked_step(request: ViewRequest, stretch: StretchRun | None, chart: Stitc
     if request.stretch.step >= steps:
         raise InputError("stretch.step", "is beyond the test.", f"Use 0 to {steps - 1}.")
     return request.stretch.step
-
-
-def _radius_mm(material: Material) -> float:
-    sides = [min(r.stitch_course_mm, r.stitch_wale_mm) for r in material.fabrics.values()]
-    diameters = [d for f in material.fabrics if (d := material.yarn_diameter_mm(f)) is not None]
-    squeezed = RADIUS_SHARE * float(np.median(sides))
-    return min(squeezed, min(diameters) / 2) if diameters else squeezed
 
 
 def _colours(

@@ -31,6 +31,12 @@ VIK = (
 """His map for signed quantities."""
 
 
+def linear(colours: Colours) -> Colours:
+    """Display colours as the renderer takes those of instances: proportional to light."""
+    light: Colours = np.round(255 * (colours / 255.0) ** 1.8).astype(np.uint8)
+    return light
+
+
 def _stops(text: str) -> NDArray[np.float64]:
     return np.array([list(bytes.fromhex(stop)) for stop in text.split()], dtype=float)
 

@@ -1,46 +1,27 @@
-"""What a viser scene shows of a design: instanced loops, coloured, and extensibility rectangles."""
+"""What a viser server shows of a fabric: instanced stitches, rectangles, a mark."""
 
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from knitcore.chart import StitchChart
-from knitcore.geometry.loops import loop_centre_line, loop_kinds
-from knitcore.geometry.tubes import TriangleMesh, tube
+from app.viewer.camera import Side, place_camera
+from app.viewer.colours import linear
+from app.viewer.fabric import Box, FabricScene
+from knitcore.geometry.instances import StitchMeshes, level_of, quaternions, stitch_meshes
+from knitcore.geometry.placing import mean_sizes_mm
+from knitcore.geometry.stitches import StitchShapes
 
 Array = NDArray[np.float64]
 
-LEVELS = ((400, 40, 8), (1_500, 26, 6), (10_000, 16, 5), (40_000, 10, 4))
-"""(largest number of stitches, points, sides): how finely each loop is drawn."""
-MAX_STITCHES = LEVELS[-1][0]
-"""Beyond this the view shows the chart's plane and loops only in its middle."""
-
-
-@dataclass(frozen=True, eq=False)
-class FabricScene:
-    """Everything needed to draw a fabric.
-
-    Attributes
-    ----------
-    chart : which loops.
-    centres_mm : (rows, columns, 2) positions of the stitches' centres.
-    sizes_mm : (rows, columns, 2) width and height of each stitch as it lies there.
-    yarn_radius_mm : half the thickness of the tubes.
-    colours : (rows, columns, 3) uint8.
-    rectangles_mm : (rows, columns, 2) sides of the extensibility rectangles, or None for no layer.
-    """
-
-    chart: StitchChart
-    centres_mm: Array
-    sizes_mm: Array
-    yarn_radius_mm: float
-    colours: NDArray[np.uint8]
-    rectangles_mm: Array | None = None
+RESIZE = 0.06
+"""Logarithm of the change of size up to which tubes are scaled instead of drawn anew."""
+MARK = (232, 72, 44)
+INK = (30, 30, 30)
 
 
 class SceneWriter:
@@ -51,133 +32,189 @@ class SceneWriter:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
-        self._lock = threading.Lock()
-        self._meshes: dict[int, viser.BatchedMeshHandle] = {}
+        self._lock = threading.RLock()
+        self._scene: FabricScene | None = None
+        self._shapes: StitchShapes | None = None
+        self._meshes: StitchMeshes | None = None
+        self._level = (0, 0)
+        self._handles: dict[int, Any] = {}
         self._members: dict[int, NDArray[np.intp]] = {}
-        self._drawn: tuple[object, ...] | None = None
-        self._rectangles: viser.LineSegmentsHandle | None = None
-        self._framed: tuple[int, int] | None = None
+        self._layers: dict[str, Any] = {}
+        self._framed: tuple[int, ...] | None = None
+
+    @property
+    def scene(self) -> FabricScene | None:
+        """What is shown."""
+        return self._scene
 
     def write(self, scene: FabricScene) -> int:
-        """Show the scene to everybody who looks; returns the number of stitches drawn as loops."""
-        window = _window(scene.chart)
-        chart = scene.chart.region(*window)
-        centres = scene.centres_mm[window].reshape(-1, 2)
-        sizes = scene.sizes_mm[window].reshape(-1, 2)
-        colours = scene.colours[window].reshape(-1, 3)
-        middle = scene.centres_mm.reshape(-1, 2).mean(axis=0)
-        positions = np.column_stack([centres - middle, np.zeros(len(centres))])
-        unit = np.median(scene.sizes_mm.reshape(-1, 2), axis=0)
-        scales = np.column_stack([sizes / unit, np.ones(len(sizes))])
+        """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn."""
+        part = scene.window()
+        stitches = int(part.shapes.index.size)
         with self._lock:
-            drawn = (chart, tuple(np.round(unit, 2)), scene.yarn_radius_mm)
-            if drawn != self._drawn:
-                self._build(chart, unit, scene.yarn_radius_mm, positions, scales, colours)
-                self._drawn = drawn
+            self._scene = scene
+            if self._is_drawn(part.shapes, level_of(stitches)):
+                self._move(part, scene.middle_mm)
             else:
-                self._move(positions, scales, colours)
-            self._draw_rectangles(scene, middle)
-            self._frame(scene)
-        return chart.rows * chart.columns
+                self._level = level_of(stitches)
+                self._build(part, scene.middle_mm)
+            self._draw_rectangles(part, scene.middle_mm)
+            self._draw_sheet(None if part is scene else scene)
+            if scene.shapes.index.shape != self._framed:
+                self._framed = scene.shapes.index.shape
+                self.look(Side.FACE)
+        return stitches
 
-    def _build(
-        self,
-        chart: StitchChart,
-        unit: Array,
-        radius: float,
-        positions: Array,
-        scales: Array,
-        colours: NDArray[np.uint8],
-    ) -> None:
-        kinds = loop_kinds(chart).ravel()
-        points, sides = _level(kinds.size)
-        members = {int(kind): np.flatnonzero(kinds == kind) for kind in np.unique(kinds)}
-        meshes = {kind: _loop_mesh(kind, unit, radius, points, sides) for kind in members}
+    def mark(self, box: Box | None) -> None:
+        """Outline some stitches on both sides, or none."""
+        with self._lock:
+            scene = self._scene
+            if box is None or scene is None:
+                self._put("mark", None)
+                return
+            corners = scene.box_corners_mm(box)
+            depth = scene.placement.depth * np.abs(scene.shapes.lines[..., 2]).max()
+            height = depth + scene.shapes.yarn_radius_mm
+            loops = [np.column_stack([corners, np.full(4, z)]) for z in (height, -height)]
+            pairs = np.concatenate([np.stack([c, np.roll(c, -1, axis=0)], axis=1) for c in loops])
+            self._put(
+                "mark",
+                self._server.scene.add_line_segments(
+                    "/mark",
+                    points=pairs.astype(np.float32),
+                    colors=MARK,
+                    thickness=3.0,
+                    thickness_units="screen",
+                ),
+            )
+
+    def look(self, side: Side) -> None:
+        """Turn everybody's camera to a side."""
+        with self._lock:
+            if self._scene is not None:
+                place_camera(self._server, side, self._scene.extent_mm)
+
+    # -- yarn ---------------------------------------------------------------------------------
+
+    def _is_drawn(self, shapes: StitchShapes, level: tuple[int, int]) -> bool:
+        before = self._shapes
+        return (
+            before is not None
+            and level == self._level
+            and before.yarn_radius_mm == shapes.yarn_radius_mm
+            and np.array_equal(before.index, shapes.index)
+            and np.array_equal(before.lines, shapes.lines)
+        )
+
+    def _build(self, scene: FabricScene, middle: Array) -> None:
+        index = scene.shapes.index.ravel()
+        members = {int(shape): np.flatnonzero(index == shape) for shape in np.unique(index)}
+        meshes = stitch_meshes(scene.shapes, scene.placement, *self._level)
+        instances = _instances(scene, middle, meshes)
         with self._server.atomic():
-            for handle in self._meshes.values():
-                handle.remove()
-            self._meshes = {
-                kind: self._server.scene.add_batched_meshes_simple(
-                    f"/fabric/{kind}",
-                    vertices=mesh.vertices,
-                    faces=mesh.faces,
-                    batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(members[kind]), 1)),
-                    batched_positions=positions[members[kind]],
-                    batched_scales=scales[members[kind]],
-                    batched_colors=colours[members[kind]],
+            for shape in self._handles.keys() - members.keys():
+                self._handles.pop(shape).remove()
+            for shape, stitches in members.items():
+                self._handles[shape] = self._server.scene.add_batched_meshes_simple(
+                    f"/fabric/{shape}",
+                    vertices=meshes.vertices[shape],
+                    faces=meshes.faces,
                     lod="off",
                     cast_shadow=False,
                     receive_shadow=False,
+                    **_of(instances, stitches),
                 )
-                for kind, mesh in meshes.items()
-            }
-        self._members = members
+        self._members, self._meshes, self._shapes = members, meshes, scene.shapes
 
-    def _move(self, positions: Array, scales: Array, colours: NDArray[np.uint8]) -> None:
+    def _move(self, scene: FabricScene, middle: Array) -> None:
+        assert self._meshes is not None  # noqa: S101 - it is drawn
+        sizes, depth = mean_sizes_mm(scene.shapes, scene.placement), scene.placement.depth
+        meshes = self._meshes
+        if not meshes.fits(sizes, depth, RESIZE):
+            meshes = stitch_meshes(scene.shapes, scene.placement, *self._level)
+        instances = _instances(scene, middle, meshes)
         with self._server.atomic():
-            for kind, handle in self._meshes.items():
-                members = self._members[kind]
-                handle.batched_positions = positions[members].astype(np.float32)
-                handle.batched_scales = scales[members].astype(np.float32)
-                handle.batched_colors = colours[members]
+            for shape, handle in self._handles.items():
+                if meshes is not self._meshes:
+                    handle.vertices = meshes.vertices[shape]
+                for name, values in instances.items():
+                    new = values[self._members[shape]]
+                    if not np.array_equal(getattr(handle, name), new):
+                        setattr(handle, name, new)
+        self._meshes = meshes
+
+    # -- layers -------------------------------------------------------------------------------
 
     def _draw_rectangles(self, scene: FabricScene, middle: Array) -> None:
         if scene.rectangles_mm is None:
-            if self._rectangles is not None:
-                self._rectangles.remove()
-                self._rectangles = None
+            self._put("rectangles", None)
             return
-        self._rectangles = self._server.scene.add_line_segments(
-            "/rectangles",
-            points=_rectangle_lines(scene, middle),
-            colors=(30, 30, 30),
-            thickness=1.5,
+        self._put(
+            "rectangles",
+            self._server.scene.add_line_segments(
+                "/rectangles",
+                points=_rectangle_lines(scene, middle),
+                colors=INK,
+                thickness=1.5,
+                thickness_units="screen",
+            ),
         )
 
-    def _frame(self, scene: FabricScene) -> None:
-        """Look at the whole cloth from the face, once per size of chart."""
-        size = (scene.chart.rows, scene.chart.columns)
-        if size == self._framed:
+    def _draw_sheet(self, scene: FabricScene | None) -> None:
+        """All of a chart that is too large, as a picture behind the part that is drawn."""
+        if scene is None:
+            self._put("sheet", None)
             return
-        self._framed = size
-        extent = np.ptp(scene.centres_mm.reshape(-1, 2), axis=0) + scene.sizes_mm[0, 0]
-        distance = 0.76 * float(max(extent[1], extent[0] * 0.9))
-        camera = self._server.initial_camera
-        camera.up = (0.0, 1.0, 0.0)
-        camera.look_at = (0.0, 0.0, 0.0)
-        camera.position = (0.0, -0.05 * distance, distance)
-        for client in self._server.get_clients().values():
-            client.camera.up_direction = (0.0, 1.0, 0.0)
-            client.camera.position = (0.0, -0.05 * distance, distance)
-            client.camera.look_at = (0.0, 0.0, 0.0)
+        width, height = scene.extent_mm
+        depth = np.abs(scene.shapes.lines[..., 2]).max() + scene.shapes.yarn_radius_mm
+        self._put(
+            "sheet",
+            self._server.scene.add_image(
+                "/sheet",
+                scene.colours[::-1],
+                render_width=float(width),
+                render_height=float(height),
+                format="png",
+                position=(0.0, 0.0, -2.0 * float(depth)),
+                cast_shadow=False,
+                receive_shadow=False,
+            ),
+        )
+
+    def _put(self, name: str, handle: Any) -> None:
+        """Note a layer's new handle; the same name replaced the old one, None removes it."""
+        old = self._layers.pop(name, None)
+        if handle is not None:
+            self._layers[name] = handle
+        elif old is not None:
+            old.remove()
 
 
-def _window(chart: StitchChart) -> tuple[slice, slice]:
-    """The whole chart, or its middle where that is too much for a browser's triangles."""
-    if chart.rows * chart.columns <= MAX_STITCHES:
-        return slice(0, chart.rows), slice(0, chart.columns)
-    shrink = (MAX_STITCHES / (chart.rows * chart.columns)) ** 0.5
-    rows, columns = int(chart.rows * shrink), int(chart.columns * shrink)
-    bottom, left = (chart.rows - rows) // 2, (chart.columns - columns) // 2
-    return slice(bottom, bottom + rows), slice(left, left + columns)
+def _instances(scene: FabricScene, middle: Array, meshes: StitchMeshes) -> dict[str, Any]:
+    """What viser takes of every stitch, in the order of the chart's cells."""
+    places, index = scene.placement, scene.shapes.index.ravel()
+    centres = places.centres_mm.reshape(-1, 2) - middle
+    sizes = places.sizes_mm.reshape(-1, 2) / meshes.sizes_mm[index]
+    depth = np.full(len(index), places.depth / meshes.depth)
+    return {
+        "batched_positions": np.column_stack([centres, 0.0 * depth]).astype(np.float32),
+        "batched_scales": np.column_stack([sizes, depth]).astype(np.float32),
+        "batched_wxyzs": quaternions(places.angles.ravel()),
+        "batched_colors": linear(scene.colours.reshape(-1, 3)),
+    }
 
 
-def _level(stitches: int) -> tuple[int, int]:
-    return next((p, s) for most, p, s in LEVELS if stitches <= most)
-
-
-def _loop_mesh(kind: int, unit: Array, radius: float, points: int, sides: int) -> TriangleMesh:
-    line = loop_centre_line(kind, points) * np.array([unit[0], unit[1], radius])
-    return tube(line, radius * 0.92, sides)
+def _of(instances: dict[str, Any], stitches: NDArray[np.intp]) -> dict[str, Any]:
+    return {name: values[stitches] for name, values in instances.items()}
 
 
 def _rectangle_lines(scene: FabricScene, middle: Array) -> NDArray[np.float32]:
     assert scene.rectangles_mm is not None  # noqa: S101 - the caller checked
     half = scene.rectangles_mm.reshape(-1, 1, 2) / 2
-    centre = (scene.centres_mm.reshape(-1, 2) - middle)[:, None, :]
+    centre = (scene.placement.centres_mm.reshape(-1, 2) - middle)[:, None, :]
     corners = centre + half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    lifted = np.concatenate(
-        [corners, np.full((*corners.shape[:2], 1), 2.2 * scene.yarn_radius_mm)], axis=2
-    )
+    highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
+    height = highest + 1.3 * scene.shapes.yarn_radius_mm
+    lifted = np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)
     pairs = np.stack([lifted, np.roll(lifted, -1, axis=1)], axis=2)
     return pairs.reshape(-1, 2, 3).astype(np.float32)

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 import viser
 
 from app.problems import UnavailableError
+from app.viewer.fabric import FabricScene
 from app.viewer.private_port import private_server
-from app.viewer.scene import FabricScene, SceneWriter
+from app.viewer.scene import SceneWriter
 
 log = logging.getLogger("knitcore.app")
 
@@ -122,7 +123,7 @@ def _new_view() -> View:
     scene.configure_environment_map(hdri=None)
     scene.configure_default_lights(enabled=False)
     scene.add_light_hemisphere(
-        "/light/sky", sky_color=(255, 252, 246), ground_color=(150, 145, 140), intensity=0.9
+        "/light/sky", sky_color=(255, 252, 246), ground_color=(120, 112, 108), intensity=1.35
     )
-    scene.add_light_directional("/light/key", intensity=1.2, position=(-60.0, 80.0, 120.0))
+    scene.add_light_directional("/light/key", intensity=2.6, position=(-70.0, 100.0, 90.0))
     return View(server, SceneWriter(server))

@@ -60,6 +60,15 @@ def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
     )
 
 
+def course_angles(centres_mm: Array) -> Array:
+    """How far each course runs off the horizontal at each stitch, radians, (rows, columns)."""
+    if centres_mm.shape[1] < 2:
+        return np.zeros(centres_mm.shape[:2])
+    along = np.gradient(centres_mm, axis=1)
+    angles: Array = np.arctan2(along[..., 1], along[..., 0])
+    return angles
+
+
 def stretched_sizes_mm(centres_mm: Array, relaxed: Lattice) -> Array:
     """Sizes of stitches whose centres have moved, so that neighbours still meet.
 

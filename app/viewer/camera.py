@@ -1,0 +1,56 @@
+"""Where the camera stands: the sides from which a fabric is looked at."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FIELD_OF_VIEW = 0.5
+"""Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""
+ASPECT = 1.25
+"""Width over height of the view that a fabric must fit in; panels are rarely narrower."""
+MARGIN = 1.06
+
+
+class Side(StrEnum):
+    """Sides of a fabric."""
+
+    FACE = "face"
+    BACK = "back"
+    EDGE = "edge"
+    ANGLE = "angle"
+
+
+_TOWARDS: dict[Side, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+    # where the camera stands, and what is up in the picture
+    Side.FACE: ((0.0, -0.06, 1.0), (0.0, 1.0, 0.0)),
+    Side.BACK: ((0.0, -0.06, -1.0), (0.0, 1.0, 0.0)),
+    Side.EDGE: ((0.0, -1.0, 0.16), (0.0, 0.0, 1.0)),
+    Side.ANGLE: ((0.45, -0.75, 0.75), (0.0, 1.0, 0.0)),
+}
+
+
+def place_camera(server: viser.ViserServer, side: Side, extent_mm: Array) -> None:
+    """Turn everybody's camera, and that of later ones, so that the whole fabric is seen."""
+    direction, up = (np.array(vector) for vector in _TOWARDS[side])
+    width, height = extent_mm
+    if side is Side.EDGE:
+        height = 0.3 * width
+    needed = MARGIN * max(height, width / ASPECT) / 2
+    position = direction / np.linalg.norm(direction) * needed / np.tan(FIELD_OF_VIEW / 2)
+    start = server.initial_camera
+    start.fov = FIELD_OF_VIEW
+    start.up = up
+    start.look_at = (0.0, 0.0, 0.0)
+    start.position = position
+    for client in server.get_clients().values():
+        with client.atomic():
+            client.camera.fov = FIELD_OF_VIEW
+            client.camera.up_direction = up
+            client.camera.position = position
+            client.camera.look_at = (0.0, 0.0, 0.0)

@@ -1,0 +1,113 @@
+"""A fabric to look at: its yarn, where it lies, its colours."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.geometry.instances import MOST_STITCHES
+from knitcore.geometry.lattice import Lattice
+from knitcore.geometry.placing import Placement
+from knitcore.geometry.stitches import StitchShapes
+
+Array = NDArray[np.float64]
+Colours = NDArray[np.uint8]
+
+BESIDE = 0.8
+"""So many stitches from a stitch's centre a click still means it."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
+
+    row0: int
+    column0: int
+    row1: int
+    column1: int
+
+
+@dataclass(frozen=True, eq=False)
+class FabricScene:
+    """Everything needed to draw a fabric.
+
+    Attributes
+    ----------
+    shapes, placement : the yarn and where it lies.
+    colours : (rows, columns, 3) uint8.
+    rectangles_mm : (rows, columns, 2) sides of the extensibility rectangles, or None for no layer.
+    focus : (row, column) around which a chart that is too large is drawn as yarn; its middle if
+        None.
+    """
+
+    shapes: StitchShapes
+    placement: Placement
+    colours: Colours
+    rectangles_mm: Array | None = None
+    focus: tuple[int, int] | None = None
+
+    @property
+    def middle_mm(self) -> Array:
+        """Centre of the fabric; the scene's origin."""
+        middle: Array = self.placement.centres_mm.reshape(-1, 2).mean(axis=0)
+        return middle
+
+    @property
+    def extent_mm(self) -> Array:
+        """Width and height."""
+        places = self.placement
+        extent: Array = np.ptp(places.centres_mm.reshape(-1, 2), axis=0) + places.sizes_mm[0, 0]
+        return extent
+
+    def window(self) -> FabricScene:
+        """The part that is drawn as yarn: all, or what a browser's triangles allow."""
+        rows, columns = self.shapes.index.shape
+        if rows * columns <= MOST_STITCHES:
+            return self
+        height = min(rows, max(int(MOST_STITCHES**0.5), MOST_STITCHES // columns))
+        width = min(columns, MOST_STITCHES // height)
+        row, column = self.focus or (rows // 2, columns // 2)
+        bottom = min(max(row - height // 2, 0), rows - height)
+        left = min(max(column - width // 2, 0), columns - width)
+        part = (slice(bottom, bottom + height), slice(left, left + width))
+        lattice, places = self.shapes.lattice, self.placement
+        return dataclasses.replace(
+            self,
+            shapes=dataclasses.replace(
+                self.shapes,
+                index=self.shapes.index[part],
+                lattice=Lattice(lattice.centres_mm[part], lattice.sizes_mm[part]),
+            ),
+            placement=Placement(
+                places.centres_mm[part], places.sizes_mm[part], places.angles[part], places.depth
+            ),
+            colours=self.colours[part],
+            rectangles_mm=None if self.rectangles_mm is None else self.rectangles_mm[part],
+        )
+
+    def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
+        """The stitch at a place of the scene, (row, column); None beside the fabric."""
+        places = self.placement
+        away = np.abs(places.centres_mm - self.middle_mm - (x_mm, y_mm)) / places.sizes_mm
+        distance = away.max(axis=2)
+        row, column = np.unravel_index(distance.argmin(), distance.shape)
+        return (int(row), int(column)) if distance[row, column] < BESIDE else None
+
+    def box_corners_mm(self, box: Box) -> Array:
+        """Corners of some stitches' outline in the scene, (4, 2)."""
+        places = self.placement
+        row0, row1 = (int(np.clip(r, 0, len(places.angles) - 1)) for r in (box.row0, box.row1 - 1))
+        column0, column1 = (
+            int(np.clip(c, 0, places.angles.shape[1] - 1)) for c in (box.column0, box.column1 - 1)
+        )
+        corners = ((row0, column0), (row0, column1), (row1, column1), (row1, column0))
+        half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        return np.array(
+            [
+                places.centres_mm[at] + side * places.sizes_mm[at] - self.middle_mm
+                for at, side in zip(corners, half, strict=True)
+            ]
+        )

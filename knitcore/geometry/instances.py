@@ -1,0 +1,85 @@
+"""A fabric as a few meshes and where each is repeated: what a renderer with instancing takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.geometry.placing import Placement, mean_sizes_mm
+from knitcore.geometry.stitches import StitchShapes
+from knitcore.geometry.tubes import tube_faces, tube_vertices
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+
+LEVELS = ((1_500, 48, 8), (10_000, 16, 6), (40_000, 10, 4))
+"""(largest number of stitches, points, sides): how finely each stitch is drawn."""
+OVERLAP = 0.012
+"""Tubes reach this share of a stitch into the next: no light falls through the joins."""
+MOST_STITCHES = LEVELS[-1][0]
+
+
+@dataclass(frozen=True, eq=False)
+class StitchMeshes:
+    """One tube for each shape, sized as its stitches are on average.
+
+    Attributes
+    ----------
+    vertices : (shapes, V, 3) mm, around the stitch's centre.
+    faces : (F, 3), the same for all.
+    sizes_mm : (shapes, 2) of the stitch that was drawn.
+    depth : of the placement that was drawn.
+    """
+
+    vertices: Floats
+    faces: NDArray[np.uint32]
+    sizes_mm: Array
+    depth: float
+
+    def fits(self, sizes_mm: Array, depth: float, tolerance: float) -> bool:
+        """Whether stitches of these mean sizes may be shown by scaling the tubes.
+
+        Scaling makes the yarn itself thicker or thinner, so it may not go far.
+        """
+        ratios = np.append(np.log(sizes_mm / self.sizes_mm), np.log(depth / self.depth))
+        return bool(np.abs(ratios).max() <= tolerance)
+
+
+def level_of(stitches: int) -> tuple[int, int]:
+    """Points and sides of a tube where so many stitches are drawn."""
+    return next((p, s) for most, p, s in LEVELS if stitches <= most)
+
+
+def stitch_meshes(
+    shapes: StitchShapes, placement: Placement, points: int, sides: int
+) -> StitchMeshes:
+    """Tubes of the yarn's thickness around every shape, at its mean size in a placement."""
+    sizes = mean_sizes_mm(shapes, placement)
+    scale = np.column_stack([sizes, np.full(len(sizes), placement.depth)])
+    lines = resampled(shapes.lines, points) * scale[:, None]
+    lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
+    lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
+    return StitchMeshes(
+        vertices=tube_vertices(lines, shapes.yarn_radius_mm, sides),
+        faces=tube_faces(points, sides),
+        sizes_mm=sizes,
+        depth=placement.depth,
+    )
+
+
+def resampled(lines: Array, points: int) -> Array:
+    """Lines (n, P, 3) with another number of points, their ends kept."""
+    place = np.linspace(0.0, lines.shape[1] - 1, points)
+    before = np.minimum(place.astype(int), lines.shape[1] - 2)
+    share = (place - before)[:, None]
+    between: Array = lines[:, before] * (1.0 - share) + lines[:, before + 1] * share
+    return between
+
+
+def quaternions(angles: Array) -> Floats:
+    """(..., 4) w, x, y, z of turns about +z."""
+    half = 0.5 * angles
+    zero = np.zeros_like(half)
+    return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=-1).astype(np.float32)

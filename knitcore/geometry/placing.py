@@ -1,0 +1,102 @@
+"""Where each stitch's shape goes: at rest, or carried along by a swatch's displacement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.geometry.lattice import Lattice, course_angles, stretched_sizes_mm
+from knitcore.geometry.stitches import StitchShapes
+
+Array = NDArray[np.float64]
+
+DEPTH = (0.55, 1.4)
+"""Bounds of the change of thickness: strands cannot pass through each other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Stitches of a chart in space.
+
+    Attributes
+    ----------
+    centres_mm : (rows, columns, 2)
+    sizes_mm : (rows, columns, 2) along the course and across it.
+    angles : (rows, columns) direction of the course, radians.
+    depth : thickness of the fabric over its thickness at rest.
+    """
+
+    centres_mm: Array
+    sizes_mm: Array
+    angles: Array
+    depth: float
+
+
+def at_rest(shapes: StitchShapes) -> Placement:
+    """The fabric as it lies."""
+    lattice = shapes.lattice
+    return Placement(lattice.centres_mm, lattice.sizes_mm, np.zeros(shapes.index.shape), 1.0)
+
+
+def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placement:
+    """The fabric where a stretched sheet has taken its stitches.
+
+    Loops turn with their course and grow or shrink with the distances to their neighbours. The
+    yarn is as long as before, so a fabric that grows in the plane becomes thinner.
+
+    Parameters
+    ----------
+    shapes : of the chart.
+    centres_mm : (rows, columns, 2) centres of the stitches in the stretched sheet.
+    sheet : where the stitches lay before.
+    """
+    sizes = stretched_sizes_mm(centres_mm, sheet)
+    angles = course_angles(centres_mm)
+    cosine = np.cos(angles)  # the sizes so far are along x and y
+    sizes[..., 0] /= cosine
+    sizes[..., 1] *= cosine
+    return Placement(centres_mm, sizes, angles, _depth(shapes, sizes))
+
+
+def mean_sizes_mm(shapes: StitchShapes, placement: Placement) -> Array:
+    """Mean size of the stitches of each shape, (shapes, 2); 1 mm for shapes that do not occur."""
+    index, count = shapes.index.ravel(), len(shapes.lines)
+    number = np.bincount(index, minlength=count)
+    sums = [
+        np.bincount(index, placement.sizes_mm[..., axis].ravel(), minlength=count)
+        for axis in range(2)
+    ]
+    means: Array = np.where(number > 0, np.array(sums) / np.maximum(number, 1), 1.0).T
+    return means
+
+
+def placed_lines(shapes: StitchShapes, placement: Placement) -> Array:
+    """Centre lines of all stitches, (rows, columns, points, 3), mm."""
+    lines = shapes.lines[shapes.index]
+    flat = lines[..., :2] * placement.sizes_mm[:, :, None]
+    cos, sin = np.cos(placement.angles)[..., None], np.sin(placement.angles)[..., None]
+    x, y = flat[..., 0], flat[..., 1]
+    turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+    depth = placement.depth * lines[..., 2:]
+    placed: Array = np.concatenate([turned + placement.centres_mm[:, :, None], depth], axis=-1)
+    return placed
+
+
+def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:
+    """The change of thickness that keeps the yarn's length, within bounds."""
+    number = np.bincount(shapes.index.ravel(), minlength=len(shapes.lines))
+    rest = mean_sizes_mm(shapes, at_rest(shapes))
+    now = mean_sizes_mm(shapes, Placement(sizes_mm, sizes_mm, sizes_mm[..., 0], 1.0))
+
+    def length(sizes: Array, depth: float) -> float:
+        steps = np.diff(shapes.lines, axis=1)
+        steps = steps * np.column_stack([sizes, np.full(len(sizes), depth)])[:, None]
+        return float(number @ np.linalg.norm(steps, axis=2).sum(axis=1))
+
+    wanted, (low, high) = length(rest, 1.0), DEPTH
+    for _ in range(12):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if length(now, middle) < wanted else (low, middle)
+    return 0.5 * (low + high)
