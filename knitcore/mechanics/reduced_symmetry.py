@@ -51,7 +51,9 @@ class SegmentGeometry:
     parity : even or odd.
     separation_mm : lambda, distance of its ends.
     length_mm : L, yarn between them.
-    slope : v, the ends' tangent across the line between the ends.
+    slope : v, the tangent's component out of the plane of the cloth at the first end. So tables 15
+        and 16 list it; the derivation means the component across the line between the ends, which
+        is the same for an even segment only.
     angle_rad : phi, tilt of that line out of the plane of the cloth; None for an even segment.
 
     Raises
@@ -88,36 +90,30 @@ class SegmentGeometry:
         Parameters
         ----------
         curve_mm : (points, 2) along the pull and out of the plane of the cloth, from one entangled
-            region to the next; the third coordinate is projected away, as in the paper.
+            region to the next, or (points, 3) with the coordinate across the pull as the third. The
+            length is that of all coordinates; everything else is of the first two, as in the paper.
 
         Raises
         ------
         InputError
             If there are fewer than 5 points or they describe no segment.
         """
-        points = np.asarray(curve_mm, dtype=float)
-        if points.ndim != 2 or points.shape[1] != 2 or len(points) < _FEWEST_POINTS:
+        curve = np.asarray(curve_mm, dtype=float)
+        if curve.ndim != 2 or curve.shape[1] not in (2, 3) or len(curve) < _FEWEST_POINTS:
             raise InputError(
                 "curve_mm",
-                f"has the shape {points.shape}.",
-                f"Give at least {_FEWEST_POINTS} points of 2 coordinates.",
+                f"has the shape {curve.shape}.",
+                f"Give at least {_FEWEST_POINTS} points of 2 or 3 coordinates.",
             )
-        steps = np.diff(points, axis=0)
-        length, chord = float(np.linalg.norm(steps, axis=1).sum()), points[-1] - points[0]
+        length = float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum())
+        points = curve[:, :2]
+        chord = points[-1] - points[0]
         separation = float(np.linalg.norm(chord))
         if not (np.isfinite(length) and 0 < separation < length):
             raise InputError("curve_mm", "describes no segment.", "Give a curved centre line.")
-        # Seen so that the chord rises along the pull; the ends' tangents by one-sided differences.
-        along = chord / separation
-        across = np.array([-along[1], along[0]])
-        rising = 1.0 if chord[0] * chord[1] >= 0 else -1.0
-        ends = [
-            _end_tangent(points) @ across,
-            _end_tangent(points[::-1]) @ across * (1 if parity is Parity.EVEN else -1),
-        ]
-        slope = float(np.mean(ends)) * rising
+        slope = abs(float(_end_tangent(points)[1]))
         if parity is Parity.EVEN:
-            return cls(parity, separation, length, abs(slope))
+            return cls(parity, separation, length, slope)
         return cls(parity, separation, length, slope, math.atan2(abs(chord[1]), abs(chord[0])))
 
     @property

@@ -1,10 +1,12 @@
 """Geometry of the reduced-symmetry model measured from a relaxed stitch.
 
 A stitch of a pure fabric touches its neighbours in four entangled regions, one in each quarter of
-its yarn. A connecting segment reaches from the outer edge of one region to the outer edge of the
-next, as the paper's Bézier segments do: along the foot to the next stitch course-wise, along a
-leg wale-wise. A spline has no ready-made regions; here one is centred where the contact energy has
-its mean and is as long as a uniform region of the same spread would be.
+its yarn. Course-wise a connecting segment reaches along the foot from the middle of one region to
+the middle of the next, wale-wise along a leg from the outer edge of one to the outer edge of the
+other: so measured on the paper's own Bezier curves, whose strands A and B are these regions, the
+separations, lengths and slopes of its tables 15 and 16 come out (docs/reduced-symmetry.md). A
+spline has no ready-made regions; here one is centred where the contact energy has its mean and is
+as long as a uniform region of the same spread would be.
 """
 
 from __future__ import annotations
@@ -15,12 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
-from knitcore.fabric import Direction
+from knitcore.fabric import Direction, Fabric
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import SegmentGeometry
 from knitcore.yarnlevel import kernels
+from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.relax import RelaxedRepeat
+from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.tiling import centre_lines
+from knitcore.yarnlevel.yarn import YarnModel
 
 Array = NDArray[np.float64]
 
@@ -44,17 +49,42 @@ def segment_geometry(relaxed: RelaxedRepeat) -> Mapping[Direction, SegmentGeomet
     line = centre_lines(cell, relaxed.state, 1, 3)[0]
     samples = len(cell.place)
     ends = {
-        Direction.COURSE: (edges[3][0], 1.0 + edges[0][1]),
+        Direction.COURSE: (sum(edges[3]) / 2.0, 1.0 + sum(edges[0]) / 2.0),
         Direction.WALE: (edges[0][0], edges[1][1]),
     }
     parity = {Direction.COURSE: cell.mirror_course, Direction.WALE: cell.mirror_wale}
     found = {}
     for direction, (begin, end) in ends.items():
         first, last = (round((1.0 + t) * samples - 0.5) for t in (begin, end))
-        points = line[first : last + 1][:, [direction.axis, 2]]
-        kind = Parity.ODD if parity[direction] else Parity.EVEN
-        found[direction] = SegmentGeometry.from_curve(kind, points)
+        found[direction] = _measured(direction, parity[direction], line[first : last + 1])
     return found
+
+
+def published_segment_geometry(
+    fabric: Fabric, yarn: YarnModel, cell: RelaxedCell
+) -> Mapping[Direction, SegmentGeometry]:
+    """The same on the paper's Bezier curves (branch ``published``), as the paper must have done.
+
+    Parameters
+    ----------
+    fabric, yarn : what was relaxed.
+    cell : by :func:`knitcore.yarnlevel.published.relax.relax_published`.
+    """
+    stitch = Stitch(fabric, yarn, cell.convention)
+    per_curve = 200
+    line = stitch.centre_line(cell.state, per_curve)
+    first = line[: per_curve // 2 + 1] * (1.0, 1.0, -1.0 if fabric.course_odd else 1.0)
+    foot = [line[-1 - 3 * per_curve // 2 : -1], first + np.array([cell.cell_course_mm, 0.0, 0.0])]
+    leg = line[: 3 * per_curve + 1]  # B1, c11, A1
+    return {
+        Direction.COURSE: _measured(Direction.COURSE, fabric.course_odd, np.vstack(foot)),
+        Direction.WALE: _measured(Direction.WALE, fabric.wale_odd, leg),
+    }
+
+
+def _measured(direction: Direction, odd: bool, points: Array) -> SegmentGeometry:
+    order = [direction.axis, 2, direction.other.axis]
+    return SegmentGeometry.from_curve(Parity.ODD if odd else Parity.EVEN, points[:, order])
 
 
 def entangled_regions(relaxed: RelaxedRepeat) -> list[tuple[float, float]]:

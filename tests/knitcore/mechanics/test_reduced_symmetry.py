@@ -136,11 +136,20 @@ def test_an_s_curve_is_measured_from_any_side(flip):
     rise = 1 + 2 * np.pi * amplitude
     assert found.angle_rad == pytest.approx(math.pi / 4)
     assert found.separation_mm == pytest.approx(math.sqrt(2))
-    assert found.slope == pytest.approx(math.sin(math.atan(rise) - math.pi / 4), rel=1e-3)
+    assert found.slope == pytest.approx(math.sin(math.atan(rise)), rel=1e-3)
     assert found.length_mm > found.separation_mm
 
 
+def test_yarn_across_the_pull_counts_for_the_length_only():
+    angle = np.linspace(-0.5, 0.5, 400)
+    flat = 3.0 * np.column_stack([np.sin(angle), np.cos(angle)])
+    found = SegmentGeometry.from_curve(Parity.EVEN, np.column_stack([flat, 4.0 * angle]))
+    seen = SegmentGeometry.from_curve(Parity.EVEN, flat)
+    assert found.length_mm == pytest.approx(5.0, rel=1e-5)
+    assert (found.separation_mm, found.slope) == (seen.separation_mm, seen.slope)
+
+
 def test_curves_that_are_no_segments_are_refused():
-    for bad in (np.zeros((3, 2)), np.zeros((9, 3)), np.zeros((9, 2)), np.eye(9)[:, :2] * np.nan):
+    for bad in (np.zeros((3, 2)), np.zeros((9, 4)), np.zeros((9, 2)), np.eye(9)[:, :2] * np.nan):
         with pytest.raises(InputError, match="curve_mm"):
             SegmentGeometry.from_curve(Parity.EVEN, bad)
