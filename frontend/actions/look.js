@@ -8,6 +8,8 @@
 /** @type {Symmetry[]} */
 const SYMMETRIES = ["none", "across", "up", "both"];
 export const SIZES = [1, 2, 3, 5, 8];
+/** @type {import("../chart/editing.js").Look[]} */
+const LOOKS = ["both", "colours", "symbols", "loops"];
 
 /**
  * @param {string} id
@@ -49,15 +51,21 @@ export const LOOK = [
   }),
   action(
     "symbols",
-    "Symbols: dots or loops",
+    "Look: colours and symbols, colours, symbols, loops",
     ["V"],
-    ({ studio }) => {
-      studio.symbols.value = studio.symbols.value === "symbols" ? "loops" : "symbols";
+    ({ studio: { editing } }) => {
+      editing.look.value = LOOKS[(LOOKS.indexOf(editing.look.value) + 1) % LOOKS.length];
     },
     { icon: "symbols" },
   ),
   action("rectangles", "Extensibility rectangles", ["E"], ({ studio }) => {
     studio.rectangles.value = !studio.rectangles.value;
+  }),
+  action("face", "Face or back of the cloth", ["K"], ({ studio: { editing } }) => {
+    editing.back.value = !editing.back.value;
+  }, { icon: "turn" }),
+  action("round", "Knitted flat or in the round", ["Shift+R"], ({ studio: { editing } }) => {
+    editing.round.value = !editing.round.value;
   }),
   action("theme", "Light or dark", ["D"], ({ toggleTheme }) => toggleTheme(), { icon: "theme" }),
   action("resize", "Size and new chart …", ["N"], ({ open }) => open("resize"), {

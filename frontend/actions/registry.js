@@ -16,7 +16,7 @@ const CHOOSE = TOOLS.map((tool) => ({
   label: tool.label,
   group: "Tools",
   icon: tool.icon,
-  keys: [tool.key.toUpperCase()],
+  keys: [tool.key],
   perform: ({ studio }) => (studio.tool.value = tool),
 }));
 

@@ -17,8 +17,9 @@ export class ColourLayer {
    * @param {Uint8Array} codes
    * @param {Colouring} colouring
    * @param {Box} box stitches to colour
+   * @param {boolean} back whether knits look like purls and the other way round
    */
-  update(grid, codes, colouring, box) {
+  update(grid, codes, colouring, box, back) {
     const width = 2 * grid.columns;
     const height = 2 * grid.rows;
     if (this.canvas.width !== width || this.canvas.height !== height) {
@@ -30,6 +31,7 @@ export class ColourLayer {
     }
     const pixels = this.#pixels;
     const table = "table" in colouring ? colouring.table : null;
+    const turned = back ? 1 : 0;
     const each = "each" in colouring ? colouring.each : null;
     for (let row = box.row0; row < box.row1; row++) {
       const upper = 2 * (grid.rows - 1 - row) * width;
@@ -38,7 +40,7 @@ export class ColourLayer {
         const i = row * grid.columns + column;
         const x = 2 * column;
         if (table) {
-          const k = (grid.purl[i] * 16 + codes[i]) * 4;
+          const k = ((grid.purl[i] ^ turned) * 16 + codes[i]) * 4;
           pixels[lower + x] = table[k];
           pixels[lower + x + 1] = table[k + 1];
           pixels[upper + x] = table[k + 2];

@@ -1,5 +1,6 @@
 /**
- * What is drawn over the cells' colours: symbols, the grid, segments, extensibility rectangles.
+ * What is drawn over the cells' colours: symbols, the grid, segments, extensibility rectangles. All
+ * of it in face coordinates: the view exchanges left and right for the back.
  *
  * @import {Box, Grid} from "../core/grid.js"
  * @import {Viewport} from "./viewport.js"
@@ -22,17 +23,19 @@ const SMALLEST_SYMBOL = 7;
  * @param {ColourLayer} layer
  * @param {Box} box
  * @param {"symbols" | "loops"} style
+ * @param {boolean} back
  */
-export function drawSymbols(context, view, grid, layer, box, style) {
+export function drawSymbols(context, view, grid, layer, box, style, back) {
   const { cellWidth: w, cellHeight: h } = view;
   if (Math.min(w, h) < SMALLEST_SYMBOL) return;
   const onLight = new Path2D();
   const onDark = new Path2D();
   const radius = Math.min(w, h) * 0.15;
+  const turned = back ? 1 : 0;
   for (let row = box.row0; row < box.row1; row++) {
     const y = view.y + (grid.rows - 1 - row) * h;
     for (let column = box.column0; column < box.column1; column++) {
-      const purl = grid.purl[row * grid.columns + column];
+      const purl = grid.purl[row * grid.columns + column] !== turned;
       if (!purl && style === "symbols") continue;
       const x = view.x + column * w;
       const path = lightness(layer.pixelAt(grid, row, column)) > 0.5 ? onLight : onDark;

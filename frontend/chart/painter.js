@@ -2,13 +2,18 @@
  * Pointer and keys on the chart: turns gestures into strokes of the chosen tool.
  *
  * @import {Cell} from "../core/raster.js"
+ * @import {Combination, Selection} from "../core/selection.js"
  * @import {Gesture} from "../tools/tool.js"
  * @import {ChartView} from "./view.js"
+ * @import {Placed} from "./placing.js"
  * @import {Studio} from "../studio.js"
  */
 
+import { Floating } from "../core/floating.js";
 import { inked } from "../core/ink.js";
+import { combined, selects } from "../core/selection.js";
 import { Brush } from "../core/stroke.js";
+import { boxAt, placedAt, placedBox, shifted } from "./placing.js";
 
 /** @type {Cell} */
 const CORNER = [0, 0];
@@ -16,6 +21,10 @@ const CORNER = [0, 0];
 export class Painter {
   /** @type {Gesture | null} */ #gesture = null;
   #ink;
+  /** Selection that a gesture began with. @type {Selection | null} */ #before = null;
+  /** @type {Combination} */ #combination = "replace";
+  /** @type {Floating | null} */ #floating = null;
+  /** A copy of a repeat that is being moved. @type {Placed | null} */ #placed = null;
   /** Where a selection by keys began. @type {Cell | null} */ #anchor = null;
   #panning = false;
   #space = false;
@@ -44,6 +53,9 @@ export class Painter {
       if (key === " ") this.#space = false;
     });
     studio.tool.watch(({ mode }) => (canvas.dataset.mode = mode));
+    studio.document.onRefuse((names) =>
+      studio.tell(`Locked: ${names.join(", ")}. Unlock it in the list of regions to paint there.`),
+    );
   }
 
   /** @param {PointerEvent} event */
@@ -53,31 +65,71 @@ export class Painter {
     view.canvas.focus({ preventScroll: true });
     view.canvas.setPointerCapture(event.pointerId);
     const cell = view.cellAt(event);
-    if (event.button === 1 || this.#space || studio.tool.value.mode === "pan") {
+    const { mode } = studio.tool.value;
+    if (event.button === 1 || this.#space || mode === "pan") {
       this.#panning = true;
       return;
     }
-    if (studio.tool.value.mode !== "select" && !studio.document.grid.has(...cell)) return;
-    this.#begin(cell, event.button === 2, event.shiftKey);
+    if (mode !== "select" && mode !== "move" && !studio.document.grid.has(...cell)) return;
+    this.#begin(cell, event.button === 2, event);
+    view.flush();
   }
 
   /**
    * @param {Cell} cell
    * @param {boolean} opposite
-   * @param {boolean} constrain
+   * @param {{shiftKey: boolean, altKey: boolean}} keys
    */
-  #begin(cell, opposite, constrain) {
+  #begin(cell, opposite, { shiftKey, altKey }) {
     const { studio } = this;
-    const { grid } = studio.document;
-    this.#gesture = { start: cell, previous: cell, current: cell, constrain };
-    if (studio.tool.value.mode === "select") {
-      studio.selection.value = null;
-      return;
+    const { document: chart, tool } = studio;
+    const { grid } = chart;
+    this.#gesture = { start: cell, previous: cell, current: cell, path: [cell], constrain: shiftKey };
+    const { mode } = tool.value;
+    if (mode === "select") {
+      this.#before = studio.selection.value;
+      this.#combination = shiftKey ? (altKey ? "intersect" : "add") : altKey ? "subtract" : "replace";
+      this.#apply();
+    } else if (mode === "move") {
+      if (!this.#lift(cell, altKey)) this.#gesture = null;
+    } else if (mode === "place") {
+      if (!studio.editing.repeat) {
+        this.#gesture = null;
+        studio.tell("Make a repeat first: select one motif, then “New from the selection” in Repeats.");
+      } else this.#apply();
+    } else {
+      const ink = opposite ? studio.ink.value.opposite() : studio.ink.value;
+      this.#ink = ink.resolved(grid.purl[grid.index(...cell)]);
+      chart.begin(this.#ink.target);
+      this.#apply();
     }
-    const ink = opposite ? studio.ink.value.opposite() : studio.ink.value;
-    this.#ink = ink.resolved(grid.purl[grid.index(...cell)]);
-    studio.document.begin();
-    this.#apply();
+  }
+
+  /**
+   * Take what is selected into the hand; without a selection, the repeat or region under the pointer.
+   *
+   * @param {Cell} cell
+   * @param {boolean} copy
+   */
+  #lift(cell, copy) {
+    const { studio } = this;
+    const { document: chart, selection } = studio;
+    if (!selection.value || !selects(selection.value, ...cell)) {
+      const found = boxAt(chart, cell);
+      if (found) selection.value = found;
+      else if (!selection.value) {
+        studio.tell("Select stitches first (M, Q or W); then drag them.");
+        return false;
+      }
+    }
+    if (!selection.value) return false;
+    this.#placed = copy ? null : placedAt(chart, selection.value);
+    if (this.#placed) return true;
+    this.#floating = copy
+      ? Floating.lift(chart.grid, selection.value, true)
+      : studio.editing.floating ?? Floating.lift(chart.grid, selection.value, false);
+    chart.begin();
+    return true;
   }
 
   /** @param {PointerEvent} event */
@@ -93,57 +145,117 @@ export class Painter {
     if (moved) view.hover.value = this.studio.document.grid.has(...cell) ? cell : null;
     const gesture = this.#gesture;
     if (!gesture) return;
-    if (cell[0] === gesture.current[0] && cell[1] === gesture.current[1]) return;
+    const { mode } = this.studio.tool.value;
+    const freehand = mode === "stroke" || mode === "select";
+    const between = freehand ? event.getCoalescedEvents?.() ?? [] : [];
+    for (const each of between.length ? between : [event]) this.#follow(view.cellAt(each), event.shiftKey);
+    view.flush();
+  }
+
+  /**
+   * @param {Cell} cell
+   * @param {boolean} constrain
+   */
+  #follow(cell, constrain) {
+    const gesture = this.#gesture;
+    if (!gesture || (cell[0] === gesture.current[0] && cell[1] === gesture.current[1])) return;
     gesture.previous = gesture.current;
     gesture.current = cell;
-    gesture.constrain = event.shiftKey;
+    gesture.path.push(cell);
+    gesture.constrain = constrain;
     this.#apply();
   }
 
   #apply() {
-    const { studio } = this;
+    const { studio, view } = this;
     const gesture = this.#gesture;
     const tool = studio.tool.value;
     if (!gesture) return;
-    const { grid, codes } = studio.document;
-    if (tool.mode === "select") {
-      const { start, current } = gesture;
-      /** @param {number} i */
-      const ends = (i) => {
-        const limit = (i === 0 ? grid.rows : grid.columns) - 1;
-        const a = Math.min(limit, Math.max(0, start[i]));
-        const b = Math.min(limit, Math.max(0, current[i]));
-        return [Math.min(a, b), Math.max(a, b) + 1];
-      };
-      const [row0, row1] = ends(0);
-      const [column0, column1] = ends(1);
-      studio.selection.value = { row0, row1, column0, column1 };
+    const { document: chart } = studio;
+    const { grid, codes, outline } = chart;
+    if (tool.mode === "once" && gesture.current !== gesture.start) return;
+    if (tool.mode === "place") {
+      view.preview.value = placedBox(studio.editing.repeat, grid, gesture.start, gesture.current);
       return;
     }
-    if (tool.mode === "once" && gesture.current !== gesture.start) return;
-    const cells = tool.cells(gesture, {
-      grid,
-      codes,
-      size: studio.size.value,
-      ink: this.#ink,
-    });
+    if (tool.mode === "move") {
+      if (this.#placed) view.preview.value = shifted(this.#placed.box, gesture, grid);
+      else if (this.#floating) {
+        chart.paint(Brush.of(grid.purl.length, this.#floating.moved(grid, this.#target())), true);
+      }
+      return;
+    }
+    const spans = tool.spans(gesture, { grid, codes, outline, size: studio.size.value, ink: this.#ink });
+    const symmetry = studio.symmetry.value;
+    if (tool.mode === "select") {
+      studio.selection.value = combined(this.#before, spans, grid, this.#combination, symmetry);
+      return;
+    }
     const origin = tool.origin?.(gesture) ?? CORNER;
-    studio.document.paint(
-      Brush.of(grid.purl.length, inked(grid, cells, this.#ink, origin, studio.symmetry.value)),
-      tool.mode === "shape",
-    );
+    chart.paint(inked(grid, spans, this.#ink, origin, symmetry), tool.mode === "shape");
+  }
+
+  /** Where the lower left corner of what is in the hand is now. @returns {Cell} */
+  #target() {
+    const { start, current } = /** @type {Gesture} */ (this.#gesture);
+    const [row, column] = /** @type {Floating} */ (this.#floating).place;
+    return [row + current[0] - start[0], column + current[1] - start[1]];
   }
 
   #up() {
     this.#panning = false;
     if (!this.#gesture) return;
+    const { studio, view } = this;
+    const { document: chart, tool } = studio;
+    if (tool.value.mode === "place") this.#place();
+    else if (this.#placed) this.#replace(this.#placed);
+    else if (this.#floating) {
+      const { clip, under } = this.#floating;
+      const target = this.#target();
+      if (chart.commit(tool.value.label)) studio.editing.hold(new Floating(clip, target, under));
+    } else chart.commit(studio.ink.value.target === "stitches" ? tool.value.label : studio.ink.value.name);
+    this.#floating = null;
     this.#gesture = null;
-    this.studio.document.commit(this.studio.tool.value.label);
+    view.flush();
+  }
+
+  /** Put copies of the active repeat where they are shown. */
+  #place() {
+    const { studio, view } = this;
+    const repeat = studio.editing.repeat;
+    const box = view.preview.value;
+    view.preview.value = null;
+    if (!repeat) return;
+    if (!box) {
+      studio.tell(`${repeat.name} does not fit there: it is a ${repeat.rule}.`);
+      return;
+    }
+    const { row0: row, column0: column, row1, column1 } = box;
+    const place = { row, column, rows: row1 - row, columns: column1 - column };
+    studio.document.changeRepeat(repeat.id, { placements: [...repeat.placements, place] }, "Place a repeat");
+  }
+
+  /** Move a copy of a repeat; what it leaves stays as it was, linked no more. @param {Placed} placed */
+  #replace({ repeat, at }) {
+    const { studio, view } = this;
+    const box = view.preview.value;
+    this.#placed = null;
+    view.preview.value = null;
+    if (!box) return;
+    const placements = repeat.placements.map((place, k) =>
+      k === at ? { ...place, row: box.row0, column: box.column0 } : place,
+    );
+    studio.document.changeRepeat(repeat.id, { placements }, "Move a repeat");
+    studio.selection.value = box;
   }
 
   #cancel() {
     this.#panning = false;
+    this.#placed = null;
+    if (this.#gesture && this.studio.tool.value.mode === "select") this.studio.selection.value = this.#before;
     this.#gesture = null;
+    this.#floating = null;
+    this.view.preview.value = null;
     this.studio.document.cancel();
   }
 
@@ -157,10 +269,11 @@ export class Painter {
     }
   }
 
-  /** Arrow keys move a cursor, Enter paints there. @param {KeyboardEvent} event */
+  /** Arrow keys move a cursor (or what is selected), Enter paints there. @param {KeyboardEvent} event */
   #key(event) {
     const { view, studio } = this;
     const { grid } = studio.document;
+    const { mode } = studio.tool.value;
     if (event.key === " ") {
       this.#space = true;
       event.preventDefault();
@@ -171,29 +284,37 @@ export class Painter {
       this.#cancel();
       return;
     }
-    const step = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] }[
+    const sideways = view.viewport.mirrored ? -1 : 1;
+    const step = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -sideways], ArrowRight: [0, sideways] }[
       event.key
     ];
     if (event.ctrlKey || event.metaKey || event.altKey || (!step && event.key !== "Enter")) return;
     event.preventDefault();
     const cell = view.hover.value ?? [0, grid.columns - 1];
+    if (step && mode === "move" && studio.selection.value) {
+      const { row0, column0 } = studio.selection.value;
+      this.#begin([row0, column0], false, { shiftKey: false, altKey: false });
+      this.#follow([row0 + step[0], column0 + step[1]], false);
+      this.#up();
+      return;
+    }
     if (step) {
       const row = Math.min(grid.rows - 1, Math.max(0, cell[0] + (view.hover.value ? step[0] : 0)));
       const column = Math.min(
         grid.columns - 1,
         Math.max(0, cell[1] + (view.hover.value ? step[1] : 0)),
       );
-      if (event.shiftKey && studio.tool.value.mode === "select") {
+      if (event.shiftKey && mode === "select") {
         this.#anchor ??= cell;
-        this.#gesture = { start: this.#anchor, previous: cell, current: [row, column], constrain: false };
-        this.#apply();
+        this.#begin(this.#anchor, false, { shiftKey: false, altKey: false });
+        this.#follow([row, column], false);
         this.#gesture = null;
       } else this.#anchor = null;
       view.hover.value = [row, column];
       return;
     }
-    if (studio.tool.value.mode === "pan" || studio.tool.value.mode === "select") return;
-    this.#begin(cell, event.shiftKey, false);
+    if (mode === "pan" || mode === "move") return;
+    this.#begin(cell, event.shiftKey && mode !== "select", event);
     this.#up();
   }
 }

@@ -16,8 +16,9 @@ const FONT = "13px system-ui, sans-serif";
  * @param {Viewport} view
  * @param {Grid} grid
  * @param {Palette} palette
+ * @param {boolean} round knitted in the round: every row is a right-side row
  */
-export function drawRulers(context, view, grid, palette) {
+export function drawRulers(context, view, grid, palette, round) {
   context.font = FONT;
   context.fillStyle = palette.muted;
   context.textBaseline = "middle";
@@ -28,12 +29,16 @@ export function drawRulers(context, view, grid, palette) {
 
   const every = rowStep(view.cellHeight);
   for (let number = 1; number <= grid.rows; number++) {
-    const wrong = number % 2 === 0;
-    if (every > 1 && (wrong ? number % (2 * every) !== 0 : (number - 1) % (2 * every) !== 0)) continue;
+    const wrong = !round && number % 2 === 0;
+    if (every > 1) {
+      if (round ? number !== 1 && number % every !== 0 : (number - (wrong ? 0 : 1)) % (2 * every) !== 0) continue;
+    }
     const y = view.y + (grid.rows - number + 0.5) * view.cellHeight;
     if (y < top || y > bottom) continue;
-    context.textAlign = wrong ? "right" : "left";
-    context.fillText(wrong ? `${number} →` : `← ${number}`, wrong ? left : right, y);
+    // From the back, the side where a row begins is the other one.
+    const atLeft = wrong !== view.mirrored;
+    context.textAlign = atLeft ? "right" : "left";
+    context.fillText(atLeft ? `${number} →` : `← ${number}`, atLeft ? left : right, y);
   }
 
   const base = Math.min(view.height - MARGIN.bottom, view.y + grid.rows * view.cellHeight) + 15;
@@ -41,16 +46,18 @@ export function drawRulers(context, view, grid, palette) {
   context.textAlign = "center";
   for (let number = 1; number <= grid.columns; number++) {
     if (number !== 1 && number % step !== 0) continue;
-    const x = view.x + (grid.columns - number + 0.5) * view.cellWidth;
+    const at = view.mirrored ? number - 0.5 : grid.columns - number + 0.5;
+    const x = view.x + at * view.cellWidth;
     if (x < MARGIN.left - 4 || x > view.width - MARGIN.right + 4) continue;
     const half = context.measureText(String(number)).width / 2;
     if (x - half < left + 2 || x + half > right - 2) continue; // the sides' names stand there
     context.fillText(String(number), x, base);
   }
+  const [start, end] = view.mirrored ? ["RS", "WS"] : ["WS", "RS"];
   context.textAlign = "right";
-  context.fillText("WS", left, base);
+  if (!round || start === "RS") context.fillText(start, left, base);
   context.textAlign = "left";
-  context.fillText("RS", right, base);
+  if (!round || end === "RS") context.fillText(end, right, base);
 }
 
 /** Label every n-th right-side and wrong-side row. @param {number} height */

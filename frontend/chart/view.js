@@ -12,7 +12,8 @@ import { Signal } from "../core/signal.js";
 import { ColourLayer } from "./layer.js";
 import { drawGrid, drawRectangles, drawSegments, drawSymbols } from "./marks.js";
 import { OVERLAYS } from "./overlays.js";
-import { readPalette } from "./palette.js";
+import { pixel, readPalette } from "./palette.js";
+import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
 import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
 
@@ -28,6 +29,8 @@ export class ChartView {
   palette = readPalette();
   /** Stitch under the pointer or the keyboard's cursor. */
   hover = new Signal(/** @type {Cell | null} */ (null));
+  /** Where something being dragged would come to lie. */
+  preview = new Signal(/** @type {Box | null} */ (null));
   #layer = new ColourLayer();
   /** @type {Colouring | null} */ #colouring = null;
   /** Stitches to draw anew: all, some, none. @type {Box | "all" | null} */ #dirty = "all";
@@ -61,8 +64,14 @@ export class ChartView {
     for (const signal of [studio.overlay, studio.stretch, studio.step, studio.material]) {
       signal.listen(() => this.recolour());
     }
-    for (const signal of [studio.rectangles, studio.symbols]) signal.listen(() => this.redraw());
-    for (const signal of [studio.selection, studio.symmetry, studio.size, studio.tool, this.hover]) {
+    const { look, back, round } = studio.editing;
+    for (const signal of [studio.rectangles, round]) signal.listen(() => this.redraw());
+    look.listen(() => this.recolour());
+    back.watch((turned) => {
+      this.viewport.mirrored = turned;
+      this.recolour();
+    });
+    for (const signal of [studio.selection, studio.symmetry, studio.size, studio.tool, this.hover, this.preview]) {
       signal.listen(() => this.#schedule(true));
     }
     studio.material.listen((material) => {
@@ -124,7 +133,7 @@ export class ChartView {
   #mark(box) {
     if (this.#colouring) {
       const { grid, codes } = this.studio.document;
-      this.#layer.update(grid, codes, this.#colouring, box);
+      this.#layer.update(grid, codes, this.#colouring, box, this.viewport.mirrored);
     }
     const dirty = this.#dirty;
     if (dirty === null) this.#dirty = box;
@@ -142,12 +151,16 @@ export class ChartView {
   /** @param {boolean} top */
   #schedule(top) {
     this.#topDirty ||= top;
-    this.#frame ||= requestAnimationFrame(() => {
-      this.#frame = 0;
-      this.#draw();
-      if (this.#topDirty) this.#drawTop();
-      this.#topDirty = false;
-    });
+    this.#frame ||= requestAnimationFrame(() => this.flush());
+  }
+
+  /** Draw what is waiting, now: a stroke is on the canvas before its event ends. */
+  flush() {
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    this.#draw();
+    if (this.#topDirty) this.#drawTop();
+    this.#topDirty = false;
   }
 
   /** @param {HTMLElement} host */
@@ -175,17 +188,18 @@ export class ChartView {
     const { context, viewport, palette, studio } = this;
     const { grid, codes } = studio.document;
     const overlay = studio.overlay.value.available(studio) ? studio.overlay.value : null;
+    const look = studio.editing.look.value;
     if (!this.#colouring) {
       const shown = overlay ?? FALLBACK;
-      this.#colouring = shown.colouring(studio, palette);
-      this.#layer.update(grid, codes, this.#colouring, grid.box);
+      this.#colouring = look === "symbols" ? paper(palette) : shown.colouring(studio, palette);
+      this.#layer.update(grid, codes, this.#colouring, grid.box, viewport.mirrored);
     }
     context.setTransform(viewport.dpr, 0, 0, viewport.dpr, 0, 0);
     const { x, y, cellWidth: w, cellHeight: h } = viewport;
     if (dirty === "all") {
       context.fillStyle = palette.pane;
       context.fillRect(0, 0, viewport.width, viewport.height);
-      drawRulers(context, viewport, grid, palette);
+      drawRulers(context, viewport, grid, palette, studio.editing.round.value);
     }
     const seen = viewport.visible(grid);
     const box = dirty === "all" ? seen : intersection(dirty, seen);
@@ -201,6 +215,7 @@ export class ChartView {
       viewport.height - MARGIN.top - MARGIN.bottom + 2,
     );
     context.clip();
+    if (viewport.mirrored) context.transform(-1, 0, 0, 1, 2 * x + grid.columns * w, 0);
     const left = x + box.column0 * w;
     const top = y + (grid.rows - box.row1) * h;
     context.beginPath();
@@ -225,14 +240,22 @@ export class ChartView {
       column1: Math.min(seen.column1, box.column1 + 1),
     };
     drawGrid(context, viewport, grid, around, palette);
-    if (overlay?.id === "segments") drawSegments(context, viewport, grid, around, palette);
-    else if (!studio.rectangles.value) {
-      drawSymbols(context, viewport, grid, this.#layer, around, studio.symbols.value);
+    if (overlay?.id === "segments" && look !== "symbols") {
+      drawSegments(context, viewport, grid, around, palette);
+    } else if (!studio.rectangles.value && look !== "colours") {
+      const style = look === "loops" ? "loops" : "symbols";
+      drawSymbols(context, viewport, grid, this.#layer, around, style, viewport.mirrored);
     }
     const kinds = studio.kinds();
     if (studio.rectangles.value && kinds.length) {
       drawRectangles(context, viewport, grid, codes, around, kinds);
     }
+    const chart = studio.document;
+    if (chart.shaped) drawAbsent(context, viewport, chart, around, palette);
+    drawRegions(context, viewport, chart, around, palette);
+    drawRepeats(context, viewport, chart, palette);
+    if (viewport.mirrored) context.transform(-1, 0, 0, 1, 2 * x + grid.columns * w, 0);
+    drawRepeatLabels(context, viewport, chart, palette);
     context.restore();
   }
 
@@ -262,10 +285,16 @@ export class ChartView {
     context.stroke();
     context.setLineDash([]);
     const selection = studio.selection.value;
-    if (selection) this.#outline(selection, 2.5);
+    if (selection?.mask) {
+      context.save();
+      if (viewport.mirrored) context.transform(-1, 0, 0, 1, 2 * x + grid.columns * w, 0);
+      this.#strokeOver(selectionEdge(viewport, grid, selection), 2.5);
+      context.restore();
+    } else if (selection) this.#outline(selection, 2.5);
+    if (this.preview.value) this.#outline(this.preview.value, 3);
     const cell = this.hover.value;
     const tool = studio.tool.value;
-    if (cell && grid.has(...cell) && tool.mode !== "pan") {
+    if (cell && grid.has(...cell) && tool.mode !== "pan" && tool.mode !== "move") {
       const size = tool.sized ? studio.size.value : 1;
       const before = Math.floor((size - 1) / 2);
       const stamp = tool.id === "stamp" ? studio.ink.value.repeat : null;
@@ -286,19 +315,28 @@ export class ChartView {
    * @param {Box} box
    * @param {number} width
    */
-  #outline({ row0, column0, row1, column1 }, width) {
-    const { topContext: context, viewport, palette, studio } = this;
-    const { x, y, cellWidth: w, cellHeight: h } = viewport;
-    const top = y + (studio.document.grid.rows - row1) * h;
-    /** @type {[number, number, number, number]} */
-    const rectangle = [x + column0 * w, top, (column1 - column0) * w, (row1 - row0) * h];
+  #outline(box, width) {
+    const { x, y, width: wide, height: high } = this.viewport.place(box, this.studio.document.grid);
+    const path = new Path2D();
+    path.rect(x, y, wide, high);
+    this.#strokeOver(path, width);
+  }
+
+  /** In the accent colour, legible on any other. @param {Path2D} path @param {number} width */
+  #strokeOver(path, width) {
+    const { topContext: context, palette } = this;
     context.strokeStyle = palette.pane;
     context.lineWidth = width + 2;
-    context.strokeRect(...rectangle);
+    context.stroke(path);
     context.strokeStyle = palette.accent;
     context.lineWidth = width;
-    context.strokeRect(...rectangle);
+    context.stroke(path);
   }
+}
+
+/** All stitches of the colour of a knit: the symbols say it all. @param {import("./palette.js").Palette} palette */
+function paper({ knit }) {
+  return { table: new Uint32Array(128).fill(pixel(knit)) };
 }
 
 /** Shown where the chosen overlay has no values (yet). */

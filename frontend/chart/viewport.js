@@ -7,7 +7,7 @@
  */
 
 /** Room for the rulers. */
-export const MARGIN = { left: 50, right: 50, top: 14, bottom: 32 };
+export const MARGIN = { left: 50, right: 50, top: 42, bottom: 32 };
 const LARGEST = 44;
 const MOST_ENLARGED = 72;
 
@@ -24,6 +24,8 @@ export class Viewport {
   y = 0;
   /** Whether the whole chart is kept in view. */
   fitted = true;
+  /** Whether left and right are exchanged, as on the cloth's back. */
+  mirrored = false;
 
   /** @param {Grid} grid */
   fit({ rows, columns }) {
@@ -78,10 +80,27 @@ export class Viewport {
    * @returns {Cell}
    */
   cellAt(px, py, grid) {
+    const column = Math.floor((px - this.x) / this.cellWidth);
     return [
       grid.rows - 1 - Math.floor((py - this.y) / this.cellHeight),
-      Math.floor((px - this.x) / this.cellWidth),
+      this.mirrored ? grid.columns - 1 - column : column,
     ];
+  }
+
+  /**
+   * Where a box of stitches lies on the canvas.
+   *
+   * @param {Box} box
+   * @param {Grid} grid
+   */
+  place({ row0, column0, row1, column1 }, grid) {
+    const first = this.mirrored ? grid.columns - column1 : column0;
+    return {
+      x: this.x + first * this.cellWidth,
+      y: this.y + (grid.rows - row1) * this.cellHeight,
+      width: (column1 - column0) * this.cellWidth,
+      height: (row1 - row0) * this.cellHeight,
+    };
   }
 
   /**
@@ -91,13 +110,13 @@ export class Viewport {
    * @returns {Box}
    */
   visible(grid) {
-    const [row1, column0] = this.cellAt(MARGIN.left, MARGIN.top, grid);
-    const [row0, column1] = this.cellAt(this.width - MARGIN.right, this.height - MARGIN.bottom, grid);
+    const [row1, a] = this.cellAt(MARGIN.left, MARGIN.top, grid);
+    const [row0, b] = this.cellAt(this.width - MARGIN.right, this.height - MARGIN.bottom, grid);
     return {
       row0: Math.max(0, row0),
-      column0: Math.max(0, column0),
+      column0: Math.max(0, Math.min(a, b)),
       row1: Math.min(grid.rows, row1 + 1),
-      column1: Math.min(grid.columns, column1 + 1),
+      column1: Math.min(grid.columns, Math.max(a, b) + 1),
     };
   }
 

@@ -1,13 +1,15 @@
 /**
- * What a tool paints with: knit, purl, the opposite of the stitch first touched, or a repeat, so
- * that one can paint with a fabric.
+ * What a tool paints with: knit, purl, the opposite of the stitch first touched, a repeat (so that
+ * one can paint with a fabric), "no stitch", or a region.
  *
+ * @import {Target} from "./document.js"
  * @import {Grid} from "./grid.js"
- * @import {Cell} from "./raster.js"
+ * @import {Cell, Span} from "./raster.js"
  * @typedef {"none" | "across" | "up" | "both"} Symmetry "across": the left half mirrored to the right
  */
 
 import { Grid as ChartGrid } from "./grid.js";
+import { Brush } from "./stroke.js";
 
 export class Ink {
   /**
@@ -15,12 +17,14 @@ export class Ink {
    * @param {string} name
    * @param {Grid | null} repeat null: the opposite of the stitch first touched
    * @param {string} [note]
+   * @param {Target} [target] what it changes
    */
-  constructor(id, name, repeat, note = "") {
+  constructor(id, name, repeat, note = "", target = "stitches") {
     this.id = id;
     this.name = name;
     this.repeat = repeat;
     this.note = note;
+    this.target = target;
   }
 
   /**
@@ -43,41 +47,59 @@ export class Ink {
 
   /** The ink of the right mouse button. */
   opposite() {
-    return this.repeat ? new Ink(`${this.id}-swapped`, this.name, this.repeat.swapped()) : this;
+    if (!this.repeat) return this;
+    return new Ink(`${this.id}-swapped`, this.name, this.repeat.swapped(), this.note, this.target);
   }
 }
 
+/** @param {number} value */
+const one = (value) => new ChartGrid(1, 1, Uint8Array.of(value));
+
 export const FLIP = new Ink("flip", "Flip", null, "The opposite of the stitch you touch first");
-export const KNIT = new Ink("knit", "Knit", new ChartGrid(1, 1, Uint8Array.of(0)));
-export const PURL = new Ink("purl", "Purl", new ChartGrid(1, 1, Uint8Array.of(1)));
+export const KNIT = new Ink("knit", "Knit", one(0));
+export const PURL = new Ink("purl", "Purl", one(1));
+export const NO_STITCH = new Ink(
+  "no-stitch",
+  "No stitch",
+  one(0),
+  "Cut the chart's outline; the right button puts stitches back",
+  "outline",
+);
+
+/** Painting with a region adds stitches to it, the right button takes them out. @param {{id: string, name: string}} region */
+export function regionInk({ id, name }) {
+  return new Ink(`region-${id}`, name, one(1), `Add stitches to ${name}`, `region:${id}`);
+}
 
 /**
  * Stitches to set: the ink at each cell, and its mirror images.
  *
  * @param {Grid} grid
- * @param {Iterable<Cell>} cells may lie outside
+ * @param {Span[]} spans may lie outside
  * @param {Ink} ink with a repeat
  * @param {Cell} origin
  * @param {Symmetry} symmetry
- * @returns {Map<number, number>}
+ * @returns {Brush}
  */
-export function inked(grid, cells, ink, origin, symmetry) {
-  /** @type {Map<number, number>} */
-  const result = new Map();
+export function inked(grid, spans, ink, origin, symmetry) {
+  const { rows, columns } = grid;
+  const brush = new Brush(rows * columns);
   const across = symmetry === "across" || symmetry === "both";
   const up = symmetry === "up" || symmetry === "both";
-  for (const cell of cells) {
-    const [row, column] = cell;
-    if (!grid.has(row, column)) continue;
-    const value = ink.at(cell, origin);
-    const otherColumn = grid.columns - 1 - column;
-    const otherRow = grid.rows - 1 - row;
-    result.set(grid.index(row, column), value);
-    if (across) result.set(grid.index(row, otherColumn), value);
-    if (up) result.set(grid.index(otherRow, column), value);
-    if (across && up) result.set(grid.index(otherRow, otherColumn), value);
+  for (const [row, from, to] of spans) {
+    if (row < 0 || row >= rows) continue;
+    const base = row * columns;
+    const mirrored = (rows - 1 - row) * columns;
+    for (let column = Math.max(0, from); column < Math.min(columns, to); column++) {
+      const value = ink.at([row, column], origin);
+      const other = columns - 1 - column;
+      brush.set(base + column, value);
+      if (across) brush.set(base + other, value);
+      if (up) brush.set(mirrored + column, value);
+      if (across && up) brush.set(mirrored + other, value);
+    }
   }
-  return result;
+  return brush;
 }
 
 /**

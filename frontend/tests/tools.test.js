@@ -1,11 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Grid } from "../core/grid.js";
-import { FLIP, Ink, KNIT, PURL, inked } from "../core/ink.js";
-import { ellipse, flood, line, rectangle, thick } from "../core/raster.js";
+import { FLIP, Ink, KNIT, PURL, inked, regionInk } from "../core/ink.js";
+import { Floating, changed } from "../core/floating.js";
+import { ellipse, enclosed, flood, line, rectangle, thick } from "../core/raster.js";
 import { surroundings } from "../core/segments.js";
+import { combined, selectedCells } from "../core/selection.js";
 import { TOOLS } from "../tools/registry.js";
 import { ACTIONS, matches } from "../actions/registry.js";
+import { random } from "./random.js";
 
 /**
  * The chart after one gesture of a tool.
@@ -19,12 +22,12 @@ import { ACTIONS, matches } from "../actions/registry.js";
 function draw(id, grid, start, end, { ink = PURL, size = 1, constrain = false, symmetry = "none" } = {}) {
   const tool = TOOLS.find((one) => one.id === id);
   assert.ok(tool);
-  const gesture = { start, previous: start, current: end, constrain };
-  const cells = tool.cells(gesture, { grid, codes: surroundings(grid), size, ink });
+  const gesture = { start, previous: start, current: end, path: [start, end], constrain };
+  const outline = grid.purl.map(() => 1);
+  const spans = tool.spans(gesture, { grid, codes: surroundings(grid), outline, size, ink });
   const result = grid.clone();
-  for (const [i, value] of inked(grid, cells, ink, tool.origin?.(gesture) ?? [0, 0], symmetry)) {
-    result.purl[i] = value;
-  }
+  const brush = inked(grid, spans, ink, tool.origin?.(gesture) ?? [0, 0], symmetry);
+  for (const i of brush.touched) result.purl[i] = brush.values[i];
   return result.text;
 }
 
@@ -39,16 +42,77 @@ test("a line has no gaps and both its ends", () => {
   }
 });
 
+/** @param {import("../core/raster.js").Span[]} spans */
+const cellsOf = (spans) =>
+  new Set(spans.flatMap(([row, from, to]) => Array.from({ length: to - from }, (_, k) => `${row},${from + k}`)));
+
 test("shapes", () => {
-  assert.equal(rectangle([2, 1], [0, 3]).length, 9);
-  assert.equal(ellipse([0, 0], [4, 4]).length, 21);
-  assert.equal(new Set(thick([[5, 5]], 3).map(String)).size, 9);
+  assert.equal(cellsOf(rectangle([2, 1], [0, 3])).size, 9);
+  assert.equal(cellsOf(ellipse([0, 0], [4, 4])).size, 21);
+  assert.equal(cellsOf(thick([[5, 5]], 3)).size, 9);
 });
 
 test("a flood stays among connected like stitches", () => {
   const grid = Grid.fromText("KPK\nKPK\nKPK");
-  assert.equal(flood(grid, grid.purl, [0, 0]).length, 3);
-  assert.equal(flood(grid, grid.purl, [1, 1]).length, 3);
+  assert.equal(cellsOf(flood(grid, grid.purl, [0, 0])).size, 3);
+  assert.equal(cellsOf(flood(grid, grid.purl, [1, 1])).size, 3);
+  const maze = Grid.fromText("KKKKK\nKPPPK\nKPKPK\nKPKKK");
+  assert.equal(cellsOf(flood(maze, maze.purl, [0, 0])).size, 14, "around a hook and into it");
+});
+
+test("a flood is every stitch that can be reached", () => {
+  for (let seed = 1; seed < 60; seed++) {
+    const { rows, columns, purl } = random(seed);
+    const found = cellsOf(flood(new Grid(rows, columns, purl), purl, [0, 0]));
+    const reached = new Set(["0,0"]);
+    for (const at of reached) {
+      const [row, column] = at.split(",").map(Number);
+      for (const [r, c] of [[row - 1, column], [row + 1, column], [row, column - 1], [row, column + 1]]) {
+        const inside = r >= 0 && c >= 0 && r < rows && c < columns;
+        if (inside && purl[r * columns + c] === purl[0]) reached.add(`${r},${c}`);
+      }
+    }
+    assert.deepEqual(found, reached);
+  }
+});
+
+test("a lasso selects what it goes around, and its own stitches", () => {
+  assert.equal(cellsOf(enclosed([[0, 0], [0, 4], [4, 4], [4, 0]])).size, 25);
+  assert.equal(cellsOf(enclosed([[0, 0], [4, 4], [0, 4]])).size, 15);
+  assert.equal(cellsOf(enclosed([[2, 3]])).size, 1);
+});
+
+test("selections are added, subtracted, intersected and mirrored", () => {
+  const grid = new Grid(4, 6);
+  const box = combined(null, rectangle([0, 0], [1, 2]), grid, "replace");
+  assert.deepEqual(box, { row0: 0, column0: 0, row1: 2, column1: 3 });
+  const added = combined(box, rectangle([3, 5], [9, 9]), grid, "add");
+  assert.ok(added?.mask);
+  assert.equal(added && selectedCells(added, grid).length, 7);
+  assert.deepEqual(combined(added, rectangle([3, 5], [3, 5]), grid, "subtract"), box);
+  assert.deepEqual(combined(added, rectangle([1, 1], [3, 5]), grid, "intersect")?.mask?.reduce((a, b) => a + b, 0), 3);
+  assert.equal(combined(box, rectangle([0, 0], [3, 5]), grid, "subtract"), null);
+  const both = combined(null, [[0, 0, 2]], grid, "replace", "both");
+  assert.equal(both && selectedCells(both, grid).length, 8);
+});
+
+test("what is in the hand is put down, and what lay under it comes back", () => {
+  const grid = Grid.fromText("KKKK\nPPKK\nPKKP");
+  const lifted = Floating.lift(grid, { row0: 0, column0: 0, row1: 2, column1: 2 }, false);
+  const after = grid.clone();
+  for (const [i, value] of lifted.moved(grid, [0, 2])) after.purl[i] = value;
+  assert.equal(after.text, "KKKK\nKKPP\nKKPK");
+  const held = new Floating(lifted.clip, [0, 2], lifted.under);
+  for (const [i, value] of held.moved(after, [1, 3])) after.purl[i] = value;
+  assert.equal(after.text, "KKKP\nKKKP\nKKKP", "the purl that was covered is back");
+  assert.deepEqual(held.selection(grid, [1, 3]), { row0: 1, column0: 3, row1: 3, column1: 4 });
+});
+
+test("a change of a selection keeps to its shape", () => {
+  const grid = Grid.fromText("KPP\nKKP");
+  const corner = { row0: 0, column0: 1, row1: 2, column1: 3, mask: Uint8Array.of(0, 1, 1, 1) };
+  const cells = changed(grid, corner, (part) => part.mirrored(), (mask) => mask.mirrored());
+  assert.deepEqual([...cells].sort(), [[1, 1], [2, 0], [4, 1], [5, 1]]);
 });
 
 test("each tool draws what it says", () => {
@@ -87,6 +151,7 @@ test("symmetry mirrors what is painted", () => {
 test("flip paints the opposite of the stitch first touched; the other button swaps a pattern", () => {
   assert.equal(FLIP.resolved(0), PURL);
   assert.equal(FLIP.resolved(1), KNIT);
+  assert.equal(regionInk({ id: "a", name: "A" }).opposite().target, "region:a");
   assert.equal(PURL.opposite().at([0, 0], [0, 0]), 0);
 });
 

@@ -5,8 +5,8 @@ export const ellipse = {
   id: "ellipse",
   label: "Ellipse",
   icon: "ellipse",
-  key: "o",
+  key: "O",
   hint: "Drag a filled ellipse",
   mode: "shape",
-  cells: ({ start, current }) => filled(start, current),
+  spans: ({ start, current }) => filled(start, current),
 };

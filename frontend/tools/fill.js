@@ -1,12 +1,13 @@
 import { flood } from "../core/raster.js";
+import { looks } from "./wand.js";
 
 /** @type {import("./tool.js").Tool} */
 export const fill = {
   id: "fill",
   label: "Fill",
   icon: "fill",
-  key: "g",
+  key: "G",
   hint: "Fill connected like stitches; with Shift, a connected area of one fabric",
   mode: "once",
-  cells: ({ start, constrain }, { grid, codes }) => flood(grid, constrain ? codes : grid.purl, start),
+  spans: ({ start, constrain }, context) => flood(context.grid, looks(context, constrain), start),
 };

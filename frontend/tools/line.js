@@ -5,11 +5,11 @@ export const line = {
   id: "line",
   label: "Line",
   icon: "line",
-  key: "l",
+  key: "L",
   hint: "Drag a straight line; Shift keeps it level, upright or diagonal",
   mode: "shape",
   sized: true,
-  cells: ({ start, current, constrain }, { size }) =>
+  spans: ({ start, current, constrain }, { size }) =>
     thick(straight(start, constrain ? constrained(start, current) : current), size),
 };
 

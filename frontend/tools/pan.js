@@ -3,8 +3,8 @@ export const pan = {
   id: "pan",
   label: "Move view",
   icon: "hand",
-  key: "h",
+  key: "H",
   hint: "Drag the chart about; Space does it with any tool, the wheel zooms",
   mode: "pan",
-  cells: () => [],
+  spans: () => [],
 };

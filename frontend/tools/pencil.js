@@ -5,9 +5,9 @@ export const pencil = {
   id: "pencil",
   label: "Pencil",
   icon: "pencil",
-  key: "b",
+  key: "B",
   hint: "Draw freely; [ and ] change its size",
   mode: "stroke",
   sized: true,
-  cells: ({ previous, current }, { size }) => thick(line(previous, current), size),
+  spans: ({ previous, current }, { size }) => thick(line(previous, current), size),
 };

@@ -5,8 +5,8 @@ export const rectangle = {
   id: "rectangle",
   label: "Rectangle",
   icon: "rectangle",
-  key: "r",
+  key: "R",
   hint: "Drag a filled rectangle; paint a panel with a pattern",
   mode: "shape",
-  cells: ({ start, current }) => filled(start, current),
+  spans: ({ start, current }) => filled(start, current),
 };

@@ -1,10 +1,13 @@
+import { rectangle } from "../core/raster.js";
+
 /** @type {import("./tool.js").Tool} */
 export const select = {
   id: "select",
   label: "Select",
   icon: "select",
-  key: "m",
-  hint: "Drag around stitches to see their numbers, copy them or change them together",
+  key: "M",
+  hint: "Drag a box around stitches to see their numbers or change them; Shift adds, Alt takes away",
   mode: "select",
-  cells: () => [],
+  // A click alone selects nothing.
+  spans: ({ start, current, path }) => (path.length > 1 ? rectangle(start, current) : []),
 };

@@ -1,17 +1,16 @@
+import { rectangle } from "../core/raster.js";
+
 /** @type {import("./tool.js").Tool} */
 export const stamp = {
   id: "stamp",
   label: "Stamp",
   icon: "stamp",
-  key: "s",
+  key: "S",
   hint: "Put down one repeat of the pattern, its lower left corner here",
   mode: "shape",
-  cells: ({ current: [row, column] }, { ink }) => {
+  spans: ({ current: [row, column] }, { ink }) => {
     const { rows, columns } = ink.repeat ?? { rows: 1, columns: 1 };
-    /** @type {import("../core/raster.js").Cell[]} */
-    const cells = [];
-    for (let r = 0; r < rows; r++) for (let c = 0; c < columns; c++) cells.push([row + r, column + c]);
-    return cells;
+    return rectangle([row, column], [row + rows - 1, column + columns - 1]);
   },
   origin: ({ current }) => current,
 };

@@ -3,7 +3,7 @@
  * are the same for all and live in the painter.
  *
  * @import {Grid} from "../core/grid.js"
- * @import {Cell} from "../core/raster.js"
+ * @import {Cell, Span} from "../core/raster.js"
  * @import {Ink} from "../core/ink.js"
  * @import {IconName} from "../icons.js"
  *
@@ -11,11 +11,13 @@
  * @property {Cell} start stitch where the pointer went down
  * @property {Cell} previous stitch at the last event
  * @property {Cell} current stitch under the pointer; may lie outside the chart
+ * @property {Cell[]} path all stitches since the start
  * @property {boolean} constrain Shift is held
  *
  * @typedef {object} ToolContext
  * @property {Grid} grid
  * @property {Uint8Array} codes
+ * @property {Uint8Array} outline 1 where there is a stitch
  * @property {number} size of the brush
  * @property {Ink} ink
  *
@@ -23,12 +25,13 @@
  * @property {string} id
  * @property {string} label
  * @property {IconName} icon
- * @property {string} key
+ * @property {string} key such as "B" or "Shift+M"
  * @property {string} hint
- * @property {"stroke" | "shape" | "once" | "select" | "pan"} mode how a drag adds up: each move adds,
- *   the last position counts, only the press counts; or it selects or moves the view
+ * @property {"stroke" | "shape" | "once" | "select" | "move" | "place" | "pan"} mode how a drag adds
+ *   up: each move adds, the last position counts, only the press counts; or it selects, moves what
+ *   is selected, places a linked repeat, or moves the view
  * @property {boolean} [sized] whether the brush size matters
- * @property {(gesture: Gesture, context: ToolContext) => Cell[]} cells
+ * @property {(gesture: Gesture, context: ToolContext) => Span[]} spans
  * @property {(gesture: Gesture) => Cell} [origin] where the ink's repeat begins; else the chart's corner
  */
 

@@ -1,0 +1,186 @@
+/**
+ * The parts of a chart: what lies outside its outline, the edges of regions, and linked repeats. All
+ * in face coordinates but the labels.
+ *
+ * @import {ChartDocument} from "../core/document.js"
+ * @import {Box, Grid} from "../core/grid.js"
+ * @import {Selection} from "../core/selection.js"
+ * @import {Viewport} from "./viewport.js"
+ * @import {Palette} from "./palette.js"
+ */
+
+import { selects } from "../core/selection.js";
+
+/**
+ * Paint over cells that are no stitches.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {ChartDocument} chart
+ * @param {Box} box
+ * @param {Palette} palette
+ */
+export function drawAbsent(context, view, { grid, outline }, box, palette) {
+  const { cellWidth: w, cellHeight: h } = view;
+  const path = new Path2D();
+  for (let row = box.row0; row < box.row1; row++) {
+    for (let column = box.column0; column < box.column1; column++) {
+      if (outline[row * grid.columns + column]) continue;
+      const from = column;
+      while (column < box.column1 && !outline[row * grid.columns + column]) column++;
+      path.rect(view.x + from * w - 1, view.y + (grid.rows - 1 - row) * h - 1, (column - from) * w + 1, h + 1);
+    }
+  }
+  context.fillStyle = palette.pane;
+  context.fill(path);
+  context.lineWidth = 1.5;
+  context.strokeStyle = palette.muted;
+  context.stroke(edges(view, grid, (row, column) => outline[row * grid.columns + column] === 1, grid.box));
+}
+
+/**
+ * The edge of a set of stitches, drawn just inside of it.
+ *
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {(row: number, column: number) => boolean} within asked only for stitches of the chart
+ * @param {Box} box where to look; lines along its own sides are drawn, too
+ * @param {number} [inset] CSS pixels
+ */
+export function edges({ x, y, cellWidth: w, cellHeight: h }, grid, within, box, inset = 0) {
+  const path = new Path2D();
+  /** @param {number} row @param {number} column */
+  const has = (row, column) => grid.has(row, column) && within(row, column);
+  for (let row = box.row0; row <= box.row1; row++) {
+    for (let column = box.column0; column < box.column1; column++) {
+      const above = has(row, column);
+      if (above === has(row - 1, column)) continue;
+      const from = column;
+      while (column < box.column1 && has(row, column) === above && has(row - 1, column) !== above) column++;
+      const at = y + (grid.rows - row) * h + (above ? -inset : inset);
+      path.moveTo(x + from * w + inset * end(has(above ? row : row - 1, from - 1)), at);
+      path.lineTo(x + column * w - inset * end(has(above ? row : row - 1, column)), at);
+      column--;
+    }
+  }
+  for (let column = box.column0; column <= box.column1; column++) {
+    for (let row = box.row0; row < box.row1; row++) {
+      const right = has(row, column);
+      if (right === has(row, column - 1)) continue;
+      const from = row;
+      while (row < box.row1 && has(row, column) === right && has(row, column - 1) !== right) row++;
+      const at = x + column * w + (right ? inset : -inset);
+      path.moveTo(at, y + (grid.rows - from) * h - inset * end(has(from - 1, right ? column : column - 1)));
+      path.lineTo(at, y + (grid.rows - row) * h + inset * end(has(row, right ? column : column - 1)));
+      row--;
+    }
+  }
+  return path;
+}
+
+/** At an outer corner lines are shortened, at an inner one prolonged. @param {boolean} inner */
+const end = (inner) => (inner ? -1 : 1);
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {ChartDocument} chart
+ * @param {Box} box in view
+ * @param {Palette} palette
+ */
+export function drawRegions(context, view, { grid, regions }, box, palette) {
+  const thin = Math.min(view.cellWidth, view.cellHeight) < 6;
+  for (const { cells, colour, hidden, locked } of regions) {
+    if (hidden) continue;
+    const path = edges(view, grid, (row, column) => cells[row * grid.columns + column] === 1, box, thin ? 0.5 : 2);
+    context.setLineDash(locked ? [7, 4] : []);
+    context.lineWidth = thin ? 2.5 : 5;
+    context.strokeStyle = palette.pane;
+    context.stroke(path);
+    context.lineWidth = thin ? 1.5 : 3;
+    context.strokeStyle = colour;
+    context.stroke(path);
+  }
+  context.setLineDash([]);
+}
+
+/**
+ * Heavy borders around the copies of linked repeats, fine ones between their motifs.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {ChartDocument} chart
+ * @param {Palette} palette
+ */
+export function drawRepeats(context, view, { grid, repeats }, palette) {
+  const { x, y, cellWidth: w, cellHeight: h } = view;
+  for (const { motif, placements } of repeats) {
+    const heavy = new Path2D();
+    const fine = new Path2D();
+    for (const { row, column, rows, columns } of placements) {
+      const top = y + (grid.rows - row - rows) * h;
+      heavy.rect(x + column * w, top, columns * w, rows * h);
+      if (motif.columns * w < 14 || motif.rows * h < 14) continue;
+      for (let c = column + motif.columns; c < column + columns; c += motif.columns) {
+        fine.moveTo(x + c * w, top);
+        fine.lineTo(x + c * w, top + rows * h);
+      }
+      for (let r = row + motif.rows; r < row + rows; r += motif.rows) {
+        fine.moveTo(x + column * w, y + (grid.rows - r) * h);
+        fine.lineTo(x + (column + columns) * w, y + (grid.rows - r) * h);
+      }
+    }
+    context.strokeStyle = palette.text;
+    context.lineWidth = 1;
+    context.setLineDash([4, 3]);
+    context.stroke(fine);
+    context.setLineDash([]);
+    context.lineWidth = 4.5;
+    context.strokeStyle = palette.pane;
+    context.stroke(heavy);
+    context.lineWidth = 2.5;
+    context.strokeStyle = palette.text;
+    context.stroke(heavy);
+  }
+}
+
+/**
+ * Names of repeats with their numbers of motifs, where there is room. Not mirrored: text must be read.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} view
+ * @param {ChartDocument} chart
+ * @param {Palette} palette
+ */
+export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
+  context.font = "600 13px system-ui, sans-serif";
+  context.textAlign = "left";
+  context.textBaseline = "middle";
+  for (const { name, motif, placements } of repeats) {
+    for (const { row, column, rows, columns } of placements) {
+      const box = { row0: row, column0: column, row1: row + rows, column1: column + columns };
+      const { x, y, width, height } = view.place(box, grid);
+      /** @param {number} n @param {number} of */
+      const times = (n, of) => String(Math.floor(n / of));
+      const count = `${times(columns, motif.columns)} × ${times(rows, motif.rows)}`;
+      const text = [`${name}  ${count}`, count].find((one) => context.measureText(one).width + 12 <= width);
+      if (!text || height < 24) continue;
+      const wide = context.measureText(text).width + 10;
+      context.fillStyle = palette.text;
+      context.fillRect(x + 1, y + 1, wide, 19);
+      context.fillStyle = palette.pane;
+      context.fillText(text, x + 6, y + 11);
+    }
+  }
+}
+
+/**
+ * The edge of a selection.
+ *
+ * @param {Viewport} view
+ * @param {Grid} grid
+ * @param {Selection} selection
+ */
+export function selectionEdge(view, grid, selection) {
+  return edges(view, grid, (row, column) => selects(selection, row, column), selection);
+}
