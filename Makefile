@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page serve test test-postgres test-kill lint format types frontend-check bench bench-service docs stitches lock clean
+.PHONY: help install page serve test test-postgres test-kill test-faults lint format types frontend-check bench bench-service docs stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -54,6 +54,9 @@ test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real 
 
 test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are edited
 	KNITCORE_KILLS=50 $(BIN)/pytest -s tests/app/designs/test_durability.py
+
+test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, clients that vanish, workers that die
+	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/test_cluster.py
 
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

@@ -107,6 +107,10 @@ def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
         "views_open": ("3D views kept open.", lambda: len(state.views)),
         "jobs_waiting": ("Jobs in line.", lambda: state.jobs.counts()["waiting"]),
         "jobs_running": ("Jobs at work.", lambda: state.jobs.counts()["running"]),
+        "computations_running": (
+            "Computations at work, of requests and of jobs.",
+            lambda: state.compute.turns.taken,
+        ),
         "computations_waiting": (
             "Requests that wait for a worker.",
             lambda: state.compute.turns.waiting(background=False),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 from collections.abc import Mapping
 from typing import Any
@@ -47,6 +48,7 @@ PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
         422: "An input cannot be used; the problem names the field and the remedy.",
         429: "You are asking too often; Retry-After says when to come back.",
         503: "The service is busy or the computation took too long.",
+        507: "The disk of the service is full; nothing was changed.",
     }.items()
 }
 
@@ -92,6 +94,16 @@ class UnavailableError(ServiceError):
     default_remedy = "Try again in a moment, or ask for less."
 
 
+class NoRoomError(UnavailableError):
+    """The disk is full."""
+
+    status, type, title = 507, "full", "No room left"
+    default_remedy = (
+        "Make room on the disk of the service, then try again; nothing that was acknowledged is "
+        "lost."
+    )
+
+
 class NotFoundError(ServiceError):
     """There is no such thing, or it is somebody else's."""
 
@@ -110,6 +122,8 @@ def problem_response(problem: Problem, headers: Mapping[str, str] | None = None)
 
 def problem_of(error: Exception) -> Problem:
     """Any error as a problem; what is not foreseen keeps its details to itself."""
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        error = NoRoomError("The disk of the service is full.")
     if isinstance(error, ServiceError):
         return error.problem
     if isinstance(error, InputError):

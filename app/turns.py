@@ -43,6 +43,7 @@ class Turns(Generic[Place]):
         most_waiting_each: int,
     ) -> None:
         self._free = list(places)
+        self._count = len(places)
         self._most_background = most_background
         self._most_waiting = most_waiting
         self._most_waiting_each = most_waiting_each
@@ -78,6 +79,11 @@ class Turns(Generic[Place]):
             if not lane[ticket.owner]:
                 del lane[ticket.owner]
         self._hand_out()
+
+    @property
+    def taken(self) -> int:
+        """How many places are not free."""
+        return self._count - len(self._free)
 
     def waiting(self, *, background: bool) -> int:
         """How many wait."""

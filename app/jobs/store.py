@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gzip
 import secrets
 from collections.abc import Mapping
@@ -11,7 +12,6 @@ from sqlalchemy import (
     ColumnElement,
     Connection,
     Row,
-    and_,
     bindparam,
     func,
     insert,
@@ -23,7 +23,7 @@ from sqlalchemy import (
 from app.designs.store import moment, now
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.problems import NotFoundError, Problem
-from app.store.database import Database
+from app.store.database import Database, StoreError
 from app.store.tables import jobs, results
 from knitcore.errors import InputError
 
@@ -140,9 +140,8 @@ class JobStore:
         return self._take(jobs.c.process == self._process)
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
-        """The same for jobs of other processes that have not been seen for a while."""
-        gone = jobs.c.seen_at < now() - ORPHANED_S
-        return self._take(and_(jobs.c.process != self._process, gone))
+        """The same for jobs that no process has looked after for a while."""
+        return self._take(jobs.c.seen_at < now() - ORPHANED_S)
 
     def _take(self, which: ColumnElement[bool]) -> list[tuple[str, str]]:
         def action(connection: Connection) -> list[tuple[str, str]]:
@@ -200,16 +199,15 @@ class JobStore:
 
     def kept(self, key: str) -> bytes | None:
         """A result by its content."""
-
-        def action(connection: Connection) -> bytes | None:
-            found = update(results).where(results.c.key == key).values(used_at=now())
-            if connection.execute(found).rowcount == 0:
-                return None
+        with self._database.read() as connection:
             body = select(results.c.body).where(results.c.key == key)
-            return bytes(connection.execute(body).scalar_one())
-
-        packed = self._database.write(action)
-        return None if packed is None else gzip.decompress(packed)
+            packed = connection.execute(body).scalar()
+        if packed is None:
+            return None
+        used = update(results).where(results.c.key == key).values(used_at=now())
+        with contextlib.suppress(StoreError):  # with a full disk it can still be read
+            self._database.write(lambda connection: connection.execute(used))
+        return gzip.decompress(packed)
 
     def finish(self, job: str, kind: str, key: str, body: bytes) -> bool:
         """Keep a result and close its job, both or neither."""

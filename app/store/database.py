@@ -14,7 +14,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
-from app.problems import UnavailableError
+from app.problems import NoRoomError, UnavailableError
 
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")
@@ -29,6 +29,10 @@ UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing 
 
 class StoreError(UnavailableError):
     """The database did not take or give something: it is gone, locked, or its disk is full."""
+
+
+class StoreFullError(StoreError, NoRoomError):
+    """The disk of the database is full."""
 
 
 class Database:
@@ -159,12 +163,16 @@ def _told() -> Iterator[None]:
     except FAILURES as error:
         reason = str(error).splitlines()[0]
         log.error("the database failed: %s", reason)
-        raise StoreError(UNREACHABLE.format(reason=_public(reason))) from error
+        kind = StoreFullError if any(words in reason for words in FULL) else StoreError
+        raise kind(UNREACHABLE.format(reason=_public(reason))) from error
+
+
+FULL = ("disk is full", "No space left on device")
 
 
 def _public(reason: str) -> str:
     """A reason without addresses and names of the machines behind."""
-    for known in ("disk is full", "disk I/O error", "database is locked", "readonly database"):
+    for known in (*FULL, "disk I/O error", "database is locked", "readonly database"):
         if known in reason:
             return known
     return "the database does not answer"
