@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
-from app.operations.atlas import (
-    AtlasRequest,
-    AtlasResult,
-    FindRequest,
-    FindResult,
-    run_atlas,
-    run_find,
-)
+from app.operations.atlas import AtlasRequest, AtlasResult, run_atlas
 from app.operations.fill import FillRequest, FillResult, run_fill
+from app.operations.find import FindRequest, FindResult, run_find
 
 router = APIRouter(tags=["design"])
 

@@ -10,7 +10,8 @@ from app.cli.common import emit, json_option, material_option
 from app.cli.materials import resolve_material
 from app.operations.atlas import repeats_of
 from app.operations.fill import FillResult, fill_result
-from knitcore.design.atlas import build_atlas, load_atlas
+from knitcore.design.atlas import load_atlas
+from knitcore.design.atlas_build import build_atlas
 from knitcore.design.fill import fill_field
 from knitcore.formats.design import DesignFile, write_design
 from knitcore.formats.stitch_maps import read_wanted_moduli

@@ -1,77 +1,36 @@
-"""The atlas of a material, and the fabrics in it that do what is wanted."""
+"""The atlas of a material: every small repeat with what it will do."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import logging
+import os
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from knitcore.chart import StitchChart
-from knitcore.design.atlas import Atlas, build_atlas
-from knitcore.design.find import Candidate, FoundFabrics, Quantity, Target, find_fabric
+from knitcore.design.atlas import Atlas, load_atlas, save_atlas
+from knitcore.design.atlas_build import build_atlas, material_fingerprint
 from knitcore.design.repeats import known_larger_repeats, repeats_up_to
-from knitcore.materials import Material
+from knitcore.design.targets import USUAL_LOAD_N_PER_MM
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
 from knitcore.materials import material as find_material
+
+log = logging.getLogger("knitcore.atlas")
 
 Extent = Literal["small", "all"]
 SMALL = (3, 3)
-MAX_MATERIALS = 8
+DIGITS = 5
 
-
-class TargetInput(BaseModel):
-    """One wish for a fabric."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    quantity: Quantity
-    value: float = Field(gt=0, allow_inf_nan=False)
-    tolerance: float = Field(0.10, gt=0, le=10, description="Relative; 0.1 is 10 %.")
-    weight: float = Field(1.0, gt=0, le=1000)
-
-    def target(self) -> Target:
-        """As the library knows it."""
-        return Target(self.quantity, self.value, self.tolerance, self.weight)
-
-
-class FindRequest(BaseModel):
-    """Wishes, and the yarns to search."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    materials: list[str] = Field(min_length=1, max_length=MAX_MATERIALS)
-    targets: list[TargetInput] = Field(min_length=1, max_length=len(Quantity))
-    repeats: Extent = Field(
-        "small", description="small: up to 3x3 and a choice of larger ones; all: also up to 4x4."
-    )
-    count: int = Field(10, ge=1, le=100)
-
-
-class CandidateResult(BaseModel):
-    """A repeat and how near it comes."""
-
-    material: str
-    chart: str = Field(description="K/P lines of one repeat, the top row first.")
-    values: dict[Quantity, float]
-    intervals: dict[Quantity, tuple[float, float]] = Field(description="90 % intervals.")
-    deviations: dict[Quantity, float] = Field(description="Predicted over wanted, minus one.")
-    misfit: float = Field(description="Weighted rms of deviations in units of their tolerances.")
-    reached: bool
-    provenance: str
-    transfers_per_stitch: float
-    curl: float = Field(description="Knits minus purls over all stitches; far from 0 it curls.")
-
-
-class FindResult(BaseModel):
-    """Ranked repeats; the best first."""
-
-    reached: bool
-    message: str
-    searched: int
-    ranges: dict[Quantity, tuple[float, float]] = Field(description="What all repeats span.")
-    candidates: list[CandidateResult]
+Cancelled = Callable[[], bool]
+Progress = Callable[[int, int], None]
+Column = list[float]
 
 
 class AtlasRequest(BaseModel):
@@ -80,7 +39,9 @@ class AtlasRequest(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     material: str = Field(max_length=80, examples=["acrylic"])
-    repeats: Extent = "small"
+    repeats: Extent = Field(
+        "small", description="small: up to 3x3 and a choice of larger ones; all: also up to 4x4."
+    )
 
 
 class AtlasResult(BaseModel):
@@ -88,10 +49,21 @@ class AtlasResult(BaseModel):
 
     material: str
     repeats: list[str] = Field(description="Rows from the top, separated by /.")
-    modulus_course_n_per_mm: list[float]
-    modulus_wale_n_per_mm: list[float]
-    poisson_yx: list[float]
-    poisson_xy: list[float]
+    modulus_course_n_per_mm: Column
+    modulus_course_low: Column = Field(description="Low and high: ends of 90 % intervals.")
+    modulus_course_high: Column
+    modulus_wale_n_per_mm: Column
+    modulus_wale_low: Column
+    modulus_wale_high: Column
+    poisson_yx: Column
+    poisson_xy: Column
+    stretch_course: Column = Field(description="Strain at 0.1 N/mm.")
+    stretch_wale: Column
+    relaxed_course_mm: list[float | None] = Field(description="Null where it is not certified.")
+    relaxed_wale_mm: list[float | None]
+    transfers_per_stitch: Column
+    crossings_per_stitch: Column
+    curl: Column
     provenance: list[str]
 
 
@@ -101,61 +73,56 @@ def repeats_of(extent: Extent) -> tuple[StitchChart, ...]:
     return tuple(dict.fromkeys((*repeats_up_to(*sides), *known_larger_repeats())))
 
 
-def run_atlas(request: AtlasRequest, *, cancelled: Callable[[], bool]) -> AtlasResult:
-    """The atlas of a library material; a process remembers those that it has built."""
-    return atlas_result(cached_atlas(request.material, request.repeats, cancelled))
-
-
-def run_find(request: FindRequest, *, cancelled: Callable[[], bool]) -> FindResult:
-    """Find fabrics for the service."""
-    names = dict.fromkeys(request.materials)
-    atlases = [cached_atlas(name, request.repeats, cancelled) for name in names]
-    return find_in(atlases, [t.target() for t in request.targets], request.count)
-
-
-def find_in(atlases: Sequence[Atlas], targets: Sequence[Target], count: int) -> FindResult:
-    """Find fabrics in atlases."""
-    found: FoundFabrics = find_fabric(atlases, targets, count=count)
-    return FindResult(
-        reached=found.reached,
-        message=found.message,
-        searched=sum(len(atlas) for atlas in atlases),
-        ranges={q: (i.low, i.high) for q, i in found.ranges.items()},
-        candidates=[_candidate(c) for c in found.candidates],
-    )
+def run_atlas(
+    request: AtlasRequest, *, cancelled: Cancelled, progress: Progress | None = None
+) -> AtlasResult:
+    """The atlas of a library material."""
+    return atlas_result(cached_atlas(request.material, request.repeats, cancelled, progress))
 
 
 def atlas_result(atlas: Atlas) -> AtlasResult:
     """An atlas at the border."""
+    names = (
+        *(f"modulus_{d}_{part}" for d in Direction for part in ("n_per_mm", "low", "high")),
+        "poisson_yx",
+        "poisson_xy",
+    )
     return AtlasResult(
         material=atlas.material,
         repeats=list(atlas.keys),
-        modulus_course_n_per_mm=atlas.column("modulus_course_n_per_mm").tolist(),
-        modulus_wale_n_per_mm=atlas.column("modulus_wale_n_per_mm").tolist(),
-        poisson_yx=atlas.column("poisson_yx").tolist(),
-        poisson_xy=atlas.column("poisson_xy").tolist(),
+        **{name: _rounded(atlas.column(name)) for name in names},
+        stretch_course=_rounded(atlas.strain_at(Direction.COURSE, USUAL_LOAD_N_PER_MM)),
+        stretch_wale=_rounded(atlas.strain_at(Direction.WALE, USUAL_LOAD_N_PER_MM)),
+        relaxed_course_mm=_or_none(atlas.column("relaxed_course_mm")),
+        relaxed_wale_mm=_or_none(atlas.column("relaxed_wale_mm")),
+        transfers_per_stitch=[round(c.transfers_per_stitch, DIGITS) for c in atlas.costs],
+        crossings_per_stitch=[round(c.crossings_per_stitch, DIGITS) for c in atlas.costs],
+        curl=[round(c.curl, DIGITS) for c in atlas.costs],
         provenance=list(atlas.provenance),
     )
 
 
-def make_atlas(
-    material: Material,
-    extent: Extent,
-    file: Path,
-    progress: Callable[[int, int], None] | None = None,
+def cached_atlas(
+    name: str, extent: Extent, cancelled: Cancelled | None, progress: Progress | None = None
 ) -> Atlas:
-    """Build an atlas into a file, or go on with one."""
-    return build_atlas(material, repeats_of(extent), file=file, progress=progress)
-
-
-def cached_atlas(name: str, extent: Extent, cancelled: Callable[[], bool]) -> Atlas:
-    """The atlas of a library material; a process remembers those that it has built."""
+    """The atlas of a library material, from memory or the user's cache folder if it is there."""
     built = _built()
     if (name, extent) not in built:
-        built[name, extent] = build_atlas(
-            find_material(name), repeats_of(extent), cancelled=cancelled
-        )
+        material = find_material(name)
+        file = cache_folder() / f"{name}-{extent}-{material_fingerprint(material)}.npz"
+        repeats = repeats_of(extent)
+        found = _load(file, len(repeats))
+        if found is None:
+            found = build_atlas(material, repeats, cancelled=cancelled, progress=progress)
+            _save(found, file)
+        built[name, extent] = found
     return built[name, extent]
+
+
+def cache_folder() -> Path:
+    """Where atlases of the library are kept between runs; it may be emptied at any time."""
+    home = os.environ.get("XDG_CACHE_HOME")
+    return (Path(home) if home else Path.home() / ".cache") / "knitcore" / "atlas"
 
 
 @lru_cache(maxsize=1)
@@ -164,16 +131,28 @@ def _built() -> dict[tuple[str, Extent], Atlas]:
     return {}
 
 
-def _candidate(c: Candidate) -> CandidateResult:
-    return CandidateResult(
-        material=c.material,
-        chart=c.repeat.replace("/", "\n"),
-        values=c.values,
-        intervals={q: (i.low, i.high) for q, i in c.intervals.items()},
-        deviations=c.deviations,
-        misfit=c.misfit,
-        reached=c.reached,
-        provenance=c.provenance,
-        transfers_per_stitch=c.cost.transfers_per_stitch,
-        curl=c.cost.curl,
-    )
+def _load(file: Path, repeats: int) -> Atlas | None:
+    if not file.is_file():
+        return None
+    try:
+        atlas = load_atlas(file)
+    except InputError as error:
+        log.warning("the cached atlas is made again: %s", error)
+        return None
+    return atlas if len(atlas) == repeats else None
+
+
+def _save(atlas: Atlas, file: Path) -> None:
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        save_atlas(atlas, file)
+    except OSError as error:
+        log.warning("the atlas cannot be kept for the next run: %s", error)
+
+
+def _rounded(values: NDArray[np.float64]) -> Column:
+    return [float(f"{value:.{DIGITS}g}") for value in values]
+
+
+def _or_none(values: NDArray[np.float64]) -> list[float | None]:
+    return [None if np.isnan(value) else round(float(value), 4) for value in values]

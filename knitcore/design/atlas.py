@@ -1,37 +1,33 @@
-"""The atlas: every repeat with its predicted constants, for one material.
+"""The atlas: every repeat with its predicted constants and curves, for one material.
 
-It is a table in memory and one compressed file on disk. A build goes through the repeats in order,
-writes the file now and then, and goes on where an earlier build stopped.
+It is a table in memory and one compressed file on disk; :mod:`knitcore.design.atlas_build` makes
+it, :mod:`knitcore.design.atlas_yarn` improves it from the yarn level.
 """
 
 from __future__ import annotations
 
-import hashlib
 import io
-import json
 import os
 import tempfile
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
-from importlib.resources import files
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
 from knitcore.chart import StitchChart
+from knitcore.design.cost import KnittingCost, knitting_cost
+from knitcore.design.curves import STRESS_N_PER_MM
 from knitcore.design.repeats import canonical, repeat_key, repeat_of_key
-from knitcore.errors import CancelledError, InputError
-from knitcore.materials import Material
-from knitcore.mechanics.prediction import Prediction, predict
-from knitcore.segments import segment_map
-from knitcore.yarnlevel.known import STORED_MATERIALS, known_repeat
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
 
 Array = NDArray[np.float64]
 
-FORMAT = 1
-SAVE_EVERY_S = 20.0
+FORMAT = 2
 MAXIMUM_BYTES = 50_000_000
 
 VALUES = (
@@ -42,9 +38,32 @@ VALUES = (
     "modulus_wale_low",
     "modulus_wale_high",
     "poisson_yx",
+    "poisson_yx_low",
+    "poisson_yx_high",
     "poisson_xy",
+    "poisson_xy_low",
+    "poisson_xy_high",
+    "relaxed_course_mm",
+    "relaxed_wale_mm",
 )
-"""Columns of an atlas; low and high are ends of 90 % intervals."""
+"""Columns of an atlas; low and high are ends of 90 % intervals. Relaxed sizes of the mean stitch
+are NaN where they are not certified."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One repeat of an atlas.
+
+    Attributes
+    ----------
+    values : one of each of :data:`VALUES`.
+    strains : course-wise and then wale-wise strains at ``STRESS_N_PER_MM``.
+    provenance : where the law comes from.
+    """
+
+    values: tuple[float, ...]
+    strains: tuple[float, ...]
+    provenance: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +76,7 @@ class Atlas:
     fingerprint : of the material's laws and sizes; an atlas of other laws is not continued.
     keys : the repeats (see :func:`knitcore.design.repeats.repeat_key`).
     values : (repeats, len(VALUES)).
+    strains : (repeats, 2, stresses), course-wise and wale-wise, at ``STRESS_N_PER_MM``.
     provenance : where each repeat's law comes from.
     """
 
@@ -64,7 +84,21 @@ class Atlas:
     fingerprint: str
     keys: tuple[str, ...]
     values: Array
+    strains: Array
     provenance: tuple[str, ...]
+
+    @classmethod
+    def of_entries(cls, material: str, fingerprint: str, entries: Mapping[str, Entry]) -> Atlas:
+        """A table of entries by key."""
+        found = entries.values()
+        return cls(
+            material=material,
+            fingerprint=fingerprint,
+            keys=tuple(entries),
+            values=np.array([e.values for e in found]).reshape(-1, len(VALUES)),
+            strains=np.array([e.strains for e in found]).reshape(-1, 2, len(STRESS_N_PER_MM)),
+            provenance=tuple(e.provenance for e in found),
+        )
 
     def __len__(self) -> int:
         return len(self.keys)
@@ -74,123 +108,78 @@ class Atlas:
         column: Array = self.values[:, VALUES.index(name)]
         return column
 
+    def modulus(self, direction: Direction) -> Array:
+        """Young's moduli, N/mm."""
+        return self.column(f"modulus_{direction}_n_per_mm")
+
+    def poisson(self, direction: Direction) -> Array:
+        """Contraction across a pull along a direction, over the strain along it."""
+        return self.column("poisson_yx" if direction is Direction.COURSE else "poisson_xy")
+
+    def strain_at(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Strain of every repeat at a stress (N/mm), one for all or one each.
+
+        NaN beyond the last stress of the table, 0.5 N/mm.
+        """
+        wanted = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
+        curves = self.strains[:, direction.axis]
+        if np.ptp(wanted) == 0 and len(self):
+            shape = PchipInterpolator(STRESS_N_PER_MM, curves, axis=1, extrapolate=False)
+            found: Array = shape(float(wanted[0]))
+            return found
+        each = [
+            PchipInterpolator(STRESS_N_PER_MM, curve, extrapolate=False)(stress)
+            for curve, stress in zip(curves, wanted, strict=True)
+        ]
+        return np.array(each, dtype=float)
+
+    def stress_at(self, direction: Direction, strain: float) -> Array:
+        """Stress (N/mm) of every repeat at a strain, free across; NaN beyond the table."""
+        stresses = [
+            PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain)
+            for curve in self.strains[:, direction.axis]
+        ]
+        return np.array(stresses, dtype=float)
+
     def index_of(self, repeat: StitchChart) -> int | None:
         """Where a repeat stands, whichever of its images is given; None if it is not here."""
-        key = repeat_key(canonical(repeat))
-        return self.keys.index(key) if key in self.keys else None
+        return self._index.get(repeat_key(canonical(repeat)))
 
     def chart(self, index: int) -> StitchChart:
         """One repeat."""
         return repeat_of_key(self.keys[index])
 
+    @cached_property
+    def costs(self) -> tuple[KnittingCost, ...]:
+        """What knitting each repeat asks."""
+        return tuple(knitting_cost(self.chart(k)) for k in range(len(self)))
 
-@dataclass(frozen=True)
-class KnittingCost:
-    """What a repeat asks of machine and cloth.
+    @cached_property
+    def stitches(self) -> NDArray[np.intp]:
+        """Number of stitches of each repeat."""
+        return np.array([len(key.replace("/", "")) for key in self.keys], dtype=np.intp)
 
-    Attributes
-    ----------
-    transfers_per_stitch : loops that a V-bed machine moves between its beds.
-    curl : knits minus purls on the face, over all stitches; far from 0 the cloth curls.
-    even_share : share of even segments, course-wise and wale-wise together; 1 is stockinette.
-    """
+    def entries(self) -> dict[str, Entry]:
+        """The rows by key."""
+        rows = zip(
+            self.keys,
+            self.values.tolist(),
+            self.strains.reshape(len(self), -1).tolist(),
+            self.provenance,
+            strict=True,
+        )
+        return {key: Entry(tuple(v), tuple(s), source) for key, v, s, source in rows}
 
-    transfers_per_stitch: float
-    curl: float
-    even_share: float
+    def only(self, keys: tuple[str, ...]) -> Atlas:
+        """The atlas of some of the repeats, in that order."""
+        entries = self.entries()
+        return Atlas.of_entries(
+            self.material, self.fingerprint, {key: entries[key] for key in keys}
+        )
 
-
-def knitting_cost(repeat: StitchChart) -> KnittingCost:
-    """The cost of a repeat.
-
-    Examples
-    --------
-    >>> knitting_cost(StitchChart.parse("KP")).transfers_per_stitch
-    0.0
-    """
-    segments = segment_map(repeat, periodic=True)
-    odd = (float(segments.course_odd.mean()) + float(segments.wale_odd.mean())) / 2
-    return KnittingCost(
-        transfers_per_stitch=float(segments.wale_odd.mean()),
-        curl=1.0 - 2.0 * float(repeat.purl.mean()),
-        even_share=1.0 - odd,
-    )
-
-
-def build_atlas(
-    material: Material,
-    repeats: Sequence[StitchChart],
-    *,
-    file: Path | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
-) -> Atlas:
-    """Predict every repeat.
-
-    Parameters
-    ----------
-    material : with all four fabrics.
-    repeats : in the order in which they are computed.
-    file : where the atlas is kept; what it already holds of this material is not computed again.
-    progress : called with the number of repeats done and in all.
-    cancelled : asked before every repeat.
-
-    Raises
-    ------
-    CancelledError
-        If it was asked to stop; what was done is in the file.
-    InputError
-        If the file holds something else.
-    """
-    fingerprint = material_fingerprint(material)
-    known = _known(file, fingerprint)
-    keys = [repeat_key(repeat) for repeat in repeats]
-    saved = time.monotonic()
-    fresh = False
-    for done, (key, repeat) in enumerate(zip(keys, repeats, strict=True)):
-        if cancelled is not None and cancelled():
-            if file is not None and fresh:
-                save_atlas(_table(material, fingerprint, known), file)
-            raise CancelledError(f"stopped after {done} of {len(keys)} repeats")
-        if key not in known:
-            known[key] = _row(predict_repeat(repeat, material))
-            fresh = True
-        if file is not None and fresh and time.monotonic() - saved > SAVE_EVERY_S:
-            save_atlas(_table(material, fingerprint, known), file)
-            saved, fresh = time.monotonic(), False
-        if progress is not None:
-            progress(done + 1, len(keys))
-    if file is not None and fresh:
-        save_atlas(_table(material, fingerprint, known), file)
-    return _table(material, fingerprint, {key: known[key] for key in keys})
-
-
-def predict_repeat(repeat: StitchChart, material: Material) -> Prediction:
-    """What a large cloth of a repeat does, with its yarn-level law where the store has one."""
-    cloth = repeat.tile(2, 2)  # twice, so that nobody takes its edges for those of a swatch
-    stored = known_repeat(cloth, material)
-    if stored is None:
-        return predict(cloth, material)
-    return predict(cloth, material, relaxed=stored.relaxed, repeat_law=stored.law)
-
-
-def material_fingerprint(material: Material) -> str:
-    """A hash of the laws and stored stitches that the predictions of a material depend on."""
-    content = {
-        str(fabric): [
-            asdict(record.law),
-            asdict(record.uncertainty),
-            record.stitch_course_mm,
-            record.stitch_wale_mm,
-            str(record.origin),
-        ]
-        for fabric, record in sorted(material.fabrics.items())
-    }
-    text = json.dumps([material.identifier, content], sort_keys=True, default=str)
-    digest = hashlib.sha256(text.encode())
-    if material.identifier in STORED_MATERIALS:
-        digest.update(files("knitcore.yarnlevel").joinpath("data/stitches.json").read_bytes())
-    return digest.hexdigest()[:24]
+    @cached_property
+    def _index(self) -> dict[str, int]:
+        return {key: k for k, key in enumerate(self.keys)}
 
 
 def save_atlas(atlas: Atlas, file: Path) -> None:
@@ -206,6 +195,7 @@ def save_atlas(atlas: Atlas, file: Path) -> None:
                 fingerprint=np.array(atlas.fingerprint),
                 keys=np.array(atlas.keys, dtype=np.str_),
                 values=atlas.values,
+                strains=atlas.strains.astype(np.float32),
                 provenance=np.array(atlas.provenance, dtype=np.str_),
             )
         Path(name).replace(file)
@@ -225,6 +215,7 @@ def load_atlas(file: Path) -> Atlas:
         raise InputError("atlas", f"there is no file {file}.", "Build it with `knitcore atlas`.")
     if file.stat().st_size > MAXIMUM_BYTES:
         raise InputError("atlas", f"{file.name} is too large.", "Build it again.")
+    version = FORMAT
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as data:
             version = int(data["format"])
@@ -233,54 +224,17 @@ def load_atlas(file: Path) -> Atlas:
                 fingerprint=str(data["fingerprint"]),
                 keys=tuple(data["keys"].tolist()),
                 values=data["values"],
+                strains=data["strains"].astype(float),
                 provenance=tuple(data["provenance"].tolist()),
             )
     except Exception:  # a damaged archive fails in many ways: zlib, zipfile, numpy's own header
+        if version != FORMAT:
+            raise InputError(
+                "atlas", f"{file.name} is of another version.", "Build it again."
+            ) from None
         raise InputError("atlas", f"{file.name} holds no atlas.", "Build it again.") from None
-    if version != FORMAT:
-        raise InputError("atlas", f"{file.name} is of another version.", "Build it again.")
     rows = len(atlas.keys)
-    if atlas.values.shape != (rows, len(VALUES)) or len(atlas.provenance) != rows:
+    shapes = (rows, len(VALUES)), (rows, 2, len(STRESS_N_PER_MM))
+    if (atlas.values.shape, atlas.strains.shape) != shapes or len(atlas.provenance) != rows:
         raise InputError("atlas", f"{file.name} is damaged.", "Build it again.")
     return atlas
-
-
-def _known(file: Path | None, fingerprint: str) -> dict[str, tuple[tuple[float, ...], str]]:
-    if file is None or not file.exists():
-        return {}
-    atlas = load_atlas(file)
-    if atlas.fingerprint != fingerprint:
-        raise InputError(
-            "out",
-            f"{file.name} is the atlas of {atlas.material} with other laws.",
-            "Name another file, or remove this one.",
-        )
-    rows = zip(atlas.keys, atlas.values.tolist(), atlas.provenance, strict=True)
-    return {key: (tuple(values), source) for key, values, source in rows}
-
-
-def _table(
-    material: Material, fingerprint: str, rows: dict[str, tuple[tuple[float, ...], str]]
-) -> Atlas:
-    return Atlas(
-        material=material.identifier,
-        fingerprint=fingerprint,
-        keys=tuple(rows),
-        values=np.array([values for values, _ in rows.values()]).reshape(-1, len(VALUES)),
-        provenance=tuple(source for _, source in rows.values()),
-    )
-
-
-def _row(found: Prediction) -> tuple[tuple[float, ...], str]:
-    course, wale = found.modulus_course_interval, found.modulus_wale_interval
-    values = (
-        found.modulus_course_n_per_mm,
-        course.low,
-        course.high,
-        found.modulus_wale_n_per_mm,
-        wale.low,
-        wale.high,
-        found.poisson_yx,
-        found.poisson_xy,
-    )
-    return values, found.provenance.value

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.fabric import Fabric
 from knitcore.patterns import PATTERNS, rib, welt
 
 LARGEST = 16
@@ -71,12 +73,18 @@ def repeats_up_to(rows: int, columns: int, *, stitches: int = LARGEST) -> tuple[
 
 
 def known_larger_repeats() -> tuple[StitchChart, ...]:
-    """A choice beyond 4x4: ribs, welts and baskets up to 8 stitches a side, and named patterns."""
+    """A choice beyond 4x4, up to 8x8: ribs, welts, baskets, stripes of two fabrics, known names.
+
+    The stripes (upright and level, of the four fabrics) lie between the fabrics in stiffness, each
+    a step from the next.
+    """
     sides = [(a, b) for a in range(1, 8) for b in range(1, a + 1) if 4 < a + b <= 8]
     charts = [*(rib(a, b) for a, b in sides), *(welt(a, b) for a, b in sides)]
     charts += [_basket(a, b) for a in range(1, 5) for b in range(1, 5) if max(a, b) > 2]
     charts += [p.chart for p in PATTERNS if max(p.chart.purl.shape) > 4]
-    return tuple(dict.fromkeys(canonical(chart) for chart in charts))
+    charts += list(_stripes())
+    found = dict.fromkeys(canonical(chart) for chart in charts)
+    return tuple(chart for chart in found if max(chart.purl.shape) > 4)
 
 
 def repeat_key(chart: StitchChart) -> str:
@@ -132,6 +140,20 @@ def _symmetries(
             along_one_axis = (down == 0) != (across == 0)
             yield moved.ravel(), (down, across) if along_one_axis else None
             yield moved[:, ::-1].ravel(), None
+
+
+def _stripes() -> Iterator[StitchChart]:
+    """Two of the four fabrics side by side or on each other, of 6 or 8 stitches together."""
+    for first, second in combinations(Fabric, 2):
+        for total in (6, 8):
+            for width in range(2, total - 1):
+                fabrics = [
+                    StitchChart.of_fabric(fabric, rows=8, columns=8).purl
+                    for fabric in (first, second)
+                ]
+                upright = np.where(np.arange(8) < width, *fabrics)[:2, :total]
+                level = np.where(np.arange(8)[:, None] < width, *fabrics)[:total, :2]
+                yield from (StitchChart(upright), StitchChart(level))
 
 
 def _basket(rows: int, columns: int) -> StitchChart:

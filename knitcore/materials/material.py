@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -14,6 +15,14 @@ from knitcore.materials.uncertainty import LawUncertainty
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 MM_PER_INCH = 25.4
+
+
+def _frozen(mapping: Mapping[object, object]) -> MappingProxyType[object, object]:
+    return MappingProxyType(mapping)
+
+
+# Python cannot pickle read-only mappings by itself, and materials travel to worker processes.
+copyreg.pickle(MappingProxyType, lambda proxy: (_frozen, (dict(proxy),)))
 
 
 class Origin(StrEnum):

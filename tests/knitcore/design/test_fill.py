@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.design.atlas import build_atlas, predict_repeat
+from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import patches_of
 from knitcore.design.repeats import repeat_of_key, repeats_up_to

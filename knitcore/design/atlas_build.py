@@ -1,0 +1,210 @@
+"""Build the atlas of a material: here or on a cluster, and go on where it was stopped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from knitcore.batch import BatchProgress, run_batch
+from knitcore.chart import StitchChart
+from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
+from knitcore.design.curves import CurveMaker
+from knitcore.design.repeats import repeat_key, repeat_of_key
+from knitcore.errors import InputError, KnitcoreError
+from knitcore.materials import Interval, Material
+from knitcore.mechanics.prediction import Prediction, predict
+from knitcore.yarnlevel.known import STORED_MATERIALS, KnownRepeat, known_repeat
+
+AT_ONCE = 16
+"""Repeats in one task of a batch: half a second of work."""
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class AtlasTask:
+    """Some repeats to predict.
+
+    Attributes
+    ----------
+    material : with all four fabrics.
+    keys : of the repeats.
+    """
+
+    material: Material
+    keys: tuple[str, ...]
+
+
+def build_atlas(
+    material: Material,
+    repeats: Sequence[StitchChart],
+    *,
+    file: Path | None = None,
+    workers: int | None = 1,
+    scheduler: str | None = None,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Atlas:
+    """Predict every repeat.
+
+    Parameters
+    ----------
+    material : with all four fabrics.
+    repeats : in the order in which they are computed.
+    file : where the atlas is kept. What it holds of this material is not computed again, and while
+        it is built, finished parts wait in a folder beside it: it can be stopped at any point.
+    workers, scheduler : as :func:`knitcore.batch.run_batch`; by default in this process.
+    progress : called with the number of repeats done and in all.
+    cancelled : asked now and then.
+
+    Raises
+    ------
+    CancelledError
+        If it was asked to stop.
+    InputError
+        If the file holds something else, or the cluster does not answer.
+    """
+    fingerprint = material_fingerprint(material)
+    known = known_entries(file, fingerprint)
+    keys = [repeat_key(repeat) for repeat in repeats]
+    missing = [key for key in keys if key not in known]
+    parts = [tuple(missing[k : k + AT_ONCE]) for k in range(0, len(missing), AT_ONCE)]
+    tasks = {f"{fingerprint}-{_digest(part)}": AtlasTask(material, part) for part in parts}
+
+    def tell(at: BatchProgress) -> None:
+        if progress is not None:
+            progress(len(keys) - max(len(missing) - at.done * AT_ONCE, 0), len(keys))
+
+    found = run_batch(
+        predict_repeats,
+        tasks,
+        workers=workers,
+        scheduler=scheduler,
+        keep=None if file is None or not tasks else parts_folder(file),
+        on_progress=tell,
+        should_stop=cancelled,
+    )
+    if found.failures:
+        raise KnitcoreError(next(iter(found.failures.values())))
+    for document in found.results.values():
+        known |= {key: _entry(row) for key, row in document["entries"].items()}
+    if file is not None and tasks:
+        save_atlas(Atlas.of_entries(material.identifier, fingerprint, known), file)
+        shutil.rmtree(parts_folder(file))
+    wanted = {key: known[key] for key in dict.fromkeys(keys)}
+    return Atlas.of_entries(material.identifier, fingerprint, wanted)
+
+
+def predict_repeats(task: AtlasTask) -> dict[str, Any]:
+    """One task: entries of its repeats, by key."""
+    curves = CurveMaker(task.material)
+    found = {}
+    for key in task.keys:
+        repeat = repeat_of_key(key)
+        known = known_repeat(repeat.tile(2, 2), task.material)
+        found[key] = _document(predict_entry(repeat, task.material, curves, known))
+    return {"entries": found}
+
+
+def predict_repeat(repeat: StitchChart, material: Material) -> Prediction:
+    """What a large cloth of a repeat does, with its yarn-level law where the store has one."""
+    return _prediction(repeat, material, known_repeat(repeat.tile(2, 2), material))
+
+
+def predict_entry(
+    repeat: StitchChart, material: Material, curves: CurveMaker, known: KnownRepeat | None
+) -> Entry:
+    """The row of a repeat, by its yarn-level law if there is one."""
+    prediction = _prediction(repeat, material, known)
+    values = (
+        *_three(prediction.modulus_course_n_per_mm, prediction.modulus_course_interval),
+        *_three(prediction.modulus_wale_n_per_mm, prediction.modulus_wale_interval),
+        *_three(prediction.poisson_yx, prediction.poisson_yx_interval),
+        *_three(prediction.poisson_xy, prediction.poisson_xy_interval),
+        _or_nan(prediction.relaxed_course_mm),
+        _or_nan(prediction.relaxed_wale_mm),
+    )
+    strains = curves.strains(repeat, prediction, None if known is None else known.law)
+    return Entry(values, tuple(strains.ravel().tolist()), prediction.provenance.value)
+
+
+def material_fingerprint(material: Material) -> str:
+    """A hash of the laws and stored stitches that the predictions of a material depend on."""
+    content = {
+        str(fabric): [
+            asdict(record.law),
+            asdict(record.uncertainty),
+            record.stitch_course_mm,
+            record.stitch_wale_mm,
+            str(record.origin),
+        ]
+        for fabric, record in sorted(material.fabrics.items())
+    }
+    text = json.dumps([material.identifier, content], sort_keys=True, default=str)
+    digest = hashlib.sha256(text.encode())
+    if material.identifier in STORED_MATERIALS:
+        digest.update(files("knitcore.yarnlevel").joinpath("data/stitches.json").read_bytes())
+    return digest.hexdigest()[:24]
+
+
+def known_entries(file: Path | None, fingerprint: str) -> dict[str, Entry]:
+    """What a file holds already.
+
+    Raises
+    ------
+    InputError
+        If it is the atlas of other laws.
+    """
+    if file is None or not file.exists():
+        return {}
+    atlas = load_atlas(file)
+    if atlas.fingerprint != fingerprint:
+        raise InputError(
+            "out",
+            f"{file.name} is the atlas of {atlas.material} with other laws.",
+            "Name another file, or remove this one.",
+        )
+    return atlas.entries()
+
+
+def parts_folder(file: Path) -> Path:
+    """Where finished parts of an atlas wait until it is written."""
+    return file.with_name(f"{file.stem}.parts")
+
+
+def _document(row: Entry) -> dict[str, Any]:
+    """A row as JSON; null where there is no number."""
+    values = [None if math.isnan(value) else value for value in row.values]
+    return {"values": values, "strains": list(row.strains), "provenance": row.provenance}
+
+
+def _entry(document: dict[str, Any]) -> Entry:
+    """Inverse of :func:`_document`."""
+    values = tuple(_or_nan(value) for value in document["values"])
+    return Entry(values, tuple(document["strains"]), document["provenance"])
+
+
+def _prediction(repeat: StitchChart, material: Material, known: KnownRepeat | None) -> Prediction:
+    cloth = repeat.tile(2, 2)  # twice, so that nobody takes its edges for those of a swatch
+    if known is None:
+        return predict(cloth, material)
+    return predict(cloth, material, relaxed=known.relaxed, repeat_law=known.law)
+
+
+def _three(value: float, interval: Interval) -> tuple[float, float, float]:
+    return value, interval.low, interval.high
+
+
+def _or_nan(value: float | None) -> float:
+    return float("nan") if value is None else value
+
+
+def _digest(keys: tuple[str, ...]) -> str:
+    return hashlib.sha256("|".join(keys).encode()).hexdigest()[:24]

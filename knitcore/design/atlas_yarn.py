@@ -1,0 +1,157 @@
+"""The yarn level's say in an atlas: repeats relaxed and stretched one by one, small ones first.
+
+A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
+in a folder beside the atlas, and the run can be stopped at any point and taken up again. Laws and
+sizes are carried to the measured material by the pure fabrics of the same yarn-level model
+(:mod:`knitcore.mechanics.carry`). Ribs and welts stay with the corrected composite.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from knitcore.batch import BatchProgress, run_batch
+from knitcore.chart import StitchChart
+from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
+from knitcore.design.atlas_build import known_entries, material_fingerprint, predict_entry
+from knitcore.design.curves import CurveMaker
+from knitcore.design.repeats import canonical, repeat_of_key
+from knitcore.fabric import Fabric
+from knitcore.materials import Material
+from knitcore.mechanics.carry import carried_law
+from knitcore.mechanics.composite import layout_of
+from knitcore.mechanics.prediction import Provenance
+from knitcore.mechanics.relaxed import RelaxedSize, SizeSource, reference_fabric
+from knitcore.yarnlevel.characterise import RepeatTask, characterise_repeat, law_of
+from knitcore.yarnlevel.known import KnownRepeat
+from knitcore.yarnlevel.yarns import yarn_for
+
+Progress = Callable[[int, int], None]
+Document = dict[str, Any]
+
+
+def improve_atlas(
+    material: Material,
+    file: Path,
+    *,
+    most_stitches: int,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Progress | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Atlas:
+    """Give repeats of an atlas file their yarn-level laws and relaxed sizes.
+
+    Parameters
+    ----------
+    material : of the atlas.
+    file : the atlas. It is written when the run ends or is stopped, and when one that was killed is
+        taken up again.
+    most_stitches : of the largest repeat; small ones come first.
+    workers, scheduler : as :func:`knitcore.batch.run_batch`.
+    progress : called with the number of repeats done and in all.
+    cancelled : asked now and then.
+
+    Raises
+    ------
+    CancelledError
+        If it was asked to stop.
+    InputError
+        If the file is no atlas of this material, or the yarn's parameters are not known.
+    """
+    load_atlas(file)  # a missing one is named before anything is computed
+    entries = known_entries(file, material_fingerprint(material))
+    tasks = yarn_level_tasks(material, entries, most_stitches)
+    keep = yarn_level_folder(file)
+    _merge(material, file, _kept(keep, tasks))
+
+    def tell(at: BatchProgress) -> None:
+        if progress is not None:
+            progress(at.done, at.total)
+
+    try:
+        run_batch(
+            characterise_repeat,
+            {task.key: task for task in tasks.values()},
+            workers=workers,
+            scheduler=scheduler,
+            keep=keep,
+            on_progress=tell,
+            should_stop=cancelled,
+        )
+    finally:
+        _merge(material, file, _kept(keep, tasks))
+    return load_atlas(file)
+
+
+def yarn_level_folder(file: Path) -> Path:
+    """Where relaxed and stretched repeats of an atlas are kept, a JSON document each."""
+    return file.with_name(f"{file.stem}.yarn")
+
+
+def yarn_level_tasks(
+    material: Material, entries: Mapping[str, Entry], most_stitches: int
+) -> dict[str, RepeatTask]:
+    """What is still to be computed, by repeat: the pure fabrics, then small repeats first."""
+    pure = {key_of_pure(fabric) for fabric in Fabric}
+    mixed = [
+        key
+        for key, entry in entries.items()
+        if key not in pure
+        and len(key.replace("/", "")) <= most_stitches
+        and entry.provenance != Provenance.YARN_LEVEL
+        and layout_of(repeat_of_key(key)) is None
+    ]
+    order = [*sorted(pure), *sorted(mixed, key=lambda key: (len(key.replace("/", "")), key))]
+    return {key: _task(material, key) for key in order}
+
+
+def key_of_pure(fabric: Fabric) -> str:
+    """The key of a pure fabric's repeat."""
+    return canonical(StitchChart.of_fabric(fabric, rows=2, columns=2)).text.replace("\n", "/")
+
+
+def _task(material: Material, key: str) -> RepeatTask:
+    used = yarn_for(material, repeat_of_key(key))
+    return RepeatTask(key, used.yarn, used.loop_length_mm)
+
+
+def _kept(folder: Path, tasks: Mapping[str, RepeatTask]) -> dict[str, Document]:
+    """Finished repeats; a damaged file counts as not finished, as it does for the batch."""
+    found = {}
+    for key, task in tasks.items():
+        file = folder / f"{task.key}.json"
+        if file.is_file():
+            try:
+                found[key] = json.loads(file.read_text(encoding="utf-8"))
+            except ValueError:
+                continue
+    return found
+
+
+def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None:
+    """Write finished repeats into the atlas, once all four fabrics to compare with are there."""
+    pure = {fabric: done.get(key_of_pure(fabric), {}) for fabric in Fabric}
+    laws = {fabric: law for fabric, doc in pure.items() if (law := law_of(doc)) is not None}
+    if len(laws) < len(Fabric):
+        return
+    fingerprint = material_fingerprint(material)
+    entries = known_entries(file, fingerprint)
+    curves = CurveMaker(material)
+    for key, document in done.items():
+        repeat, law = repeat_of_key(key), law_of(document)
+        if law is None or not document["converged"] or key in map(key_of_pure, Fabric):
+            continue
+        reference = reference_fabric(repeat)
+        record, like = material.record(reference), pure[reference]
+        size = RelaxedSize(
+            document["cell_course_mm"] / like["cell_course_mm"] * record.stitch_course_mm,
+            document["cell_wale_mm"] / like["cell_wale_mm"] * record.stitch_wale_mm,
+            SizeSource.YARN_LEVEL,
+        )
+        known = KnownRepeat(carried_law(law, laws, repeat, material), size)
+        entries[key] = predict_entry(repeat, material, curves, known)
+    save_atlas(Atlas.of_entries(material.identifier, fingerprint, entries), file)

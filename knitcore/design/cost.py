@@ -1,0 +1,69 @@
+"""What a repeat asks of machine, hands and cloth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from knitcore.chart import StitchChart
+from knitcore.segments import segment_map
+
+
+@dataclass(frozen=True)
+class KnittingCost:
+    """What a repeat asks of machine and cloth.
+
+    Attributes
+    ----------
+    transfers_per_stitch : loops that a V-bed machine moves between its beds.
+    crossings_per_stitch : times that the yarn passes between face and back, from bed to bed on a
+        machine. Every stitch is knitted with the one yarn, so nothing floats.
+    curl : knits minus purls on the face, over all stitches; far from 0 the cloth curls.
+    even_share : share of even segments, course-wise and wale-wise together; 1 is stockinette.
+    """
+
+    transfers_per_stitch: float
+    crossings_per_stitch: float
+    curl: float
+    even_share: float
+
+
+@dataclass(frozen=True)
+class CostLimits:
+    """The most that a fabric may ask; None is no limit.
+
+    Attributes
+    ----------
+    transfers_per_stitch, crossings_per_stitch : see :class:`KnittingCost`.
+    curl : of its size, whichever side there is more of.
+    """
+
+    transfers_per_stitch: float | None = None
+    crossings_per_stitch: float | None = None
+    curl: float | None = None
+
+    def allow(self, cost: KnittingCost) -> bool:
+        """Whether a repeat keeps within all limits."""
+        pairs = (
+            (cost.transfers_per_stitch, self.transfers_per_stitch),
+            (cost.crossings_per_stitch, self.crossings_per_stitch),
+            (abs(cost.curl), self.curl),
+        )
+        return all(limit is None or value <= limit + 1e-9 for value, limit in pairs)
+
+
+def knitting_cost(repeat: StitchChart) -> KnittingCost:
+    """The cost of a repeat.
+
+    Examples
+    --------
+    >>> knitting_cost(StitchChart.parse("KP")).transfers_per_stitch
+    0.0
+    """
+    segments = segment_map(repeat, periodic=True)
+    course, wale = float(segments.course_odd.mean()), float(segments.wale_odd.mean())
+    return KnittingCost(
+        transfers_per_stitch=wale,
+        crossings_per_stitch=course,
+        curl=1.0 - 2.0 * float(repeat.purl.mean()),
+        even_share=1.0 - (course + wale) / 2,
+    )

@@ -1,0 +1,266 @@
+"""Fabrics between those of an atlas: stripes of two repeats.
+
+The moduli of two sheets side by side follow from theirs (stress common across the joint, strain
+along it; docs/composite.md). That ranks all stripes at once; the best are then predicted as the
+repeats that they are, and what the ranking missed at the joints is learnt on the way. If none is
+near, single stitches, rows and columns of the nearest charts are turned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.design.atlas import Atlas
+from knitcore.design.atlas_build import predict_repeat
+from knitcore.fabric import PHASES, Direction
+from knitcore.materials import Material
+from knitcore.mechanics.prediction import Provenance
+from knitcore.phases import quarter_phases
+
+Array = NDArray[np.float64]
+
+CLOSE = 0.02
+"""A mixture that is nearer than this (in logarithms) is taken at once."""
+MOST_PREDICTED = 28
+"""Mixtures predicted for one wish."""
+MOST_TURNED = 36
+"""Charts with something turned that are predicted for one wish, if no mixture is near."""
+NEAR = 0.045
+"""Nothing is turned if a mixture is nearer than this."""
+_PARTNERS = 140
+_LEAST_WIDTH, _MOST_WIDTH = 1, 9
+_MOST_SIDE = 12
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """Stripes of two repeats.
+
+    Attributes
+    ----------
+    repeat : the stripes, once.
+    modulus_course_n_per_mm, modulus_wale_n_per_mm : predicted.
+    off : largest deviation from the wishes, in logarithms.
+    """
+
+    repeat: StitchChart
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    off: float
+
+    @property
+    def log_moduli(self) -> Array:
+        """(2,) logarithms of the moduli."""
+        return np.log([self.modulus_course_n_per_mm, self.modulus_wale_n_per_mm])
+
+
+class Mixer:
+    """All stripes of small repeats of an atlas.
+
+    Repeats whose law is corrected for folding are left out as partners: a mixture is predicted as
+    a flat composite, which would forget the correction.
+
+    Parameters
+    ----------
+    atlas, material : of one yarn.
+    """
+
+    def __init__(self, atlas: Atlas, material: Material) -> None:
+        self._atlas, self._material = atlas, material
+        self._partners = _partners(atlas)
+        self._estimates: list[_Estimates] = []
+        if len(self._partners) > 1:
+            self._estimates = [self._estimate(direction) for direction in Direction]
+
+    def nearest(
+        self,
+        course_n_per_mm: float,
+        wale_n_per_mm: float,
+        *,
+        most_rows: int = _MOST_SIDE,
+        most_columns: int = _MOST_SIDE,
+        look: Callable[[], None] = lambda: None,
+    ) -> Mixture | None:
+        """The mixture that comes nearest to a wish (NaN is none); None if there is no room.
+
+        Parameters
+        ----------
+        most_rows, most_columns : of the mixture's repeat.
+        look : called between predictions; may raise to stop.
+        """
+        wish = np.log([course_n_per_mm, wale_n_per_mm])
+        tables = [table.within(most_rows, most_columns) for table in self._estimates]
+        best: Mixture | None = None
+        learnt = np.zeros(2)
+        tried: set[StitchChart] = set()
+        for _ in range(MOST_PREDICTED):
+            look()
+            found = self._next(tables, wish - learnt, tried)
+            if found is None:
+                break
+            chart, estimated = found
+            tried.add(chart)
+            mixture = self._predicted(chart, wish)
+            if best is None or mixture.off < best.off:
+                best = mixture
+            if best.off < CLOSE:
+                return best
+            learnt += 0.3 * (mixture.log_moduli - estimated - learnt)
+        if best is None or best.off > NEAR:
+            best = self._turned(best, wish, (most_rows, most_columns), look)
+        return best
+
+    def _predicted(self, chart: StitchChart, wish: Array) -> Mixture:
+        found = predict_repeat(chart, self._material)
+        moduli = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
+        return Mixture(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - wish))))
+
+    def _turned(
+        self,
+        best: Mixture | None,
+        wish: Array,
+        most: tuple[int, int],
+        look: Callable[[], None],
+    ) -> Mixture | None:
+        """The best of mixtures and atlas with a stitch, row or column turned, again and again."""
+        rng = np.random.default_rng(0)
+        have = np.log(np.stack([self._atlas.modulus(d) for d in Direction], axis=1))
+        near = np.argsort(np.nan_to_num(np.abs(have - wish)).max(axis=1))[:4]
+        starts = [self._atlas.chart(int(k)) for k in near]
+        starts = [chart for chart in starts if chart.rows <= most[0] and chart.columns <= most[1]]
+        pool = [] if best is None else [best]
+        pool += [self._predicted(chart, wish) for chart in starts]
+        for _ in range(MOST_TURNED if pool else 0):
+            look()
+            pool = sorted(pool, key=lambda mixture: mixture.off)[:4]
+            if pool[0].off < NEAR:
+                break
+            start = pool[int(rng.integers(len(pool)))].repeat
+            pool.append(self._predicted(_turn_some(start, most, rng), wish))
+        return min(pool, key=lambda mixture: mixture.off, default=None)
+
+    def _next(
+        self, tables: list[_Estimates], wish: Array, tried: set[StitchChart]
+    ) -> tuple[StitchChart, Array] | None:
+        """The nearest stripes by estimate that were not tried yet."""
+        ranked: list[tuple[float, StitchChart, Array]] = []
+        for table in tables:
+            off = np.nan_to_num(np.abs(table.log_moduli - wish)).max(axis=1)
+            count = min(len(tried) + 1, len(off))
+            for k in np.argpartition(off, count - 1)[:count].tolist() if count else []:
+                chart = self._chart(table, k)
+                if chart not in tried:
+                    ranked.append((float(off[k]), chart, table.log_moduli[k]))
+        if not ranked:
+            return None
+        _, chart, estimated = min(ranked, key=lambda entry: entry[0])
+        return chart, estimated
+
+    def _chart(self, table: _Estimates, index: int) -> StitchChart:
+        first, second = (self._atlas.chart(int(k)) for k in table.partners[index])
+        a, b = (int(width) for width in table.widths[index])
+        if table.direction is Direction.COURSE:
+            rows = int(np.lcm(first.rows, second.rows))
+            grids = [first.resized(rows, a).purl, second.resized(rows, b).purl]
+            return StitchChart(np.concatenate(grids, axis=1)).repeat()
+        columns = int(np.lcm(first.columns, second.columns))
+        grids = [first.resized(a, columns).purl, second.resized(b, columns).purl]
+        return StitchChart(np.concatenate(grids, axis=0)).repeat()
+
+    def _estimate(self, direction: Direction) -> _Estimates:
+        """Moduli of all stripes that follow each other along a direction."""
+        atlas, chosen = self._atlas, self._partners
+        along, across = direction, direction.other
+        both = np.clip(atlas.column("poisson_yx") * atlas.column("poisson_xy"), 0, 0.95)
+        stiff = {d: atlas.modulus(d) / (1 - both) for d in Direction}
+        coupling = np.sqrt(both * stiff[along] * stiff[across])
+        pairs = np.array(list(combinations(chosen.tolist(), 2)))
+        grids = [atlas.chart(int(k)).purl.shape for k in range(len(atlas))]
+        side = np.array([shape[direction.other.axis == 0] for shape in grids])
+        sizes = _sizes(atlas, self._material, direction)
+        common = np.lcm(side[pairs[:, 0]], side[pairs[:, 1]])
+        pairs = pairs[common <= _MOST_SIDE]
+        span = np.arange(_LEAST_WIDTH, _MOST_WIDTH + 1)
+        widths = np.array([(a, b) for a in span for b in span if 4 <= a + b <= _MOST_SIDE])
+        partners = np.repeat(pairs, len(widths), axis=0)
+        widths = np.tile(widths, (len(pairs), 1))
+        share = widths * sizes[partners]
+        share = share / share.sum(axis=1, keepdims=True)
+        one = 1 / (share / stiff[along][partners]).sum(axis=1)
+        mixed = one * (share * (coupling / stiff[along])[partners]).sum(axis=1)
+        own = (stiff[across] - coupling**2 / stiff[along])[partners]
+        other = (share * own).sum(axis=1) + mixed**2 / one
+        moduli = {along: one - mixed**2 / other, across: other - mixed**2 / one}
+        return _Estimates(
+            direction,
+            partners,
+            widths,
+            np.lcm(side[partners[:, 0]], side[partners[:, 1]]),
+            np.log(np.stack([moduli[d] for d in Direction], axis=1)),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Estimates:
+    """Stripes that follow each other along a direction, arrays of one length."""
+
+    direction: Direction
+    partners: NDArray[np.intp]
+    widths: NDArray[np.intp]
+    side: NDArray[np.intp]
+    log_moduli: Array
+
+    def within(self, most_rows: int, most_columns: int) -> _Estimates:
+        """Those that fit."""
+        course = self.direction is Direction.COURSE
+        length, side = (most_columns, most_rows) if course else (most_rows, most_columns)
+        fits = (self.widths.sum(axis=1) <= length) & (self.side <= side)
+        return _Estimates(
+            self.direction,
+            self.partners[fits],
+            self.widths[fits],
+            self.side[fits],
+            self.log_moduli[fits],
+        )
+
+
+def _turn_some(chart: StitchChart, most: tuple[int, int], rng: np.random.Generator) -> StitchChart:
+    """A stitch, or a whole row or column, of a chart turned; small charts are tiled first."""
+    rows, columns = (
+        side * int(rng.integers(1, max(min(limit, 8) // side, 1) + 1))
+        for side, limit in zip((chart.rows, chart.columns), most, strict=True)
+    )
+    purl = chart.resized(rows, columns).purl.copy()
+    row, column = int(rng.integers(rows)), int(rng.integers(columns))
+    kind = int(rng.integers(4))
+    purl[row if kind != 1 else slice(None), column if kind != 2 else slice(None)] ^= True
+    return StitchChart(purl).repeat()
+
+
+def _partners(atlas: Atlas) -> NDArray[np.intp]:
+    flat = [
+        k
+        for k in range(len(atlas))
+        if atlas.provenance[k] == Provenance.STRETCHED or len(_phases(atlas.chart(k))) == 1
+    ]
+    small = sorted(flat, key=lambda k: (int(atlas.stitches[k]), k))
+    return np.array(small[:_PARTNERS], dtype=np.intp)
+
+
+def _phases(chart: StitchChart) -> list[int]:
+    found: list[int] = np.unique(quarter_phases(chart, periodic=True)).tolist()
+    return found
+
+
+def _sizes(atlas: Atlas, material: Material, direction: Direction) -> Array:
+    """Flat size of each repeat's mean stitch along a direction."""
+    own = np.array([material.record(fabric).stitch_size_mm(direction) for fabric in PHASES])
+    return np.array(
+        [own[quarter_phases(atlas.chart(k), periodic=True)].mean() for k in range(len(atlas))]
+    )

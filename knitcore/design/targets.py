@@ -1,0 +1,210 @@
+"""What can be asked of a fabric, and what the repeats of an atlas have of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.design.atlas import Atlas
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.mechanics.pressure import MMHG_PER_KPA
+
+Array = NDArray[np.float64]
+
+USUAL_LOAD_N_PER_MM = 0.1
+MOST_LOAD_N_PER_MM = 0.5
+
+
+class Quantity(StrEnum):
+    """What can be asked of a fabric."""
+
+    MODULUS_COURSE = "modulus_course_n_per_mm"
+    MODULUS_WALE = "modulus_wale_n_per_mm"
+    EXTENSIBILITY_COURSE = "extensibility_course_mm_per_n"
+    EXTENSIBILITY_WALE = "extensibility_wale_mm_per_n"
+    ANISOTROPY = "anisotropy"
+    POISSON_COURSE = "poisson_yx"
+    POISSON_WALE = "poisson_xy"
+    STRETCH_COURSE = "stretch_course"
+    STRETCH_WALE = "stretch_wale"
+    PRESSURE_COURSE = "pressure_course_mmhg"
+    PRESSURE_WALE = "pressure_wale_mmhg"
+
+    @property
+    def direction(self) -> Direction:
+        """Along which it is measured; the course for the anisotropy."""
+        wale = self is Quantity.POISSON_WALE or "wale" in self.value
+        return Direction.WALE if wale else Direction.COURSE
+
+    @property
+    def is_poisson(self) -> bool:
+        """Poisson's ratios may be 0 or negative: their deviations are differences."""
+        return self in (Quantity.POISSON_COURSE, Quantity.POISSON_WALE)
+
+    @property
+    def needs_load(self) -> bool:
+        """Whether it is asked at a load."""
+        return self in (Quantity.STRETCH_COURSE, Quantity.STRETCH_WALE)
+
+    @property
+    def needs_limb(self) -> bool:
+        """Whether it is asked on a limb."""
+        return self in (Quantity.PRESSURE_COURSE, Quantity.PRESSURE_WALE)
+
+
+@dataclass(frozen=True)
+class Limb:
+    """A tube on a limb.
+
+    Attributes
+    ----------
+    rest_mm, worn_mm : circumference of the tube, unworn and on the limb.
+    """
+
+    rest_mm: float
+    worn_mm: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.worn_mm) and 0 < self.rest_mm < self.worn_mm <= 5000):
+            raise InputError(
+                "limb",
+                f"{self.rest_mm:g} mm on {self.worn_mm:g} mm presses nothing.",
+                "Give a tube that is smaller than the limb, both in mm.",
+            )
+
+    @property
+    def strain(self) -> float:
+        """Around the limb."""
+        return self.worn_mm / self.rest_mm - 1
+
+
+@dataclass(frozen=True)
+class Target:
+    """One wish.
+
+    Attributes
+    ----------
+    quantity : of what; the anisotropy is Y_course / Y_wale, stretch is a strain (0.5 = 50 %) free
+        across the pull, pressure that of a tube, its direction around the limb.
+    value : wanted; above 0 but for Poisson's ratios.
+    tolerance : relative deviation that still counts as reached (0.1 = 10 %); for Poisson's ratios
+        the difference.
+    weight : beside other wishes.
+    load_n_per_mm : of a stretch.
+    limb : of a pressure.
+    """
+
+    quantity: Quantity
+    value: float
+    tolerance: float = 0.10
+    weight: float = 1.0
+    load_n_per_mm: float = USUAL_LOAD_N_PER_MM
+    limb: Limb | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("value", "tolerance", "weight"):
+            number = getattr(self, name)
+            signed = name == "value" and self.quantity.is_poisson
+            if not (math.isfinite(number) and (number > 0 or signed)):
+                raise InputError(
+                    f"targets.{self.quantity}", f"its {name} is {number:g}.", "Give more than 0."
+                )
+        if self.quantity.needs_load and not 0 < self.load_n_per_mm <= MOST_LOAD_N_PER_MM:
+            raise InputError(
+                f"targets.{self.quantity}",
+                f"its load is {self.load_n_per_mm:g} N/mm.",
+                f"Give above 0 to {MOST_LOAD_N_PER_MM:g} N/mm.",
+            )
+        if self.quantity.needs_limb and self.limb is None:
+            raise InputError(
+                f"targets.{self.quantity}",
+                "it names no limb.",
+                "Give the circumference of the tube and of the limb.",
+            )
+
+    @property
+    def label(self) -> str:
+        """The quantity, with its load or limb.
+
+        Examples
+        --------
+        >>> Target(Quantity.STRETCH_COURSE, 0.5, load_n_per_mm=0.05).label
+        'stretch_course@0.05'
+        """
+        if self.quantity.needs_load:
+            return f"{self.quantity}@{self.load_n_per_mm:g}"
+        if self.limb is not None and self.quantity.needs_limb:
+            return f"{self.quantity}@{self.limb.rest_mm:g}/{self.limb.worn_mm:g}"
+        return self.quantity.value
+
+    def deviation(self, value: float) -> float:
+        """Predicted over wanted, minus one; the difference for Poisson's ratios."""
+        return value - self.value if self.quantity.is_poisson else value / self.value - 1
+
+    def off(self, values: Array) -> Array:
+        """How many tolerances values are away; infinite where there is no value."""
+        if self.quantity.is_poisson:
+            away = np.abs(values - self.value) / self.tolerance
+        else:
+            away = np.abs(np.log(values / self.value)) / math.log1p(self.tolerance)
+        found: Array = np.where(np.isnan(away), np.inf, away) - 1e-12  # a hair for rounding
+        return found
+
+
+def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:
+    """Predicted value of every repeat, and the ends of its interval; NaN where there is none.
+
+    Intervals are of 90 %. That of a stretch takes the uncertainty of the modulus as one of the
+    whole scale of stress; that of a pressure goes from axially free to axially fixed, widened by
+    it.
+    """
+    quantity, direction = target.quantity, target.quantity.direction
+    course, wale = (
+        tuple(atlas.column(f"modulus_{d}_{part}") for part in ("n_per_mm", "low", "high"))
+        for d in Direction
+    )
+    if quantity is Quantity.ANISOTROPY:
+        ratio = course[0] / wale[0]
+        spread = np.hypot(*(np.log(high / value) for value, _, high in (course, wale)))
+        return ratio, ratio / np.exp(spread), ratio * np.exp(spread)
+    if quantity.is_poisson:
+        return (
+            atlas.column(quantity),
+            atlas.column(f"{quantity}_low"),
+            atlas.column(f"{quantity}_high"),
+        )
+    value, low, high = course if direction is Direction.COURSE else wale
+    if quantity.needs_load:
+        load = target.load_n_per_mm
+        return (
+            atlas.strain_at(direction, load),
+            atlas.strain_at(direction, load * value / high),
+            atlas.strain_at(direction, np.minimum(load * value / low, MOST_LOAD_N_PER_MM)),
+        )
+    if target.limb is not None and quantity.needs_limb:
+        loose, tight = _pressures_mmhg(atlas, direction, target.limb)
+        return np.sqrt(loose * tight), loose * low / value, tight * high / value
+    if quantity in (Quantity.EXTENSIBILITY_COURSE, Quantity.EXTENSIBILITY_WALE):
+        return 1 / value, 1 / high, 1 / low
+    return value, low, high
+
+
+def _pressures_mmhg(atlas: Atlas, direction: Direction, limb: Limb) -> tuple[Array, Array]:
+    """Pressures of a tube, the lower and the higher of axially free and axially fixed.
+
+    As :func:`knitcore.mechanics.pressure.limb_pressure`, with the repeats' curves: free across,
+    the tube shortens by Poisson's ratio times the strain; fixed, its linear part is stiffer by
+    1 / (1 - nu_xy nu_yx).
+    """
+    strain = limb.strain
+    free = atlas.stress_at(direction, strain)
+    both = np.clip(atlas.column("poisson_yx") * atlas.column("poisson_xy"), 0.0, 0.95)
+    fixed = free + atlas.modulus(direction) * strain * both / (1 - both)
+    shortened = free / np.maximum(1 - atlas.poisson(direction) * strain, 0.05)
+    to_mmhg = 2 * math.pi / limb.worn_mm * 1000.0 * MMHG_PER_KPA
+    return np.minimum(shortened, fixed) * to_mmhg, np.maximum(shortened, fixed) * to_mmhg
