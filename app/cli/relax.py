@@ -24,6 +24,7 @@ from knitcore.yarnlevel.relax import Branch
 @click.option("--loop-length-mm", type=float, help="Yarn per stitch; the material's otherwise.")
 @click.option("--branch", type=choice(Branch), default=Branch.MIRRORED.value, show_default=True)
 @click.option("--convention", type=choice(Convention), default=Convention.PUBLISHED.value)
+@click.option("--fresh", is_flag=True, help="Compute it even if the result is known.")
 @json_option
 def command(
     chart: str,
@@ -32,11 +33,15 @@ def command(
     loop_length_mm: float | None,
     branch: str,
     convention: str,
+    fresh: bool,
     as_json: bool,
 ) -> None:
     """Relax the repeat CHART at the yarn level: free of force, without friction."""
     options = YarnLevelOptions(
-        loop_length_mm=loop_length_mm, branch=Branch(branch), convention=Convention(convention)
+        loop_length_mm=loop_length_mm,
+        branch=Branch(branch),
+        convention=Convention(convention),
+        fresh=fresh,
     )
     result = relax_chart(resolve_repeat(chart, size), resolve_material(material), options)
     emit(result, _text(result), as_json=as_json)
@@ -51,7 +56,8 @@ def _text(r: RelaxResult) -> str:
             f"bending, {100 * r.contact_share:.1f} % contact",
             f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
             f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
-            f"{'converged' if r.converged else 'NOT converged'}",
+            f"{'converged' if r.converged else 'NOT converged'}"
+            f"{'; known from before' if r.known else ''}",
             *(f"note: {note}" for note in r.notes),
         ]
     )

@@ -29,6 +29,7 @@ from knitcore.yarnlevel.relax import Branch
 @click.option("--loop-length-mm", type=float, help="Yarn per stitch; the material's otherwise.")
 @click.option("--branch", type=choice(Branch), default=Branch.MIRRORED.value, show_default=True)
 @click.option("--convention", type=choice(Convention), default=Convention.PUBLISHED.value)
+@click.option("--fresh", is_flag=True, help="Compute it even if the result is known.")
 @json_option
 def command(
     chart: str,
@@ -40,6 +41,7 @@ def command(
     loop_length_mm: float | None,
     branch: str,
     convention: str,
+    fresh: bool,
     as_json: bool,
 ) -> None:
     """Stretch the repeat CHART at the yarn level, free across, and fit its law."""
@@ -50,6 +52,7 @@ def command(
         loop_length_mm=loop_length_mm,
         branch=Branch(branch),
         convention=Convention(convention),
+        fresh=fresh,
     )
     result = sweep_chart(resolve_repeat(chart, size), resolve_material(material), options)
     emit(result, _text(result), as_json=as_json)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import asdict
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.kept import KeptResults
 from app.operations.charts import ChartInput, to_repeat
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -32,6 +34,7 @@ class YarnLevelOptions(BaseModel):
     )
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
+    fresh: bool = Field(False, description="Compute it even if the result is known.")
 
 
 class RelaxRequest(YarnLevelOptions):
@@ -78,7 +81,8 @@ class RelaxResult(BaseModel):
     contact_share: float
     yarn_length_mm: float
     min_distance_mm: float | None
-    seconds: float = Field(description="CPU time of the solve.")
+    seconds: float = Field(description="CPU time of the solve, whenever it was.")
+    known: bool = Field(False, description="Whether it had been computed before.")
     evaluations: int
     converged: bool
     yarn: YarnResult
@@ -105,9 +109,34 @@ def relax_chart(
     with_lines: bool = False,
     cancelled: Cancelled | None = None,
 ) -> RelaxResult:
-    """Relax a chart's repeat."""
+    """Relax a chart's repeat, or say what is known of it."""
     repeat = chart.repeat()
     used = chart_yarn(material, repeat, options.loop_length_mm)
+    inputs = {**what_decides(repeat, used, options), "centre_lines": with_lines}
+    result, known = KeptResults.of_user().get_or_make(
+        RelaxResult,
+        inputs,
+        lambda: _relaxed(repeat, used, options, with_lines, cancelled),
+        fresh=options.fresh,
+    )
+    return result.model_copy(update={"known": known})
+
+
+def what_decides(
+    repeat: StitchChart, used: ChartYarn, options: YarnLevelOptions
+) -> dict[str, object]:
+    """All inputs of a relaxation or a stretch, for its name among kept results."""
+    asked = options.model_dump(mode="json", exclude={"fresh", "chart", "material", "centre_lines"})
+    return {"repeat": repeat.text, "used": asdict(used), "asked": asked}
+
+
+def _relaxed(
+    repeat: StitchChart,
+    used: ChartYarn,
+    options: YarnLevelOptions,
+    with_lines: bool,
+    cancelled: Cancelled | None,
+) -> RelaxResult:
     cell = relaxed_cell(repeat, used, options, cancelled)
     starts = cell.starts if isinstance(cell, RelaxedRepeat) else ()
     lines = [[(x, y, z) for x, y, z in line.tolist()] for line in cell.centre_lines]

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.kept import KeptResults
 from app.operations.charts import ChartInput, to_repeat
 from app.operations.relax import (
     Cancelled,
@@ -15,6 +16,7 @@ from app.operations.relax import (
     chart_yarn,
     pure_fabric,
     relaxed_cell,
+    what_decides,
     yarn_result,
 )
 from knitcore.chart import StitchChart
@@ -89,7 +91,8 @@ class SweepResult(BaseModel):
     cell_wale_mm: float
     law: LawResult | None
     converged: bool
-    seconds: float
+    seconds: float = Field(description="CPU time of the solves, whenever they were.")
+    known: bool = Field(False, description="Whether it had been computed before.")
     yarn: YarnResult
     notes: list[str]
 
@@ -107,9 +110,24 @@ def sweep_chart(
     *,
     cancelled: Cancelled | None = None,
 ) -> SweepResult:
-    """Stretch a chart's repeat along a direction; the law also needs the stretch across."""
+    """Stretch a chart's repeat along a direction, or say what is known of it.
+
+    The law also needs the stretch across.
+    """
     repeat = chart.repeat()
     used = chart_yarn(material, repeat, options.loop_length_mm)
+    result, known = KeptResults.of_user().get_or_make(
+        SweepResult,
+        what_decides(repeat, used, options),
+        lambda: _swept(repeat, used, options, cancelled),
+        fresh=options.fresh,
+    )
+    return result.model_copy(update={"known": known})
+
+
+def _swept(
+    repeat: StitchChart, used: ChartYarn, options: SweepOptions, cancelled: Cancelled | None
+) -> SweepResult:
     zero = relaxed_cell(repeat, used, options, cancelled)
     along = options.direction
     main = _sweep(repeat, used, zero, options, along, options.max_strain, options.points,

@@ -1,0 +1,138 @@
+"""``characterise`` on the command line, killed, resumed, on a cluster, and as an operation."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from pydantic import ValidationError
+
+from app.cli.main import main
+from app.operations.characterise import CharacteriseRequest, run_characterise
+from knitcore.errors import CancelledError
+from tests.knitcore.test_batch import cluster  # noqa: F401 - a fixture
+
+YARN = [
+    "--yarn", "mine", "--bending-modulus-n-mm2", "0.07", "--contact-stiffness-n-per-mm3", "0.0115",
+    "--contact-exponent", "2.9", "--radius-mm", "0.66", "--core-radius-mm", "0.31",
+]  # fmt: skip
+
+
+def run(*arguments: str) -> list[dict[str, Any]]:
+    result = CliRunner().invoke(main, ["characterise", *arguments, "--json"])
+    assert result.exit_code == 0, result.stderr
+    told: list[dict[str, Any]] = json.loads(result.stdout)
+    return told
+
+
+def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
+    told = run(
+        "cotton", *YARN, "--fabrics", "stockinette", "--loop-lengths", "12,12.5", "--workers", "1",
+        "--out", str(tmp_path),
+    )  # fmt: skip
+    assert [yarn["identifier"] for yarn in told] == ["cotton-yarn-level", "mine"]
+    with (tmp_path / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["yarn"], row["setting"]) for row in rows] == [
+        ("cotton-yarn-level", "12mm"),
+        ("cotton-yarn-level", "12.5mm"),
+        ("mine", "12mm"),
+        ("mine", "12.5mm"),
+    ]
+    # the same yarn, by name and by its numbers
+    assert rows[0]["modulus_course_n_per_mm"] == rows[2]["modulus_course_n_per_mm"]
+    with (tmp_path / "curves.csv").open() as file:
+        assert {row["direction"] for row in csv.DictReader(file)} == {"course", "wale"}
+    detail = CliRunner().invoke(main, ["materials", str(tmp_path / "mine.json"), "--json"])
+    law = json.loads(detail.stdout)["fabrics"]["stockinette"]
+    assert law["modulus_wale_n_per_mm"] == pytest.approx(float(rows[3]["modulus_wale_n_per_mm"]))
+    assert law["origin"] == "simulated"
+    assert (tmp_path / "mine-12mm.json").is_file()
+
+
+def test_a_killed_batch_goes_on_where_it_was(tmp_path: Path) -> None:
+    arguments = [
+        "characterise", "cotton", "--fabrics", "stockinette,garter", "--tensions", "1,1.04",
+        "--workers", "1", "--out", str(tmp_path),
+    ]  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app.cli.main", *arguments],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+    )
+    finished = tmp_path / "finished"
+    try:
+        while process.poll() is None and len(list(finished.glob("*.json"))) < 2:
+            time.sleep(0.02)
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    before = {file: file.stat().st_mtime_ns for file in finished.glob("*.json")}
+    assert 2 <= len(before) < 4
+    assert not (tmp_path / "table.csv").exists()
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.stderr
+    assert {file: file.stat().st_mtime_ns for file in before} == before
+    assert len(list(finished.glob("*.json"))) == 4
+    assert result.stdout.count("stockinette") == 2
+
+
+def test_a_cluster_of_two_processes_gives_the_same(
+    cluster: tuple[str, list[subprocess.Popen[str]]],  # noqa: F811 - a fixture
+    tmp_path: Path,
+) -> None:
+    address, _ = cluster
+    asked = ("cotton", "--fabrics", "stockinette", "--tensions", "1,1.05")
+    there = run(*asked, "--scheduler", address, "--out", str(tmp_path / "there"))
+    here = run(*asked, "--workers", "1", "--out", str(tmp_path / "here"))
+    assert there == here
+
+
+def test_as_an_operation_it_tells_progress_and_stops() -> None:
+    request = CharacteriseRequest.model_validate(
+        {"material": "cotton", "fabrics": ["stockinette"], "tensions": [1.0]}
+    )
+    seen: list[tuple[int, int]] = []
+    result = run_characterise(
+        request, cancelled=lambda: False, progress=lambda *told: seen.append(told)
+    )
+    assert seen == [(0, 1), (1, 1)]
+    assert result.material is not None
+    assert result.rows[0].curves
+    with pytest.raises(CancelledError):
+        run_characterise(request, cancelled=lambda: True)
+
+
+@pytest.mark.parametrize("body", [{}, {"material": "cotton", "yarn": {"name": "x"}}])
+def test_one_yarn_has_to_be_named(body: dict[str, object]) -> None:
+    with pytest.raises(ValidationError):
+        CharacteriseRequest.model_validate(body)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--loop-lengths", "12"], "missing"),
+        (["cotton", "cotton"], "twice"),
+        (["cotton", "--loop-lengths", "twelve"], "no list of numbers"),
+        (["cotton", "--fabrics", "tweed"], "tweed"),
+        (["--yarn", "mine", "--loop-lengths", "12"], "bending_modulus_n_mm2"),
+        (YARN, "none is given"),
+        ([*YARN[:-1], "0.7", "--loop-lengths", "12"], "not inside the yarn"),
+        (["cotton", "--scheduler", "somewhere"], "no address"),
+    ],
+)
+def test_what_cannot_work_is_refused(arguments: list[str], words: str, tmp_path: Path) -> None:
+    result = CliRunner().invoke(main, ["characterise", *arguments, "--out", str(tmp_path / "new")])
+    assert result.exit_code == 2
+    assert words in result.stderr
