@@ -1,8 +1,13 @@
-"""A chart drawn for knitters: symbols, row and stitch numbers, sides, the repeat and a key."""
+"""A chart drawn for knitters: symbols, row and stitch numbers, sides, the repeat and a key.
+
+Stitches of several yarns have their yarn's colour, lightened so that the symbols are seen; "no
+stitch" is grey.
+"""
 
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,7 +17,7 @@ import numpy as np
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.drawing import Box, Dots, Label, Page, Shape, Strokes, to_pdf, to_svg
-from knitcore.garment.shaped import ShapedChart
+from knitcore.garment.piece import Piece, yarn_name
 from knitcore.worked import Construction, Side, side_of_row
 
 CELL_MM = 5.0
@@ -20,6 +25,10 @@ SMALLEST_CELL_MM = 3.0
 MARGIN_MM = 12.0
 HEADER_MM = 14.0
 KEY_MM = 24.0
+KEY_LINE_MM = 5.0
+NOTE_CHARACTERS, NOTE_LINES = 100, 8
+TINT = 0.55
+"""Share of a yarn's colour in its stitches; the rest is white."""
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
 """Longer rows get every fifth number."""
@@ -35,11 +44,15 @@ class ChartStyle:
     construction : flat (numbers on both sides) or round (numbers at the right).
     first_side : the side of row 1 in flat knitting.
     aspect : height over width of a stitch, from the gauge.
+    yarn_facts : of each yarn, what the key says beside its name, such as its length.
+    note : printed below the key.
     """
 
     construction: Construction = Construction.FLAT
     first_side: Side = Side.RS
     aspect: float = 0.75
+    yarn_facts: tuple[str, ...] = ()
+    note: str = ""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
@@ -48,43 +61,64 @@ class ChartStyle:
             )
 
 
-def chart_svg(chart: StitchChart | ShapedChart, style: ChartStyle | None = None) -> str:
-    """The whole chart as one SVG drawing; "no stitch" is grey."""
-    shaped = _shaped(chart)
-    size = range(shaped.chart.rows), range(shaped.chart.columns)
-    return to_svg(_Part(shaped, style or ChartStyle(), *size, CELL_MM).page(), _title(shaped.chart))
+def chart_svg(chart: StitchChart | Piece, style: ChartStyle | None = None) -> str:
+    """The whole chart as one SVG drawing."""
+    piece = _piece(chart)
+    size = range(piece.chart.rows), range(piece.chart.columns)
+    return to_svg(_Part(piece, style or ChartStyle(), *size, CELL_MM).page(), _title(piece.chart))
 
 
-def chart_pdf(chart: StitchChart | ShapedChart, style: ChartStyle | None = None) -> bytes:
+def chart_pdf(chart: StitchChart | Piece, style: ChartStyle | None = None) -> bytes:
     """The chart as a PDF of :func:`chart_pages`."""
-    return to_pdf(chart_pages(chart, style), _title(_shaped(chart).chart))
+    return to_pdf(chart_pages(chart, style), _title(_piece(chart).chart))
 
 
-def chart_pages(
-    chart: StitchChart | ShapedChart, style: ChartStyle | None = None
-) -> tuple[Page, ...]:
+def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> tuple[Page, ...]:
     """The chart as A4 pages: one if it fits with cells of at least 3 mm, otherwise several.
 
     Every page has its numbers and the key; pages go from the bottom right, where flat knitting
     begins, to the left and then up.
     """
-    style, shaped = style or ChartStyle(), _shaped(chart)
-    chart = shaped.chart
+    style, piece = style or ChartStyle(), _piece(chart)
+    chart = piece.chart
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
-    room_y = A4_MM[1] - HEADER_MM - KEY_MM - 2 * MARGIN_MM
+    room_y = A4_MM[1] - HEADER_MM - _key_height(piece, style) - 2 * MARGIN_MM
     cell = min(CELL_MM, room_x / chart.columns, room_y / (chart.rows * style.aspect))
     cell = max(cell, SMALLEST_CELL_MM)
     across, up = int(room_x / cell), int(room_y / (cell * style.aspect))
     parts = [
-        _Part(shaped, style, rows, columns, cell)
+        _Part(piece, style, rows, columns, cell)
         for rows in _pieces(chart.rows, up)
         for columns in reversed(_pieces(chart.columns, across))
     ]
     return tuple(part.page(paper=A4_MM) for part in parts)
 
 
-def _shaped(chart: StitchChart | ShapedChart) -> ShapedChart:
-    return chart if isinstance(chart, ShapedChart) else ShapedChart.rectangle(chart)
+def _piece(chart: StitchChart | Piece) -> Piece:
+    return chart if isinstance(chart, Piece) else Piece.plain(chart)
+
+
+def _coloured(piece: Piece) -> bool:
+    return len(piece.yarns) > 1
+
+
+def _key_height(piece: Piece, style: ChartStyle) -> float:
+    yarns = len(piece.yarns) if _coloured(piece) else 0
+    return KEY_MM + KEY_LINE_MM * (yarns + len(_note_lines(style)))
+
+
+def _note_lines(style: ChartStyle) -> list[str]:
+    wrapped = [
+        line for part in style.note.splitlines() for line in textwrap.wrap(part, NOTE_CHARACTERS)
+    ]
+    return wrapped[:NOTE_LINES]
+
+
+def tinted(colour: str) -> str:
+    """A yarn's colour as its stitches are printed."""
+    channels = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    mixed = (round(255 - (255 - channel) * TINT) for channel in channels)
+    return "#{:02x}{:02x}{:02x}".format(*mixed)
 
 
 def _pieces(count: int, most: int) -> list[range]:
@@ -101,7 +135,7 @@ def _title(chart: StitchChart) -> str:
 class _Part:
     """A window of a chart on a page."""
 
-    shaped: ShapedChart
+    piece: Piece
     style: ChartStyle
     rows: range
     columns: range
@@ -109,7 +143,7 @@ class _Part:
 
     def page(self, paper: tuple[float, float] | None = None) -> Page:
         width = 2 * MARGIN_MM + 12.0 + self._width
-        height = HEADER_MM + 2 * MARGIN_MM + KEY_MM + self._height
+        height = HEADER_MM + 2 * MARGIN_MM + _key_height(self.piece, self.style) + self._height
         if paper is not None:
             width, height = paper
         else:
@@ -118,11 +152,11 @@ class _Part:
 
     @property
     def chart(self) -> StitchChart:
-        return self.shaped.chart
+        return self.piece.chart
 
     @property
     def _is_shaped(self) -> bool:
-        return not bool(self.shaped.stitch.all())
+        return not self.piece.is_rectangle
 
     @property
     def _row_height(self) -> float:
@@ -154,6 +188,7 @@ class _Part:
     def _shapes(self) -> Iterator[Shape]:
         yield from self._header()
         yield Box(self._left, self._top, self._width, self._height, fill="#ffffff")
+        yield from self._colours()
         yield self._grid()
         yield self._purls()
         yield from self._no_stitches()
@@ -172,11 +207,23 @@ class _Part:
         flat = self.style.construction is Construction.FLAT
         how = "worked flat" if flat else "worked in the round"
         about = (
-            f"{self.shaped.stitches} stitches inside the outline"
+            f"{self.piece.shaped.stitches} stitches inside the outline"
             if self._is_shaped
             else _multiple(self.chart)
         )
         yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
+
+    def _colours(self) -> Iterator[Shape]:
+        if not _coloured(self.piece):
+            return
+        for row in self.rows:
+            for stretch in self.piece.stretches(row):
+                first = max(stretch.start, self.columns.start)
+                last = min(stretch.stop, self.columns.stop)
+                if first < last:
+                    fill = tinted(self.piece.yarns[stretch.yarn].colour)
+                    width = self.cell * (last - first)
+                    yield Box(self._x(first), self._y(row), width, self._row_height, fill=fill)
 
     def _grid(self) -> Strokes:
         right, bottom = self._left + self._width, self._top + self._height
@@ -191,7 +238,7 @@ class _Part:
         return Strokes(tuple(upright + level), _GRID, 0.15)
 
     def _purls(self) -> Dots:
-        window = (self.chart.purl & self.shaped.stitch)[
+        window = (self.chart.purl & self.piece.shaped.stitch)[
             self.rows.start : self.rows.stop, self.columns.start : self.columns.stop
         ]
         rows, columns = np.nonzero(window)
@@ -202,7 +249,7 @@ class _Part:
 
     def _no_stitches(self) -> Iterator[Shape]:
         """Grey boxes before and after the stitches of each row."""
-        spans = self.shaped.spans
+        spans = self.piece.shaped.spans
         for row in self.rows:
             for start, stop in ((0, spans[row][0]), (spans[row][1], self.chart.columns)):
                 first, last = max(start, self.columns.start), min(stop, self.columns.stop)
@@ -278,6 +325,17 @@ class _Part:
             else "every round from right to left"
         )
         yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", 2.6)
+        y += 17.0
+        if _coloured(self.piece):
+            for index, yarn in enumerate(self.piece.yarns):
+                yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=_GRID)
+                facts = self.style.yarn_facts[index : index + 1]
+                said = f"{yarn_name(index)}: {yarn.name} ({yarn.colour})"
+                yield Label(MARGIN_MM + 6.0, y, ", ".join([said, *facts]))
+                y += KEY_LINE_MM
+        for line in _note_lines(self.style):
+            yield Label(MARGIN_MM, y, line, 2.8)
+            y += KEY_LINE_MM
 
 
 def _stitch_number(chart: StitchChart, columns: range) -> tuple[int, int]:

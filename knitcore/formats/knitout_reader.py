@@ -1,25 +1,29 @@
 """What a knitout program knits: interpreted on a virtual machine, read back as a chart.
 
-The one place that knows the package ``knitout-interpreter``. The interpreter checks every
+The one place that runs the package ``knitout-interpreter``. The interpreter checks every
 instruction against a machine's state and links the loops to a knit graph; the chart is read from
-that graph alone (which loop was pulled through which, from which bed), not from the program.
+that graph alone (which loop was pulled through which, from which bed and by which carrier), not
+from the program: :mod:`knitcore.formats.knit_graph`.
 """
 
 from __future__ import annotations
 
+import re
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError, KnitcoreError
-from knitcore.formats.knitout import Finish, KnitoutProgram, knitout_program
+from knitcore.formats.knit_graph import carrier_of as _carrier
+from knitcore.formats.knit_graph import piece_of_loops
+from knitcore.formats.knit_graph import time_of as _time
+from knitcore.formats.knitout import MAXIMUM_NEEDLES, Finish, KnitoutProgram, knitout_program
+from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 
 MAXIMUM_BYTES = 4_000_000
+_HOLDS = re.compile(r"^; carrier (\d{1,2}) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
 
 
 class KnitoutMismatchError(KnitcoreError):
@@ -28,68 +32,69 @@ class KnitoutMismatchError(KnitcoreError):
 
 @dataclass(frozen=True)
 class KnittedChart:
-    """The face of what a program knits.
+    """What a program knits.
 
     Attributes
     ----------
-    chart : without cast-on, bind-off and waste.
+    piece : the face, its outline and its yarns, without cast-on, bind-off and waste.
     notes : what was left out, and what the machine warned of.
     """
 
-    chart: StitchChart
+    piece: Piece
     notes: tuple[str, ...]
+
+    @property
+    def chart(self) -> StitchChart:
+        """The face grid."""
+        return self.piece.chart
 
 
 def knitted_chart(program: str) -> KnittedChart:
-    """The face grid of a flat program of knits and purls.
+    """The face of a flat program of knits and purls.
 
-    The chart is knitted by the yarn that comes first; its wales run from their cast-on loops up
-    to a bind-off or to another yarn, which is taken as waste.
+    The chart is knitted by the carriers that a comment ``; carrier 1 knits #rrggbb name`` names, or
+    else by the carrier that comes first; others are taken as waste.
 
     Raises
     ------
     InputError
-        If the program is too long, breaks the language or the machine, or knits anything but a
-        rectangle of knits and purls.
+        If the program is too long, breaks the language or the machine, or knits anything but knits
+        and purls within an outline.
     """
     if len(program.encode()) > MAXIMUM_BYTES:
         raise InputError("knitout", "the program is too long.", f"Use at most {MAXIMUM_BYTES} B.")
     loops, said = _interpreted(program)
     if not loops:
         raise InputError("knitout", "the program makes no loops.", "Give one that knits.")
-    carrier = _carrier(min(loops, key=lambda loop: loop.loop_count_on_machine))
-    others = sorted({_carrier(loop) for loop in loops} - {carrier})
-    children = {parent: loop for loop in loops for parent in loop.parent_loops}
-    bases = [loop for loop in loops if _carrier(loop) == carrier and not loop.parent_loops]
-    wales = [_wale(base, children, carrier) for base in sorted(bases, key=_needle)]
-    _check([_needle(base) for base in sorted(bases, key=_needle)], wales)
-    purl = [[not loop.source_needle.is_front for loop in wale] for wale in wales]
+    yarns = {int(m[1]): PieceYarn(m[3], m[2]) for m in _HOLDS.finditer(program)}
+    if not yarns:
+        yarns = {_carrier(min(loops, key=_time)): MAIN_YARN}
+    others = sorted({_carrier(loop) for loop in loops} - set(yarns))
     notes = [f"Yarn of carrier {c} was taken as waste." for c in others]
-    return KnittedChart(StitchChart(np.array(purl, dtype=bool).T), (*notes, *said))
+    return KnittedChart(piece_of_loops(loops, yarns), (*notes, *said))
 
 
 def verified(
-    chart: StitchChart, *, finish: Finish = Finish.WASTE, needles: int | None = None
+    chart: StitchChart | Piece, *, finish: Finish = Finish.WASTE, needles: int | None = None
 ) -> KnitoutProgram:
-    """The program of a chart, after the virtual machine has knitted exactly this chart from it.
+    """The program of a piece, after the virtual machine has knitted exactly this piece from it.
 
     Raises
     ------
     InputError
-        If the chart is wider than the machine.
+        If the chart is wider than the machine, or has more blocks of colour than carriers.
     KnitoutMismatchError
         If the machine refuses the program, warns, or knits something else.
     """
-    made = (
-        knitout_program(chart, finish=finish)
-        if needles is None
-        else knitout_program(chart, finish=finish, needles=needles)
+    piece = (chart if isinstance(chart, Piece) else Piece.plain(chart)).cropped()
+    made = knitout_program(
+        piece, finish=finish, needles=MAXIMUM_NEEDLES if needles is None else needles
     )
     try:
         knitted = knitted_chart(made.text)
     except InputError as error:
         raise KnitoutMismatchError(f"the program was refused: {error}") from error
-    if knitted.chart != chart:
+    if knitted.piece != piece:
         raise KnitoutMismatchError("the virtual machine knitted another chart.")
     warned = [note for note in knitted.notes if "waste" not in note]
     if warned:
@@ -132,48 +137,6 @@ def _parser() -> Any:
     from knitout_interpreter.knitout_language.Knitout_Parser import Knitout_Parser
 
     return Knitout_Parser()
-
-
-def _wale(base: Any, children: dict[Any, Any], carrier: int) -> list[Any]:
-    """Loops above a cast-on loop, each pulled through the one before it and no other."""
-    wale = []
-    loop = children.get(base)
-    while loop is not None and len(loop.parent_loops) == 1 and _carrier(loop) == carrier:
-        if _needle(loop) != _needle(base):
-            raise InputError(
-                "knitout",
-                f"a loop wanders from needle {_needle(base)} to {_needle(loop)}.",
-                "Only knits and purls are read: no lace, cables or shaping.",
-            )
-        wale.append(loop)
-        loop = children.get(loop)
-    return wale
-
-
-def _check(needles: Sequence[int], wales: Sequence[Sequence[Any]]) -> None:
-    """Refuse what is no rectangle, knitted course by course."""
-    remedy = "Give a flat rectangle of knits and purls without tucks, misses and short rows."
-    if list(needles) != list(range(needles[0], needles[0] + len(needles))):
-        raise InputError("knitout", "its cast-on skips needles or uses one twice.", remedy)
-    heights = [len(wale) for wale in wales]
-    if min(heights) == 0 or min(heights) != max(heights):
-        shortest = needles[heights.index(min(heights))]
-        raise InputError(
-            "knitout",
-            f"the wale on needle {shortest} has {min(heights)} stitches, another {max(heights)}.",
-            remedy,
-        )
-    made = np.array([[loop.loop_count_on_machine for loop in wale] for wale in wales])
-    if (made[:, :-1].max(axis=0) >= made[:, 1:].min(axis=0)).any():
-        raise InputError("knitout", "its courses are not knitted one after another.", remedy)
-
-
-def _carrier(loop: Any) -> int:
-    return int(loop.yarn.carrier.carrier_id)
-
-
-def _needle(loop: Any) -> int:
-    return int(loop.source_needle.position)
 
 
 def _one_line(message: object) -> str:

@@ -182,15 +182,22 @@ def _bracketed(purls: Sequence[bool], forms: Sequence[str], start: int, stop: in
     parts, plain = [], start
     for index in range(start, stop):
         if forms[index]:
-            parts += [_in_brackets(tuple(purls[plain:index]))] if index > plain else []
+            parts += [in_brackets(tuple(purls[plain:index]))] if index > plain else []
             parts.append(_PURLED[forms[index]] if purls[index] else forms[index])
             plain = index + 1
-    parts += [_in_brackets(tuple(purls[plain:stop]))] if stop > plain else []
+    parts += [in_brackets(tuple(purls[plain:stop]))] if stop > plain else []
     return ", ".join(parts)
 
 
 @lru_cache(maxsize=4096)
-def _in_brackets(purls: tuple[bool, ...]) -> str:
+def in_brackets(purls: tuple[bool, ...]) -> str:
+    """A row with its longest repeat in brackets: it says how many stitches it has.
+
+    Examples
+    --------
+    >>> in_brackets((False, True, False, True, False))
+    '(k1, p1) twice, k1'
+    """
     start, period, times = _longest_repeat(purls)
     if times < LATER_USE:
         return _plain(purls)

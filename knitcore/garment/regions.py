@@ -172,7 +172,11 @@ class YarnUse:
 
 
 def yarn_use(
-    shaped: ShapedChart, material: Material, *, linear_density_tex: float | None = None
+    shaped: ShapedChart,
+    material: Material,
+    *,
+    linear_density_tex: float | None = None,
+    cells: NDArray[np.bool_] | None = None,
 ) -> YarnUse:
     """Yarn of all stitches; each takes the mean loop length of its four quarters' fabrics.
 
@@ -181,6 +185,7 @@ def yarn_use(
     shaped : the chart.
     material : with loop lengths.
     linear_density_tex : g per km of the yarn.
+    cells : which stitches, such as those of one yarn; all inside the outline if left out.
 
     Raises
     ------
@@ -188,7 +193,8 @@ def yarn_use(
         If a fabric in the chart has no loop length, or the density is not positive.
     """
     phases = quarter_phases(shaped.chart).reshape(shaped.chart.rows, 2, shaped.chart.columns, 2)
-    quarters = phases.transpose(0, 2, 1, 3)[shaped.stitch].ravel()
+    counted = shaped.stitch if cells is None else shaped.stitch & cells
+    quarters = phases.transpose(0, 2, 1, 3)[counted].ravel()
     lengths = np.zeros(len(PHASES))
     for phase in np.unique(quarters):
         length = material.record(PHASES[phase]).loop_length_mm
