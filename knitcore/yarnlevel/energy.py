@@ -17,11 +17,10 @@ from knitcore.yarnlevel.yarn import YarnModel
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-GAUGE_PER_BENDING = 300.0
+GAUGE_PER_BENDING = 100.0
 """Stiffness of the gauge penalty in units of B / L: keeps the samples evenly spread."""
-PENALTY_PER_BENDING = 3e5
+PENALTY_PER_BENDING = 3e4
 """Stiffness of the augmented length constraint in units of B / L³."""
-
 
 REGULARISATION_PER_BENDING = 4e-4
 """Most that C may be, in units of B L²: the constant C of the paper belongs to worsted yarn, and
@@ -42,6 +41,22 @@ class Terms:
     def energy(self) -> float:
         """Physical energy: bending, regularisation and contact."""
         return self.rod + self.contact
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """Derivatives at a state by the unknowns.
+
+    Attributes
+    ----------
+    gradient : (unknowns,) of the Lagrangian.
+    lengths : (rows, unknowns), of the length of each course.
+    hessian : (unknowns, unknowns) of the Lagrangian; empty where it was not wanted.
+    """
+
+    gradient: Array
+    lengths: Array
+    hessian: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,30 +177,28 @@ class CellEnergy:
     def derivatives(
         self, state: Array, curve: Array, pairs: Ints, start: Ints, tension: Array,
         *, hessian: bool = True,
-    ) -> tuple[Array, Array]:  # fmt: skip
-        """Gradient and Hessian of :meth:`merit` (the Hessian is empty if not wanted)."""
+    ) -> Slope:  # fmt: skip
+        """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty."""
         cell = self.cell
-        n, courses, count = len(curve), cell.rows, cell.controls_per_course
-        size = cell.unknowns
+        n, size = len(curve), cell.unknowns
         force = np.zeros((n + 1, 3))
         weight_slope = np.zeros(n)
         kernels.contact(
             curve, state[-2], state[-1], pairs, cell.place, cell.wales, cell.rows,
             self.contact_parameters, 1, force, weight_slope,
         )  # fmt: skip
-        pull = tension + self.penalty * self.excess(curve)
         slopes = np.zeros((n, 3, 3))
         local = np.zeros((n if hessian else 0, 9, 9))
         kernels.rod(
-            curve, len(cell.place), self._rod_parameters, pull, weight_slope,
+            curve, len(cell.place), self._rod_parameters, tension, weight_slope,
             2 if hessian else 1, slopes, local,
         )  # fmt: skip
         gradient = np.zeros(size)
         gradient[-2:] = force[n, :2]
-        layout = courses, count, cell.mirror[0], cell.grid.basis, cell.dof, cell.sign
-        kernels.scatter_gradient(force, slopes, *layout, gradient)
+        kernels.scatter_gradient(force, slopes, *self._layout, gradient)
+        lengths = self.length_gradients(curve)
         if not hessian:
-            return gradient, np.zeros((0, 0))
+            return Slope(gradient, lengths, np.zeros((0, 0)))
         matrix = np.zeros((size, size))
         position = np.zeros((n, 3, 3))
         position_speed = np.zeros((n, 3, 3))
@@ -194,24 +207,27 @@ class CellEnergy:
             cell.mirror[0], self.contact_parameters, cell.grid.basis, cell.dof, cell.sign,
             position, position_speed, matrix,
         )  # fmt: skip
-        kernels.scatter_local(local, position, position_speed, *layout, matrix)
-        stretch = self.length_gradients(curve)
-        matrix += (self.penalty * stretch.T) @ stretch
-        return gradient, matrix
+        kernels.scatter_local(local, position, position_speed, *self._layout, matrix)
+        return Slope(gradient, lengths, matrix)
 
     def length_gradients(self, curve: Array) -> Array:
         """(rows, unknowns): gradient of the length of each course."""
         cell = self.cell
-        n, per_course = len(curve), len(cell.place)
         tangent = curve[:, 1] / np.linalg.norm(curve[:, 1], axis=1)[:, None]
+        slopes = np.zeros((len(curve), 3, 3))
+        slopes[:, 0] = tangent / cell.grid.samples
+        every = np.zeros(cell.unknowns)
+        kernels.scatter_gradient(np.zeros((len(curve), 3)), slopes, *self._layout, every)
         rows = np.zeros((cell.rows, cell.unknowns))
-        layout = (
+        for row, own in zip(rows, cell.dof, strict=True):  # no unknown belongs to two courses
+            row[own] = every[own]
+        rows[:, -2] = slopes[:, 0, 0].reshape(cell.rows, -1).sum(axis=1)
+        return rows
+
+    @property
+    def _layout(self) -> tuple[int, int, int, Array, Ints, Array]:
+        cell = self.cell
+        return (
             cell.rows, cell.controls_per_course, cell.mirror[0], cell.grid.basis,
             cell.dof, cell.sign,
         )  # fmt: skip
-        for j in range(cell.rows):
-            slopes = np.zeros((n, 3, 3))
-            part = slice(j * per_course, (j + 1) * per_course)
-            slopes[part, 0] = tangent[part] / cell.grid.samples
-            kernels.scatter_gradient(np.zeros((n, 3)), slopes, *layout, rows[j])
-        return rows

@@ -135,4 +135,4 @@ def _min_distance(energy: CellEnergy, state: Array) -> float:
     touch = 2.0 * energy.yarn.radius_mm
     curve = energy.curve(state)
     pairs, _ = energy.pairs(curve, state, touch)
-    return Guard.at(energy.cell, state, curve, pairs, touch, touch).min_distance_mm
+    return Guard(energy.cell, state, curve, pairs, touch, touch).min_distance_mm

@@ -53,6 +53,7 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
     span_y = int(np.ceil(reach * bins_y / height))
     x = np.empty(n)
     y = np.empty(n)
+    z = curve[:, 0, 2].copy()
     image_x = np.empty(n, np.int64)
     image_y = np.empty(n, np.int64)
     bin_of = np.empty(n, np.int64)
@@ -83,21 +84,23 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
             lift = v // bins_y
             for u in range(bx - span_x, bx + span_x + 1):
                 shift = u // bins_x
+                across_x = shift * width - x[i]
+                up_y = lift * height - y[i]
                 j = head[(v - lift * bins_y) * bins_x + (u - shift * bins_x)]
-                while j >= 0:
-                    across = shift - image_x[j] + image_x[i]
-                    up = lift - image_y[j] + image_y[i]
-                    wanted = j > i or (j == i and (across > 0 or (across == 0 and up > 0)))
-                    if wanted:
-                        dx = x[j] + shift * width - x[i]
-                        dy = y[j] + lift * height - y[i]
+                while j >= i:  # a bin lists its samples in falling order
+                    dx = x[j] + across_x
+                    dy = y[j] + up_y
+                    left = square - dx * dx - dy * dy
+                    if left > 0.0:
+                        across = shift - image_x[j] + image_x[i]
+                        up = lift - image_y[j] + image_y[i]
                         flip = 1
                         if mirror[0] < 0 and across % 2 != 0:
                             flip = -flip
                         if mirror[1] < 0 and up % 2 != 0:
                             flip = -flip
-                        dz = flip * curve[j, 0, 2] - curve[i, 0, 2]
-                        if dx * dx + dy * dy + dz * dz < square:
+                        dz = flip * z[j] - z[i]
+                        if dz * dz < left and (j > i or across > 0 or (across == 0 and up > 0)):
                             same = j // samples + up * rows == i // samples
                             along = abs(place[j % samples] + across * wales - place[i % samples])
                             if not (same and along <= exclusion):
@@ -118,22 +121,30 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
 
 
 @numba.njit(cache=True)
-def pair_vectors(
+def pair_changes(
     curve: NDArray[np.float64],
-    place: NDArray[np.float64],
     cell: tuple[float, float],
+    later: NDArray[np.float64],
+    later_cell: tuple[float, float],
+    place: NDArray[np.float64],
     shape: tuple[int, int],
     pairs: NDArray[np.int64],
-) -> NDArray[np.float64]:
-    """Vectors (n, 3) from sample i to the image of sample j, mm."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distance of each pair, and length of the change of its vector to a later curve, mm."""
     rows, wales = shape
     samples = place.shape[0]
-    out = np.empty((pairs.shape[0], 3))
+    distance = np.empty(pairs.shape[0])
+    change = np.empty(pairs.shape[0])
     for q in range(pairs.shape[0]):
-        i, j = pairs[q, 0], pairs[q, 1]
+        i, j, flip = pairs[q, 0], pairs[q, 1], pairs[q, 4]
         across = place[j % samples] + pairs[q, 2] * wales - place[i % samples]
         up = float(j // samples + pairs[q, 3] * rows - i // samples)
-        out[q, 0] = curve[j, 0, 0] - curve[i, 0, 0] + across * cell[0]
-        out[q, 1] = curve[j, 0, 1] - curve[i, 0, 1] + up * cell[1]
-        out[q, 2] = pairs[q, 4] * curve[j, 0, 2] - curve[i, 0, 2]
-    return out
+        x = curve[j, 0, 0] - curve[i, 0, 0] + across * cell[0]
+        y = curve[j, 0, 1] - curve[i, 0, 1] + up * cell[1]
+        z = flip * curve[j, 0, 2] - curve[i, 0, 2]
+        dx = later[j, 0, 0] - later[i, 0, 0] + across * later_cell[0] - x
+        dy = later[j, 0, 1] - later[i, 0, 1] + up * later_cell[1] - y
+        dz = flip * later[j, 0, 2] - later[i, 0, 2] - z
+        distance[q] = np.sqrt(x * x + y * y + z * z)
+        change[q] = np.sqrt(dx * dx + dy * dy + dz * dz)
+    return distance, change

@@ -363,7 +363,7 @@ def _shaken_safely(energy: CellEnergy, state: Array) -> Array:
     curve = energy.curve(state)
     reach = 3.0 * radius
     pairs, _ = energy.pairs(curve, state, reach)
-    guard = Guard.at(energy.cell, state, curve, pairs, reach, 2.0 * radius)
+    guard = Guard(energy.cell, state, curve, pairs, reach, 2.0 * radius)
     # half of the way to the hard cores at most
     room = 0.25 * max(guard.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
     moved = shaken(energy.cell, state, min(0.02 * radius, 0.3 * room), seed=7)

@@ -1,30 +1,42 @@
 """Damped Newton iterations on the energy of a cell, every step certified.
 
-The Hessian is exact and small (48 unknowns a stitch, half of it with a wale axis), so a dense
-Cholesky factor costs less than anything iterative up to several hundred stitches' worth of
-unknowns. Where the energy is not convex the factor is taken of H + mu D until it exists
-(Levenberg-Marquardt); the length of each course is held by an augmented Lagrangian whose tension is
-updated at every step once the iteration has settled.
+The Hessian is exact and small (48 unknowns a stitch, half of it with a wale axis). Where the
+energy is not convex the factor is taken of H + mu I until it exists (Levenberg-Marquardt). The
+length of each course is a constraint: a step and the change of the tensions follow from one system
+(Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the merit that must
+fall. The valley that inextensible yarn makes is narrow and curved, so a step along it leaves it;
+steps with the factor of the last Hessian lead back into it at a fraction of the price.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
+from scipy.linalg import blas, lapack
 
 from knitcore.errors import CancelledError, UnravelledError
 from knitcore.threads import one_blas_thread
-from knitcore.yarnlevel.energy import CellEnergy, Terms
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
+from knitcore.yarnlevel.walker import Walker
 
 Array = NDArray[np.float64]
 
 COURSE, WALE = -2, -1
 """Places of the two cell sizes among the unknowns."""
+
+_DAMPING = 100.0
+"""First damping, in B / L³."""
+_LEAST_DAMPING = 1e-6
+"""Least damping, relative to the first."""
+_INDEFINITE_DAMPING = 0.05
+"""Least damping that is tried where the Hessian is not positive definite, relative to the first."""
+_TRIALS = 60
+_WORTH = 0.2
+"""A step with an old factor that gains less than this part of the step before is the last."""
+_NO_STEP = 1e-9
 
 
 @dataclass(frozen=True)
@@ -34,15 +46,15 @@ class Options:
     Parameters
     ----------
     pair_cap : longest change of the vector between near samples in one step, in radii.
-    skin : how much farther than 2r the list of pairs reaches, in radii.
     relief : by how much a step that went as predicted lessens the damping.
+    followers : most steps with an old factor after each new one.
     tolerance : stop when a Newton step would lower the energy by less than this part of it.
     iterations : most Newton steps.
     """
 
     pair_cap: float = 0.3
-    skin: float = 0.8
     relief: float = 6.0
+    followers: int = 3
     tolerance: float = 1e-7
     iterations: int = 400
 
@@ -72,7 +84,7 @@ class Minimum:
     evaluations: int
 
 
-def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
+def minimise(
     energy: CellEnergy,
     state: Array,
     *,
@@ -101,112 +113,173 @@ def minimise(  # noqa: PLR0912, PLR0915 - one iteration, told in order
         If ``cancel`` says so.
     """
     opts = options or Options()
-    cell, yarn = energy.cell, energy.yarn
-    touch = 2.0 * yarn.radius_mm
-    reach = touch + opts.skin * yarn.radius_mm
-    cap = opts.pair_cap * yarn.radius_mm
-    size = cell.unknowns
-    free = np.ones(size, bool)
-    free[list(fixed)] = False
-    held = np.flatnonzero(~free)
-    goal = state[held] if target is None else target[held - size + 2]
-    all_free = bool(free.all())
-    natural = 100.0 * energy.unit / energy.mean_loop_mm**2
-    damping_floor = 1e-6 * natural
-    damping = natural
-    pull = np.zeros(cell.rows) if tension is None else tension.copy()
-
-    curve = energy.curve(state)
-    evaluations = 1
-    converged = False
-    steps = 0
-    while True:
-        pairs, start = energy.pairs(curve, state, reach)
-        guard = Guard.at(cell, state, curve, pairs, reach, touch)
-        terms = energy.value(state, curve, pairs)
-        merit = energy.merit(terms, pull)
-        gradient, hessian = energy.derivatives(state, curve, pairs, start, pull)
-        evaluations += 1
-        if steps >= opts.iterations:
-            break
+    held = np.array(sorted(f % energy.cell.unknowns for f in fixed), int)
+    goal = state[held] if target is None else target[held - energy.cell.unknowns + 2]
+    descent = _Descent(energy, state, tension, held, goal, opts)
+    while not descent.converged and descent.steps < opts.iterations:
         if cancel is not None and cancel():
             raise CancelledError("The relaxation was cancelled.")
-        remaining = goal - state[held]
-        moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
-        accepted = indefinite = False
-        for _ in range(60):
-            with one_blas_thread():
-                step = _step(gradient, hessian, free, all_free, held, remaining, damping)
-            if step is None:
-                indefinite = True
-                damping = max(4.0 * damping, damping_floor)
-                continue
-            trial = state + step
-            if trial[COURSE] <= 0.0 or trial[WALE] <= 0.0:
-                damping = max(4.0 * damping, damping_floor)
-                continue
-            trial_curve = energy.curve(trial)
-            scale = guard.longest_step(trial, trial_curve, cap)
-            if scale < 1.0:
-                step = scale * step
-                trial = state + step
-                trial_curve = curve + scale * (trial_curve - curve)
-            predicted = -float(gradient @ step + 0.5 * step @ hessian @ step)
-            trial_terms = energy.value(trial, trial_curve, pairs)
-            evaluations += 1
-            actual = merit - energy.merit(trial_terms, pull)
-            ratio = actual / predicted if predicted > 0.0 else -1.0
-            tiny = abs(predicted) < 1e-11 * abs(merit)
-            if moving or ratio > 1e-3 or tiny:
-                accepted = True
-                if ratio > 0.5 and not indefinite:
-                    damping = max(damping / opts.relief, damping_floor)
-                elif ratio < 0.2 and not moving:
-                    damping *= 2.0
-                break
-            damping = max(4.0 * damping, damping_floor)
-        if not accepted:
+        if not descent.step():
             break
-        if scale < 1e-9:
-            raise UnravelledError("No step from here keeps the strands apart.")
-        state, curve, terms = trial, trial_curve, trial_terms
-        steps += 1
-        settled = scale == 1.0 and not moving and predicted < 2e-3 * abs(terms.energy)
-        if settled:
-            excess = terms.excess_mm
-            pull = pull + energy.penalty * excess
-            exact = bool(np.abs(excess).max() < 1e-7 * energy.mean_loop_mm)
-            if (
-                predicted < opts.tolerance * abs(terms.energy)
-                and damping <= 1e-1 * natural
-                and exact
+    return descent.minimum()
+
+
+class _Descent:
+    """State of one minimisation."""
+
+    def __init__(
+        self, energy: CellEnergy, state: Array, tension: Array | None,
+        held: NDArray[np.int64], goal: Array, options: Options,
+    ) -> None:  # fmt: skip
+        self.energy = energy
+        self.options = options
+        self.walker = Walker(energy, state, options.pair_cap)
+        self.tension = np.zeros(energy.cell.rows) if tension is None else tension.copy()
+        self.free = np.ones(energy.cell.unknowns, bool)
+        self.free[held] = False
+        self.held, self.goal = held, goal
+        self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
+        self.damping = self.first_damping
+        self.steps, self.evaluations = 0, 1
+        self.converged = False
+
+    def step(self) -> bool:
+        """One Newton step and its followers; False where there is none."""
+        walker, energy = self.walker, self.energy
+        here = walker.place
+        slope = walker.slope(self.tension, hessian=True)
+        remaining = self.goal - here.state[self.held]
+        moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
+        system = _System(slope, energy.penalty, self.free)
+        excess = here.terms.excess_mm
+        indefinite = blocked = False
+        for _ in range(_TRIALS):
+            if not system.factorise(self.damping):
+                indefinite = True
+                self._damp(4.0, _INDEFINITE_DAMPING)
+                continue
+            step, change = system.solve(slope, excess, remaining)
+            leg = walker.leg(step)
+            blocked = leg.fraction < _NO_STEP
+            if blocked:
+                self._damp(4.0)
+                continue
+            self.evaluations += 2
+            moved = leg.to.state - here.state
+            predicted = system.decrease(slope, moved, change, excess)
+            before = energy.merit(here.terms, self.tension + change)
+            actual = before - energy.merit(leg.to.terms, self.tension + change)
+            ratio = actual / predicted if predicted > 0.0 else -1.0
+            if abs(predicted) < 1e-11 * abs(before):
+                ratio = 1.0  # the rest is rounding
+            if moving or ratio > 1e-3:
+                break
+            self._damp(4.0)
+        else:
+            if blocked:
+                raise UnravelledError("No step from here keeps the strands apart.")
+            return False
+        if ratio > 0.5 and not indefinite:
+            self._damp(1.0 / self.options.relief)
+        elif ratio < 0.2 and not moving:
+            self._damp(2.0)
+        walker.go(leg)
+        self.tension = self.tension + change
+        self.steps += 1
+        if not moving:
+            self._follow(system, predicted)
+        terms = walker.place.terms
+        self.converged = bool(
+            leg.fraction == 1.0
+            and not moving
+            and self.damping <= 0.1 * self.first_damping
+            and predicted < self.options.tolerance * abs(terms.energy)
+            and np.abs(terms.excess_mm).max() < 1e-7 * energy.mean_loop_mm
+        )
+        return True
+
+    def _follow(self, system: _System, gain: float) -> None:
+        """Steps with the factor of the last Hessian, as long as they are worth it."""
+        walker, energy = self.walker, self.energy
+        none = np.zeros(len(self.held))
+        for _ in range(self.options.followers):
+            here = walker.place
+            excess = here.terms.excess_mm
+            slope = walker.slope(self.tension, hessian=False)
+            step, change = system.solve(slope, excess, none)
+            leg = walker.leg(step)
+            self.evaluations += 2
+            tension = self.tension + change
+            actual = energy.merit(here.terms, tension) - energy.merit(leg.to.terms, tension)
+            moved = leg.to.state - here.state
+            if leg.fraction < _NO_STEP or actual < 0.2 * system.decrease(
+                slope, moved, change, excess
             ):
-                converged = True
-                opts = replace(opts, iterations=steps)
-    return Minimum(
-        state, pull, terms, gradient[-2:].copy(), guard.min_distance_mm, converged, steps,
-        evaluations,
-    )  # fmt: skip
+                return
+            walker.go(leg)
+            self.tension = tension
+            if actual < _WORTH * gain:
+                return
+            gain = actual
+
+    def _damp(self, factor: float, least: float = _LEAST_DAMPING) -> None:
+        self.damping = max(factor * self.damping, least * self.first_damping)
+
+    def minimum(self) -> Minimum:
+        """Where it stands."""
+        place = self.walker.place
+        slope = self.walker.slope(self.tension, hessian=False)
+        return Minimum(
+            place.state, self.tension, place.terms, slope.gradient[-2:].copy(),
+            self.walker.min_distance_mm, self.converged, self.steps, self.evaluations,
+        )  # fmt: skip
 
 
-def _step(
-    gradient: Array, hessian: Array, free: NDArray[np.bool_], all_free: bool,
-    held: NDArray[np.int64], remaining: Array, damping: float,
-) -> Array | None:  # fmt: skip
-    """Damped Newton step, None where the damped Hessian is not positive definite."""
-    if all_free:
-        matrix, slope = hessian.copy(), gradient
-    else:
-        matrix = hessian[np.ix_(free, free)]
-        slope = gradient[free] + hessian[np.ix_(free, held)] @ remaining
-    matrix.flat[:: len(matrix) + 1] += damping
-    factor, info = lapack.dpotrf(matrix.T, lower=0, overwrite_a=1, clean=0)
-    if info != 0:
-        return None
-    solution, _ = lapack.dpotrs(factor, -slope, lower=0)
-    if all_free:
-        return np.asarray(solution)
-    step = np.empty(len(gradient))
-    step[free] = solution
-    step[held] = remaining
-    return step
+class _System:
+    """The linear system of a step: damped Hessian and lengths of the courses."""
+
+    def __init__(self, slope: Slope, penalty: float, free: NDArray[np.bool_]) -> None:
+        self._penalty = penalty
+        self._free = free
+        self._held = np.flatnonzero(~free)
+        with one_blas_thread():
+            # the Hessian of the penalty, added in place (the matrix is symmetric)
+            self._hessian = blas.dgemm(
+                penalty, slope.lengths, slope.lengths, beta=1.0, c=slope.hessian.T,
+                trans_a=True, overwrite_c=True,
+            )  # fmt: skip
+
+    def factorise(self, damping: float) -> bool:
+        """Cholesky factor of the damped matrix; False where it is not positive definite."""
+        if len(self._held):
+            matrix = self._hessian[np.ix_(self._free, self._free)].T
+        else:
+            matrix = self._hessian.copy(order="F")
+        matrix[np.diag_indices_from(matrix)] += damping
+        with one_blas_thread():
+            self._factor, info = lapack.dpotrf(matrix, lower=0, overwrite_a=1, clean=0)
+        return int(info) == 0
+
+    def solve(self, slope: Slope, excess: Array, remaining: Array) -> tuple[Array, Array]:
+        """Step that takes the lengths to what they should be, and the change of the tensions."""
+        lengths = slope.lengths[:, self._free]
+        missing = excess + slope.lengths[:, self._held] @ remaining
+        gradient = slope.gradient[self._free] + (self._penalty * excess) @ lengths
+        if len(self._held):
+            gradient = gradient + self._hessian[np.ix_(self._free, self._held)] @ remaining
+        with one_blas_thread():
+            right = np.column_stack([-gradient, lengths.T])
+            both, _ = lapack.dpotrs(self._factor, right, lower=0)
+        downhill, by_tension = both[:, 0], both[:, 1:]
+        change = np.linalg.solve(lengths @ by_tension, lengths @ downhill + missing)
+        step = np.empty(len(self._free))
+        step[self._free] = downhill - by_tension @ change
+        step[self._held] = remaining
+        return step, change
+
+    def decrease(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
+        """Decrease of the merit, with the changed tensions, that the quadratic model predicts."""
+        by_length = (change + self._penalty * excess) @ (slope.lengths @ step)
+        with one_blas_thread():
+            bent = self._hessian @ step
+        return -float(slope.gradient @ step + by_length + 0.5 * step @ bent)

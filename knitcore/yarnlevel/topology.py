@@ -13,13 +13,12 @@ to cross.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.yarnlevel.cell import YarnCell
-from knitcore.yarnlevel.neighbours import pair_vectors
+from knitcore.yarnlevel.neighbours import pair_changes
 
 Array = NDArray[np.float64]
 
@@ -41,7 +40,6 @@ class Guard:
     pairs : all pairs of samples nearer than ``reach_mm``.
     reach_mm : reach of that list.
     touch_mm : 2r; unlisted pairs must stay beyond it, so that the energy of the step is complete.
-    vectors : (pairs, 3) from sample to sample, mm.
     """
 
     cell: YarnCell
@@ -50,27 +48,30 @@ class Guard:
     pairs: NDArray[np.int64]
     reach_mm: float
     touch_mm: float
-    vectors: Array
-
-    @classmethod
-    def at(
-        cls, cell: YarnCell, state: Array, curve: Array, pairs: NDArray[np.int64],
-        reach_mm: float, touch_mm: float,
-    ) -> Guard:  # fmt: skip
-        """Measure the distances at a state."""
-        vectors = _vectors(cell, state, curve, pairs)
-        return cls(cell, state, curve, pairs, reach_mm, touch_mm, vectors)
 
     @property
     def min_distance_mm(self) -> float:
         """Smallest distance between samples of different stretches of yarn."""
-        return float(self._lengths.min()) if len(self.pairs) else self.reach_mm
+        distances, _ = self._changes(self.state, self.curve)
+        return float(distances.min(initial=self.reach_mm))
 
     def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> float:
         """Fraction (at most 1) of the way to another state that is certified.
 
         ``pair_cap_mm`` also bounds the change of the vector between any listed pair.
         """
+        allowed = (self.reach_mm - self.touch_mm) / max(self.approach_mm(state, curve), 1e-300)
+        allowed = min(1.0, allowed)
+        if len(self.pairs):
+            distances, shift = self._changes(state, curve)
+            allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
+            spacing = self._spacing(curve, allowed)
+            room = np.maximum(distances - CROSSING * spacing, 0.0) * SAFETY
+            allowed = min(allowed, float((room / np.maximum(shift, 1e-300)).min()))
+        return allowed
+
+    def approach_mm(self, state: Array, curve: Array) -> float:
+        """Most by which an unlisted pair gets nearer on the way to another state."""
         old, new = self.state[-2:], state[-2:]
         strain = float(np.abs(new / old - 1.0).max())
         moved = curve[:, 0] - self.curve[:, 0]
@@ -80,20 +81,14 @@ class Guard:
         moved[:, 0] -= drift[0] * (self.curve[:, 0, 0] - self.curve[:, 0, 0].mean())
         moved[:, 1] -= drift[1] * (self.curve[:, 0, 1] - self.curve[:, 0, 1].mean())
         far = 2.0 * float(np.sqrt(np.einsum("im,im->i", moved, moved).max()))
-        allowed = (self.reach_mm - self.touch_mm) / max(far + strain * self.reach_mm, 1e-300)
-        allowed = min(1.0, allowed)
-        if len(self.pairs):
-            change = _vectors(self.cell, state, curve, self.pairs) - self.vectors
-            shift = np.sqrt(np.einsum("im,im->i", change, change))
-            allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
-            spacing = self._spacing(curve, allowed)
-            room = np.maximum(self._lengths - CROSSING * spacing, 0.0) * SAFETY
-            allowed = min(allowed, float((room / np.maximum(shift, 1e-300)).min()))
-        return allowed
+        return far + strain * self.reach_mm
 
-    @cached_property
-    def _lengths(self) -> Array:
-        return np.asarray(np.sqrt(np.einsum("im,im->i", self.vectors, self.vectors)))
+    def _changes(self, state: Array, curve: Array) -> tuple[Array, Array]:
+        """Distances of the listed pairs, and how far their vectors change to another state."""
+        return pair_changes(
+            self.curve, _size(self.state), curve, _size(state),
+            self.cell.place, (self.cell.rows, self.cell.wales), self.pairs,
+        )  # fmt: skip
 
     def _spacing(self, curve: Array, fraction: float) -> float:
         """Largest distance of consecutive samples up to a fraction of the step, mm.
@@ -109,8 +104,5 @@ class Guard:
         return 1.05 * largest / self.cell.grid.samples
 
 
-def _vectors(cell: YarnCell, state: Array, curve: Array, pairs: NDArray[np.int64]) -> Array:
-    vectors: Array = pair_vectors(
-        curve, cell.place, (float(state[-2]), float(state[-1])), (cell.rows, cell.wales), pairs
-    )
-    return vectors
+def _size(state: Array) -> tuple[float, float]:
+    return float(state[-2]), float(state[-1])

@@ -84,21 +84,29 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
     pairs, start = energy.pairs(curve, state, 2.4)
     tension = np.linspace(-0.1, 0.2, energy.cell.rows)
 
-    def merit(y):
-        c = energy.curve(y)
-        return energy.merit(energy.value(y, c, pairs), tension)
+    def lagrangian(y):
+        terms = energy.value(y, energy.curve(y), pairs)
+        return terms.energy + terms.gauge + tension @ terms.excess_mm
 
-    def slope(y):
+    def gradient_at(y):
         c = energy.curve(y)
-        return energy.derivatives(y, c, pairs, start, tension, hessian=False)[0]
+        return energy.derivatives(y, c, pairs, start, tension, hessian=False).gradient
 
-    gradient, hessian = energy.derivatives(state, curve, pairs, start, tension)
+    def excess(y):
+        return energy.excess(energy.curve(y))
+
+    slope = energy.derivatives(state, curve, pairs, start, tension)
+    gradient, hessian = slope.gradient, slope.hessian
     rng = np.random.default_rng(1)
     for direction in (*rng.standard_normal((3, len(state))), *np.eye(len(state))[-2:]):
         h = 1e-7
-        by_merit = (merit(state + h * direction) - merit(state - h * direction)) / (2 * h)
-        assert gradient @ direction == pytest.approx(by_merit, rel=1e-4, abs=1e-5)
-        by_slope = (slope(state + h * direction) - slope(state - h * direction)) / (2 * h)
+        by_value = (lagrangian(state + h * direction) - lagrangian(state - h * direction)) / (2 * h)
+        assert gradient @ direction == pytest.approx(by_value, rel=1e-4, abs=1e-5)
+        longer = (excess(state + h * direction) - excess(state - h * direction)) / (2 * h)
+        np.testing.assert_allclose(slope.lengths @ direction, longer, rtol=1e-4, atol=1e-6)
+        by_slope = (gradient_at(state + h * direction) - gradient_at(state - h * direction)) / (
+            2 * h
+        )
         scale = np.abs(hessian @ direction).max()
         np.testing.assert_allclose(hessian @ direction, by_slope, atol=1e-4 * scale)
     np.testing.assert_allclose(hessian, hessian.T, atol=1e-9 * np.abs(hessian).max())

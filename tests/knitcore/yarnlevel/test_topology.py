@@ -24,7 +24,7 @@ def _energy(text, kind, per_span=5):
 def _guard(energy, state):
     curve = energy.curve(state)
     pairs, _ = energy.pairs(curve, state, REACH)
-    return Guard.at(energy.cell, state, curve, pairs, REACH, 2 * YARN.radius_mm)
+    return Guard(energy.cell, state, curve, pairs, REACH, 2 * YARN.radius_mm)
 
 
 @pytest.mark.parametrize(("text", "kind"), [("K", mirrored_cell), ("KP\nKK", plain_cell)])

@@ -1,0 +1,142 @@
+"""Bending, regularisation, gauge penalty and tension: what one sample of the curve has by itself.
+
+Everything depends on a = |d1|², b = d1·d2, c = |d2|², d = d1·d3, e = d2·d3, f = |d3|², d_n the n-th
+derivative with respect to the parameter t. Bending and regularisation are sums of monomials in
+them, whatever the parametrisation:
+
+    ∫κ² ds         = ∫ (c a^-3/2 − b² a^-5/2) dt
+    ∫|∂_ss t|² ds  = ∫ (f a^-5/2 + (c² − d² − 6be) a^-7/2 + b²(7c + 6d) a^-9/2 − 8b⁴ a^-11/2) dt
+
+The length, the gauge penalty and the weights w = |d1| dt of the contact sum are functions of √a.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@numba.njit(cache=True)
+def rod_sample(
+    d: Array, bend: float, regular: float, order: int, slope: Array, curvature: Array
+) -> float:
+    """Bending and regularisation of one sample, with slope (6) and curvature (6, 6) in a … f."""
+    a = d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2
+    b = d[1, 0] * d[2, 0] + d[1, 1] * d[2, 1] + d[1, 2] * d[2, 2]
+    c = d[2, 0] ** 2 + d[2, 1] ** 2 + d[2, 2] ** 2
+    e1 = d[1, 0] * d[3, 0] + d[1, 1] * d[3, 1] + d[1, 2] * d[3, 2]
+    e = d[2, 0] * d[3, 0] + d[2, 1] * d[3, 1] + d[2, 2] * d[3, 2]
+    f = d[3, 0] ** 2 + d[3, 1] ** 2 + d[3, 2] ** 2
+    i1 = 1.0 / a
+    h3 = i1 / np.sqrt(a)  # a^-3/2
+    h5 = h3 * i1
+    h7 = h5 * i1
+    h9 = h7 * i1
+    h11 = h9 * i1
+    m7 = c * c - e1 * e1 - 6.0 * b * e
+    m9 = b * b * (7.0 * c + 6.0 * e1)
+    m11 = -8.0 * b**4
+    value = bend * (c * h3 - b * b * h5) + regular * (f * h5 + m7 * h7 + m9 * h9 + m11 * h11)
+    if order > 0:
+        slope[0] = bend * (-1.5 * c * h5 + 2.5 * b * b * h7) - regular * i1 * (
+            2.5 * f * h5 + 3.5 * m7 * h7 + 4.5 * m9 * h9 + 5.5 * m11 * h11
+        )
+        slope[1] = bend * (-2.0 * b * h5) + regular * (
+            -6.0 * e * h7 + 2.0 * b * (7.0 * c + 6.0 * e1) * h9 - 32.0 * b**3 * h11
+        )
+        slope[2] = bend * h3 + regular * (2.0 * c * h7 + 7.0 * b * b * h9)
+        slope[3] = regular * (-2.0 * e1 * h7 + 6.0 * b * b * h9)
+        slope[4] = regular * (-6.0 * b * h7)
+        slope[5] = regular * h5
+    if order > 1:
+        curvature[:] = 0.0
+        curvature[0, 0] = bend * (3.75 * c * h7 - 8.75 * b * b * h9) + regular * i1 * i1 * (
+            8.75 * f * h5 + 15.75 * m7 * h7 + 24.75 * m9 * h9 + 35.75 * m11 * h11
+        )
+        curvature[0, 1] = bend * 5.0 * b * h7 - regular * i1 * (
+            -21.0 * e * h7 + 9.0 * b * (7.0 * c + 6.0 * e1) * h9 - 176.0 * b**3 * h11
+        )
+        curvature[0, 2] = -1.5 * bend * h5 - regular * i1 * (7.0 * c * h7 + 31.5 * b * b * h9)
+        curvature[0, 3] = -regular * i1 * (-7.0 * e1 * h7 + 27.0 * b * b * h9)
+        curvature[0, 4] = regular * 21.0 * b * h9
+        curvature[0, 5] = -2.5 * regular * h7
+        curvature[1, 1] = -2.0 * bend * h5 + regular * (
+            2.0 * (7.0 * c + 6.0 * e1) * h9 - 96.0 * b * b * h11
+        )
+        curvature[1, 2] = regular * 14.0 * b * h9
+        curvature[1, 3] = regular * 12.0 * b * h9
+        curvature[1, 4] = -6.0 * regular * h7
+        curvature[2, 2] = 2.0 * regular * h7
+        curvature[3, 3] = -2.0 * regular * h7
+        for m in range(6):
+            for n in range(m):
+                curvature[m, n] = curvature[n, m]
+    return float(value)
+
+
+@numba.njit(cache=True)
+def rod(
+    curve: Array,
+    samples: int,
+    parameters: Array,
+    tension: Array,
+    weight_slope: Array,
+    order: int,
+    gradient: Array,
+    local: Array,
+) -> tuple[float, float]:
+    """Terms that one sample has by itself; returns (bending + regularisation, gauge).
+
+    ``gradient`` (n, 3, 3) receives dE/d(d1, d2, d3), ``local`` (n, 9, 9) their Hessian; both
+    include the tension (per course) and the weights of the contact (``weight_slope``).
+    ``parameters``: bend, regular, gauge stiffness, loop length, dt.
+    """
+    bend, regular, gauge, loop, dt = parameters
+    slope = np.zeros(6)
+    curvature = np.zeros((6, 6))
+    lift = np.zeros((6, 9))
+    rod_energy = 0.0
+    gauge_energy = 0.0
+    for i in range(curve.shape[0]):
+        d = curve[i]
+        rod_energy += rod_sample(d, dt * bend, dt * regular, order, slope, curvature)
+        speed = np.sqrt(d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2)
+        stretch = speed / loop - 1.0
+        gauge_energy += 0.5 * dt * gauge * stretch * stretch
+        if order == 0:
+            continue
+        pull = dt * (tension[i // samples] + gauge * stretch / loop) + weight_slope[i]
+        slope[0] += 0.5 * pull / speed
+        for m in range(3):
+            gradient[i, 0, m] = 2.0 * slope[0] * d[1, m] + slope[1] * d[2, m] + slope[3] * d[3, m]
+            gradient[i, 1, m] = slope[1] * d[1, m] + 2.0 * slope[2] * d[2, m] + slope[4] * d[3, m]
+            gradient[i, 2, m] = slope[3] * d[1, m] + slope[4] * d[2, m] + 2.0 * slope[5] * d[3, m]
+        if order == 1:
+            continue
+        curvature[0, 0] += 0.25 * (dt * gauge / loop**2 - pull / speed) / speed**2
+        for m in range(3):
+            lift[0, m] = 2.0 * d[1, m]
+            lift[1, m] = d[2, m]
+            lift[1, 3 + m] = d[1, m]
+            lift[2, 3 + m] = 2.0 * d[2, m]
+            lift[3, m] = d[3, m]
+            lift[3, 6 + m] = d[1, m]
+            lift[4, 3 + m] = d[3, m]
+            lift[4, 6 + m] = d[2, m]
+            lift[5, 6 + m] = 2.0 * d[3, m]
+        local[i] = lift.T @ (curvature @ lift)
+        for m in range(3):
+            local[i, m, m] += 2.0 * slope[0]
+            local[i, 3 + m, 3 + m] += 2.0 * slope[2]
+            local[i, 6 + m, 6 + m] += 2.0 * slope[5]
+            local[i, m, 3 + m] += slope[1]
+            local[i, 3 + m, m] += slope[1]
+            local[i, m, 6 + m] += slope[3]
+            local[i, 6 + m, m] += slope[3]
+            local[i, 3 + m, 6 + m] += slope[4]
+            local[i, 6 + m, 3 + m] += slope[4]
+    return rod_energy, gauge_energy

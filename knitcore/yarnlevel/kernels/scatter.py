@@ -1,0 +1,120 @@
+"""From samples to unknowns: gradients and Hessian blocks added up.
+
+Unknowns are the control points ("dofs", through an index map that ties symmetric ones together and
+carries their signs) and the size of a stitch, course-wise and wale-wise (the last two).
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.yarnlevel.kernels.curve import control_of
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@numba.njit(cache=True)
+def scatter_gradient(
+    force: Array,
+    gradient: Array,
+    courses: int,
+    count: int,
+    mirror: int,
+    basis: Array,
+    dof: Ints,
+    sign: Array,
+    out: Array,
+) -> None:
+    """Add dE/dx (n, 3) and dE/d(d1, d2, d3) (n, 3, 3) to the gradient of the unknowns."""
+    per_span = basis.shape[1]
+    samples = count * per_span
+    size = out.shape[0]
+    for j in range(courses):
+        for s in range(samples):
+            i = j * samples + s
+            span, o = s // per_span, s % per_span
+            out[size - 2] += gradient[i, 0, 0]
+            for a in range(6):
+                c, z_sign = control_of(span, a, count, mirror)
+                for m in range(3):
+                    value = basis[0, o, a] * force[i, m]
+                    for d in range(3):
+                        value += basis[d + 1, o, a] * gradient[i, d, m]
+                    if m == 2:
+                        value *= z_sign
+                    out[dof[j, c, m]] += sign[j, c, m] * value
+
+
+@numba.njit(cache=True)
+def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
+    local: Array,
+    position: Array,
+    position_speed: Array,
+    courses: int,
+    count: int,
+    mirror: int,
+    basis: Array,
+    dof: Ints,
+    sign: Array,
+    hessian: Array,
+) -> None:
+    """Add the Hessian blocks that one sample has with itself.
+
+    ``local`` (n, 9, 9) in d1, d2, d3; ``position`` (n, 3, 3) in x; ``position_speed`` (n, 3, 3)
+    between x (first) and d1 (second).
+    """
+    per_span = basis.shape[1]
+    samples = count * per_span
+    size = hessian.shape[0]
+    block = np.zeros((12, 12))
+    half = np.zeros((18, 12))
+    full = np.zeros((18, 18))
+    index = np.zeros(18, np.int64)
+    factor = np.zeros(18)
+    for j in range(courses):
+        for span in range(count):
+            full[:] = 0.0
+            for a in range(6):
+                c, z_sign = control_of(span, a, count, mirror)
+                for m in range(3):
+                    index[3 * a + m] = dof[j, c, m]
+                    factor[3 * a + m] = sign[j, c, m] * (z_sign if m == 2 else 1.0)
+            for o in range(per_span):
+                i = j * samples + span * per_span + o
+                block[3:, 3:] = local[i]
+                block[:3, :3] = position[i]
+                block[:3, 3:6] = position_speed[i]
+                for m in range(3):
+                    for n in range(3):
+                        block[3 + n, m] = position_speed[i, m, n]
+                for a in range(6):
+                    for m in range(3):
+                        for col in range(12):
+                            value = 0.0
+                            for d in range(4):
+                                value += basis[d, o, a] * block[3 * d + m, col]
+                            half[3 * a + m, col] = value
+                for row in range(18):
+                    for b in range(6):
+                        for n in range(3):
+                            value = 0.0
+                            for d in range(4):
+                                value += basis[d, o, b] * half[row, 3 * d + n]
+                            full[row, 3 * b + n] += value
+                # course size enters d1 of every sample (its effect on x is in the contact)
+                hessian[size - 2, size - 2] += local[i, 0, 0]
+                for a in range(6):
+                    for m in range(3):
+                        value = factor[3 * a + m] * (
+                            basis[1, o, a] * local[i, m, 0]
+                            + basis[2, o, a] * local[i, 3 + m, 0]
+                            + basis[3, o, a] * local[i, 6 + m, 0]
+                        )
+                        hessian[index[3 * a + m], size - 2] += value
+                        hessian[size - 2, index[3 * a + m]] += value
+            for row in range(18):
+                for col in range(18):
+                    hessian[index[row], index[col]] += factor[row] * factor[col] * full[row, col]
