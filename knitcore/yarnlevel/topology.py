@@ -52,7 +52,7 @@ class Guard:
     @property
     def min_distance_mm(self) -> float:
         """Smallest distance between samples of different stretches of yarn."""
-        distances, _ = self._changes(self.state, self.curve)
+        distances, _ = self.changes(self.state, self.curve)
         return float(distances.min(initial=self.reach_mm))
 
     def longest_step(self, state: Array, curve: Array, pair_cap_mm: float) -> float:
@@ -63,7 +63,7 @@ class Guard:
         allowed = (self.reach_mm - self.touch_mm) / max(self.approach_mm(state, curve), 1e-300)
         allowed = min(1.0, allowed)
         if len(self.pairs):
-            distances, shift = self._changes(state, curve)
+            distances, shift = self.changes(state, curve)
             allowed = min(allowed, pair_cap_mm / max(float(shift.max()), 1e-300))
             spacing = self._spacing(curve, allowed)
             room = np.maximum(distances - CROSSING * spacing, 0.0) * SAFETY
@@ -83,7 +83,7 @@ class Guard:
         far = 2.0 * float(np.sqrt(np.einsum("im,im->i", moved, moved).max()))
         return far + strain * self.reach_mm
 
-    def _changes(self, state: Array, curve: Array) -> tuple[Array, Array]:
+    def changes(self, state: Array, curve: Array) -> tuple[Array, Array]:
         """Distances of the listed pairs, and how far their vectors change to another state."""
         return pair_changes(
             self.curve, _size(self.state), curve, _size(state),
