@@ -13,6 +13,7 @@ import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/sto
 import { byId, firstPaint, isTyping } from "./dom.js";
 import { openAddressed } from "./keeping/address.js";
 import { Keeper } from "./keeping/keeper.js";
+import { sharedbanner } from "./panels/keptchip.js";
 import { panelsForLater } from "./panels/later.js";
 import { messages } from "./panels/messages.js";
 import { overlaybar } from "./panels/overlaybar.js";
@@ -71,6 +72,7 @@ dark.addEventListener("change", retheme);
 
 const stretcher = new Stretcher(studio);
 topbar(byId("topbar"), studio, context);
+sharedbanner(byId("shared"), context);
 rail(byId("rail"), studio, context);
 messages(byId("messages"), byId("offline"), studio);
 themed.push(
@@ -146,6 +148,12 @@ watchConnection(studio, () => {
 
 const elsewhere = openAddressed(studio, keeper);
 if (!kept && !elsewhere) {
+  studio.message.value = {
+    kind: "info",
+    title: "New here?",
+    detail: "A tour shows the page in two minutes.",
+    action: { label: "Take the tour", perform: () => context.open("tour") },
+  };
   void stretcher.run("wale", FIRST_STRAIN).then(() => {
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) stretcher.play();
   });

@@ -6,6 +6,7 @@
 
 import { TOOLS } from "../tools/registry.js";
 import { redo, undo } from "./history.js";
+import { DESIGNS } from "./designs.js";
 import { LOOK } from "./look.js";
 import { copy, deselect, selectAll } from "./selection.js";
 import { fillPart, flip, mirror, swap, turnOver } from "./transform.js";
@@ -33,6 +34,7 @@ export const ACTIONS = [
   flip,
   swap,
   turnOver,
+  ...DESIGNS,
   ...LOOK,
 ];
 
@@ -65,9 +67,9 @@ export function matches(shortcut, event) {
 /**
  * Shortcut as this computer's keys are called.
  *
- * @param {string} shortcut
+ * @param {string} [shortcut]
  */
-export function shown(shortcut) {
+export function shown(shortcut = "") {
   const mac = navigator.platform.startsWith("Mac");
   return shortcut.replace("Mod+", mac ? "⌘" : "Ctrl+").replace("Escape", "Esc");
 }

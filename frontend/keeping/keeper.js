@@ -194,8 +194,13 @@ export class Keeper {
     }, delay);
   }
 
+  /** Until what was changed here is at the service, or that has failed. */
+  async flushChanges() {
+    if (this.#change !== this.#sentChange) await this.flush();
+  }
+
   /**
-   * Until the service has the design as it is now.
+   * Until the service has the design as it is now, even if nothing was changed in it yet.
    *
    * @returns {Promise<boolean>} whether it has
    */

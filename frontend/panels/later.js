@@ -11,6 +11,12 @@
 
 const PANELS = {
   /** @returns {Promise<PanelModule>} */
+  conflict: () => import("./designs/conflict.js"),
+  /** @returns {Promise<PanelModule>} */
+  designs: () => import("./designs/list.js"),
+  /** @returns {Promise<PanelModule>} */
+  gallery: () => import("./gallery/gallery.js"),
+  /** @returns {Promise<PanelModule>} */
   help: () => import("./dialogs/help.js"),
   /** @returns {Promise<PanelModule>} */
   import: () => import("./dialogs/import.js"),
@@ -18,6 +24,12 @@ const PANELS = {
   palette: () => import("./dialogs/palette.js"),
   /** @returns {Promise<PanelModule>} */
   resize: () => import("./dialogs/resize.js"),
+  /** @returns {Promise<PanelModule>} */
+  share: () => import("./designs/share.js"),
+  /** @returns {Promise<PanelModule>} */
+  tour: () => import("./tour.js"),
+  /** @returns {Promise<PanelModule>} */
+  versions: () => import("./designs/versions.js"),
 };
 
 /**

@@ -53,11 +53,11 @@ export function menu({ id, label, content, class: style }) {
   );
   const root = h("div", { class: "menu-root" }, button, list);
 
-  /** @param {Item[]} items */
+  /** @param {(Item | null)[]} items null is a line between them */
   const setItems = (items) => {
     list.replaceChildren(
       ...items.map((item) =>
-        h(
+        item === null ? h("hr", {}) : h(
           "button",
           {
             class: "menu-item",

@@ -9,6 +9,7 @@
 import { action, shown } from "../actions/registry.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
+import { keptchip } from "./keptchip.js";
 import { menu } from "./menu.js";
 
 /**
@@ -33,6 +34,8 @@ export function topbar(host, studio, context) {
     },
   });
 
+  studio.name.listen((value) => (name.value = value));
+
   /** @param {string} id @param {string} [text] */
   const button = (id, text) => {
     const { label, icon: picture, keys, perform, enabled } = action(id);
@@ -42,12 +45,12 @@ export function topbar(host, studio, context) {
         class: text ? "button quiet" : "button quiet icon-only",
         type: "button",
         id: `action-${id}`,
-        title: `${label} (${shown(keys[0])})`,
-        "aria-label": text ? undefined : label,
+        title: keys[0] ? `${label} (${shown(keys[0])})` : label,
+        "aria-label": text ?? label,
         onclick: () => perform(context),
       },
       picture && icon(picture),
-      text,
+      text && h("span", { class: "label" }, text),
     );
     if (enabled) {
       const update = () => (element.disabled = !enabled(studio));
@@ -66,21 +69,23 @@ export function topbar(host, studio, context) {
   });
   const showSize = () => {
     const { columns, rows } = studio.document.grid;
-    size.replaceChildren(icon("resize"), `${columns} × ${rows} sts`);
+    size.replaceChildren(icon("resize"), h("span", {}, `${columns} × ${rows}`), h("span", { class: "label" }, "sts"));
     size.setAttribute("aria-label", `${columns} stitches by ${rows} rows: change size`);
   };
   studio.document.onChange(({ resized }) => resized && showSize());
   showSize();
 
   host.append(
-    h("div", { class: "brand", title: "Knitcore" }, h("img", { src: "/static/icon.svg", alt: "Knitcore", width: 26, height: 26 })),
+    designsMenu(context),
     name,
+    keptchip(context),
     h("div", { class: "group" }, button("undo"), button("redo")),
     size,
     h("div", { class: "spacer" }),
     materialMenu(studio),
     button("import", "Import"),
-    exportMenu(studio),
+    button("share", "Share"),
+    exportMenu(studio, context),
     h("div", { class: "group" }, button("theme"), button("help")),
   );
 }
@@ -91,7 +96,7 @@ function materialMenu(studio) {
   const { root, setItems, button } = menu({
     id: "material",
     label: "Material",
-    content: [h("span", { class: "muted" }, "Material"), label, icon("down")],
+    content: [h("span", { class: "muted label" }, "Material"), label, icon("down")],
     class: "button material-button",
   });
   const show = () => {
@@ -136,20 +141,30 @@ function materialItem({ name, description, fabrics }) {
   );
 }
 
-/** @param {Studio} studio */
-function exportMenu(studio) {
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+function exportMenu(studio, context) {
   const { root, setItems } = menu({
     id: "export",
     label: "Export",
-    content: [icon("export"), "Export"],
+    content: [icon("export"), h("span", { class: "label" }, "Export")],
     class: "button primary",
   });
-  const file = () => studio.name.value.replace(/[^\p{L}\p{N}]+/gu, "-").toLowerCase() || "chart";
+  const files = () => import("../services/exporter.js");
+  /** @param {string} id @param {string} content @param {import("../services/exporter.js").Kind} kind */
+  const made = (id, content, kind) => ({
+    id: `export-${id}`,
+    content,
+    perform: () => void files().then(({ exportAs }) => exportAs(studio, kind)),
+  });
   setItems([
+    item(action("project-file"), context, "Project file (.json)"),
     {
       id: "export-text",
       content: "Chart as text (.txt)",
-      perform: () => download(`${file()}.txt`, new Blob([`${studio.document.grid.text}\n`], { type: "text/plain" })),
+      perform: () => void files().then(({ exportText }) => exportText(studio)),
     },
     {
       id: "export-copy",
@@ -163,33 +178,53 @@ function exportMenu(studio) {
     {
       id: "export-image",
       content: "Picture, one pixel a stitch (.png)",
-      perform: () => void picture(studio).then((blob) => download(`${file()}.png`, blob)),
+      perform: () => void files().then(({ exportPixels }) => exportPixels(studio)),
     },
+    null,
+    made("svg", "Chart to print (.svg)", "svg"),
+    made("pdf", "Chart to print (.pdf)", "pdf"),
+    made("report", "Report with the mechanics (.pdf)", "report"),
+    made("written", "Written rows (.txt)", "written"),
+    made("knitout", "For a knitting machine (knitout, checked)", "knitout"),
+    null,
+    made("glb", "Loops in 3D (.glb)", "glb"),
+    made("vtu", "Mesh for ParaView (.vtu)", "vtu"),
+    made("csv", "Values of every stitch (.csv)", "csv"),
   ]);
   return root;
 }
 
-/** Knits white, purls black. @param {Studio} studio */
-function picture({ document }) {
-  const { rows, columns, purl } = document.grid;
-  const canvas = new OffscreenCanvas(columns, rows);
-  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const image = new ImageData(columns, rows);
-  const pixels = new Uint32Array(image.data.buffer);
-  purl.forEach((p, i) => {
-    const row = Math.floor(i / columns);
-    pixels[(rows - 1 - row) * columns + (i % columns)] = p ? 0xff000000 : 0xffffffff;
-  });
-  context.putImageData(image, 0, 0);
-  return canvas.convertToBlob({ type: "image/png" });
-}
-
 /**
- * @param {string} name
- * @param {Blob} blob
+ * An action as an item of a menu.
+ *
+ * @param {import("../actions/action.js").Action} one
+ * @param {ActionContext} context
+ * @param {string} [label]
  */
-function download(name, blob) {
-  const link = h("a", { href: URL.createObjectURL(blob), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+const item = ({ id, label: own, keys, perform }, context, label = own) => ({
+  id: `menu-${id}`,
+  content: h("span", { class: "menu-line" }, label, keys[0] && h("kbd", {}, shown(keys[0]))),
+  perform: () => perform(context),
+});
+
+/** @param {ActionContext} context */
+function designsMenu(context) {
+  const { root, setItems } = menu({
+    id: "designs",
+    label: "Designs",
+    content: [h("img", { src: "/static/icon.svg", alt: "", width: 26, height: 26 }), h("span", { class: "visually-hidden" }, "Knitcore: designs and help"), icon("down")],
+    class: "button quiet brand",
+  });
+  /** @param {string} id */
+  const one = (id) => item(action(id), context);
+  setItems([
+    ...["gallery", "designs", "duplicate"].map(one),
+    null,
+    ...["versions", "share"].map(one),
+    null,
+    ...["import", "project-file"].map(one),
+    null,
+    ...["palette", "tour", "help"].map(one),
+  ]);
+  return root;
 }

@@ -6,7 +6,7 @@ import { icon } from "../../icons.js";
 /**
  * @param {string} id
  * @param {string} title
- * @param {...Node} content
+ * @param {...import("../../dom.js").Child} content
  */
 export function dialog(id, title, ...content) {
   const element = h(
@@ -22,4 +22,20 @@ export function dialog(id, title, ...content) {
   });
   document.body.append(element);
   return element;
+}
+
+/**
+ * What went wrong, and what to do, for the body of a dialog.
+ *
+ * @param {import("../../types.js").Problem} problem
+ * @param {() => void} [again] tries once more
+ */
+export function problemBox({ title, detail, remedy }, again) {
+  return h("div", { class: "problem", role: "alert" },
+    icon("warning"),
+    h("div", {},
+      h("strong", {}, title),
+      detail && detail !== title && h("p", {}, detail),
+      remedy && h("p", {}, remedy),
+      again && h("button", { class: "button", type: "button", onclick: again }, "Try again")));
 }

@@ -56,7 +56,7 @@ export function create(_studio, context) {
           },
           one.icon ? icon(one.icon) : h("span", { class: "icon" }),
           h("span", {}, one.label),
-          h("kbd", {}, shown(one.keys[0])),
+          one.keys[0] && h("kbd", {}, shown(one.keys[0])),
         ),
       ),
     );

@@ -1,0 +1,40 @@
+/**
+ * Designs: beginning, opening, keeping and sharing them.
+ *
+ * @import {Action, ActionContext} from "./action.js"
+ * @import {IconName} from "../icons.js"
+ */
+
+/**
+ * @param {string} id
+ * @param {string} label
+ * @param {string} key
+ * @param {IconName} icon
+ * @param {(context: ActionContext) => void} perform
+ * @returns {Action}
+ */
+const action = (id, label, key, icon, perform) => ({
+  id,
+  label,
+  group: "Designs",
+  keys: key ? [key] : [],
+  icon,
+  perform,
+});
+
+/** @type {Action[]} */
+export const DESIGNS = [
+  action("designs", "My designs …", "Mod+O", "folder", ({ open }) => open("designs")),
+  action("gallery", "New design, examples …", "Shift+N", "gallery", ({ open }) => open("gallery")),
+  action("versions", "Versions …", "Mod+S", "pin", ({ open }) => open("versions")),
+  action("share", "Share …", "Mod+Shift+S", "share", ({ open }) => open("share")),
+  action("duplicate", "Duplicate this design", "Mod+Shift+D", "copy", ({ studio, keeper }) => {
+    const design = studio.toDocument();
+    keeper.openNew({ ...design, name: `${design.name.slice(0, 190)} (copy)` });
+    studio.tell("This is the copy now; the design itself is among your designs.");
+  }),
+  action("project-file", "Save as a project file", "Mod+Shift+E", "export", ({ studio }) =>
+    void import("../services/exporter.js").then(({ exportProject }) => exportProject(studio)),
+  ),
+  action("tour", "Tour of the page", "", "tour", ({ open }) => open("tour")),
+];

@@ -1,0 +1,59 @@
+/**
+ * The same parts of a design were changed here and elsewhere: which one stays?
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { h } from "../../dom.js";
+import { dialog } from "../dialogs/dialog.js";
+import { thumbnail } from "../thumbnail.js";
+import { attempt } from "./attempt.js";
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, { keeper }) {
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const text = h("p", {});
+  const sides = h("div", { class: "sides" });
+  const element = dialog("conflict-dialog", "This design was changed elsewhere, too", text, sides, status);
+
+  /** @param {"mine" | "theirs" | "both"} choice @param {string} label @param {string} note @param {string} style */
+  const option = (choice, label, note, style = "button") =>
+    h("div", { class: "option" },
+      h("button", {
+        class: style,
+        type: "button",
+        id: `conflict-${choice}`,
+        onclick: async () => {
+          if ((await attempt(status, studio, () => keeper.resolve(choice).then(() => true))) !== null) element.close();
+        },
+      }, label),
+      h("span", { class: "muted" }, note));
+  element.append(
+    h("div", { class: "options" },
+      option("both", "Keep both", "Mine becomes a design of its own.", "button primary"),
+      option("mine", "Keep mine", "Theirs stays as a version."),
+      option("theirs", "Take theirs", "Mine can be brought back from Deleted for 30 days.")),
+  );
+  return () => {
+    const { value } = keeper.state;
+    if (value.kind !== "conflict") return;
+    const { theirs, parts } = value.conflict;
+    text.textContent = `Both changed the ${parts.join(", the ")}, and not in a way that can be put together. Nothing is lost whatever you choose.`;
+    sides.replaceChildren(
+      side("Mine", studio.toDocument()),
+      side("Theirs", theirs.document),
+    );
+    status.replaceChildren();
+    if (!element.open) element.showModal();
+  };
+}
+
+/** @param {string} title @param {import("../../types.js").DesignDocument} design */
+const side = (title, design) =>
+  h("figure", { class: "side-picture" },
+    thumbnail(design, { side: 150, label: `${title}: ${design.name}` }),
+    h("figcaption", {}, h("strong", {}, title), h("span", { class: "muted" }, ` ${design.name}`)));

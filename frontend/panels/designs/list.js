@@ -1,0 +1,217 @@
+/**
+ * All designs that the service keeps: open, rename, duplicate, delete, and bring back.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Summary} from "../../keeping/designs.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { designs } from "../../keeping/designs.js";
+import { dialog } from "../dialogs/dialog.js";
+import { thumbnail } from "../thumbnail.js";
+import { attempt } from "./attempt.js";
+import { ago } from "./when.js";
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, context) {
+  const { keeper } = context;
+  let deleted = false;
+  /** @type {string | null} */ let cursor = null;
+
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const list = h("ul", { class: "cards", id: "designs-list" });
+  const search = h("input", {
+    type: "search",
+    class: "text-field",
+    id: "designs-search",
+    placeholder: "Find by name",
+    "aria-label": "Find a design by its name",
+    oninput: () => filter(),
+  });
+  const more = h("button", { class: "button", type: "button", onclick: () => void load() }, "Show more");
+  /** @param {boolean} which @param {string} label @param {string} id */
+  const tab = (which, label, id) =>
+    h("button", {
+      class: "segment",
+      type: "button",
+      role: "radio",
+      id,
+      "aria-checked": String(which === deleted),
+      onclick: (/** @type {MouseEvent} */ { currentTarget }) => {
+        deleted = which;
+        for (const one of tabs.children) one.setAttribute("aria-checked", String(one === currentTarget));
+        void reload();
+      },
+    }, label);
+  const tabs = h("div", { class: "segmented", role: "radiogroup", "aria-label": "Which designs" },
+    tab(false, "Designs", "designs-kept"),
+    tab(true, "Deleted", "designs-deleted"));
+  const element = dialog(
+    "designs-dialog",
+    "My designs",
+    h("div", { class: "dialog-tools" },
+      search,
+      tabs,
+      h("span", { class: "spacer" }),
+      h("button", { class: "button", type: "button", id: "designs-gallery", onclick: () => leave(() => context.open("gallery")) }, icon("gallery"), "Examples"),
+      h("button", { class: "button primary", type: "button", id: "designs-new", onclick: () => leave(() => context.open("gallery")) }, icon("plus"), "New")),
+    status,
+    list,
+    more,
+  );
+  /** @param {() => void} next */
+  const leave = (next) => {
+    element.close();
+    next();
+  };
+
+  const pictures = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries) {
+      if (!isIntersecting) continue;
+      pictures.unobserve(target);
+      void picture(/** @type {HTMLElement} */ (target));
+    }
+  });
+  /** @param {HTMLElement} frame */
+  const picture = async (frame) => {
+    const { id } = frame.dataset;
+    if (!id || deleted) return;
+    // A picture that cannot be had is no news: the design's name is there.
+    const kept = await designs.read(id).catch(() => null);
+    if (kept) frame.replaceChildren(thumbnail(kept.document));
+  };
+
+  const reload = async () => {
+    cursor = null;
+    list.replaceChildren(...Array.from({ length: 3 }, () => h("li", { class: "card loading", "aria-hidden": "true" })));
+    await load();
+  };
+  const load = async () => {
+    const page = await attempt(status, studio, () => designs.list({ cursor, deleted }));
+    if (cursor === null) list.replaceChildren();
+    more.hidden = !page?.next_cursor;
+    if (!page) return;
+    cursor = page.next_cursor;
+    list.append(...page.designs.map(card));
+    filter();
+  };
+  const filter = () => {
+    const wanted = search.value.trim().toLowerCase();
+    const items = /** @type {HTMLElement[]} */ ([...list.querySelectorAll(".card")]);
+    for (const item of items) item.hidden = !(item.dataset.name ?? "").includes(wanted);
+    const none = items.every(({ hidden }) => hidden);
+    list.querySelector(".empty")?.remove();
+    if (!none) return;
+    const text = wanted
+      ? ["No design has that in its name.", ""]
+      : deleted
+        ? ["Nothing was deleted.", "Deleted designs stay here for 30 days."]
+        : ["No designs yet.", "Paint on the chart and it is kept here by itself, or begin with an example."];
+    list.append(h("li", { class: "empty" }, h("strong", {}, text[0]), h("p", { class: "muted" }, text[1])));
+  };
+
+  /** @param {Summary} design */
+  const card = (design) => {
+    const name = h("span", { class: "card-name ellipsis", title: design.name }, design.name);
+    const here = design.id === keeper.remoteId;
+    const frame = h("span", { class: "card-picture", "data-id": design.id }, deleted && icon("trash"));
+    pictures.observe(frame);
+    const open = h("button", {
+      class: "card-open",
+      type: "button",
+      disabled: deleted,
+      "aria-label": `Open ${design.name}`,
+      "aria-current": here ? "true" : undefined,
+      onclick: async () => {
+        if (here) return element.close();
+        const kept = await attempt(status, studio, () => designs.read(design.id));
+        if (kept) leave(() => keeper.openKept(kept));
+      },
+    }, frame);
+    const facts = h("span", { class: "card-facts muted figures" }, `${design.columns} × ${design.rows} · ${here ? "open now" : ago(design.deleted_at ?? design.changed_at)}`);
+    const item = h("li", { class: here ? "card here" : "card", "data-name": design.name.toLowerCase() }, open, name, facts);
+    /** @param {import("../../icons.js").IconName} sign @param {string} label @param {() => void} perform */
+    const tool = (sign, label, perform) =>
+      h("button", { class: "button quiet icon-only", type: "button", title: label, "aria-label": `${label}: ${design.name}`, onclick: perform }, icon(sign));
+    item.append(
+      h("span", { class: "card-tools" },
+        ...(deleted
+          ? [h("button", { class: "button", type: "button", onclick: () => void recover(design, item) }, icon("undo"), "Bring back")]
+          : [
+              tool("pencil", "Rename", () => rename(design, name)),
+              tool("copy", "Duplicate", () => void duplicate(design)),
+              tool("trash", "Delete", () => void remove(design, item)),
+            ])),
+    );
+    return item;
+  };
+
+  /** @param {Summary} design @param {HTMLElement} name */
+  const rename = (design, name) => {
+    const field = h("input", { class: "text-field card-rename", value: design.name, maxLength: 80, "aria-label": "New name" });
+    const done = async () => {
+      const wanted = field.value.trim();
+      field.replaceWith(name);
+      if (!wanted || wanted === design.name) return;
+      if (design.id === keeper.remoteId) studio.name.value = wanted; // the keeper delivers it
+      else {
+        const kept = await attempt(status, studio, () => designs.rename(design.id, wanted, design.revision));
+        if (!kept) return;
+        design.revision = kept.revision;
+      }
+      design.name = name.textContent = wanted;
+    };
+    field.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter") field.blur();
+      if (event.key === "Escape") {
+        event.preventDefault();
+        field.value = design.name;
+        field.blur();
+      }
+    });
+    field.addEventListener("blur", () => void done(), { once: true });
+    name.replaceWith(field);
+    field.select();
+  };
+
+  /** @param {Summary} design */
+  const duplicate = async (design) => {
+    if (design.id === keeper.remoteId) await keeper.flush();
+    if (await attempt(status, studio, () => designs.duplicate(design.id))) await reload();
+  };
+
+  /** @param {Summary} design @param {HTMLElement} item */
+  const remove = async (design, item) => {
+    if ((await attempt(status, studio, () => designs.remove(design.id).then(() => true))) === null) return;
+    const next = /** @type {HTMLElement | null} */ (item.nextElementSibling ?? item.previousElementSibling);
+    item.remove();
+    filter();
+    status.replaceChildren(
+      h("div", { class: "notice" },
+        h("span", {}, `“${design.name}” was deleted. It stays under Deleted for 30 days.`),
+        h("button", { class: "button", type: "button", id: "designs-undo", onclick: () => void recover(design, null) }, icon("undo"), "Undo")),
+    );
+    /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button"))?.focus();
+  };
+
+  /** @param {Summary} design @param {HTMLElement | null} item */
+  const recover = async (design, item) => {
+    if (!(await attempt(status, studio, () => designs.recover(design.id)))) return;
+    item?.remove();
+    if (item) filter();
+    else await reload();
+  };
+
+  return () => {
+    search.value = "";
+    element.showModal();
+    search.focus();
+    void keeper.flushChanges().then(reload);
+  };
+}

@@ -1,0 +1,102 @@
+/**
+ * States of the design that were kept under a name: keep another one, look at them, go back.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Version} from "../../keeping/designs.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { designs } from "../../keeping/designs.js";
+import { dialog } from "../dialogs/dialog.js";
+import { thumbnail } from "../thumbnail.js";
+import { attempt } from "./attempt.js";
+import { ago } from "./when.js";
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, { keeper }) {
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const list = h("ol", { class: "rows-list", id: "versions-list" });
+  const name = h("input", {
+    class: "text-field",
+    id: "version-name",
+    type: "text",
+    maxLength: 80,
+    placeholder: "Name of this state, such as “before the cuff”",
+    "aria-label": "Name of this state",
+  });
+  const form = h("form", {
+    class: "dialog-tools",
+    onsubmit: async (/** @type {SubmitEvent} */ event) => {
+      event.preventDefault();
+      const id = await remote();
+      const wanted = name.value.trim() || new Date().toLocaleString("en", { dateStyle: "medium", timeStyle: "short" });
+      if (id && (await attempt(status, studio, () => designs.keepVersion(id, wanted)))) {
+        name.value = "";
+        await load();
+      }
+    },
+  }, name, h("button", { class: "button primary", type: "submit", id: "version-keep" }, icon("pin"), "Keep"));
+  const element = dialog(
+    "versions-dialog",
+    "Versions",
+    h("p", { class: "muted" }, "Every stroke is saved by itself. A version is a state that you can come back to; restoring one keeps the present state, too."),
+    form,
+    status,
+    list,
+  );
+
+  /** The service's name for the design; it gets the design now if it has not. */
+  const remote = async () => {
+    if (await keeper.flush()) return keeper.remoteId;
+    status.replaceChildren(h("div", { class: "problem", role: "alert" }, icon("warning"), "The design is not at the service yet; versions are kept there."));
+    return null;
+  };
+  const load = async () => {
+    const id = keeper.remoteId;
+    const found = id ? await attempt(status, studio, () => designs.versions(id)) : { versions: [] };
+    if (!found) return;
+    const { versions } = found;
+    list.replaceChildren(...versions.reverse().map(row));
+    if (!versions.length) list.append(h("li", { class: "empty" }, h("strong", {}, "No versions yet.")));
+  };
+
+  /** @param {Version} version */
+  const row = (version) => {
+    const picture = h("span", { class: "row-picture" });
+    const id = keeper.remoteId ?? "";
+    void designs.version(id, version.number).then(
+      ({ document }) => picture.replaceChildren(thumbnail(document, { side: 44 })),
+      () => {}, // the name is enough
+    );
+    return h("li", { class: "row" },
+      picture,
+      h("span", { class: "row-text" },
+        h("span", { class: "ellipsis" }, version.name),
+        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept by itself" : ""}`)),
+      h("button", {
+        class: "button",
+        type: "button",
+        "aria-label": `Restore ${version.name}`,
+        onclick: async () => {
+          const known = await remote();
+          const kept = known && (await attempt(status, studio, () => designs.restore(known, version.number, keeper.revision)));
+          if (!kept) return;
+          keeper.takeOver(kept);
+          element.close();
+          studio.tell(`“${version.name}” is restored. The state before it is a version, too.`);
+        },
+      }, "Restore"));
+  };
+
+  return () => {
+    status.replaceChildren();
+    element.showModal();
+    name.focus();
+    void load();
+  };
+}

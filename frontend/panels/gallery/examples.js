@@ -1,0 +1,116 @@
+/**
+ * What the gallery offers. Charts are made here, from the repeat of a pattern; garments come from the
+ * service, which fits them to measurements.
+ *
+ * @import {DesignDocument} from "../../types.js"
+ *
+ * @typedef {object} Example
+ * @property {string} id
+ * @property {string} name
+ * @property {string} note what there is to see
+ * @property {() => string} chart K/P lines, top row first
+ *
+ * @typedef {object} GarmentExample
+ * @property {string} id
+ * @property {string} name
+ * @property {string} note
+ * @property {string} material
+ * @property {object} garment what the service is asked for
+ */
+
+import { exampleGrid } from "../../core/example.js";
+import { Grid } from "../../core/grid.js";
+
+/** @param {string} motif rows from the top, separated by / @param {number} rows @param {number} columns */
+const tiled = (motif, rows, columns) => () =>
+  Grid.fromText(motif.replaceAll("/", "\n")).tiled(rows, columns).text;
+
+const DIAMONDS = "KKKKPKKK/KKKPKPKK/KKPKKKPK/KPKKKKKP/PKKKKKKK/KPKKKKKP/KKPKKKPK/KKKPKPKK";
+
+/** @type {Example[]} */
+export const EXAMPLES = [
+  { id: "stockinette", name: "Stockinette", note: "All even segments: the stiffest of the four.", chart: tiled("K", 24, 30) },
+  { id: "garter", name: "Garter", note: "Odd segments along the wales: stretches lengthwise.", chart: tiled("P/K", 24, 30) },
+  { id: "rib", name: "1×1 rib", note: "Odd segments along the course: stretches across.", chart: tiled("KP", 24, 30) },
+  { id: "seed", name: "Seed", note: "Odd segments both ways: soft both ways.", chart: tiled("KP/PK", 24, 30) },
+  { id: "rib-2-2", name: "2×2 rib", note: "Pulls in more, and stretches more, than 1×1.", chart: tiled("KKPP", 24, 32) },
+  { id: "basket", name: "Basket", note: "Blocks that lean against each other.", chart: tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32) },
+  { id: "moss", name: "Moss", note: "Seed drawn out to two rows.", chart: tiled("PK/PK/KP/KP", 24, 30) },
+  { id: "diamonds", name: "Diamonds", note: "Soft lines across a stiff ground.", chart: tiled(DIAMONDS, 24, 32) },
+  { id: "sampler", name: "Cuff with a panel", note: "All four fabrics in one swatch: where will it give?", chart: () => exampleGrid().text },
+];
+
+/** @type {GarmentExample[]} */
+export const GARMENTS = [
+  {
+    id: "wrist-brace",
+    name: "Wrist brace",
+    note: "Stiff support between soft edges, knitted sideways.",
+    material: "glove-wool",
+    garment: { template: "wrist-brace", wrist_mm: 170, length_mm: 80 },
+  },
+  {
+    id: "glove",
+    name: "Therapeutic glove",
+    note: "Supports the wrist, lets fingers and thumb bend.",
+    material: "glove-wool",
+    garment: { template: "glove" },
+  },
+];
+
+/**
+ * @param {string} name
+ * @param {string} chart
+ * @param {string} material
+ * @returns {DesignDocument}
+ */
+export const plainDesign = (name, chart, material) => ({
+  format: "knitcore-design",
+  version: 2,
+  name,
+  material,
+  note: "",
+  chart,
+  outline: null,
+  regions: [],
+  repeats: [],
+  shelf: [],
+});
+
+/**
+ * @typedef {{name: string, chart: string, outline: string, notes: string[], warnings: string[],
+ *   regions: {name: string, fill: string, colour: string, cells: string}[]}} Garment
+ *
+ * @param {GarmentExample} example
+ * @param {Garment} garment
+ * @returns {DesignDocument}
+ */
+export function garmentDesign({ name, material }, { chart, outline, notes, warnings, regions }) {
+  return {
+    ...plainDesign(name, chart, material),
+    note: [...notes, ...warnings].join("\n"),
+    outline: outline.includes(".") ? outline : null,
+    regions: regions.map((region, i) => ({
+      id: `region-${i + 1}`,
+      name: region.name,
+      colour: region.colour,
+      yarn: null,
+      fill: region.fill.replaceAll("\n", "/"),
+      runs: runsOf(region.cells),
+      locked: false,
+      hidden: false,
+    })),
+  };
+}
+
+/** @param {string} cells lines of x and ., top row first @returns {[number, number, number][]} */
+function runsOf(cells) {
+  return cells
+    .split("\n")
+    .reverse()
+    .flatMap((line, row) =>
+      [...line.matchAll(/x+/g)].map(
+        ({ index, 0: run }) => /** @type {[number, number, number]} */ ([row, index, run.length]),
+      ),
+    );
+}

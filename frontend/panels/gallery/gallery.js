@@ -1,0 +1,95 @@
+/**
+ * A new design: an empty chart, an example, a garment.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {DesignDocument} from "../../types.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { call } from "../../api.js";
+import { Grid } from "../../core/grid.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { attempt } from "../designs/attempt.js";
+import { dialog } from "../dialogs/dialog.js";
+import { thumbnail } from "../thumbnail.js";
+import { EXAMPLES, GARMENTS, garmentDesign, plainDesign } from "./examples.js";
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, { keeper, open }) {
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const examples = h("ul", { class: "cards", id: "gallery-examples" });
+  const garments = h("ul", { class: "cards", id: "gallery-garments" });
+  const element = dialog(
+    "gallery-dialog",
+    "New design",
+    h("p", { class: "muted" }, "Begin with one of these and change it. The design on show is kept: it stays among your designs."),
+    status,
+    h("h3", {}, "Charts"),
+    examples,
+    h("h3", {}, "Garments"),
+    garments,
+  );
+
+  /** @param {DesignDocument} design */
+  const begin = (design) => {
+    element.close();
+    keeper.openNew(design, { keep: false });
+    studio.tell(`${design.name}: paint on it, or pull it below.`);
+  };
+  /**
+   * @param {string} id
+   * @param {string} name
+   * @param {string} note
+   * @param {Node} picture
+   * @param {() => void} perform
+   */
+  const card = (id, name, note, picture, perform) =>
+    h("li", { class: "card" },
+      h("button", { class: "card-open", type: "button", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
+        h("span", { class: "card-picture" }, picture)),
+      h("span", { class: "card-name" }, name),
+      h("span", { class: "card-facts muted" }, note));
+
+  const show = () => {
+    examples.replaceChildren(
+      card("empty", "Empty chart", "All knit, of any size.", icon("plus"), () => {
+        begin(plainDesign("Untitled", new Grid(24, 30).text, studio.materialId.value));
+        open("resize");
+      }),
+      ...EXAMPLES.map(({ id, name, note, chart }) =>
+        card(id, name, note, thumbnail({ chart: chart() }), () =>
+          begin(plainDesign(name, chart(), studio.materialId.value)))),
+    );
+  };
+
+  /** @type {Map<string, DesignDocument>} */
+  const fitted = new Map();
+  const showGarments = async () => {
+    garments.replaceChildren(
+      ...GARMENTS.map(() => h("li", { class: "card loading", "aria-hidden": "true" })));
+    for (const example of GARMENTS) {
+      if (fitted.has(example.id)) continue;
+      const { garment, material } = example;
+      const found = await attempt(status, studio, () =>
+        /** @type {Promise<import("./examples.js").Garment>} */ (
+          call("/garment", { method: "POST", body: { garment, material } })));
+      if (found) fitted.set(example.id, garmentDesign(example, found));
+    }
+    garments.replaceChildren(
+      ...GARMENTS.flatMap(({ id, name, note }) => {
+        const design = fitted.get(id);
+        return design ? [card(id, name, note, thumbnail(design), () => begin(design))] : [];
+      }),
+    );
+  };
+
+  return () => {
+    show();
+    element.showModal();
+    void showGarments();
+  };
+}
