@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page serve test test-postgres test-kill test-faults lint format types frontend-check bench bench-service docs stitches lock clean
+.PHONY: help install page serve test test-postgres test-kill test-faults lint format types frontend-check bench bench-service docs examples stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -80,8 +80,11 @@ bench-service: $(VENV)/.installed-dev ## Fifty people paint at once; SECONDS=600
 docs: $(VENV)/.installed-dev ## Run every example of the documentation
 	$(BIN)/pytest -q tests/test_docs.py
 
-stitches: install ## Make the packaged store of relaxed stitches again
-	$(BIN)/python -m knitcore.yarnlevel.store build
+examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API shows as examples
+	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
+
+stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
+	$(BIN)/python -m knitcore.yarnlevel.store_build $(OPTIONS)
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-dev ## Pin the dependencies again

@@ -1,13 +1,18 @@
-"""The OpenAPI schema, with what FastAPI does not say of problems by itself."""
+"""The OpenAPI schema, with what FastAPI does not say by itself: examples, and what problems are."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
 
 from app.problems import PROBLEM_TYPE, Problem
 
+EXAMPLES = Path(__file__).with_name("examples")
+"""Requests, written by hand, and what the service answered to them (`make examples`)."""
 FIRST_PROBLEM = 400
 EXAMPLE = Problem(
     type="input",
@@ -20,20 +25,48 @@ EXAMPLE = Problem(
 
 
 def install_schema(app: FastAPI) -> None:
-    """Say of every problem that it is one, and show what it looks like."""
+    """Give every operation its example, say of every problem that it is one, and show one."""
     made = app.openapi
 
     def openapi() -> dict[str, Any]:
         if app.openapi_schema is None:
             schema = made()
-            for path in schema["paths"].values():
-                for operation in path.values():
-                    _mark_problems(operation["responses"])
+            requests, found = _read("requests.json"), _read("answers.json")
+            for name, operation in _operations(schema):
+                _mark_problems(operation["responses"])
+                _show(operation, requests.get(name), found["answers"].get(name))
+                for parameter in operation.get("parameters", []):
+                    if parameter["in"] == "path":
+                        parameter["example"] = found["parameters"].get(parameter["name"])
             schema["components"]["schemas"]["Problem"]["examples"] = [EXAMPLE]
             app.openapi_schema = schema
         return app.openapi_schema
 
     app.openapi = openapi  # type: ignore[method-assign]
+
+
+def operations(app: FastAPI) -> list[str]:
+    """All operations, such as ``GET /healthz``."""
+    return [name for name, _ in _operations(app.openapi())]
+
+
+def _operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    for path, methods in schema["paths"].items():
+        for method, operation in methods.items():
+            yield f"{method.upper()} {path}", operation
+
+
+def _read(name: str) -> dict[str, Any]:
+    read: dict[str, Any] = json.loads((EXAMPLES / name).read_text(encoding="utf-8"))
+    return read
+
+
+def _show(operation: dict[str, Any], request: Any, answer: Any) -> None:
+    if request is not None:
+        operation["requestBody"]["content"]["application/json"]["example"] = request
+    for status, response in operation["responses"].items():
+        if int(status) < FIRST_PROBLEM and "application/json" in response.get("content", {}):
+            response["content"]["application/json"]["example"] = answer
 
 
 def _mark_problems(responses: dict[str, Any]) -> None:

@@ -7,7 +7,7 @@ import contextlib
 from collections.abc import AsyncIterator
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Depends, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 
 from app.designs.conditions import ConflictError
@@ -25,7 +25,7 @@ HEARTBEATS = 60
 router = APIRouter(tags=["jobs"], responses={404: MISSING})
 
 Owner = Annotated[str, Depends(asking)]
-JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{8,64}$")]
+JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
 def _runner(request: Request) -> JobRunner:
@@ -38,22 +38,7 @@ Runner = Annotated[JobRunner, Depends(_runner)]
 
 @router.post("/jobs", status_code=202, summary="Run something in the background")
 async def post_job(
-    body: Annotated[
-        JobRequest,
-        Body(
-            examples=[
-                {
-                    "kind": "stretch",
-                    "request": {
-                        "chart": {"fabric": "garter", "columns": 31, "rows": 20},
-                        "material": "acrylic",
-                        "direction": "wale",
-                        "strain": 0.5,
-                    },
-                }
-            ]
-        ),
-    ],
+    body: JobRequest,
     runner: Runner,
     owner: Owner,
     response: Response,

@@ -10,6 +10,11 @@ from typing import Annotated, Any, Generic, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import AtlasRequest, AtlasResult, run_atlas
+from app.operations.characterise import (
+    CharacteriseRequest,
+    CharacteriseResult,
+    run_characterise,
+)
 from app.operations.curve import CurveRequest, CurveResult, run_curve
 from app.operations.field import (
     CalibrateRequest,
@@ -62,6 +67,10 @@ class SweepJob(JobOf[Literal["sweep"], SweepRequest]):
     """A stretch sweep at the yarn level."""
 
 
+class CharacteriseJob(JobOf[Literal["characterise"], CharacteriseRequest]):
+    """The pure fabrics of a yarn at many stitch settings."""
+
+
 class AtlasJob(JobOf[Literal["atlas"], AtlasRequest]):
     """The constants of all small repeats of a material."""
 
@@ -99,6 +108,7 @@ JobRequest = Annotated[
     | CurveJob
     | RelaxJob
     | SweepJob
+    | CharacteriseJob
     | AtlasJob
     | FindJob
     | FillJob
@@ -141,6 +151,7 @@ KINDS: dict[str, JobKind] = {
     "curve": JobKind(CurveRequest, CurveResult, run_curve),
     "relax": JobKind(RelaxRequest, RelaxResult, run_relax),
     "sweep": JobKind(SweepRequest, SweepResult, run_sweep),
+    "characterise": JobKind(CharacteriseRequest, CharacteriseResult, run_characterise),
     "atlas": JobKind(AtlasRequest, AtlasResult, run_atlas),
     "find": JobKind(FindRequest, FindResult, run_find),
     "fill": JobKind(FillRequest, FillResult, run_fill),

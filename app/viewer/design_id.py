@@ -11,8 +11,8 @@ from app.identity import current_user
 DesignId = Annotated[
     str,
     Path(
-        pattern=r"^[A-Za-z0-9_-]{8,64}$",
-        description="The design's identifier: 8 to 64 letters, digits, - or _.",
+        pattern=r"^[A-Za-z0-9_-]{1,64}$",
+        description="The design's identifier: up to 64 letters, digits, - or _.",
     ),
 ]
 

@@ -141,3 +141,11 @@ def test_what_is_no_design_is_refused(
 ) -> None:
     answer = client.post(DESIGNS, json=RIB | change)
     assert (answer.status_code, answer.json()["field"]) == (422, field)
+
+
+@pytest.mark.parametrize(
+    "address", ["designs/a", "designs/a/versions", "jobs/b", "shared/c", "designs/a/versions/1"]
+)
+def test_what_does_not_exist_is_not_found_however_short(client: TestClient, address: str) -> None:
+    answer = client.get(f"/api/v1/{address}")
+    assert (answer.status_code, answer.json()["type"]) == (404, "not found")

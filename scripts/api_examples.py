@@ -1,0 +1,101 @@
+"""Ask the service everything once and keep the answers as examples of the API (`make examples`).
+
+The requests are in ``app/examples/requests.json``; files that requests hold are those of the tests,
+because real ones are too long for an example.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from fastapi.testclient import TestClient
+
+from app.main import create_app
+from app.schema import EXAMPLES, operations
+from app.settings import Settings
+from tests.app.job_requests import job_requests
+
+FIRST = [
+    "POST /api/v1/designs",
+    "POST /api/v1/designs/{design}/strokes",
+    "POST /api/v1/designs/{design}/versions",
+    "POST /api/v1/designs/{design}/shares",
+    "POST /api/v1/jobs",
+]
+LAST = [
+    "DELETE /api/v1/jobs/{job}",
+    "DELETE /api/v1/designs/{design}/shares/{share}",
+    "DELETE /api/v1/designs/{design}",
+    "POST /api/v1/designs/{design}/recover",
+]
+FILES = {"fit": "fit", "bending": "bending", "compression": "compression"} | {
+    kind: kind for kind in ("compare", "calibrate")
+}
+MOST_ITEMS, MOST_CHARACTERS = 2, 160
+
+
+def short(value: Any) -> Any:
+    """An answer with the beginnings of long lists and texts."""
+    if isinstance(value, dict):
+        return {name: short(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [short(item) for item in value[:MOST_ITEMS]]
+    return value[:MOST_CHARACTERS] if isinstance(value, str) else value
+
+
+def in_order(found: list[str]) -> list[str]:
+    """Operations so that each finds what it needs."""
+    between = [name for name in found if name not in (*FIRST, *LAST)]
+    return [*FIRST, *between, *LAST]
+
+
+def ask_everything(client: TestClient) -> dict[str, Any]:
+    """The answer of every operation that answers with JSON."""
+    requests = json.loads((EXAMPLES / "requests.json").read_text())
+    with tempfile.TemporaryDirectory() as folder:
+        files = job_requests(Path(folder))
+    place: dict[str, Any] = {"material": "acrylic", "identifier": "acrylic", "number": 1}
+    answers = {}
+    for name in in_order(operations(client.app)):  # type: ignore[arg-type]
+        method, path = name.split()
+        if path.endswith("/events") or path == "/metrics":
+            continue
+        body = files.get(FILES.get(path.rsplit("/", 1)[-1], ""), requests.get(name))
+        if path.startswith("/api/v1/jobs/") and method == "GET":
+            while client.get(f"/api/v1/jobs/{place['job']}").json()["state"] != "done":
+                time.sleep(0.1)
+        headers = {}
+        if "design" in place and method in ("PUT", "PATCH", "POST"):
+            tag = client.get(f"/api/v1/designs/{place['design']}").headers.get("etag")
+            headers = {"If-Match": tag} if tag else {}
+        answer = client.request(method, path.format(**place), json=body, headers=headers)
+        answer.raise_for_status()
+        print(name, answer.status_code)
+        told = answer.json() if answer.content else None
+        if name == "POST /api/v1/designs":
+            place["design"] = told["id"]
+        elif name == "POST /api/v1/jobs":
+            place["job"] = told["id"]
+        elif name == "POST /api/v1/designs/{design}/shares":
+            place |= {"share": told["id"], "token": told["token"]}
+        if told is not None:
+            answers[name] = short(told)
+    return {"parameters": place, "answers": answers}
+
+
+def main() -> None:
+    """Write the file."""
+    with tempfile.TemporaryDirectory() as folder:
+        app = create_app(Settings(workers=1, data_dir=Path(folder)))
+        with TestClient(app, base_url="http://127.0.0.1") as client:
+            found = ask_everything(client)
+    text = json.dumps(found, indent=1, ensure_ascii=False, sort_keys=True)
+    (EXAMPLES / "answers.json").write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""The schema shows an example of everything, and the examples are what they say."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import jsonschema_rs
+import pytest
+from fastapi.testclient import TestClient
+
+from app.main import create_app
+from app.schema import EXAMPLES, operations
+
+SCHEMA = create_app().openapi()
+NAMES = operations(create_app())
+NO_JSON = frozenset({"GET /metrics", "GET /api/v1/jobs/{job}/events"})
+REQUESTS: dict[str, Any] = json.loads((EXAMPLES / "requests.json").read_text())
+ANSWERS: dict[str, Any] = json.loads((EXAMPLES / "answers.json").read_text())["answers"]
+
+
+def _operation(name: str) -> dict[str, Any]:
+    method, path = name.split()
+    found: dict[str, Any] = SCHEMA["paths"][path][method.lower()]
+    return found
+
+
+def _check(value: Any, schema: dict[str, Any]) -> None:
+    whole = schema | {"components": SCHEMA["components"]}
+    jsonschema_rs.validate(whole, value)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_operation_has_its_example(name: str) -> None:
+    """`app/examples/requests.json` has the requests; `make examples` asks for the answers."""
+    operation = _operation(name)
+    for parameter in operation.get("parameters", []):
+        assert parameter["in"] != "path" or parameter["example"], parameter["name"]
+    if "requestBody" in operation:
+        content = operation["requestBody"]["content"]["application/json"]
+        _check(content["example"], content["schema"])
+    success = next(s for s in operation["responses"] if s.startswith("2"))
+    content = operation["responses"][success].get("content", {}).get("application/json")
+    if content is not None and name not in NO_JSON:
+        _check(content["example"], content["schema"])
+
+
+def test_no_example_is_of_something_else() -> None:
+    assert set(REQUESTS) <= set(NAMES)
+    assert set(ANSWERS) <= set(NAMES)
+
+
+@pytest.mark.parametrize(
+    "name", ["charts/parse", "predict", "curve", "find", "fill", "pressure", "import", "stretch"]
+)
+def test_the_service_takes_the_example(client: TestClient, name: str) -> None:
+    operation = f"POST /api/v1/{name}"
+    answer = client.post(f"/api/v1/{name}", json=REQUESTS[operation])
+    assert answer.status_code == 200, answer.text
+    assert set(answer.json()) == set(ANSWERS[operation])
