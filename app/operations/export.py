@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import MAX_TEXT, ChartInput, to_chart
+from app.operations.charts import ChartInput, to_chart
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.export import (
@@ -17,6 +17,7 @@ from knitcore.formats.export import (
     export_chart,
 )
 from knitcore.formats.knitout import Finish
+from knitcore.formats.layout import DesignLayout
 from knitcore.materials import material as find_material
 from knitcore.worked import Construction, Side
 
@@ -25,7 +26,7 @@ MAX_MESH_STITCHES = 2_500
 """Over REST; the command line takes larger ones."""
 
 
-class ExportRequest(BaseModel):
+class ExportRequest(DesignLayout):
     """A chart and the format that it shall become."""
 
     model_config = ConfigDict(extra="forbid")
@@ -37,8 +38,9 @@ class ExportRequest(BaseModel):
     first_side: Side = Field(Side.RS, description="Side of row 1 in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="How a knitout program ends.")
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
-    outline: str | None = Field(
-        None, max_length=MAX_TEXT, description="Lines of x (stitch) and . (no stitch)."
+    note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$", description="Printed.")
+    linear_density_tex: float | None = Field(
+        None, gt=0, lt=1e5, allow_inf_nan=False, description="Of the yarns, for their mass."
     )
 
 
@@ -50,6 +52,7 @@ class ExportFacts(BaseModel):
     columns: int
     bytes: int
     transfers: int | None = Field(None, description="Of a knitout program, without finishing.")
+    carriers: int | None = Field(None, description="Of a knitout program, without waste.")
     notes: list[str]
 
 
@@ -69,6 +72,7 @@ def export_facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
         columns=chart.columns,
         bytes=len(file.content),
         transfers=file.transfers,
+        carriers=file.carriers,
         notes=list(file.notes),
     )
 
@@ -92,7 +96,13 @@ def run_export(request: ExportRequest, *, cancelled: Callable[[], bool]) -> Expo
             f"Use at most {limit} stitches, or the command line.",
         )
     options = ExportOptions(
-        request.construction, request.first_side, request.finish, request.name, request.outline
+        construction=request.construction,
+        first_side=request.first_side,
+        finish=request.finish,
+        name=request.name,
+        note=request.note,
+        layout=request,
+        linear_density_tex=request.linear_density_tex,
     )
     file = export_chart(chart, request.to, find_material(request.material), options)
     return ExportResult(

@@ -9,14 +9,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartResult, ParsedChart, ParseRequest, parse_chart
 from app.operations.uploads import UploadedFile, stored
-from knitcore.formats.chart_files import read_chart
+from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.design import read_design
 from knitcore.formats.layout import (
     DesignLayout,
     DesignRegion,
     DesignRepeat,
     ShelfPattern,
+    layout_fields,
     layout_notes,
+    layout_of,
 )
 
 
@@ -26,7 +28,8 @@ class ImportRequest(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     file: UploadedFile = Field(
-        description="`.txt` (K/P lines or written rows), `.png`, `.json` (design), `.k` (knitout)."
+        description="`.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) "
+        "or `.k` (knitout)."
     )
 
 
@@ -55,18 +58,23 @@ def import_path(path: Path) -> ImportResult:
     InputError
         If it holds no chart.
     """
-    chart = read_chart(path)
+    if path.suffix.lower() == ".json":
+        chart = read_chart(path)
+        found = read_design(path)
+        known = {name: getattr(found, name) for name in ("name", "material", "note")}
+        layout: DesignLayout = found
+    else:
+        piece = read_piece(path)
+        chart, known, layout = piece.chart, {}, layout_of(piece)
     parsed: ParsedChart = parse_chart(ParseRequest(text=chart.text))
-    result = ImportResult(
-        rows=chart.rows, columns=chart.columns, chart=chart.text, repeat=parsed.repeat
-    )
-    if path.suffix.lower() != ".json":
-        return result
-    design = read_design(path)
-    kept = ("name", "material", "note", *DesignLayout.model_fields)
-    return result.model_copy(
-        update={name: getattr(design, name) for name in kept}
-        | {"notes": list(layout_notes(chart, design))}
+    return ImportResult(
+        rows=chart.rows,
+        columns=chart.columns,
+        chart=chart.text,
+        repeat=parsed.repeat,
+        notes=list(layout_notes(chart, layout)),
+        **known,
+        **layout_fields(layout),
     )
 
 

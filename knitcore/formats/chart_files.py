@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from knitcore.chart import StitchChart
@@ -9,61 +10,80 @@ from knitcore.errors import InputError
 from knitcore.formats.design import FORMAT as DESIGN_FORMAT
 from knitcore.formats.design import VERSION as DESIGN_VERSION
 from knitcore.formats.design import read_design
-from knitcore.formats.png import read_png
-from knitcore.formats.written_reader import looks_written, read_rows
+from knitcore.formats.knitspeak import looks_knitspeak, read_knitspeak
+from knitcore.formats.png import read_png_piece
+from knitcore.formats.written_reader import looks_written, read_piece_rows
+from knitcore.garment.piece import Piece
 
-__all__ = ["DESIGN_FORMAT", "DESIGN_VERSION", "MAX_FILE_BYTES", "read_chart"]
+__all__ = ["DESIGN_FORMAT", "DESIGN_VERSION", "MAX_FILE_BYTES", "read_chart", "read_piece"]
 
 MAX_FILE_BYTES = 16_000_000
 
 
 def read_chart(path: str | Path) -> StitchChart:
-    """The chart in a file.
+    """The chart in a file; cells outside its outline, if it has one, mean nothing.
 
     Parameters
     ----------
-    path : ``.txt`` (K/P lines or written rows), ``.png`` (one pixel a stitch), ``.json`` (a
-        design) or ``.k`` / ``.knitout`` (a knitout program).
+    path : as for :func:`read_piece`.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_piece`, but for an outline that falls apart.
+    """
+    file = Path(path)
+    if file.suffix.lower() == ".json":
+        return read_design(_checked(file)).to_chart()
+    return read_piece(file).chart
+
+
+def read_piece(path: str | Path) -> Piece:
+    """The chart in a file, with its outline and its yarns.
+
+    Parameters
+    ----------
+    path : ``.txt`` (K/P lines, written rows or KnitSpeak), ``.ks`` (KnitSpeak), ``.png`` (one
+        pixel a stitch), ``.json`` (a design) or ``.k`` / ``.knitout`` (a knitout program).
 
     Raises
     ------
     InputError
         If the file is missing, too large, of another kind, or does not hold what its name says.
     """
-    file = Path(path)
-    readers = {
-        ".txt": _read_text,
-        ".png": read_png,
-        ".json": lambda file: read_design(file).to_chart(),
-        ".k": _read_knitout,
-        ".knitout": _read_knitout,
-    }
-    reader = readers.get(file.suffix.lower())
-    if reader is None:
+    file = _checked(Path(path))
+    return _READERS[file.suffix.lower()](file)
+
+
+def _checked(file: Path) -> Path:
+    if file.suffix.lower() not in _READERS:
         raise InputError(
             "chart",
             f"{file.name} is of no kind that holds a chart.",
-            "Use a .txt file of K/P lines or written rows, a .png with one pixel a stitch, a .json"
-            " design or a .k knitout program.",
+            "Use a .txt file of K/P lines or written rows, a .ks file of KnitSpeak, a .png with one"
+            " pixel a stitch, a .json design or a .k knitout program.",
         )
     if not file.is_file():
-        raise InputError("chart", f"there is no file {file}.", "Check the path.")
+        what = "is a folder, not a file" if file.is_dir() else "does not exist"
+        raise InputError("chart", f"{file} {what}.", "Check the name and the folder.")
     if file.stat().st_size > MAX_FILE_BYTES:
         raise InputError(
             "chart", f"{file.name} is too large.", f"Use at most {MAX_FILE_BYTES // 10**6} MB."
         )
-    return reader(file)
+    return file
 
 
-def _read_text(file: Path) -> StitchChart:
+def _read_text(file: Path) -> Piece:
     text = _text(file)
-    return read_rows(text) if looks_written(text) else StitchChart.parse(text)
+    if looks_knitspeak(text):
+        return Piece.plain(read_knitspeak(text))
+    return read_piece_rows(text) if looks_written(text) else Piece.plain(StitchChart.parse(text))
 
 
-def _read_knitout(file: Path) -> StitchChart:
+def _read_knitout(file: Path) -> Piece:
     from knitcore.formats.knitout_reader import knitted_chart
 
-    return knitted_chart(_text(file)).chart
+    return knitted_chart(_text(file)).piece
 
 
 def _text(file: Path) -> str:
@@ -73,3 +93,13 @@ def _text(file: Path) -> str:
         raise InputError(
             "chart", f"{file.name} is not UTF-8 text.", "Save it as plain text."
         ) from None
+
+
+_READERS: dict[str, Callable[[Path], Piece]] = {
+    ".txt": _read_text,
+    ".ks": lambda file: Piece.plain(read_knitspeak(_text(file))),
+    ".png": read_png_piece,
+    ".json": lambda file: read_design(file).to_piece(),
+    ".k": _read_knitout,
+    ".knitout": _read_knitout,
+}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from knitcore.chart import StitchChart
@@ -12,6 +12,7 @@ from knitcore.formats import (
     chart_drawing,
     design,
     knitout_reader,
+    knitspeak,
     png,
     report,
     stitch_values,
@@ -19,7 +20,9 @@ from knitcore.formats import (
     yarn_mesh,
 )
 from knitcore.formats.knitout import Finish
-from knitcore.garment.shaped import ShapedChart
+from knitcore.formats.layout import DesignLayout, layout_fields, piece_of
+from knitcore.garment.piece import Piece
+from knitcore.garment.regions import yarn_use
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.materials import Material
 from knitcore.worked import Construction, Side
@@ -29,6 +32,7 @@ class ExportKind(StrEnum):
     """What a chart can be exported to."""
 
     KNITOUT = "knitout"
+    KNITSPEAK = "knitspeak"
     PNG = "png"
     SVG = "svg"
     PDF = "pdf"
@@ -44,6 +48,7 @@ class ExportKind(StrEnum):
 
 SUFFIXES = {
     ExportKind.KNITOUT: (".k", "text/plain; charset=utf-8"),
+    ExportKind.KNITSPEAK: (".ks", "text/plain; charset=utf-8"),
     ExportKind.PNG: (".png", "image/png"),
     ExportKind.SVG: (".svg", "image/svg+xml"),
     ExportKind.PDF: (".pdf", "application/pdf"),
@@ -59,8 +64,12 @@ SUFFIXES = {
 """Usual suffix and media type of each kind."""
 
 
-SHAPED_KINDS = (ExportKind.SVG, ExportKind.PDF, ExportKind.DESIGN)
-"""Formats that know "no stitch"."""
+RECTANGULAR_KINDS = frozenset({ExportKind.TEXT, ExportKind.KNITSPEAK})
+"""Formats that do not know "no stitch"."""
+COLOURLESS_KINDS = frozenset(
+    {ExportKind.TEXT, ExportKind.KNITSPEAK, ExportKind.GLB, ExportKind.STL}
+)
+"""Formats that do not know yarns."""
 
 
 @dataclass(frozen=True)
@@ -73,15 +82,18 @@ class ExportOptions:
     first_side : the side of row 1 in flat knitting.
     finish : how a knitout program ends.
     name : of the design.
-    outline : lines of ``x`` and ``.`` (see :class:`knitcore.garment.shaped.ShapedChart`), or None
-        for a rectangle.
+    note : printed on charts, and kept in the project file.
+    layout : outline, regions and their yarns, and what else the project file keeps.
+    linear_density_tex : of the yarns, for their mass.
     """
 
     construction: Construction = Construction.FLAT
     first_side: Side = Side.RS
     finish: Finish = Finish.WASTE
     name: str = "Untitled"
-    outline: str | None = None
+    note: str = ""
+    layout: DesignLayout = field(default_factory=DesignLayout)
+    linear_density_tex: float | None = None
 
 
 @dataclass(frozen=True)
@@ -94,12 +106,14 @@ class ExportedFile:
     content : the bytes.
     notes : what a user should know.
     transfers : loops moved between beds, of a knitout program.
+    carriers : yarn carriers, of a knitout program.
     """
 
     kind: ExportKind
     content: bytes
     notes: tuple[str, ...] = field(default=())
     transfers: int | None = None
+    carriers: int | None = None
 
     @property
     def suffix(self) -> str:
@@ -136,98 +150,137 @@ def export_chart(
         If a knitout program does not knit its chart on the virtual machine.
     """
     options = options or ExportOptions()
-    if options.outline is not None and kind not in SHAPED_KINDS:
-        known = ", ".join(SHAPED_KINDS)
+    piece = piece_of(chart, options.layout)
+    if kind in RECTANGULAR_KINDS and not piece.is_rectangle:
+        known = ", ".join(k for k in ExportKind if k not in RECTANGULAR_KINDS)
         raise InputError(
             "to",
             f"{kind} cannot hold a chart with an outline, and its stitches must not be made up.",
             f"Export {known}, or a rectangular part.",
         )
-    return _WRITERS[kind](chart, material, options)
+    file = _WRITERS[kind](piece, material, options)
+    if kind in COLOURLESS_KINDS and len(piece.yarns) > 1:
+        return replace(file, notes=(*file.notes, f"{kind} has no colours: the yarns are left out."))
+    return file
 
 
-_Writer = Callable[[StitchChart, Material, ExportOptions], ExportedFile]
+_Writer = Callable[[Piece, Material, ExportOptions], ExportedFile]
 
 _LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
 _DRAWN = ("A drawn loop on the flat lattice, not a relaxed yarn.",)
 
 
-def _knitout(chart: StitchChart, _: Material, options: ExportOptions) -> ExportedFile:
-    program = knitout_reader.verified(chart, finish=options.finish)
-    note = "Knitted on a virtual V-bed machine: the face is this chart."
+def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    program = knitout_reader.verified(piece, finish=options.finish)
+    notes = ["Knitted on a virtual V-bed machine: the face is this chart."]
+    if not piece.is_rectangle:
+        notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
+    if program.carriers > 1:
+        notes.append(
+            f"Intarsia with {program.carriers} carriers: "
+            + "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
+            + "."
+        )
     return ExportedFile(
-        ExportKind.KNITOUT, program.text.encode(), (note,), transfers=program.transfers
+        ExportKind.KNITOUT,
+        program.text.encode(),
+        tuple(notes),
+        transfers=program.transfers,
+        carriers=program.carriers,
     )
 
 
-def _svg(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
-    drawing = chart_drawing.chart_svg(_shaped(chart, options), _style(chart, material, options))
+def _svg(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+    drawing = chart_drawing.chart_svg(piece, _style(piece, material, options))
     return ExportedFile(ExportKind.SVG, drawing.encode())
 
 
-def _pdf(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
-    drawing = chart_drawing.chart_pdf(_shaped(chart, options), _style(chart, material, options))
+def _pdf(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+    drawing = chart_drawing.chart_pdf(piece, _style(piece, material, options))
     return ExportedFile(ExportKind.PDF, drawing)
 
 
-def _report(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
-    pages = report.design_report(chart, material, options.name, _style(chart, material, options))
+def _report(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+    style = _style(piece, material, options)
+    pages = report.design_report(piece, material, options.name, style, options.layout.regions)
     return ExportedFile(ExportKind.REPORT, pages)
 
 
-def _written(chart: StitchChart, _: Material, options: ExportOptions) -> ExportedFile:
-    rows = written.write_rows(chart, options.construction, first_side=options.first_side)
+def _written(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    rows = written.write_rows(piece, options.construction, first_side=options.first_side)
     return ExportedFile(ExportKind.WRITTEN, rows.encode())
 
 
-def _design(chart: StitchChart, material: Material, options: ExportOptions) -> ExportedFile:
+def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
+    rows = knitspeak.write_knitspeak(
+        piece.chart, options.construction, first_side=options.first_side
+    )
+    return ExportedFile(ExportKind.KNITSPEAK, rows.encode())
+
+
+def _design(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
     document = design.DesignFile(
         name=options.name,
         material=material.identifier,
-        chart=chart.text,
-        outline=options.outline,
+        chart=piece.chart.text,
+        note=options.note,
+        **layout_fields(options.layout),
     )
     return ExportedFile(ExportKind.DESIGN, design.write_design(document).encode())
 
 
-def _glb(chart: StitchChart, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.GLB, yarn_mesh.write_glb(chart, material), _DRAWN)
+def _glb(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
+    return ExportedFile(ExportKind.GLB, yarn_mesh.write_glb(piece, material), _DRAWN)
 
 
-def _stl(chart: StitchChart, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.STL, yarn_mesh.write_stl(chart, material), _DRAWN)
+def _stl(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
+    return ExportedFile(ExportKind.STL, yarn_mesh.write_stl(piece, material), _DRAWN)
 
 
-def _vtu(chart: StitchChart, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.VTU, stitch_values.write_vtu(chart, material), _LOCAL)
+def _vtu(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
+    return ExportedFile(ExportKind.VTU, stitch_values.write_vtu(piece, material), _LOCAL)
 
 
-def _csv(chart: StitchChart, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.CSV, stitch_values.write_csv(chart, material).encode(), _LOCAL)
+def _csv(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
+    return ExportedFile(ExportKind.CSV, stitch_values.write_csv(piece, material).encode(), _LOCAL)
 
 
-def _shaped(chart: StitchChart, options: ExportOptions) -> ShapedChart:
-    if options.outline is None:
-        return ShapedChart.rectangle(chart)
-    return ShapedChart.parse(chart.text, options.outline)
-
-
-def _style(
-    chart: StitchChart, material: Material, options: ExportOptions
-) -> chart_drawing.ChartStyle:
-    sizes = flat_lattice(chart, material).sizes_mm.mean(axis=(0, 1))
+def _style(piece: Piece, material: Material, options: ExportOptions) -> chart_drawing.ChartStyle:
+    sizes = flat_lattice(piece.chart, material).sizes_mm.mean(axis=(0, 1))
     aspect = min(max(float(sizes[1] / sizes[0]), 0.2), 5.0)
-    return chart_drawing.ChartStyle(options.construction, options.first_side, aspect)
+    facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
+    return chart_drawing.ChartStyle(
+        options.construction, options.first_side, aspect, facts, options.note
+    )
+
+
+def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:
+    """Stitches, length and mass of each yarn, as far as the material knows its loops."""
+    facts = []
+    for index in range(len(piece.yarns)):
+        cells = piece.cells(index)
+        said = f"{int(cells.sum())} sts"
+        try:
+            use = yarn_use(
+                piece.shaped, material, linear_density_tex=options.linear_density_tex, cells=cells
+            )
+        except InputError:  # the material has no loop length: stitches must do
+            facts.append(said)
+            continue
+        mass = "" if use.mass_g is None else f", {use.mass_g:.1f} g"
+        facts.append(f"{said}, {use.length_m:.1f} m{mass}")
+    return tuple(facts)
 
 
 _WRITERS: dict[ExportKind, _Writer] = {
     ExportKind.KNITOUT: _knitout,
-    ExportKind.PNG: lambda chart, _, __: ExportedFile(ExportKind.PNG, png.write_png(chart)),
+    ExportKind.PNG: lambda piece, _, __: ExportedFile(ExportKind.PNG, png.write_png(piece)),
     ExportKind.SVG: _svg,
     ExportKind.PDF: _pdf,
     ExportKind.REPORT: _report,
-    ExportKind.TEXT: lambda c, _, __: ExportedFile(ExportKind.TEXT, f"{c.text}\n".encode()),
+    ExportKind.TEXT: lambda p, _, __: ExportedFile(ExportKind.TEXT, f"{p.chart.text}\n".encode()),
     ExportKind.WRITTEN: _written,
+    ExportKind.KNITSPEAK: _knitspeak,
     ExportKind.DESIGN: _design,
     ExportKind.GLB: _glb,
     ExportKind.STL: _stl,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,6 +104,11 @@ class DesignLayout(BaseModel):
         if sum(len(region.runs) for region in self.regions) > MAX_RUNS:
             raise ValueError(f"all regions together have at most {MAX_RUNS} runs")
         return self
+
+
+def layout_fields(design: DesignLayout) -> dict[str, Any]:
+    """The layout of a design of any kind, by field."""
+    return {name: getattr(design, name) for name in DesignLayout.model_fields}
 
 
 def motif_chart(motif: str) -> StitchChart:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.formats.chart_drawing import A4_MM, MARGIN_MM, ChartStyle, chart_pages
+from knitcore.formats.chart_drawing import A4_MM, MARGIN_MM, ChartStyle, chart_pages, tinted
 from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
+from knitcore.formats.extensibility_drawing import field_shapes, region_fields
+from knitcore.formats.layout import DesignRegion
+from knitcore.garment.piece import Piece
 from knitcore.materials import Interval, Material
 from knitcore.mechanics.chart_curve import ChartCurve, chart_curve
 from knitcore.mechanics.local import local_moduli
@@ -25,24 +28,94 @@ Array = NDArray[np.float64]
 # Cividis at five points: perceptually uniform, and the same for colour-blind readers.
 _CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108], [255, 234, 70]])
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
-_LEVELS = 32
+_LEVELS, _NO_STITCH = 32, -1
+MOST_REGIONS = 12
+"""Lines of the table of regions that fit a page; the rest is in the CSV export."""
 _LINE_CHARACTERS = 112
 _MAP_MM = (84.0, 62.0)
 
 
-def design_report(chart: StitchChart, material: Material, name: str, style: ChartStyle) -> bytes:
-    """A PDF: one page of mechanics, then the chart.
+def design_report(
+    chart: StitchChart | Piece,
+    material: Material,
+    name: str,
+    style: ChartStyle,
+    regions: Sequence[DesignRegion] = (),
+) -> bytes:
+    """A PDF: mechanics, then the extensibility field if there are regions, then the chart.
+
+    A piece that is no rectangle has no modulus of its own, so its regions speak for it.
 
     Raises
     ------
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    found = predict(chart, material)
-    curves, said = _curves(chart, material)
-    shapes = [*_numbers(chart, material, name, found), *_maps(chart, material)]
-    shapes += [*_plot(curves, said), *_assumptions(found)]
-    return to_pdf([Page(*A4_MM, tuple(shapes)), *chart_pages(chart, style)], name)
+    piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    pages = []
+    if piece.is_rectangle:
+        found = predict(piece.chart, material)
+        curves, said = _curves(piece.chart, material)
+        shapes = [*_numbers(piece.chart, material, name, found), *_maps(piece, material, 73.0)]
+        shapes += [*_plot(curves, said), *_assumptions(_said(found), 228.0)]
+        pages.append(Page(*A4_MM, tuple(shapes)))
+    if regions or not piece.is_rectangle:
+        pages.append(Page(*A4_MM, tuple(_regions(piece, material, name, regions))))
+    return to_pdf([*pages, *chart_pages(piece, style)], name)
+
+
+def _said(found: Prediction) -> list[str]:
+    return [
+        f"Law: {found.method}.",
+        f"Shear modulus {found.shear_modulus_n_per_mm:g} N/mm: an assumption unless calibrated.",
+        "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
+        *found.notes,
+    ]
+
+
+def _regions(
+    piece: Piece, material: Material, name: str, regions: Sequence[DesignRegion]
+) -> Iterator[Shape]:
+    """Regions with their means, the maps of all stitches, and the extensibility field."""
+    yield Label(MARGIN_MM, 16.0, f"{name}: regions", 6.0)
+    shaped = piece.shaped
+    size = f"{piece.chart.columns} stitches × {piece.chart.rows} rows, {shaped.stitches} stitches"
+    yield Label(MARGIN_MM, 22.0, f"{size} in {material.name} ({material.identifier})", 3.4)
+    places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
+    head = ("region", "stitches", "Y course, N/mm", "Y wale, N/mm", "1/Y course × wale, mm/N")
+    for x, text in zip(places, head, strict=True):
+        yield Label(x, 30.0, text, 3.0)
+    yield Strokes(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
+    y = 37.0
+    for part in region_fields(piece, regions, material)[:MOST_REGIONS]:
+        yield Box(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
+        sides = f"{1 / part.modulus_course[0]:.2f} × {1 / part.modulus_wale[0]:.2f}"
+        cells = (f"    {part.name[:28]}", str(part.stitches), _factor(*part.modulus_course))
+        for x, text in zip(places, (*cells, _factor(*part.modulus_wale), sides), strict=True):
+            yield Label(x, y, text, 3.0)
+        y += 5.0
+    yield from _maps(piece, material, y + 5.0)
+    top = y + 86.0
+    yield Label(MARGIN_MM, top - 2.0, "extensibility, 1/Y course wide and 1/Y wale high", 3.0)
+    yield from field_shapes(
+        piece,
+        regions,
+        material,
+        left=MARGIN_MM,
+        top=top,
+        width=A4_MM[0] - 2 * MARGIN_MM,
+        height=A4_MM[1] - top - 40.0,
+    )
+    said = [
+        "Means of local values over the stitches of a region; intervals hold 90 %.",
+        "Local values come from the quarter-cell composite: the stretched, flat fabric.",
+        "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
+    ]
+    yield from _assumptions(said, A4_MM[1] - 26.0)
+
+
+def _factor(value: float, factor: float) -> str:
+    return f"{value:.3g}  ({value / factor:.3g} to {value * factor:.3g})"
 
 
 def _curves(chart: StitchChart, material: Material) -> tuple[dict[Direction, ChartCurve], str]:
@@ -106,27 +179,30 @@ def _size(value: float | None) -> str:
     return "not certified" if value is None else f"{value:.2f}"
 
 
-def _maps(chart: StitchChart, material: Material) -> Iterator[Shape]:
+def _maps(piece: Piece, material: Material, top: float) -> Iterator[Shape]:
     """Local moduli as two maps with one logarithmic scale."""
-    local = local_moduli(chart, material)
+    chart, stitch = piece.chart, piece.shaped.stitch
+    local = local_moduli(piece.shaped.continued(), material)
     logs = {d: np.log(local.table.modulus_n_per_mm(d)[local.codes]) for d in Direction}
-    low = float(min(m.min() for m in logs.values()))
-    high = max(float(max(m.max() for m in logs.values())), low + 1e-9)
+    low = float(min(m[stitch].min() for m in logs.values()))
+    high = max(float(max(m[stitch].max() for m in logs.values())), low + 1e-9)
     cell = min(_MAP_MM[0] / chart.columns, _MAP_MM[1] / chart.rows)
     for direction, left in zip(Direction, (MARGIN_MM, 108.0), strict=True):
-        yield Label(left, 73.0, f"local modulus along the {direction}, N/mm", 3.0)
+        yield Label(left, top, f"local modulus along the {direction}, N/mm", 3.0)
         level = ((logs[direction] - low) / (high - low) * (_LEVELS - 1)).round().astype(int)
+        level[~stitch] = _NO_STITCH
         for row in range(chart.rows):
-            y = 75.5 + cell * (chart.rows - 1 - row)
+            y = top + 2.5 + cell * (chart.rows - 1 - row)
             for start, stop in _runs(level[row]):
-                width = cell * (stop - start)
-                fill = _colour(int(level[row, start]))
-                yield Box(left + cell * start, y, width, cell, fill=fill)
+                if level[row, start] != _NO_STITCH:
+                    width = cell * (stop - start)
+                    fill = _colour(int(level[row, start]))
+                    yield Box(left + cell * start, y, width, cell, fill=fill)
     for step in range(_LEVELS):
-        yield Box(MARGIN_MM + 2.0 * step, 141.0, 2.0, 3.0, fill=_colour(step))
-    yield Label(MARGIN_MM, 148.0, f"{np.exp(low):.3g}", 2.8)
+        yield Box(MARGIN_MM + 2.0 * step, top + 68.0, 2.0, 3.0, fill=_colour(step))
+    yield Label(MARGIN_MM, top + 75.0, f"{np.exp(low):.3g}", 2.8)
     end = MARGIN_MM + 2.0 * _LEVELS
-    yield Label(end, 148.0, f"{np.exp(high):.3g} N/mm (logarithmic)", 2.8, "end")
+    yield Label(end, top + 75.0, f"{np.exp(high):.3g} N/mm (logarithmic)", 2.8, "end")
 
 
 def _runs(values: NDArray[np.int_]) -> Iterator[tuple[int, int]]:
@@ -166,15 +242,9 @@ def _plot(curves: dict[Direction, ChartCurve], said: str) -> Iterator[Shape]:
         yield Label(left + 13.0, line, f"{direction} ({curve.provenance})", 2.8)
 
 
-def _assumptions(found: Prediction) -> Iterator[Shape]:
-    yield Label(MARGIN_MM, 228.0, "How, and what to keep in mind", 3.4)
-    said = [
-        f"Law: {found.method}.",
-        f"Shear modulus {found.shear_modulus_n_per_mm:g} N/mm: an assumption unless calibrated.",
-        "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
-        *found.notes,
-    ]
-    y = 234.0
+def _assumptions(said: Sequence[str], top: float) -> Iterator[Shape]:
+    yield Label(MARGIN_MM, top, "How, and what to keep in mind", 3.4)
+    y = top + 6.0
     for note in said:
         for line in textwrap.wrap(note, _LINE_CHARACTERS):
             if y < A4_MM[1] - 8.0:

@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
+from knitcore.garment.piece import Piece
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.materials import Material
 from knitcore.mechanics.local import local_moduli
 
 
-def stitch_values(chart: StitchChart, material: Material) -> dict[str, NDArray[np.float64]]:
+def stitch_values(chart: StitchChart | Piece, material: Material) -> dict[str, NDArray[np.float64]]:
     """Local values by name with their units, each (rows, columns), bottom row first."""
-    local = local_moduli(chart, material)
+    local = local_moduli(_continued(chart), material)
     return {
         "modulus_course_n_per_mm": local.modulus_course_n_per_mm,
         "modulus_wale_n_per_mm": local.modulus_wale_n_per_mm,
@@ -27,36 +28,49 @@ def stitch_values(chart: StitchChart, material: Material) -> dict[str, NDArray[n
     }
 
 
-def write_csv(chart: StitchChart, material: Material) -> str:
+def write_csv(chart: StitchChart | Piece, material: Material) -> str:
     """One line a stitch; rows and columns count from 1 at the bottom left of the face."""
-    values = stitch_values(chart, material)
+    values, piece = stitch_values(chart, material), _piece(chart)
+    several = len(piece.yarns) > 1
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(["row", "column", "stitch", *values])
-    for row, column in np.ndindex(chart.rows, chart.columns):
-        stitch = "P" if chart.purl[row, column] else "K"
-        numbers = (f"{float(v[row, column]):.6g}" for v in values.values())
-        writer.writerow([row + 1, column + 1, stitch, *numbers])
+    writer.writerow(["row", "column", "stitch", *values, *(["yarn"] if several else [])])
+    for row, column in np.argwhere(piece.shaped.stitch).tolist():
+        stitch = "P" if piece.chart.purl[row, column] else "K"
+        numbers = [f"{float(v[row, column]):.6g}" for v in values.values()]
+        yarn = [piece.yarns[piece.yarn_of[row, column]].name] if several else []
+        writer.writerow([row + 1, column + 1, stitch, *numbers, *yarn])
     return buffer.getvalue()
 
 
-def write_vtu(chart: StitchChart, material: Material) -> bytes:
+def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
     """Stitches as rectangles in mm, with their values as cell data."""
     import meshio
 
-    lattice = flat_lattice(chart, material)
+    piece = _piece(chart)
+    lattice = flat_lattice(_continued(chart), material)
     x = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[0, :, 0])])
     y = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[:, 0, 1])])
     grid_x, grid_y = np.meshgrid(x, y)
     points = np.column_stack([grid_x.ravel(), grid_y.ravel(), np.zeros(grid_x.size)])
-    row, column = np.divmod(np.arange(chart.rows * chart.columns), chart.columns)
-    corner = row * (chart.columns + 1) + column
-    quads = np.stack(
-        [corner, corner + 1, corner + chart.columns + 2, corner + chart.columns + 1], axis=1
-    )
-    data = {name: [value.ravel()] for name, value in stitch_values(chart, material).items()}
-    data["purl"] = [chart.purl.ravel().astype(np.int32)]
+    row, column = np.nonzero(piece.shaped.stitch)
+    corner = row * (piece.chart.columns + 1) + column
+    above = corner + piece.chart.columns + 1
+    quads = np.stack([corner, corner + 1, above + 1, above], axis=1)
+    inside = piece.shaped.stitch
+    data = {name: [value[inside]] for name, value in stitch_values(chart, material).items()}
+    data["purl"] = [piece.chart.purl[inside].astype(np.int32)]
+    if len(piece.yarns) > 1:
+        data["yarn"] = [piece.yarn_of[inside].astype(np.int32)]
     with tempfile.TemporaryDirectory(prefix="knitcore-") as folder:
         file = Path(folder) / "chart.vtu"
         meshio.Mesh(points, [("quad", quads)], cell_data=data).write(file, file_format="vtu")
         return file.read_bytes()
+
+
+def _piece(chart: StitchChart | Piece) -> Piece:
+    return chart if isinstance(chart, Piece) else Piece.plain(chart)
+
+
+def _continued(chart: StitchChart | Piece) -> StitchChart:
+    return chart.shaped.continued() if isinstance(chart, Piece) else chart

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
+from knitcore.garment.piece import Piece
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.geometry.tubes import TriangleMesh, tube
@@ -24,15 +25,21 @@ DEFAULT_DIAMETER_SHARE = 0.3
 """Yarn diameter over stitch width where the material does not know its yarn's."""
 
 
-def course_centre_lines(chart: StitchChart, material: Material) -> tuple[NDArray[np.float64], ...]:
-    """The yarn of every course in mm, arrays (columns * (POINTS - 1) + 1, 3)."""
+def course_centre_lines(
+    chart: StitchChart | Piece, material: Material
+) -> tuple[NDArray[np.float64], ...]:
+    """The yarn of every course in mm, arrays (stitches * (POINTS - 1) + 1, 3)."""
+    spans = (
+        [(0, chart.columns)] * chart.rows if isinstance(chart, StitchChart) else chart.shaped.spans
+    )
+    chart = chart if isinstance(chart, StitchChart) else chart.shaped.continued()
     lattice, kinds = flat_lattice(chart, material), loop_kinds(chart)
     radius = yarn_radius_mm(chart, material)
     shapes = {int(kind): loop_centre_line(int(kind), POINTS) for kind in np.unique(kinds)}
     lines = []
     for row in range(chart.rows):
         parts = []
-        for column in range(chart.columns):
+        for column in range(*spans[row]):
             scale = np.array([*lattice.sizes_mm[row, column], radius])
             offset = np.array([*lattice.centres_mm[row, column], 0.0])
             parts.append(shapes[int(kinds[row, column])] * scale + offset)
@@ -51,7 +58,7 @@ def yarn_radius_mm(chart: StitchChart, material: Material) -> float:
     return 0.5 * DEFAULT_DIAMETER_SHARE * float(widths.mean())
 
 
-def yarn_mesh(chart: StitchChart, material: Material) -> TriangleMesh:
+def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     """All courses as closed tubes in mm.
 
     Raises
@@ -59,13 +66,14 @@ def yarn_mesh(chart: StitchChart, material: Material) -> TriangleMesh:
     InputError
         If there are too many stitches for a mesh of use.
     """
-    if chart.rows * chart.columns > MAXIMUM_STITCHES:
+    grid = chart if isinstance(chart, StitchChart) else chart.shaped.continued()
+    if grid.rows * grid.columns > MAXIMUM_STITCHES:
         raise InputError(
             "chart",
-            f"{chart.columns}x{chart.rows} stitches are too many for a mesh.",
+            f"{grid.columns}x{grid.rows} stitches are too many for a mesh.",
             f"Export at most {MAXIMUM_STITCHES} stitches, such as 100x100.",
         )
-    radius = yarn_radius_mm(chart, material)
+    radius = yarn_radius_mm(grid, material)
     tubes = [_closed(tube(line, radius, SIDES)) for line in course_centre_lines(chart, material)]
     offsets = np.cumsum([0, *(len(t.vertices) for t in tubes[:-1])])
     return TriangleMesh(
@@ -74,12 +82,12 @@ def yarn_mesh(chart: StitchChart, material: Material) -> TriangleMesh:
     )
 
 
-def write_glb(chart: StitchChart, material: Material) -> bytes:
+def write_glb(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary glTF 2.0 in metres."""
     return _export(yarn_mesh(chart, material), 0.001, "glb")
 
 
-def write_stl(chart: StitchChart, material: Material) -> bytes:
+def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary STL in mm."""
     return _export(yarn_mesh(chart, material), 1.0, "stl")
 

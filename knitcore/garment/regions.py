@@ -143,7 +143,7 @@ def region_numbers(
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    local = local_moduli(shaped.chart, material)
+    local = local_moduli(shaped.continued(), material)
     numbers = []
     for region in regions:
         cells = region.cells & shaped.stitch
@@ -192,7 +192,9 @@ def yarn_use(
     InputError
         If a fabric in the chart has no loop length, or the density is not positive.
     """
-    phases = quarter_phases(shaped.chart).reshape(shaped.chart.rows, 2, shaped.chart.columns, 2)
+    phases = quarter_phases(shaped.continued()).reshape(
+        shaped.chart.rows, 2, shaped.chart.columns, 2
+    )
     counted = shaped.stitch if cells is None else shaped.stitch & cells
     quarters = phases.transpose(0, 2, 1, 3)[counted].ravel()
     lengths = np.zeros(len(PHASES))

@@ -74,6 +74,28 @@ class ShapedChart:
         last = self.chart.columns - self.stitch[:, ::-1].argmax(axis=1)
         return tuple(zip(first.tolist(), last.tolist(), strict=True))
 
+    def continued(self) -> StitchChart:
+        """The chart with its pattern mirrored about its edge stitches into "no stitch".
+
+        So a segment that would cross the outline has the parity of the one on the stitch's other
+        side, the rule of :func:`knitcore.phases.surroundings` at the edges of a rectangle.
+        """
+        if self.stitch.all():
+            return self.chart
+        purl = self.chart.purl.copy()
+        column = np.arange(self.chart.columns)
+        for row, (start, stop) in enumerate(self.spans):
+            mirrored = np.where(column < start, 2 * start - column, column)
+            mirrored = np.where(column >= stop, 2 * (stop - 1) - column, mirrored)
+            purl[row] = purl[row, mirrored.clip(start, stop - 1)]
+        for step in (1, -1):  # cells just above a stitch, then those just below one
+            inside, grid = self.stitch[::step], purl[::step]
+            edge = inside[:-1] & ~inside[1:]
+            before = np.concatenate([grid[:1], grid[:-2]])
+            known = np.concatenate([inside[:1], inside[:-2]])
+            grid[1:][edge] = np.where(known, before, grid[:-1])[edge]
+        return StitchChart(purl)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ShapedChart) or not np.array_equal(self.stitch, other.stitch):
             return False

@@ -51,7 +51,7 @@ def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:
     export = ["export", str(design), "--to", "svg", "-o", str(drawing)]
     assert CliRunner().invoke(main, export).exit_code == 0
     assert "no stitch" in drawing.read_text()
-    refused = CliRunner().invoke(main, ["export", str(design), "--to", "knitout", "-o", "x.k"])
+    refused = CliRunner().invoke(main, ["export", str(design), "--to", "text", "-o", "x.txt"])
     assert refused.exit_code == 2
     assert "cannot hold a chart with an outline" in refused.stderr
 

@@ -59,7 +59,7 @@ def test_files_that_are_not_what_they_claim(
 
 
 def test_a_missing_file_and_a_truncated_picture(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="there is no file"):
+    with pytest.raises(InputError, match="does not exist"):
         read_chart(tmp_path / "none.txt")
     file = tmp_path / "chart.png"
     Image.fromarray(np.zeros((40, 40), dtype=np.uint8)).save(file)

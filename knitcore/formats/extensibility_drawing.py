@@ -1,0 +1,141 @@
+"""The extensibility field of a piece as rectangles, by region and by stitch (the paper's Fig. 4d).
+
+A rectangle is as wide as the cloth gives along the course, 1/Y_x, and as high as it gives along
+the wale, 1/Y_y, both to one scale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.formats.chart_drawing import tinted
+from knitcore.formats.drawing import Box, Label, Shape
+from knitcore.formats.layout import DesignRegion, region_cells
+from knitcore.garment.piece import Piece
+from knitcore.materials import Material
+from knitcore.mechanics.local import local_moduli
+
+MOST_RECTANGLES = 900
+"""Rectangles of stitches in a drawing; of larger pieces every second, third, … is drawn."""
+_INK, _OUTSIDE = "#222222", "#e5e1d9"
+
+
+@dataclass(frozen=True)
+class RegionField:
+    """Means of a region's stitches.
+
+    Attributes
+    ----------
+    name, colour : of the region.
+    stitches : inside the outline and not covered by later regions.
+    modulus_course, modulus_wale : N/mm, with half the width of their 90 % intervals as a factor:
+        the value lies between modulus / factor and modulus * factor.
+    row, column : of the region's middle, for a label.
+    """
+
+    name: str
+    colour: str
+    stitches: int
+    modulus_course: tuple[float, float]
+    modulus_wale: tuple[float, float]
+    row: float
+    column: float
+
+
+def region_fields(
+    piece: Piece, regions: Sequence[DesignRegion], material: Material
+) -> tuple[RegionField, ...]:
+    """What each region does; stitches of none are the last, "rest".
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    rows, columns = piece.chart.rows, piece.chart.columns
+    local = local_moduli(piece.shaped.continued(), material)
+    table = local.table
+    owner = np.full((rows, columns), len(regions))
+    for index, region in enumerate(regions):
+        owner[region_cells(region, rows, columns)] = index
+    named = [(r.name, r.colour) for r in regions] + [("rest" if regions else "all", "#8c877d")]
+    found = []
+    for index, (name, colour) in enumerate(named):
+        cells = (owner == index) & piece.shaped.stitch
+        if not cells.any():
+            continue
+        codes = local.codes[cells]
+        course = _mean(table.modulus_course_n_per_mm[codes], table.log_sd_course[codes])
+        wale = _mean(table.modulus_wale_n_per_mm[codes], table.log_sd_wale[codes])
+        row, column = (float(np.median(place)) for place in np.nonzero(cells))
+        found.append(RegionField(name, colour, int(cells.sum()), course, wale, row, column))
+    return tuple(found)
+
+
+def _mean(modulus: NDArray[np.float64], log_sd: NDArray[np.float64]) -> tuple[float, float]:
+    """Inverse of the mean extensibility, and the factor of its 90 % interval.
+
+    The fabrics' errors are common to all stitches, so they do not average out.
+    """
+    return 1 / float((1 / modulus).mean()), float(np.exp(1.645 * log_sd.mean()))
+
+
+def field_shapes(
+    piece: Piece,
+    regions: Sequence[DesignRegion],
+    material: Material,
+    *,
+    left: float,
+    top: float,
+    width: float,
+    height: float,
+) -> Iterator[Shape]:
+    """The field inside a box on paper, in mm."""
+    chart, stitch = piece.chart, piece.shaped.stitch
+    local = local_moduli(piece.shaped.continued(), material)
+    course, wale = local.extensibility_course_mm_per_n, local.extensibility_wale_mm_per_n
+    cell = min(width / chart.columns, height / chart.rows)
+    most = max(float(course[stitch].max()), float(wale[stitch].max()))
+    yield Box(left, top, cell * chart.columns, cell * chart.rows, fill=_OUTSIDE)
+    owner = np.full(stitch.shape, -1)
+    for index, region in enumerate(regions):
+        owner[region_cells(region, chart.rows, chart.columns)] = index
+    for row in range(chart.rows):
+        y = top + cell * (chart.rows - 1 - row)
+        for start, stop, index in _runs(np.where(stitch[row], owner[row], -2)):
+            if index > -2:
+                fill = tinted(regions[index].colour) if index >= 0 else "#ffffff"
+                yield Box(left + cell * start, y, cell * (stop - start), cell, fill=fill)
+    step = max(1, int(np.ceil(np.sqrt(stitch.sum() / MOST_RECTANGLES))))
+    largest = 0.9 * cell * step / most
+    for row, column in np.argwhere(stitch).tolist():
+        if row % step or column % step:
+            continue
+        wide, high = largest * course[row, column], largest * wale[row, column]
+        x = left + cell * (column + 0.5 * step) - wide / 2
+        y = top + cell * (chart.rows - row - 0.5 * step) - high / 2
+        yield Box(x, y, wide, high, stroke=_INK, line_width=0.12)
+    for part in region_fields(piece, regions, material):
+        scale = 0.16 * min(cell * chart.columns, cell * chart.rows) / most
+        wide, high = scale / part.modulus_course[0], scale / part.modulus_wale[0]
+        x = left + cell * (part.column + 0.5)
+        y = top + cell * (chart.rows - 0.5 - part.row)
+        yield Box(x - wide / 2, y - high / 2, wide, high, stroke="#ffffff", line_width=1.4)
+        yield Box(x - wide / 2, y - high / 2, wide, high, stroke=_INK, line_width=0.7)
+    note = (
+        f"large rectangles: regions; small ones: every {step}. stitch"
+        if step > 1
+        else ("large rectangles: regions; small ones: stitches")
+    )
+    yield Label(left, top + cell * chart.rows + 4.0, note, 2.8)
+
+
+def _runs(values: NDArray[np.intp]) -> Iterator[tuple[int, int, int]]:
+    edges = [0, *(np.flatnonzero(np.diff(values)) + 1).tolist(), len(values)]
+    for start, stop in pairwise(edges):
+        yield start, stop, int(values[start])
