@@ -15,9 +15,11 @@ import { openAddressed } from "./keeping/address.js";
 import { Keeper } from "./keeping/keeper.js";
 import { sharedbanner } from "./panels/keptchip.js";
 import { panelsForLater } from "./panels/later.js";
+import { chartstrip } from "./panels/chartstrip.js";
 import { messages } from "./panels/messages.js";
 import { overlaybar } from "./panels/overlaybar.js";
 import { rail } from "./panels/rail.js";
+import { selectionbar } from "./panels/selectionbar.js";
 import { shelf } from "./panels/shelf.js";
 import { split } from "./panels/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
@@ -74,6 +76,8 @@ const stretcher = new Stretcher(studio);
 topbar(byId("topbar"), studio, context);
 sharedbanner(byId("shared"), context);
 rail(byId("rail"), studio, context);
+chartstrip(byId("chart-host"), context);
+selectionbar(byId("chart-host"), context);
 messages(byId("messages"), byId("offline"), studio);
 themed.push(
   overlaybar(byId("overlays"), studio, view),
@@ -93,7 +97,7 @@ split(byId("split-rows"), "--inspector-height", {
   most: () => innerHeight - 320,
 });
 listenToKeys(context, isTyping);
-listenToImports(studio, isTyping);
+listenToImports(context, isTyping);
 
 const predictAgain = startPredictor(studio);
 /** The 3D view and the plots are heavy: the chart is there to be painted on before they come. */

@@ -14,7 +14,8 @@
  * @property {string} label
  * @property {string} group heading in help
  * @property {IconName} [icon]
- * @property {string[]} keys such as "Mod+Z"; Mod is Ctrl, or ⌘ on a Mac
+ * @property {string[]} keys none, or such as "Mod+Z"; Mod is Ctrl, or ⌘ on a Mac
+ * @property {boolean} [native] the browser hears its keys itself
  * @property {(studio: Studio) => boolean} [enabled]
  * @property {(context: ActionContext) => void} perform
  */

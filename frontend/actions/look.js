@@ -67,6 +67,15 @@ export const LOOK = [
   action("round", "Knitted flat or in the round", ["Shift+R"], ({ studio: { editing } }) => {
     editing.round.value = !editing.round.value;
   }),
+  ...[
+    { id: /** @type {const} */ ("regions"), label: "Regions", key: "Shift+A" },
+    { id: /** @type {const} */ ("repeats"), label: "Linked repeats", key: "Shift+L" },
+  ].map(({ id, label, key }) =>
+    action(id, label, [key], ({ studio: { editing }, open }) => {
+      if (editing.panel.value === id) editing.panel.value = null;
+      else open(id);
+    }),
+  ),
   action("theme", "Light or dark", ["D"], ({ toggleTheme }) => toggleTheme(), { icon: "theme" }),
   action("resize", "Size and new chart …", ["N"], ({ open }) => open("resize"), {
     group: "Edit",

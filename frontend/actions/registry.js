@@ -8,8 +8,8 @@ import { TOOLS } from "../tools/registry.js";
 import { redo, undo } from "./history.js";
 import { DESIGNS } from "./designs.js";
 import { LOOK } from "./look.js";
-import { copy, deselect, selectAll } from "./selection.js";
-import { fillPart, flip, mirror, swap, turnOver } from "./transform.js";
+import { SELECTION } from "./selection.js";
+import { TRANSFORM } from "./transform.js";
 
 /** @type {Action[]} */
 const CHOOSE = TOOLS.map((tool) => ({
@@ -22,21 +22,7 @@ const CHOOSE = TOOLS.map((tool) => ({
 }));
 
 /** @type {Action[]} */
-export const ACTIONS = [
-  ...CHOOSE,
-  undo,
-  redo,
-  selectAll,
-  deselect,
-  copy,
-  fillPart,
-  mirror,
-  flip,
-  swap,
-  turnOver,
-  ...DESIGNS,
-  ...LOOK,
-];
+export const ACTIONS = [...CHOOSE, undo, redo, ...SELECTION, ...TRANSFORM, ...DESIGNS, ...LOOK];
 
 /** @param {string} id */
 export function action(id) {
@@ -54,12 +40,12 @@ export function action(id) {
 export function matches(shortcut, event) {
   const parts = shortcut.split("+").filter(Boolean);
   const key = shortcut === "+" ? "+" : parts[parts.length - 1];
-  const letter = /^[A-Z]$/.test(key);
+  const named = /^([A-Z]|\w{2,})$/.test(key);
   return (
     event.key.toLowerCase() === key.toLowerCase() &&
     (event.ctrlKey || event.metaKey) === parts.includes("Mod") &&
     // ? and + need Shift on some keyboards; only letters and names tell it apart.
-    (!letter || event.shiftKey === parts.includes("Shift")) &&
+    (!named || event.shiftKey === parts.includes("Shift")) &&
     !event.altKey
   );
 }
@@ -67,7 +53,7 @@ export function matches(shortcut, event) {
 /**
  * Shortcut as this computer's keys are called.
  *
- * @param {string} [shortcut]
+ * @param {string} [shortcut] empty for what has none
  */
 export function shown(shortcut = "") {
   const mac = navigator.platform.startsWith("Mac");
@@ -82,7 +68,7 @@ export function listenToKeys(context, isTyping) {
   window.addEventListener("keydown", (event) => {
     if (isTyping() || document.querySelector("dialog[open]") || event.defaultPrevented) return;
     const found = ACTIONS.find(({ keys }) => keys.some((key) => matches(key, event)));
-    if (!found) return;
+    if (!found || found.native) return;
     event.preventDefault();
     if (found.enabled?.(context.studio) !== false) found.perform(context);
   });

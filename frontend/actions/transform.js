@@ -1,76 +1,152 @@
 /**
- * Changes of the selection, or of the whole chart if nothing is selected.
+ * Changes of the selection or, if nothing is selected, of the whole chart with all its parts; and its
+ * rows and columns.
  *
- * @import {Action} from "./action.js"
+ * @import {Action, ActionContext} from "./action.js"
  * @import {IconName} from "../icons.js"
- * @import {Studio} from "../studio.js"
  */
 
-import { Grid } from "../core/grid.js";
-
-/**
- * @param {Studio} studio
- * @param {string} label
- * @param {(part: Grid) => Grid} change keeps the size
- */
-export function changePart({ document, selection }, label, change) {
-  const { grid } = document;
-  const box = selection.value ?? grid.box;
-  const part = change(grid.region(box));
-  const next = Grid.build(grid.rows, grid.columns, (row, column) => {
-    const inside =
-      row >= box.row0 && row < box.row1 && column >= box.column0 && column < box.column1;
-    return inside
-      ? part.purl[part.index(row - box.row0, column - box.column0)]
-      : grid.purl[grid.index(row, column)];
-  });
-  document.replace(next, label);
-}
+import { changed } from "../core/floating.js";
+import { MAX_SIDE } from "../core/grid.js";
+import { deleted, inserted, turned } from "../core/reshape.js";
+import { selectedCells } from "../core/selection.js";
 
 /**
  * @param {string} id
  * @param {string} label
  * @param {IconName} icon
  * @param {string} key
- * @param {(part: Grid) => Grid} change
+ * @param {"mirrored" | "flipped" | "rotated" | "turnedOver" | "swapped"} how
  * @returns {Action}
  */
-function transform(id, label, icon, key, change) {
-  return {
-    id,
-    label,
-    group: "Change (selection or chart)",
-    icon,
-    keys: [key],
-    perform: ({ studio }) => changePart(studio, label, change),
-  };
-}
-
-export const mirror = transform("mirror", "Mirror left and right", "mirror", "Shift+H", (part) =>
-  part.mirrored(),
-);
-export const flip = transform("flip", "Mirror top and bottom", "flip", "Shift+V", (part) =>
-  part.flipped(),
-);
-export const swap = transform("swap", "Swap knit and purl", "swap", "X", (part) => part.swapped());
-export const turnOver = transform("turn-over", "Turn over (see the back)", "turn", "T", (part) =>
-  part.turnedOver(),
-);
+const transform = (id, label, icon, key, how) => ({
+  id,
+  label,
+  group: "Change (selection or chart)",
+  icon,
+  keys: [key],
+  perform: ({ studio: { document, selection } }) => {
+    const { grid } = document;
+    if (!selection.value) {
+      document.reshape(label, turned(grid, how));
+      return;
+    }
+    const shape = how === "turnedOver" ? "mirrored" : how;
+    const cells = changed(
+      grid,
+      selection.value,
+      (part) => part[how](),
+      (mask) => (shape === "swapped" ? mask : mask[shape]()),
+    );
+    document.set(cells, label);
+  },
+});
 
 /** @type {Action} */
-export const fillPart = {
+const fillPart = {
   id: "fill-part",
-  label: "Fill with the pattern",
+  label: "Fill with what is painted with",
   group: "Change (selection or chart)",
   icon: "fill",
   keys: ["F"],
   enabled: ({ ink }) => ink.value.repeat !== null,
-  perform: ({ studio }) => {
-    const repeat = studio.ink.value.repeat;
-    if (!repeat) {
-      studio.tell("Choose a pattern, Knit or Purl below the chart first.");
-      return;
-    }
-    changePart(studio, "Fill", ({ rows, columns }) => repeat.tiled(rows, columns));
+  perform: ({ studio: { document, ink, selection } }) => {
+    const { grid } = document;
+    const cells = selectedCells(selection.value ?? grid.box, grid);
+    const { columns } = grid;
+    document.set(
+      cells.map((i) => [i, ink.value.at([Math.floor(i / columns), i % columns], [0, 0])]),
+      "Fill",
+      ink.value.target,
+    );
   },
 };
+
+/**
+ * Rows or columns that are meant: those selected, or the one under the pointer.
+ *
+ * @param {ActionContext} context
+ * @param {"rows" | "columns"} axis
+ * @returns {[from: number, to: number]}
+ */
+function meant({ studio: { document, selection }, view }, axis) {
+  const box = selection.value;
+  if (box) return axis === "rows" ? [box.row0, box.row1] : [box.column0, box.column1];
+  const cell = view.hover.value ?? [document.grid.rows - 1, 0];
+  const at = axis === "rows" ? cell[0] : cell[1];
+  return [at, at + 1];
+}
+
+/**
+ * @param {string} id
+ * @param {string} label
+ * @param {string[]} keys
+ * @param {"rows" | "columns"} axis
+ * @param {"before" | "after"} side before: below, or at the left
+ * @returns {Action}
+ */
+const insertion = (id, label, keys, axis, side) => ({
+  id,
+  label,
+  group: "Rows and columns",
+  icon: axis === "rows" ? "insert-row" : "insert-column",
+  keys,
+  perform: (context) => {
+    const { document, selection, tell } = context.studio;
+    const { grid } = document;
+    const [from, to] = meant(context, axis);
+    if (grid[axis] + to - from > MAX_SIDE) {
+      tell.call(context.studio, `A chart has at most ${MAX_SIDE} ${axis}.`);
+      return;
+    }
+    const box = selection.value;
+    document.reshape(label, inserted(grid, axis, side === "before" ? from : to, to - from, side === "before" ? "after" : "before"));
+    if (!box) return;
+    // What was selected stays selected.
+    const by = side === "before" ? to - from : 0;
+    const [rows, columns] = axis === "rows" ? [by, 0] : [0, by];
+    selection.value = {
+      ...box,
+      row0: box.row0 + rows,
+      row1: box.row1 + rows,
+      column0: box.column0 + columns,
+      column1: box.column1 + columns,
+    };
+  },
+});
+
+/**
+ * @param {"rows" | "columns"} axis
+ * @param {string[]} keys
+ * @returns {Action}
+ */
+const deletion = (axis, keys) => ({
+  id: `delete-${axis}`,
+  label: axis === "rows" ? "Delete rows" : "Delete columns",
+  group: "Rows and columns",
+  icon: axis === "rows" ? "delete-row" : "delete-column",
+  keys,
+  perform: (context) => {
+    const { studio } = context;
+    const { grid } = studio.document;
+    const [from, to] = meant(context, axis);
+    if (to - from >= grid[axis]) studio.tell(`A chart keeps at least one of its ${axis}.`);
+    else studio.document.reshape(`Delete ${axis}`, deleted(grid, axis, from, to));
+  },
+});
+
+/** @type {Action[]} */
+export const TRANSFORM = [
+  fillPart,
+  transform("mirror", "Mirror left and right", "mirror", "Shift+H", "mirrored"),
+  transform("flip", "Mirror top and bottom", "flip", "Shift+V", "flipped"),
+  transform("rotate", "Rotate by half a turn", "rotate", "Shift+T", "rotated"),
+  transform("swap", "Swap knit and purl", "swap", "X", "swapped"),
+  transform("turn-over", "Turn over", "turn", "T", "turnedOver"),
+  insertion("insert-row-above", "Insert rows above", ["Shift+I"], "rows", "after"),
+  insertion("insert-row-below", "Insert rows below", [], "rows", "before"),
+  insertion("insert-column-left", "Insert columns at the left", [], "columns", "before"),
+  insertion("insert-column-right", "Insert columns at the right", ["Shift+O"], "columns", "after"),
+  deletion("rows", ["Shift+Delete"]),
+  deletion("columns", ["Mod+Delete"]),
+];

@@ -39,6 +39,8 @@ export class Editing {
     this.clip = null;
     /** Id of the repeat that is placed next. */
     this.repeatId = new Signal(/** @type {string | null} */ (null));
+    /** Which panel is open beside the chart. */
+    this.panel = new Signal(/** @type {string | null} */ (null));
     this.look.listen((look) => saveSettings({ look }));
     this.back.listen((back) => saveSettings({ back }));
     this.round.listen((round) => saveSettings({ round }));

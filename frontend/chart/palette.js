@@ -65,3 +65,21 @@ export function lightness(value) {
   const blue = (value >> 16) & 255;
   return (0.299 * red + 0.587 * green + 0.114 * blue) / 255;
 }
+
+/** For regions: told apart also by the colour-blind, legible on light and dark (after Okabe and Ito). */
+export const REGION_COLOURS = [
+  "#0072b2",
+  "#d55e00",
+  "#009e73",
+  "#cc79a7",
+  "#b58900",
+  "#56b4e9",
+  "#8c564b",
+  "#7f7f7f",
+];
+
+/** The one that is used least. @param {readonly {colour: string}[]} regions */
+export function nextRegionColour(regions) {
+  const used = REGION_COLOURS.map((colour) => regions.filter((region) => region.colour === colour).length);
+  return REGION_COLOURS[used.indexOf(Math.min(...used))];
+}

@@ -234,32 +234,53 @@ export class ChartDocument {
    * @param {string} label
    * @param {import("./reshape.js").Reshape} how
    */
-  reshape(label, { rows, columns, source, like = source, motif }) {
+  reshape(label, { rows, columns, source, like = source, motif, grow }) {
     this.cancel();
     const before = this.#snapshot();
+    const old = this.grid;
     /** @param {Uint8Array} bitmap @param {Int32Array} from @param {number} other */
     const moved = (bitmap, from, other) => Uint8Array.from(from, (i) => (i < 0 ? other : bitmap[i]));
-    const stitches = moved(this.grid.purl, source, 0);
+    const stitches = moved(old.purl, source, 0);
     const grid = new Grid(rows, columns, motif?.swapped ? stitches.map((p) => 1 - p) : stitches);
-    const target = new Map();
-    source.forEach((i, k) => i >= 0 && target.set(i, k));
+    const target = new Int32Array(old.purl.length).fill(-1);
+    source.forEach((i, k) => {
+      if (i >= 0) target[i] = k;
+    });
     /** @param {PlacementItem} place @returns {PlacementItem[]} */
     const carried = ({ row, column, rows: high, columns: wide }) => {
       const ends = [
-        target.get(this.grid.index(row, column)),
-        target.get(this.grid.index(row + high - 1, column + wide - 1)),
+        target[old.index(row, column)],
+        target[old.index(row + high - 1, column + wide - 1)],
       ];
-      if (ends.includes(undefined)) return [];
+      if (Math.min(...ends) < 0) return [];
       const [a, b] = ends.map((k) => [Math.floor(k / columns), k % columns]);
       const size = { rows: Math.abs(a[0] - b[0]) + 1, columns: Math.abs(a[1] - b[1]) + 1 };
       return [{ row: Math.min(a[0], b[0]), column: Math.min(a[1], b[1]), ...size }];
+    };
+    /** @param {Repeat} repeat @param {PlacementItem} place @returns {PlacementItem[]} */
+    const grown = (repeat, place) => {
+      const high = place.rows === old.rows ? rows : place.rows;
+      const wide = place.columns === old.columns ? columns : place.columns;
+      const fits = repeat.snapped(high, wide);
+      if (!grow || fits.rows !== high || fits.columns !== wide) return carried(place);
+      const [corner] = carried({ ...place, rows: 1, columns: 1 });
+      const next = {
+        row: high === rows ? 0 : corner?.row,
+        column: wide === columns ? 0 : corner?.column,
+        rows: high,
+        columns: wide,
+      };
+      if (next.row === undefined || next.column === undefined) return [];
+      if (next.row + high > rows || next.column + wide > columns) return [];
+      grid.put(repeat.laid(next), next.row, next.column);
+      return [next];
     };
     const repeats = this.repeats.map((repeat) => {
       const size = { rows: repeat.motif.rows + repeat.edgeRows, columns: repeat.motif.columns + repeat.edgeColumns };
       const turned = motif ? motif.change(repeat.laid(size)) : repeat.motif;
       return repeat.with({
         motif: turned.resized(repeat.motif.rows, repeat.motif.columns),
-        placements: repeat.placements.flatMap(carried),
+        placements: repeat.placements.flatMap((place) => grown(repeat, place)),
       });
     });
     const regions = this.regions.map((region) => region.withCells(moved(region.cells, like, 0)));

@@ -94,6 +94,20 @@ export class Grid {
   }
 
   /**
+   * Overwrite a part, which must fit.
+   *
+   * @param {Grid} part
+   * @param {number} row of its lower left corner
+   * @param {number} column
+   */
+  put(part, row, column) {
+    for (let r = 0; r < part.rows; r++) {
+      const line = part.purl.subarray(r * part.columns, (r + 1) * part.columns);
+      this.purl.set(line, this.index(row + r, column));
+    }
+  }
+
+  /**
    * Cut or filled up with knits, kept at the bottom left.
    *
    * @param {number} rows

@@ -8,6 +8,7 @@
  * @property {number} columns
  * @property {Int32Array} source for each new stitch the old one; -1 is a new knit
  * @property {Int32Array} [like] for each new stitch the old one whose regions and outline it takes
+ * @property {boolean} [grow] whether repeats that spanned the chart span the new one, if they fit
  * @property {{change: (motif: Grid) => Grid, swapped: boolean}} [motif] what happens to motifs
  */
 
@@ -64,7 +65,7 @@ export function resized(grid, rows, columns, [up, across] = [0, 0]) {
   const row0 = Math.floor((grid.rows - rows) * up);
   const column0 = Math.floor((grid.columns - columns) * across);
   const source = sources(grid, rows, columns, (row, column) => [row + row0, column + column0]);
-  return { rows, columns, source };
+  return { rows, columns, source, grow: true };
 }
 
 /**

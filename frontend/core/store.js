@@ -2,17 +2,18 @@
  * What the browser keeps: the design and the page's settings. Written after every step, so a reload,
  * a crash of the service or a failed request loses nothing.
  *
- * @import {Content} from "./design.js"
+ * @import {Content, ShelfItem} from "./design.js"
  *
  * @typedef {{id: string, name: string, material: string, note?: string,
  *   remote?: {id: string, revision: number} | null} & Content} Design
  */
 
-import { salvageContent } from "./design.js";
+import { readContent, salvageContent } from "./design.js";
 import { History } from "./history.js";
 
 const DESIGN = "knitcore.design";
 const HISTORY = "knitcore.history";
+const SHELF = "knitcore.shelf";
 const SETTINGS = "knitcore.settings";
 const HISTORY_LIMIT = 1_000_000;
 
@@ -70,6 +71,24 @@ export function saveSettings(settings) {
     localStorage.setItem(SETTINGS, JSON.stringify({ ...loadSettings({}), ...settings }));
   } catch {
     // A private window may refuse; the settings then last as long as the page.
+  }
+}
+
+/** @returns {ShelfItem[]} the user's own patterns, from all designs */
+export function loadShelf() {
+  try {
+    return readContent({ chart: "K", shelf: JSON.parse(localStorage.getItem(SHELF) ?? "[]") }).shelf;
+  } catch {
+    return []; // none kept, or spoilt: the designs have their own
+  }
+}
+
+/** @param {readonly ShelfItem[]} shelf */
+export function saveShelf(shelf) {
+  try {
+    localStorage.setItem(SHELF, JSON.stringify(shelf));
+  } catch {
+    // A private window may refuse; the design keeps its patterns all the same.
   }
 }
 

@@ -23,6 +23,10 @@ const PANELS = {
   /** @returns {Promise<PanelModule>} */
   palette: () => import("./dialogs/palette.js"),
   /** @returns {Promise<PanelModule>} */
+  regions: () => import("./regions.js"),
+  /** @returns {Promise<PanelModule>} */
+  repeats: () => import("./repeats.js"),
+  /** @returns {Promise<PanelModule>} */
   resize: () => import("./dialogs/resize.js"),
   /** @returns {Promise<PanelModule>} */
   share: () => import("./designs/share.js"),

@@ -1,5 +1,5 @@
 /**
- * The tools at the left, brush size and symmetry.
+ * The tools at the left, brush size and symmetry, and the panels of the chart's parts.
  *
  * @import {ActionContext} from "../actions/action.js"
  * @import {Studio} from "../studio.js"
@@ -26,9 +26,9 @@ export function rail(host, studio, context) {
         class: "tool",
         type: "button",
         id: `tool-${tool.id}`,
-        title: `${tool.label} (${tool.key.toUpperCase()})\n${tool.hint}`,
+        title: `${tool.label} (${tool.key})\n${tool.hint}`,
         "aria-label": tool.label,
-        "aria-keyshortcuts": tool.key.toUpperCase(),
+        "aria-keyshortcuts": tool.key,
         onclick: () => (studio.tool.value = tool),
       },
       icon(tool.icon),
@@ -79,18 +79,31 @@ export function rail(host, studio, context) {
     symmetry.replaceChildren(icon(value === "up" ? "flip" : "mirror"), value === "both" ? h("span", { class: "badge" }, "2") : "");
   });
 
+  /** @param {"regions" | "repeats"} name @param {string} label */
+  const panel = (name, label) => {
+    const button = h(
+      "button",
+      {
+        class: "tool",
+        type: "button",
+        id: `open-${name}`,
+        title: `${label} (${shown(action(name).keys[0])})`,
+        "aria-label": label,
+        onclick: () => action(name).perform(context),
+      },
+      icon(name === "regions" ? "regions" : "link"),
+    );
+    studio.editing.panel.watch((open) => button.setAttribute("aria-pressed", String(open === name)));
+    return button;
+  };
+
   host.append(
     ...tools,
     h("hr"),
     size,
     symmetry,
     h("hr"),
-    small("swap"),
-    small("turn-over"),
-    h("div", { class: "spacer" }),
-    small("symbols"),
-    small("zoom-in"),
-    small("zoom-out"),
-    small("fit"),
+    panel("regions", "Regions"),
+    panel("repeats", "Linked repeats"),
   );
 }

@@ -1,5 +1,5 @@
 /**
- * What to paint with: flip, knit, purl, and whole patterns.
+ * What to paint with: flip, knit, purl, no stitch, a region, whole patterns, and patterns of one's own.
  *
  * @import {ActionContext} from "../actions/action.js"
  * @import {Palette} from "../chart/palette.js"
@@ -8,8 +8,11 @@
 
 import { action } from "../actions/registry.js";
 import { readPalette } from "../chart/palette.js";
-import { FLIP, Ink, KNIT, PURL } from "../core/ink.js";
+import { FLIP, Ink, KNIT, NO_STITCH, PURL } from "../core/ink.js";
+import { motifText } from "../core/motif.js";
 import { QUARTERS, surroundings } from "../core/segments.js";
+import { ownInk, ownPatterns } from "../core/shelf.js";
+import { loadShelf, saveShelf } from "../core/store.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 
@@ -24,6 +27,7 @@ const MOST = 9;
  * @returns {() => void} draws the thumbnails anew, for another theme
  */
 export function shelf(host, studio, context) {
+  const { document: chart } = studio;
   const list = h("div", { class: "shelf-list" });
   const fill = action("fill-part");
   const fillButton = h(
@@ -38,76 +42,136 @@ export function shelf(host, studio, context) {
     icon("fill"),
     h("span", {}, "Fill chart"),
   );
+  const removeButton = h(
+    "button",
+    {
+      class: "button quiet icon-only",
+      type: "button",
+      id: "shelf-remove",
+      title: "Take this pattern off the shelf",
+      "aria-label": "Take this pattern off the shelf",
+      onclick: () => {
+        const motif = studio.ink.value.repeat ? motifText(studio.ink.value.repeat) : "";
+        saveShelf(loadShelf().filter((item) => item.motif !== motif));
+        chart.changeShelf(chart.shelf.filter((item) => item.motif !== motif), "Remove a pattern");
+        studio.ink.value = FLIP;
+        show();
+      },
+    },
+    icon("trash"),
+  );
   studio.selection.watch((box) => {
     const text = fillButton.querySelector("span");
     if (text) text.textContent = box ? "Fill selection" : "Fill chart";
   });
 
+  /** What the list shows, as text: made anew only if that changes. */
+  let shown = "";
   const show = () => {
     const palette = readPalette();
-    const inks = [FLIP, KNIT, PURL, ...studio.shelf.value];
-    list.replaceChildren(
-      ...inks.map((ink) =>
-        h(
-          "button",
-          {
-            class: "swatch",
-            type: "button",
-            role: "radio",
-            id: `ink-${ink.id}`,
-            title: ink.note || ink.name,
-            "aria-checked": String(ink.id === studio.ink.value.id),
-            onclick: () => (studio.ink.value = ink),
-          },
-          thumbnail(ink, palette),
-          h("span", {}, ink.name),
+    const chosen = studio.ink.value;
+    const own = ownPatterns(chart.shelf, loadShelf()).map(ownInk);
+    const region = chosen.target.startsWith("region:") ? [chosen] : [];
+    const inks = [FLIP, KNIT, PURL, NO_STITCH, ...region, ...studio.shelf.value, ...own];
+    const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette]);
+    if (what !== shown) {
+      shown = what;
+      list.replaceChildren(
+        ...inks.map((ink) =>
+          h(
+            "button",
+            {
+              class: "swatch",
+              type: "button",
+              role: "radio",
+              id: `ink-${ink.id}`,
+              title: ink.note || ink.name,
+              onclick: () => (studio.ink.value = ink),
+            },
+            thumbnail(ink, palette, chart.region(ink.target.slice(7))?.colour ?? ""),
+            h("span", { class: "ellipsis" }, ink.name),
+          ),
         ),
-      ),
-    );
-  };
-  studio.shelf.watch(show);
-  studio.ink.listen((chosen) => {
+      );
+    }
     for (const element of list.children) {
       element.setAttribute("aria-checked", String(element.id === `ink-${chosen.id}`));
     }
     fillButton.disabled = chosen.repeat === null;
+    removeButton.hidden = !chosen.id.startsWith("own-");
+  };
+  const remember = () => {
+    const kept = loadShelf();
+    const all = ownPatterns(chart.shelf, kept);
+    if (all.length > kept.length) saveShelf(all.slice(0, 200));
+    const { target } = studio.ink.value;
+    // A region that is gone can no longer be painted.
+    if (target.startsWith("region:") && !chart.region(target.slice(7))) studio.ink.value = FLIP;
+    show();
+  };
+  studio.shelf.watch(show);
+  studio.ink.listen((ink) => {
+    show();
+    document.getElementById(`ink-${ink.id}`)?.scrollIntoView({ block: "nearest", inline: "nearest" });
   });
-  fillButton.disabled = studio.ink.value.repeat === null;
-  host.append(list, fillButton);
+  chart.onSettle(remember);
+  remember();
+  host.append(list, removeButton, fillButton);
   return show;
 }
 
 /**
  * @param {Ink} ink
  * @param {Palette} palette
+ * @param {string} colour of a region
  */
-function thumbnail(ink, palette) {
+function thumbnail(ink, palette, colour) {
   const canvas = h("canvas", { width: 2 * SIDE, height: 2 * SIDE, class: "thumbnail" });
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const count = ink.repeat ? Math.min(MOST, Math.max(6, ink.repeat.rows, ink.repeat.columns)) : 1;
-  const cell = (2 * SIDE) / count;
-  if (!ink.repeat) {
-    context.fillStyle = `rgb(${palette.knit.join(" ")})`;
-    context.fillRect(0, 0, 2 * SIDE, 2 * SIDE);
-    context.fillStyle = `rgb(${palette.purl.join(" ")})`;
-    context.beginPath();
-    context.moveTo(0, 2 * SIDE);
-    context.lineTo(2 * SIDE, 2 * SIDE);
-    context.lineTo(2 * SIDE, 0);
-    context.fill();
+  const side = 2 * SIDE;
+  /** @param {number[]} rgb */
+  const css = (rgb) => `rgb(${rgb.map(Math.round).join(" ")})`;
+  if (ink.target === "outline") {
+    context.strokeStyle = palette.muted;
+    context.lineWidth = 3;
+    context.setLineDash([7, 6]);
+    context.strokeRect(8, 8, side - 16, side - 16);
     return canvas;
   }
-  const single = ink === KNIT || ink === PURL;
+  if (ink.target !== "stitches") {
+    context.fillStyle = colour;
+    context.fillRect(0, 0, side, side);
+    return canvas;
+  }
+  if (!ink.repeat || ink === KNIT || ink === PURL) {
+    context.fillStyle = css(ink === PURL ? palette.purl : palette.knit);
+    context.fillRect(0, 0, side, side);
+    if (!ink.repeat) {
+      context.fillStyle = css(palette.purl);
+      context.beginPath();
+      context.moveTo(0, side);
+      context.lineTo(side, side);
+      context.lineTo(side, 0);
+      context.fill();
+    }
+    if (ink === PURL) {
+      context.fillStyle = palette.text;
+      context.beginPath();
+      context.arc(side / 2, side / 2, side * 0.13, 0, 2 * Math.PI);
+      context.fill();
+    }
+    return canvas;
+  }
+  const count = Math.min(MOST, Math.max(6, ink.repeat.rows, ink.repeat.columns));
+  const cell = side / count;
   const tiles = ink.repeat.tiled(2 * count, 2 * count);
   const codes = surroundings(tiles);
   for (let row = 0; row < count; row++) {
     for (let column = 0; column < count; column++) {
       const i = tiles.index(row, column);
-      const purl = tiles.purl[i];
       QUARTERS[codes[i]].forEach((phase, quarter) => {
-        const colour = single ? (purl ? palette.purl : palette.knit) : palette.fabrics[phase];
-        const shade = purl && !single ? 0.72 : 1;
-        context.fillStyle = `rgb(${colour.map((c) => Math.round(c * shade)).join(" ")})`;
+        const shade = tiles.purl[i] ? 0.72 : 1;
+        context.fillStyle = css(palette.fabrics[phase].map((c) => c * shade));
         context.fillRect(
           (column + (quarter & 1) / 2) * cell,
           (count - 1 - row + (quarter < 2 ? 0.5 : 0)) * cell,

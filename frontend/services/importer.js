@@ -1,22 +1,24 @@
 /**
- * Charts from outside: pasted or dropped text, text files, pictures. The service reads the text, so
+ * Charts from outside: pasted or dropped text, project files, pictures. The service reads the text, so
  * that the page and the command line accept the same; what cannot be read changes nothing.
  *
- * @import {Studio} from "../studio.js"
+ * @import {ActionContext} from "../actions/action.js"
  * @import {Problem} from "../types.js"
  */
 
+import { paste } from "../actions/selection.js";
 import { ApiError, api } from "../api.js";
+import { DesignError, readDesign } from "../core/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../core/grid.js";
 
-const MAX_FILE_BYTES = 4_000_000;
+const MAX_FILE_BYTES = 12_000_000;
 
 /**
  * @param {string} detail
  * @param {string} remedy
  * @returns {Problem}
  */
-const refusal = (detail, remedy) => ({
+export const refusal = (detail, remedy) => ({
   type: "input",
   title: "This chart cannot be imported",
   status: 422,
@@ -25,11 +27,13 @@ const refusal = (detail, remedy) => ({
 });
 
 /**
- * @param {Studio} studio
- * @param {string} text
+ * @param {ActionContext} context
+ * @param {string} text K/P lines or a project file
  * @returns {Promise<Problem | null>} what is wrong, or null if the chart is now this one
  */
-export async function importText(studio, text) {
+export async function importText(context, text) {
+  if (/^\s*[{[]/.test(text)) return importProject(context, text);
+  const { studio } = context;
   try {
     const { rows, columns, text: chart } = await api.parse(text);
     if (!isChartText(chart)) {
@@ -48,60 +52,56 @@ export async function importText(studio, text) {
 }
 
 /**
- * @param {Studio} studio
- * @param {File} file
- * @returns {Promise<Problem | null>}
+ * A project file is a design of its own: the one on show stays among the designs.
+ *
+ * @param {ActionContext} context
+ * @param {string} text
+ * @returns {Problem | null}
  */
-export async function importFile(studio, file) {
-  if (file.size > MAX_FILE_BYTES) {
-    return refusal(`${file.name} has ${file.size} bytes.`, "Charts have at most 4 MB.");
+function importProject({ studio, keeper }, text) {
+  try {
+    const design = readDesign(JSON.parse(text));
+    keeper.openNew(design);
+    studio.tell(`Opened ${design.name}. The design before it is still among your designs.`);
+    return null;
+  } catch (error) {
+    if (error instanceof SyntaxError) {
+      return refusal("The project file is damaged: it is not valid JSON.", "Export the design again, or use an older copy.");
+    }
+    if (error instanceof DesignError) return refusal(error.message, error.remedy);
+    throw error;
   }
-  if (file.type.startsWith("image/")) return importPicture(studio, file);
-  return importText(studio, await file.text());
 }
 
 /**
- * @param {Studio} studio
- * @param {File} file one pixel a stitch
+ * @param {ActionContext} context
+ * @param {File} file
  * @returns {Promise<Problem | null>}
  */
-async function importPicture(studio, file) {
-  /** @type {ImageBitmap} */
-  let bitmap;
-  try {
-    bitmap = await createImageBitmap(file);
-  } catch {
-    return refusal(`${file.name} is not a picture that this browser can read.`, "Use a PNG file.");
+export async function importFile(context, file) {
+  if (file.size > MAX_FILE_BYTES) {
+    return refusal(`${file.name} has ${(file.size / 1e6).toFixed(0)} MB.`, "Files have at most 12 MB.");
   }
-  const { width, height } = bitmap;
-  if (Math.max(width, height) > MAX_SIDE) {
-    return refusal(
-      `The picture has ${width} × ${height} pixels, and every pixel is a stitch.`,
-      `Scale it down to at most ${MAX_SIDE} × ${MAX_SIDE} pixels.`,
-    );
+  if (!file.size) return refusal(`${file.name} is empty.`, "Choose a text, a PNG or a project file.");
+  if (file.type.startsWith("image/")) {
+    const { importPicture } = await import("../panels/dialogs/picture.js");
+    return importPicture(context.studio, file);
   }
-  const canvas = new OffscreenCanvas(width, height);
-  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  context.fillStyle = "white"; // see-through pixels are knits
-  context.fillRect(0, 0, width, height);
-  context.drawImage(bitmap, 0, 0);
-  const { data } = context.getImageData(0, 0, width, height);
-  const grid = Grid.build(height, width, (row, column) => {
-    const k = 4 * ((height - 1 - row) * width + column);
-    return 0.299 * data[k] + 0.587 * data[k + 1] + 0.114 * data[k + 2] < 128;
-  });
-  studio.document.replace(grid, "Import");
-  studio.tell(`Imported ${width} stitches × ${height} rows from ${file.name}.`);
-  return null;
+  const text = await file.text();
+  if (text.includes("\0")) {
+    return refusal(`${file.name} is no text file.`, "Use lines of K and P, a PNG, or a project file (.json).");
+  }
+  return importText(context, text);
 }
 
 /**
  * Take what is dropped on the page or pasted into it.
  *
- * @param {Studio} studio
+ * @param {ActionContext} context
  * @param {() => boolean} isTyping
  */
-export function listenToImports(studio, isTyping) {
+export function listenToImports(context, isTyping) {
+  const { studio } = context;
   /** @param {Promise<Problem | null>} outcome */
   const report = async (outcome) => {
     const problem = await outcome;
@@ -109,9 +109,16 @@ export function listenToImports(studio, isTyping) {
   };
   window.addEventListener("paste", (event) => {
     const text = event.clipboardData?.getData("text/plain") ?? "";
-    if (isTyping() || document.querySelector("dialog[open]") || !text.trim()) return;
+    const picture = [...(event.clipboardData?.files ?? [])].find(({ type }) => type.startsWith("image/"));
+    if (isTyping() || document.querySelector("dialog[open]")) return;
+    const { clip } = studio.editing;
+    // Where a page may not write the clipboard, it holds something older than what was copied here.
+    const own = clip && (!navigator.clipboard || text === clip.part.text || (!text.trim() && !picture));
+    if (!own && !picture && !text.trim()) return;
     event.preventDefault();
-    void report(importText(studio, text));
+    if (own) paste.perform(context);
+    else if (picture) void report(importFile(context, picture));
+    else void report(importText(context, text));
   });
   const root = document.documentElement;
   window.addEventListener("dragover", (event) => {
@@ -126,7 +133,7 @@ export function listenToImports(studio, isTyping) {
     delete root.dataset.dropping;
     const file = event.dataTransfer?.files[0];
     const text = event.dataTransfer?.getData("text/plain");
-    if (file) void report(importFile(studio, file));
-    else if (text) void report(importText(studio, text));
+    if (file) void report(importFile(context, file));
+    else if (text) void report(importText(context, text));
   });
 }

@@ -1,6 +1,7 @@
 /**
  * A chart from outside.
  *
+ * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
  */
 
@@ -9,8 +10,11 @@ import { icon } from "../../icons.js";
 import { importFile, importText } from "../../services/importer.js";
 import { dialog } from "./dialog.js";
 
-/** @param {Studio} studio */
-export function create(studio) {
+/**
+ * @param {Studio} _
+ * @param {ActionContext} context
+ */
+export function create(_, context) {
   const text = h("textarea", {
     id: "import-text",
     class: "import-text",
@@ -31,20 +35,20 @@ export function create(studio) {
   const file = h("input", {
     type: "file",
     id: "import-file",
-    accept: ".txt,.png,text/plain,image/png",
+    accept: ".txt,.json,text/plain,application/json,image/*",
     class: "visually-hidden",
-    onchange: () => file.files?.[0] && void settle(importFile(studio, file.files[0])),
+    onchange: () => file.files?.[0] && void settle(importFile(context, file.files[0])),
   });
   const element = dialog(
     "import-dialog",
     "Import a chart",
-    h("p", { class: "muted" }, "Lines of K and P (or | and •), the top row first, as seen from the face. A text or PNG file (one pixel a stitch, dark = purl) can also be dropped anywhere on the page."),
+    h("p", { class: "muted" }, "Lines of K and P (or | and •), the top row first, as seen from the face. A text, a picture or a project file can also be dropped anywhere on the page."),
     text,
     problem,
     h("div", { class: "dialog-buttons" },
       h("label", { class: "button", for: "import-file" }, "Choose a file …"),
       file,
-      h("button", { class: "button primary", type: "button", id: "import-apply", onclick: () => void settle(importText(studio, text.value)) }, "Import")),
+      h("button", { class: "button primary", type: "button", id: "import-apply", onclick: () => void settle(importText(context, text.value)) }, "Import")),
   );
   return () => {
     problem.hidden = true;

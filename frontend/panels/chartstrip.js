@@ -1,0 +1,111 @@
+/**
+ * Above the chart: its key, which side of the cloth is seen, how it is knitted and drawn, and zoom.
+ *
+ * @import {ActionContext} from "../actions/action.js"
+ * @import {Look} from "../chart/editing.js"
+ * @import {Signal} from "../core/signal.js"
+ */
+
+import { action, shown } from "../actions/registry.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+
+/** @type {[Look, string][]} */
+const LOOKS = [
+  ["both", "Colours and symbols"],
+  ["colours", "Colours"],
+  ["symbols", "Symbols"],
+  ["loops", "Loops"],
+];
+
+/**
+ * @param {HTMLElement} host
+ * @param {ActionContext} context
+ */
+export function chartstrip(host, context) {
+  const { studio } = context;
+  const { editing, document: chart } = studio;
+  const key = h("div", { class: "chart-key", role: "img" });
+  const showKey = () => {
+    const look = editing.look.value;
+    const drawn = look === "loops" ? "loops" : look === "colours" ? "plain" : "dots";
+    /** @param {string} kind @param {string} label */
+    const entry = (kind, label) =>
+      h("span", { class: "legend-item" }, h("span", { class: `key-cell ${kind} ${drawn}` }), label);
+    key.replaceChildren(
+      entry("knit", "knit"),
+      entry("purl", "purl"),
+      ...(chart.shaped ? [entry("none", "no stitch")] : []),
+    );
+    const symbol = drawn === "dots" ? "a purl has a dot" : drawn === "loops" ? "stitches drawn as loops" : "no symbols";
+    key.ariaLabel = `Key: ${symbol}${chart.shaped ? "; outside the outline there is no stitch" : ""}`;
+  };
+  editing.look.watch(showKey);
+  let shaped = chart.shaped;
+  chart.onSettle(() => {
+    if (shaped !== chart.shaped) showKey();
+    shaped = chart.shaped;
+  });
+
+  const look = h(
+    "select",
+    {
+      class: "strip-select",
+      id: "look",
+      title: "How stitches are drawn (V)",
+      "aria-label": "How stitches are drawn",
+      onchange: () => (editing.look.value = /** @type {Look} */ (look.value)),
+    },
+    ...LOOKS.map(([value, label]) => h("option", { value }, label)),
+  );
+  editing.look.watch((value) => (look.value = value));
+  // Colours were asked for: show them.
+  studio.overlay.listen(() => {
+    if (editing.look.value === "symbols") editing.look.value = "both";
+  });
+
+  /** @param {"fit" | "zoom-in" | "zoom-out"} id */
+  const small = (id) => {
+    const { label, icon: picture, keys, perform } = action(id);
+    return h(
+      "button",
+      {
+        class: "strip-button",
+        type: "button",
+        id: `action-${id}`,
+        title: `${label} (${shown(keys[0])})`,
+        "aria-label": label,
+        onclick: () => perform(context),
+      },
+      picture && icon(picture),
+    );
+  };
+
+  host.append(
+    h("div", { class: "chart-strip" },
+      key,
+      h("span", { class: "spacer" }),
+      choice("Side of the cloth", "K", editing.back, [[false, "Face"], [true, "Back"]]),
+      choice("Knitted", "Shift+R", editing.round, [[false, "Flat"], [true, "Round"]]),
+      look,
+      h("div", { class: "group" }, small("zoom-out"), small("zoom-in"), small("fit"))),
+  );
+}
+
+/**
+ * Two choices beside each other.
+ *
+ * @param {string} label
+ * @param {string} key
+ * @param {Signal<boolean>} signal
+ * @param {[boolean, string][]} options
+ */
+function choice(label, key, signal, options) {
+  const buttons = options.map(([value, text]) =>
+    h("button", { class: "segment", type: "button", role: "radio", id: `choose-${text.toLowerCase()}`, onclick: () => (signal.value = value) }, text),
+  );
+  signal.watch((now) =>
+    buttons.forEach((button, k) => button.setAttribute("aria-checked", String(options[k][0] === now))),
+  );
+  return h("div", { class: "segmented small", role: "radiogroup", "aria-label": label, title: `${label} (${key})` }, ...buttons);
+}

@@ -1,0 +1,170 @@
+/**
+ * A picture becomes a chart: how its cells lie, what is dark, and how that looks, before it is taken.
+ *
+ * @import {Problem} from "../../types.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { pixel, readPalette } from "../../chart/palette.js";
+import { MAX_SIDE } from "../../core/grid.js";
+import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/picture.js";
+import { h } from "../../dom.js";
+import { refusal } from "../../services/importer.js";
+import { dialog } from "./dialog.js";
+
+/** Larger pictures are made smaller before they are looked at. */
+const MOST_PIXELS = 1600;
+
+/**
+ * @param {Studio} studio
+ * @param {File} file
+ * @returns {Promise<Problem | null>} when the dialog is open, or what is wrong
+ */
+export async function importPicture(studio, file) {
+  /** @type {ImageBitmap} */
+  let bitmap;
+  try {
+    bitmap = await createImageBitmap(file);
+  } catch {
+    return refusal(`${file.name} is not a picture that this browser can read.`, "Use a PNG file.");
+  }
+  const scale = Math.min(1, MOST_PIXELS / Math.max(bitmap.width, bitmap.height));
+  const width = Math.max(1, Math.round(bitmap.width * scale));
+  const height = Math.max(1, Math.round(bitmap.height * scale));
+  const canvas = new OffscreenCanvas(width, height);
+  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  context.drawImage(bitmap, 0, 0, width, height);
+  pictureDialog(studio, file.name, bitmap, {
+    values: greys(context.getImageData(0, 0, width, height)),
+    width,
+    height,
+    aspect: studio.material.value?.fabrics.stockinette ?? null,
+  });
+  return null;
+}
+
+/**
+ * @param {Studio} studio
+ * @param {string} name
+ * @param {ImageBitmap} bitmap
+ * @param {{values: Uint8Array, width: number, height: number,
+ *   aspect: {stitch_course_mm: number | null, stitch_wale_mm: number | null} | null}} picture
+ */
+function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) {
+  document.getElementById("picture-dialog")?.remove();
+  const stitch = (aspect?.stitch_wale_mm ?? 0.8) / (aspect?.stitch_course_mm ?? 1);
+  const each = Math.max(bitmap.width, bitmap.height) <= MAX_SIDE;
+  const found = detectedGrid(values, width, height);
+  const guess = Math.min(60, width);
+  const cells = found ?? (each
+    ? { columns: bitmap.width, rows: bitmap.height }
+    : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
+
+  /** @param {string} label @param {string} id @param {number} value */
+  const count = (label, id, value) => {
+    const input = h("input", { type: "number", class: "number figures", id, min: 1, max: MAX_SIDE, value, oninput: () => show() });
+    return { input, row: h("label", { class: "field" }, h("span", {}, label), input) };
+  };
+  const columns = count("Stitches", "picture-columns", cells.columns);
+  const rows = count("Rows", "picture-rows", cells.rows);
+  const threshold = h("input", { type: "range", class: "slider", id: "picture-threshold", min: 1, max: 255, value: bestThreshold(values), oninput: () => show() });
+  const share = h("output", { class: "figures muted", for: "picture-threshold" });
+  const inverted = h("input", { type: "checkbox", id: "picture-inverted", onchange: () => show() });
+  const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
+  const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
+  const problem = h("p", { class: "problem-text", role: "alert" });
+  const apply = h("button", { class: "button primary", type: "button", id: "picture-apply", onclick: () => {
+    const grid = read();
+    if (!grid) return;
+    element.close();
+    studio.document.replace(grid, "Import");
+    studio.tell(`Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. Undo brings the old chart back.`);
+  } }, "Import");
+
+  /** @param {string} id @param {string} label @param {{columns: number, rows: number}} size */
+  const size = (id, label, size) =>
+    h("button", { class: "button", type: "button", id, onclick: () => {
+      columns.input.value = String(size.columns);
+      rows.input.value = String(size.rows);
+      show();
+    } }, label);
+
+  const read = () => {
+    const [across, up] = [columns.input.valueAsNumber, rows.input.valueAsNumber];
+    const well = [across, up].every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE);
+    problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
+    apply.disabled = !well;
+    return well
+      ? stitchesOf(values, width, height, { columns: across, rows: up, threshold: threshold.valueAsNumber, inverted: inverted.checked })
+      : null;
+  };
+  const show = () => {
+    const grid = read();
+    if (!grid) return;
+    const purls = grid.purl.reduce((sum, p) => sum + p, 0);
+    share.textContent = `${Math.round((100 * purls) / grid.purl.length)} % purl`;
+    preview.ariaLabel = `The chart that it becomes: ${grid.columns} stitches × ${grid.rows} rows, ${share.textContent}`;
+    const palette = readPalette();
+    const [knit, purl] = [pixel(palette.knit), pixel(palette.dark ? [216, 206, 194] : [92, 80, 68])];
+    const image = new ImageData(grid.columns, grid.rows);
+    const pixels = new Uint32Array(image.data.buffer);
+    for (let row = 0, i = 0; row < grid.rows; row++) {
+      const line = (grid.rows - 1 - row) * grid.columns;
+      for (let column = 0; column < grid.columns; column++, i++) pixels[line + column] = grid.purl[i] ? purl : knit;
+    }
+    const small = new OffscreenCanvas(grid.columns, grid.rows);
+    /** @type {OffscreenCanvasRenderingContext2D} */ (small.getContext("2d")).putImageData(image, 0, 0);
+    fit(preview, grid.columns, grid.rows * stitch, (context, wide, high) => {
+      context.imageSmoothingEnabled = wide < grid.columns;
+      context.drawImage(small, 0, 0, wide, high);
+      const [cellWide, cellHigh] = [wide / grid.columns, high / grid.rows];
+      if (cellWide < 6) return;
+      context.fillStyle = palette.dark ? "rgb(0 0 0 / 0.4)" : "rgb(60 45 30 / 0.2)";
+      for (let c = 1; c < grid.columns; c++) context.fillRect(Math.round(c * cellWide), 0, 1, high);
+      for (let r = 1; r < grid.rows; r++) context.fillRect(0, Math.round(r * cellHigh), wide, 1);
+    });
+  };
+
+  const element = dialog(
+    "picture-dialog",
+    "Import a picture",
+    h("div", { class: "picture-pair" },
+      h("figure", {}, source, h("figcaption", { class: "muted ellipsis" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`)),
+      h("figure", {}, preview, h("figcaption", { class: "muted" }, "The chart, as seen from the face"))),
+    h("div", { class: "fields" }, columns.row, rows.row,
+      h("div", { class: "picture-sizes" },
+        each && size("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
+        found && size("picture-found", `Grid found: ${found.columns} × ${found.rows}`, found))),
+    problem,
+    h("div", { class: "picture-tone" }, h("label", { for: "picture-threshold" }, "Purl if darker than"), threshold, share,
+      h("label", { class: "check" }, inverted, "light is purl")),
+    h("div", { class: "dialog-buttons" },
+      h("button", { class: "button", type: "button", onclick: () => element.close() }, "Cancel"),
+      apply),
+  );
+  element.addEventListener("close", () => element.remove());
+  element.showModal();
+  fit(source, bitmap.width, bitmap.height, (context, wide, high) => {
+    context.imageSmoothingEnabled = wide < bitmap.width;
+    context.drawImage(bitmap, 0, 0, wide, high);
+  });
+  show();
+  columns.input.focus();
+}
+
+/**
+ * Draw something into a canvas, as large as its place allows.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {number} width
+ * @param {number} height
+ * @param {(context: CanvasRenderingContext2D, width: number, height: number) => void} draw
+ */
+function fit(canvas, width, height, draw) {
+  const scale = Math.min(300 / width, 240 / height);
+  canvas.style.width = `${Math.max(1, width * scale)}px`;
+  canvas.style.height = `${Math.max(1, height * scale)}px`;
+  canvas.width = Math.max(1, Math.round(2 * width * scale));
+  canvas.height = Math.max(1, Math.round(2 * height * scale));
+  draw(/** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")), canvas.width, canvas.height);
+}

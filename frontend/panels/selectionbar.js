@@ -1,0 +1,66 @@
+/**
+ * What can be done with the selection, at the foot of the chart while there is one.
+ *
+ * @import {ActionContext} from "../actions/action.js"
+ */
+
+import { action, shown } from "../actions/registry.js";
+import { selectedCells } from "../core/selection.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+
+const GROUPS = [
+  ["copy", "cut", "paste", "clear"],
+  ["mirror", "flip", "rotate", "turn-over", "swap"],
+  ["insert-row-above", "delete-rows", "insert-column-right", "delete-columns"],
+];
+const NAMED = [
+  ["keep-pattern", "Pattern"],
+  ["make-repeat", "Repeat"],
+  ["make-region", "Region"],
+];
+
+/**
+ * @param {HTMLElement} host
+ * @param {ActionContext} context
+ */
+export function selectionbar(host, context) {
+  const { studio } = context;
+  /** @param {string} id @param {string} [text] */
+  const button = (id, text) => {
+    const { label, icon: picture, keys, perform } = action(id);
+    return h(
+      "button",
+      {
+        class: text ? "bar-button named" : "bar-button",
+        type: "button",
+        id: `selection-${id}`,
+        title: keys[0] ? `${label} (${shown(keys[0])})` : label,
+        "aria-label": label,
+        onclick: () => perform(context),
+      },
+      picture && icon(picture),
+      text,
+    );
+  };
+  const count = h("span", { class: "bar-count figures" });
+  const bar = h(
+    "div",
+    { class: "selection-bar", role: "toolbar", "aria-label": "Selection", id: "selection-bar", hidden: true },
+    count,
+    ...GROUPS.flatMap((group) => [...group.map((id) => button(id)), h("span", { class: "bar-divider" })]),
+    ...NAMED.map(([id, text]) => button(id, text)),
+    h("span", { class: "bar-divider" }),
+    button("deselect"),
+  );
+  host.append(bar);
+  studio.selection.watch((selection) => {
+    bar.hidden = !selection;
+    if (!selection) return;
+    const wide = selection.column1 - selection.column0;
+    const high = selection.row1 - selection.row0;
+    count.textContent = selection.mask
+      ? `${selectedCells(selection, studio.document.grid).length} sts`
+      : `${wide} × ${high}`;
+  });
+}
