@@ -7,17 +7,24 @@
  * The sources run as they are, too: the service falls back to them where dist/ is missing or old.
  */
 
-import { build } from "esbuild";
+import { build, transform } from "esbuild";
 import { mkdir, readFile, readdir, rename, rm, stat, writeFile } from "node:fs/promises";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { rollup } from "rollup";
 
 const ROOT = dirname(fileURLToPath(import.meta.url));
 const DIST = join(ROOT, "dist");
 /** Files of older builds stay a while, so that a page which is open can still load its panels. */
 const KEPT_MS = 86_400_000;
 const PACKED = /\.(js|css|html|svg|map)$/;
+
+/** @param {{message: string, loc?: {file: string, line: number}}} error */
+function failed({ message, loc }) {
+  console.error(`The page cannot be built: ${message}${loc ? ` (${loc.file}:${loc.line})` : ""}`);
+  return process.exit(1);
+}
 
 /** @param {string} name @param {string | Uint8Array} content */
 async function put(name, content) {
@@ -33,46 +40,66 @@ async function put(name, content) {
   }
 }
 
-const options = {
-  absWorkingDir: ROOT,
-  bundle: true,
-  minify: true,
-  write: false,
-  metafile: true,
-  outdir: DIST,
-  entryNames: "[name]-[hash]",
-  chunkNames: "[name]-[hash]",
-  legalComments: "none",
-  logLevel: "error",
-  external: ["/static/*"],
-};
-const [scripts, theme, styles] = await Promise.all([
-  build({ ...options, entryPoints: ["app.js"], format: "esm", splitting: true, sourcemap: true, target: "es2022" }),
-  build({ ...options, entryPoints: ["theme.js"], target: "es2022" }),
-  build({ ...options, entryPoints: ["styles/index.css"], target: "chrome110" }),
-]).catch(() => process.exit(1)); // esbuild has said where and why
+// --- scripts: what is needed at once is one file, every panel that comes later another ----------
+/** Modules that the page needs at once. @type {Set<string>} */
+const atOnce = new Set();
+const bundle = await rollup({
+  input: join(ROOT, "app.js"),
+  logLevel: "warn",
+  plugins: [
+    {
+      name: "minify",
+      buildEnd() {
+        /** @param {string} id */
+        const reach = (id) => {
+          if (atOnce.has(id)) return;
+          atOnce.add(id);
+          this.getModuleInfo(id)?.importedIds.forEach(reach);
+        };
+        reach(join(ROOT, "app.js"));
+      },
+      renderChunk: (code) => transform(code, { format: "esm", minify: true, sourcemap: true, target: "es2022" }),
+    },
+  ],
+}).catch(failed);
+const { output } = await bundle.generate({
+  format: "es",
+  sourcemap: true,
+  entryFileNames: "[name]-[hash].js",
+  chunkFileNames: "[name]-[hash].js",
+  manualChunks: (id) => (atOnce.has(id) ? "app" : undefined),
+  experimentalMinChunkSize: 4000,
+}).catch(failed);
+const [theme, styles] = await Promise.all(
+  [["theme.js", "es2022"], ["styles/index.css", "chrome110"]].map(([entry, target]) =>
+    build({
+      absWorkingDir: ROOT,
+      entryPoints: [entry],
+      bundle: true,
+      minify: true,
+      write: false,
+      target,
+      outdir: DIST,
+      entryNames: "[name]-[hash]",
+      external: ["/static/*"],
+    }),
+  ),
+).catch(failed);
 
 await mkdir(DIST, { recursive: true });
-const files = [...scripts.outputFiles, ...theme.outputFiles].map(({ path, contents }) => ({
-  name: path.slice(DIST.length + 1),
-  contents,
-}));
+const files = [
+  ...output.map((file) => ({
+    name: file.fileName,
+    contents: Buffer.from(file.type === "chunk" ? file.code : file.source),
+  })),
+  ...theme.outputFiles.map(({ path, contents }) => ({ name: basename(path), contents })),
+];
 for (const { name, contents } of files) await put(name, contents);
 await put("icon.svg", await readFile(join(ROOT, "icon.svg")));
 
-// --- what the first visit needs ---------------------------------------------------------------
-const outputs = scripts.metafile.outputs;
-/** @param {string} path in the metafile @param {Set<string>} seen */
-const needed = (path, seen = new Set()) => {
-  if (seen.has(path)) return seen;
-  seen.add(path);
-  for (const { path: next, kind, external } of outputs[path].imports) {
-    if (!external && kind === "import-statement") needed(next, seen);
-  }
-  return seen;
-};
-const entry = Object.keys(outputs).find((path) => outputs[path].entryPoint === "app.js");
-const first = [...needed(entry)].map((path) => path.replace(/^dist\//, ""));
+// --- the page itself ----------------------------------------------------------------------------
+const entry = output.find((file) => file.type === "chunk" && file.isEntry);
+const first = [entry.fileName, ...entry.imports];
 const themeName = files.find(({ name }) => /^theme-.*\.js$/.test(name)).name;
 
 /** @param {string} html @param {string} tag @param {string} with_ */

@@ -1,0 +1,35 @@
+"""What axe finds wrong with a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+SCRIPT = Path(__file__).resolve().parents[2] / "frontend/node_modules/axe-core/axe.min.js"
+RUN = """async (within) => {
+    const { violations } = await axe.run(within, {
+        resultTypes: ["violations"],
+        runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"],
+        iframes: false,
+    });
+    return violations.map(({ id, impact, nodes }) => ({
+        id, impact, where: nodes.map(({ target, failureSummary }) =>
+            `${target.join(" ")}: ${failureSummary.split("\\n").slice(1, 3).join(" ").trim()}`),
+    }));
+}"""
+
+
+def violations(page: Page, within: str = "body") -> list[str]:
+    """Serious and critical violations in a part of the page, in words."""
+    if not SCRIPT.exists():
+        pytest.skip("needs axe-core (make frontend/node_modules/.installed)")
+    if not page.evaluate("() => 'axe' in window"):
+        page.evaluate(SCRIPT.read_text())
+    return [
+        f"{found['impact']} {found['id']} at {where}"
+        for found in page.evaluate(RUN, within)
+        if found["impact"] in ("serious", "critical")
+        for where in found["where"]
+    ]
