@@ -97,4 +97,4 @@ def _compression_text(r: CompressionResult) -> str:
         k = "" if k_spread is None else f" ± {1000 * k_spread:.2g}"
         p = "" if p_spread is None else f" ± {p_spread:.2g}"
         lines.append(f"{m.yarn}: k {1000 * m.k_n_per_mm3:.4g}{k} mN/mm³, p {m.p:.3f}{p}")
-    return "\n".join(lines)
+    return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])

@@ -99,10 +99,13 @@ class CompressionMeanResult(BaseModel):
 class CompressionResult(BaseModel):
     """Constants of the contact law, per sample and mean."""
 
-    k_n_per_mm3: float | None = Field(description="Mean, if the file holds one yarn.")
-    p: float | None
+    k_n_per_mm3: float | None = Field(
+        description="Mean of the yarn; null if there are several, which have one each in `mean`."
+    )
+    p: float | None = Field(description="The same.")
     mean: dict[str, CompressionMeanResult] = Field(description="By yarn.")
     samples: list[CompressionSampleResult]
+    notes: list[str]
 
 
 def run_bending(
@@ -176,6 +179,7 @@ def compression_of(
     ]
     means = [CompressionMeanResult(**asdict(m)) for m in average_compression(samples)]
     alone = means[0] if len(means) == 1 else None
+    notes = [] if alone else [f"{known} have no common k and p; ask for one yarn to get one pair."]
     return CompressionResult(
         k_n_per_mm3=alone.k_n_per_mm3 if alone else None,
         p=alone.p if alone else None,
@@ -186,4 +190,5 @@ def compression_of(
             )
             for s in samples
         ],
+        notes=notes,
     )

@@ -23,7 +23,8 @@ Array = NDArray[np.float32]
 
 MAX_STITCHES = 40_000
 """Largest chart of a test over REST; the command line takes larger ones."""
-MAX_STEPS = 60
+MAX_VALUES = 60 * MAX_STITCHES
+"""Most stitches times steps over REST, for the answer has three numbers for each."""
 NEAR_LOCK_UP = 0.95
 
 
@@ -50,7 +51,6 @@ class StretchRequest(StretchOptions):
 
     chart: ChartInput
     material: str
-    steps: int = Field(12, ge=1, le=MAX_STEPS)
 
 
 class StitchFields(BaseModel):
@@ -151,6 +151,12 @@ def run_stretch(
             "chart",
             f"{chart.columns}x{chart.rows} stitches are too many for a stretch test here.",
             f"Use at most {MAX_STITCHES} stitches, such as {side}x{side}, or the command line.",
+        )
+    if chart.rows * chart.columns * request.steps > MAX_VALUES:
+        raise InputError(
+            "steps",
+            f"{request.steps} are too many here for a chart of this size.",
+            f"Use at most {MAX_VALUES // (chart.rows * chart.columns)}, or the command line.",
         )
     test = stretch_chart(
         chart, find_material(request.material), request, cancelled=cancelled, progress=progress

@@ -246,7 +246,7 @@ def rs_fabrics(material: str) -> Mapping[Fabric, RSFabric]:
         raise InputError(
             "material",
             f"the paper has no RS geometry for {material!r}.",
-            f"Use {' or '.join(MATERIALS)}, or rs_fabric() with geometry of your own.",
+            f"Use {' or '.join(MATERIALS)}.",
         )
     return {fabric: _published_fabric(key, fabric) for fabric in Fabric}
 

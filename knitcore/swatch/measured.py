@@ -77,8 +77,8 @@ class MeasuredField:
         if not numbers or not numbers <= known:
             raise InputError(
                 "frames",
-                f"{sorted(numbers - known)} are not in the file.",
-                f"Use some of {sorted(known)}.",
+                f"the file has no stretched picture {_listed(numbers - known)}.",
+                f"Use {_listed(known)}; a picture without motion is what those are compared with.",
             )
         kept = tuple(frame for frame in self.frames if frame.number in numbers)
         return MeasuredField(self.width, self.length, kept)
@@ -92,6 +92,10 @@ class MeasuredField:
                 replace(frame, points=frame.points[step], displacement=frame.displacement[step])
             )
         return MeasuredField(self.width, self.length, tuple(frames))
+
+
+def _listed(numbers: set[int]) -> str:
+    return ", ".join(str(number) for number in sorted(numbers)) or "at all"
 
 
 def load_field(path: Path | str) -> MeasuredField:

@@ -63,7 +63,7 @@ def test_a_calibrated_law_can_be_compared(field: Path, tmp_path: Path) -> None:
     [
         (["compare", "missing.npz", *FABRIC], "field"),
         (["compare", "FIELD", "--direction", "wale"], "law"),
-        (["compare", "FIELD", *FABRIC, "--frame", "9"], "frames"),
+        (["compare", "FIELD", *FABRIC, "--frame", "9"], "no stretched picture 9. Use 2, 3"),
         (["calibrate", "FIELD", "x.h5", *FABRIC, "--out", "law.json"], "tests"),
     ],
 )

@@ -132,6 +132,7 @@ def test_the_studys_workbook_on_the_command_line(study_data: Path) -> None:
     book = study_data / "compression" / "compressionTests.xls"
     told = run("measure", "compression", book)
     assert told["k_n_per_mm3"] is None  # two yarns have no common mean
+    assert "ask for one yarn" in told["notes"][0]  # type: ignore[index]
     assert set(told["mean"]) == {"acrylic", "cotton"}  # type: ignore[call-overload]
     acrylic = run("measure", "compression", book, "--yarn", "acrylic")
     assert acrylic["k_n_per_mm3"] == pytest.approx(0.618e-3, rel=0.01)

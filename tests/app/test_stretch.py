@@ -51,6 +51,7 @@ def test_the_command_line_gives_the_same_curve(client: TestClient, tmp_path: Pat
         ({"strain": "much"}, "strain"),
         ({"direction": "up"}, "direction"),
         ({"steps": 0}, "steps"),
+        ({"steps": 99, "chart": {"fabric": "rib", "columns": 200, "rows": 200}}, "steps"),
         ({"material": "steel"}, "material"),
         ({"chart": "K?"}, "chart"),
         ({"chart": {"fabric": "rib", "columns": 900, "rows": 900}}, "chart"),
