@@ -3,26 +3,205 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncIterator, Callable
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import StreamingResponse
+from pydantic import BaseModel, ConfigDict, Field
 
+from app.operations.share import ShareRequest, shared_page, shared_recording, shared_solid
+from app.operations.stretch import StretchRun
 from app.operations.view import ViewRequest, ViewResult, build_scene
+from app.problems import NotFoundError, Problem
+from app.viewer.camera import Side
 from app.viewer.design_id import DesignId, private_name
+from app.viewer.fabric import Box
+from app.viewer.share import picture_png
+from app.viewer.views import View
 
 router = APIRouter(tags=["views"])
+
+EVENT_PERIOD_S = 0.5
+HEARTBEATS = 30
+"""Periods without a click after which a line is sent, so that a vanished client is noticed."""
+MISSING: dict[int | str, dict[str, Any]] = {
+    404: {"model": Problem, "description": "This view is not open."}
+}
+
+
+class BoxInput(BaseModel):
+    """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    row0: int = Field(ge=0, lt=100_000)
+    column0: int = Field(ge=0, lt=100_000)
+    row1: int = Field(ge=1, le=100_000)
+    column1: int = Field(ge=1, le=100_000)
+
+
+class MarkRequest(BaseModel):
+    """What to outline."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    box: BoxInput | None = None
+
+
+class CameraRequest(BaseModel):
+    """From where to look."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    side: Side
 
 
 @router.put("/views/{design}", summary="Show a design in its 3D view")
 async def put_view(design: DesignId, body: ViewRequest, request: Request) -> ViewResult:
     """Draw the design's scene; whoever watches `/view/{design}/` sees it change at once."""
     state = request.app.state
-    stretch = state.recent.get(body.stretch.id) if body.stretch else None
+    stretch, name = _stretch(body, request), private_name(design)
 
-    name = private_name(design)
-
-    def draw() -> int:
+    def draw() -> ViewResult:
         scene = build_scene(body, stretch)
-        return int(state.views.open(name).show(scene))
+        drawn = state.views.open(name).show(scene)
+        return ViewResult(stitches=drawn, source=scene.shapes.source, url=f"/view/{design}/")
 
-    drawn = await asyncio.to_thread(draw)
-    return ViewResult(stitches=drawn, url=f"/view/{design}/")
+    return await asyncio.to_thread(draw)
+
+
+@router.put("/views/{design}/mark", status_code=204, summary="Outline stitches", responses=MISSING)
+async def put_mark(design: DesignId, body: MarkRequest, request: Request) -> None:
+    """Outline stitches on both sides of the fabric; without a box nothing is outlined."""
+    box = Box(**body.box.model_dump()) if body.box else None
+    await asyncio.to_thread(_view(design, request).writer.mark, box)
+
+
+@router.put(
+    "/views/{design}/camera", status_code=204, summary="Look from a side", responses=MISSING
+)
+async def put_camera(design: DesignId, body: CameraRequest, request: Request) -> None:
+    """Turn the camera of everybody who watches, so that the whole fabric is seen."""
+    await asyncio.to_thread(_view(design, request).writer.look, body.side)
+
+
+@router.get(
+    "/views/{design}/events",
+    summary="Follow clicks on stitches",
+    response_class=StreamingResponse,
+    responses={
+        200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."},
+        **MISSING,
+    },
+)
+async def get_events(design: DesignId, request: Request) -> StreamingResponse:
+    """Server-sent events, one for each click on a stitch in the view: its row and column from 0.
+
+    Ends with the view.
+    """
+    _view(design, request)
+    return StreamingResponse(
+        _events(private_name(design), request),
+        media_type="text/event-stream",
+        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
+    )
+
+
+@router.get(
+    "/views/{design}/picture",
+    summary="A picture of the view",
+    response_class=Response,
+    responses={200: {"content": {"image/png": {}}, "description": "A PNG."}, **MISSING},
+)
+async def get_picture(
+    design: DesignId,
+    request: Request,
+    width: Annotated[int, Query(ge=16, le=4096)] = 1600,
+    height: Annotated[int, Query(ge=16, le=4096)] = 1200,
+) -> Response:
+    """As a browser that watches `/view/{design}/` sees it; somebody must be watching."""
+    view = _view(design, request)
+    content = await asyncio.to_thread(picture_png, view, width, height)
+    return Response(content, media_type="image/png")
+
+
+def _file(media: str, text: str) -> dict[int | str, dict[str, Any]]:
+    return {200: {"content": {media: {}}, "description": text}}
+
+
+@router.post(
+    "/views/page",
+    summary="A page to give away",
+    response_class=Response,
+    responses=_file("text/html", "One file that needs neither the service nor the network."),
+)
+async def post_page(body: ShareRequest, request: Request) -> Response:
+    """The fabric to turn with the mouse; animated, its stretch test plays."""
+    return await _shared(shared_page, body, request, "text/html", "html")
+
+
+@router.post(
+    "/views/recording",
+    summary="A recording to give away",
+    response_class=Response,
+    responses=_file("application/octet-stream", "A `.viser` file."),
+)
+async def post_recording(body: ShareRequest, request: Request) -> Response:
+    """For viser's own player."""
+    return await _shared(shared_recording, body, request, "application/octet-stream", "viser")
+
+
+@router.post(
+    "/views/solid",
+    summary="The yarn as glTF",
+    response_class=Response,
+    responses=_file("model/gltf-binary", "Binary glTF 2.0 in metres."),
+)
+async def post_solid(body: ShareRequest, request: Request) -> Response:
+    """The fabric as it lies, relaxed or stretched, with its colours."""
+    return await _shared(shared_solid, body, request, "model/gltf-binary", "glb")
+
+
+async def _shared(
+    make: Callable[[ShareRequest, StretchRun | None], bytes],
+    body: ShareRequest,
+    request: Request,
+    media: str,
+    ending: str,
+) -> Response:
+    content = await asyncio.to_thread(make, body, _stretch(body, request))
+    headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
+    return Response(content, media_type=media, headers=headers)
+
+
+def _stretch(body: ViewRequest, request: Request) -> StretchRun | None:
+    if body.stretch is None:
+        return None
+    run: StretchRun | None = request.app.state.recent.get(body.stretch.id)
+    return run
+
+
+def _view(design: str, request: Request) -> View:
+    view: View | None = request.app.state.views.get(private_name(design))
+    if view is None:
+        raise NotFoundError(
+            "This view is not open.", field="design", remedy="Show the design first."
+        )
+    return view
+
+
+async def _events(name: str, request: Request) -> AsyncIterator[bytes]:
+    state, quiet = request.app.state, 0
+    with state.views.clicks.listen(name) as queue:
+        yield b"retry: 2000\n\n"
+        while not state.stopping and state.views.get(name) is not None:
+            try:
+                row, column = await asyncio.wait_for(queue.get(), EVENT_PERIOD_S)
+            except TimeoutError:
+                quiet += 1
+                if quiet % HEARTBEATS == 0:
+                    yield b": still there\n\n"
+                continue
+            quiet = 0
+            yield f'event: stitch\ndata: {{"row": {row}, "column": {column}}}\n\n'.encode()

@@ -10,29 +10,33 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
 from app.operations.stretch import StretchRun
-from app.viewer.colours import diverging, fabric_mix, sequential
+from app.operations.view_colours import (
+    Colour,
+    FieldColours,
+    Palette,
+    region_labels,
+    stitch_colours,
+)
 from app.viewer.fabric import FabricScene
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Direction
+from knitcore.formats.layout import DesignRegion
 from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import at_rest, carried
+from knitcore.geometry.placing import Placement, at_rest, carried
+from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
 from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
-from knitcore.mechanics.local import stitch_table
-from knitcore.phases import surroundings
+
+MAX_REGIONS = 200
 
 
-class Colour(StrEnum):
-    """What the colours of the loops mean."""
+class RectangleGroups(StrEnum):
+    """What one extensibility rectangle stands for."""
 
-    FABRIC = "fabric"
-    COURSE = "course"
-    WALE = "wale"
-    ANISOTROPY = "anisotropy"
-    STRAIN = "strain"
-    UTILISATION = "utilisation"
+    STITCH = "stitch"
+    BLOCK = "block"
+    REGION = "region"
 
 
 class StretchStep(BaseModel):
@@ -44,6 +48,15 @@ class StretchStep(BaseModel):
     step: int = Field(ge=0)
 
 
+class Focus(BaseModel):
+    """A stitch; row 0 is the bottom one."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    row: int = Field(ge=0)
+    column: int = Field(ge=0)
+
+
 class ViewRequest(BaseModel):
     """A design and how to show it."""
 
@@ -52,14 +65,25 @@ class ViewRequest(BaseModel):
     chart: ChartInput
     material: str
     colour: Colour = Colour.FABRIC
+    field: FieldColours | None = Field(None, description="Values for the colour `field`.")
+    regions: list[DesignRegion] = Field(
+        [], max_length=MAX_REGIONS, description="Of the design; coloured by `yarn` and `region`."
+    )
+    palette: Palette = Palette()
     rectangles: bool = False
+    rectangle_groups: RectangleGroups = RectangleGroups.STITCH
+    rectangle_block: int = Field(4, ge=1, le=400, description="Stitches on a side of a block.")
     stretch: StretchStep | None = None
+    focus: Focus | None = Field(
+        None, description="Around it a chart is drawn as yarn that is too large to be drawn whole."
+    )
 
 
 class ViewResult(BaseModel):
     """What is shown, and where."""
 
-    stitches: int = Field(description="Stitches drawn as loops.")
+    stitches: int = Field(description="Stitches drawn as yarn.")
+    source: str = Field(description="Where the shapes of the stitches come from.")
     url: str
 
 
@@ -78,18 +102,27 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
     if stretch is not None:
         centres = stretch.positions_mm[step].astype(float)
         placement = carried(shapes, centres, flat_lattice(chart, material))
+    colours = stitch_colours(
+        request.colour,
+        chart,
+        material,
+        palette=request.palette,
+        regions=request.regions,
+        field=request.field,
+        stretch=stretch,
+        step=step,
+    )
     return FabricScene(
         shapes=shapes,
         placement=placement,
-        colours=_colours(request.colour, chart, material, stretch, step),
-        rectangles_mm=_rectangles_mm(chart, material) if request.rectangles else None,
+        colours=colours,
+        rectangles_mm=_rectangles(request, chart, material, placement),
+        focus=(request.focus.row, request.focus.column) if request.focus else None,
     )
 
 
 def _checked_step(request: ViewRequest, stretch: StretchRun | None, chart: StitchChart) -> int:
     if request.stretch is None:
-        if request.colour in (Colour.STRAIN, Colour.UTILISATION):
-            raise InputError("colour", "needs a stretch test.", "Run one and name its step.")
         return 0
     if stretch is None:
         raise InputError("stretch.id", "is not known any more.", "Run the stretch test again.")
@@ -101,45 +134,15 @@ def _checked_step(request: ViewRequest, stretch: StretchRun | None, chart: Stitc
     return request.stretch.step
 
 
-def _colours(
-    colour: Colour,
-    chart: StitchChart,
-    material: Material,
-    stretch: StretchRun | None,
-    step: int,
-) -> NDArray[np.uint8]:
-    table, codes = stitch_table(material), surroundings(chart)
-    if colour is Colour.FABRIC:
-        return fabric_mix(table.fractions)[codes]
-    if colour is Colour.COURSE:
-        values = table.modulus_course_n_per_mm
-        return sequential(values, values.min(), values.max(), log=True)[codes]
-    if colour is Colour.WALE:
-        values = table.modulus_wale_n_per_mm
-        return sequential(values, values.min(), values.max(), log=True)[codes]
-    if colour is Colour.ANISOTROPY:
-        ratio = np.log(table.modulus_course_n_per_mm / table.modulus_wale_n_per_mm)
-        return diverging(ratio, float(np.abs(ratio).max()))[codes]
-    assert stretch is not None  # noqa: S101 - checked with the step
-    if colour is Colour.UTILISATION:
-        return sequential(stretch.utilisation[step], 0.0, 1.0)
-    strain = stretch.strain[step][..., stretch.direction.axis]
-    most = float(np.abs(stretch.strain[..., stretch.direction.axis]).max())
-    return diverging(strain, most)
-
-
-def _rectangles_mm(chart: StitchChart, material: Material) -> NDArray[np.float64]:
-    """Extensibility rectangles (Fig. 4d) scaled so that the largest side fills 90 % of a stitch."""
-    table = stitch_table(material)
-    sides = np.stack(
-        [
-            table.extensibility_mm_per_n(Direction.COURSE),
-            table.extensibility_mm_per_n(Direction.WALE),
-        ],
-        axis=-1,
-    )[surroundings(chart)]
-    smallest = min(
-        min(material.record(f).stitch_course_mm, material.record(f).stitch_wale_mm) for f in PHASES
-    )
-    rectangles: NDArray[np.float64] = sides / sides.max() * 0.9 * smallest
-    return rectangles
+def _rectangles(
+    request: ViewRequest, chart: StitchChart, material: Material, placement: Placement
+) -> NDArray[np.float64] | None:
+    if not request.rectangles:
+        return None
+    if request.rectangle_groups is RectangleGroups.REGION:
+        labels = region_labels(chart, request.regions)
+    else:
+        block = request.rectangle_block
+        single = request.rectangle_groups is RectangleGroups.STITCH
+        labels = stitch_labels(chart.rows, chart.columns, 1 if single else block)
+    return extensibility_rectangles(chart, material, placement, labels)

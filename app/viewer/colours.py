@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from knitcore.fabric import Fabric
+from knitcore.fabric import PHASES, Fabric
 
 Colours = NDArray[np.uint8]
 
@@ -15,6 +15,9 @@ FABRIC_COLOURS: dict[Fabric, str] = {
     Fabric.RIB: "4a9a5b",
     Fabric.SEED: "8a62ad",
 }
+
+YARN_COLOUR = "d8c6ab"
+"""Undyed wool, where a yarn has no colour of its own."""
 
 BATLOW = (
     "011959 08255b 0d315d 0f3b5f 114360 134b61 175262 1b5962 226061 2b655e 356a59 "
@@ -55,12 +58,19 @@ def diverging(values: ArrayLike, most: float) -> Colours:
     return _mapped(0.5 + 0.5 * x / max(most, 1e-12), _stops(VIK))
 
 
-def fabric_mix(fractions: NDArray[np.float64]) -> Colours:
+def fabric_mix(fractions: NDArray[np.float64], palette: Colours | None = None) -> Colours:
     """Fabric colours mixed by shares, (..., 4) in the order of the phase codes -> (..., 3)."""
-    palette = np.array([list(bytes.fromhex(FABRIC_COLOURS[f])) for f in FABRIC_COLOURS], float)
+    if palette is None:
+        palette = np.array([rgb(FABRIC_COLOURS[fabric]) for fabric in PHASES], dtype=np.uint8)
     # Light adds in linear space: mixing there keeps half-and-half stitches as bright as pure ones.
-    mixed: NDArray[np.float64] = (fractions @ (palette / 255) ** 2.2) ** (1 / 2.2)
+    mixed: NDArray[np.float64] = (fractions @ (palette / 255.0) ** 2.2) ** (1 / 2.2)
     return np.round(255 * mixed).astype(np.uint8)
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """Of a hexadecimal colour, with or without #."""
+    red, green, blue = bytes.fromhex(colour.removeprefix("#"))
+    return red, green, blue
 
 
 def _mapped(t: NDArray[np.float64], stops: NDArray[np.float64]) -> Colours:

@@ -38,7 +38,7 @@ class FabricScene:
     ----------
     shapes, placement : the yarn and where it lies.
     colours : (rows, columns, 3) uint8.
-    rectangles_mm : (rows, columns, 2) sides of the extensibility rectangles, or None for no layer.
+    rectangles_mm : (rectangles, 4, 2) corners of the layer of rectangles, or None.
     focus : (row, column) around which a chart that is too large is drawn as yarn; its middle if
         None.
     """
@@ -85,7 +85,6 @@ class FabricScene:
                 places.centres_mm[part], places.sizes_mm[part], places.angles[part], places.depth
             ),
             colours=self.colours[part],
-            rectangles_mm=None if self.rectangles_mm is None else self.rectangles_mm[part],
         )
 
     def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:

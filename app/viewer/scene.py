@@ -210,9 +210,7 @@ def _of(instances: dict[str, Any], stitches: NDArray[np.intp]) -> dict[str, Any]
 
 def _rectangle_lines(scene: FabricScene, middle: Array) -> NDArray[np.float32]:
     assert scene.rectangles_mm is not None  # noqa: S101 - the caller checked
-    half = scene.rectangles_mm.reshape(-1, 1, 2) / 2
-    centre = (scene.placement.centres_mm.reshape(-1, 2) - middle)[:, None, :]
-    corners = centre + half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    corners = scene.rectangles_mm - middle
     highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
     height = highest + 1.3 * scene.shapes.yarn_radius_mm
     lifted = np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import viser
 
 from app.problems import UnavailableError
+from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.fabric import FabricScene
 from app.viewer.private_port import private_server
 from app.viewer.scene import SceneWriter
@@ -49,6 +50,7 @@ class Views:
     """
 
     def __init__(self, most: int, idle_s: float) -> None:
+        self.clicks = Clicks()
         self._most = most
         self._idle_s = idle_s
         self._views: dict[str, View] = {}
@@ -66,7 +68,8 @@ class Views:
             view = self._views.get(design)
             if view is None:
                 self._make_room()
-                view = self._views[design] = _new_view()
+                view = self._views[design] = new_view()
+                self._pass_clicks_on(design, view)
             view.last_used = time.monotonic()
             return view
 
@@ -104,6 +107,14 @@ class Views:
     def __len__(self) -> int:
         return len(self._views)
 
+    def _pass_clicks_on(self, design: str, view: View) -> None:
+        @view.server.scene.on_click()
+        def clicked(event: viser.SceneClickEvent) -> None:
+            scene = view.writer.scene
+            cell = clicked_stitch(scene, event.ray_origin, event.ray_direction) if scene else None
+            if cell is not None:
+                self.clicks.tell(design, cell)
+
     def _make_room(self) -> None:
         if len(self._views) < self._most:
             return
@@ -113,7 +124,8 @@ class Views:
         self._views.pop(min(unwatched)[1]).server.stop()
 
 
-def _new_view() -> View:
+def new_view() -> View:
+    """A view of its own, of nothing yet."""
     server = private_server()
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     scene = server.scene

@@ -34,7 +34,11 @@ def _messages(client: TestClient, design: str, enough: bytes) -> bytes:
 def test_a_design_is_drawn_and_reaches_the_browser(client: TestClient) -> None:
     body = {"chart": GARTER, "material": "acrylic", "colour": "course", "rectangles": True}
     answer = client.put(f"/api/v1/views/{DESIGN}", json=body)
-    assert answer.json() == {"stitches": 54, "url": f"/view/{DESIGN}/"}
+    assert answer.json() == {
+        "stitches": 54,
+        "source": "relaxed curves of the four fabrics in acrylic",
+        "url": f"/view/{DESIGN}/",
+    }
     seen = _messages(client, DESIGN, b"/rectangles")
     assert b"/fabric/" in seen
     assert b"/rectangles" in seen

@@ -1,0 +1,172 @@
+"""The colours of the stitches in the 3D view, by what they are to show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.operations.stretch import StretchRun
+from app.viewer.colours import (
+    FABRIC_COLOURS,
+    YARN_COLOUR,
+    diverging,
+    fabric_mix,
+    rgb,
+    sequential,
+)
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.formats.layout import Colour as HexColour
+from knitcore.formats.layout import DesignRegion
+from knitcore.materials import Material
+from knitcore.mechanics.local import StitchTable, stitch_table
+from knitcore.phases import surroundings
+
+Colours = NDArray[np.uint8]
+Value = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class Colour(StrEnum):
+    """What the colours of the stitches mean."""
+
+    YARN = "yarn"
+    REGION = "region"
+    FABRIC = "fabric"
+    PHASE = "phase"
+    COURSE = "course"
+    WALE = "wale"
+    ANISOTROPY = "anisotropy"
+    STRAIN = "strain"
+    UTILISATION = "utilisation"
+    FIELD = "field"
+
+
+class Palette(BaseModel):
+    """Colours that carry a meaning; the page sends those of its theme."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    yarn: HexColour = f"#{YARN_COLOUR}"
+    stockinette: HexColour = f"#{FABRIC_COLOURS[Fabric.STOCKINETTE]}"
+    garter: HexColour = f"#{FABRIC_COLOURS[Fabric.GARTER]}"
+    rib: HexColour = f"#{FABRIC_COLOURS[Fabric.RIB]}"
+    seed: HexColour = f"#{FABRIC_COLOURS[Fabric.SEED]}"
+
+    def fabrics(self) -> Colours:
+        """(4, 3) in the order of the phase codes."""
+        return np.array([rgb(getattr(self, fabric.value)) for fabric in PHASES], dtype=np.uint8)
+
+
+class FieldColours(BaseModel):
+    """Any value of each stitch on a colour map."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    values: list[Value] = Field(
+        max_length=160_000, description="Row by row from the bottom, each from the left."
+    )
+    low: Value
+    high: Value
+    log: bool = False
+    map: Literal["batlow", "vik"] = "batlow"
+
+
+def stitch_colours(
+    colour: Colour,
+    chart: StitchChart,
+    material: Material,
+    *,
+    palette: Palette,
+    regions: Sequence[DesignRegion],
+    field: FieldColours | None,
+    stretch: StretchRun | None,
+    step: int,
+) -> Colours:
+    """Colour of every stitch, (rows, columns, 3).
+
+    Raises
+    ------
+    InputError
+        If the field has another number of values than the chart stitches.
+    """
+    if colour in (Colour.YARN, Colour.REGION):
+        every = colour is Colour.REGION
+        return _regions(chart, [r for r in regions if every or r.yarn is not None], palette)
+    if colour is Colour.FIELD:
+        return _field(chart, field)
+    if colour in (Colour.STRAIN, Colour.UTILISATION):
+        return _stretched(colour, stretch, step)
+    by_kind: Colours = _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
+    return by_kind
+
+
+def _kinds(colour: Colour, table: StitchTable, palette: Palette) -> Colours:
+    """(16, 3) colours of the kinds of stitch."""
+    if colour is Colour.FABRIC:
+        return fabric_mix(table.fractions, palette.fabrics())
+    if colour is Colour.PHASE:
+        strongest: Colours = palette.fabrics()[table.fractions.argmax(axis=1)]
+        return strongest
+    if colour is Colour.ANISOTROPY:
+        ratio = np.log(table.anisotropy)
+        return diverging(ratio, float(np.abs(ratio).max()))
+    values = table.modulus_n_per_mm(Direction(colour.value))
+    return sequential(values, values.min(), values.max(), log=True)
+
+
+def _stretched(colour: Colour, stretch: StretchRun | None, step: int) -> Colours:
+    if stretch is None:
+        raise InputError("colour", "needs a stretch test.", "Run one and name its step.")
+    if colour is Colour.UTILISATION:
+        return sequential(stretch.utilisation[step], 0.0, 1.0)
+    along = stretch.strain[..., stretch.direction.axis]
+    return diverging(along[step], float(np.abs(along).max()))
+
+
+def region_labels(chart: StitchChart, regions: Sequence[DesignRegion]) -> NDArray[np.intp]:
+    """(rows, columns) number of the topmost visible region at each stitch; -1 where none is.
+
+    Raises
+    ------
+    InputError
+        If a run leaves the chart.
+    """
+    labels = np.full((chart.rows, chart.columns), -1, dtype=np.intp)
+    for number, region in enumerate(regions):
+        if region.hidden:
+            continue
+        for row, column, length in region.runs:
+            if row >= chart.rows or column + length > chart.columns:
+                raise InputError(
+                    "regions",
+                    f"{region.name!r} leaves the chart in row {row + 1}.",
+                    "Keep its runs inside the chart.",
+                )
+            labels[row, column : column + length] = number
+    return labels
+
+
+def _regions(chart: StitchChart, regions: Sequence[DesignRegion], palette: Palette) -> Colours:
+    colours = np.array([rgb(palette.yarn), *(rgb(r.colour) for r in regions)], dtype=np.uint8)
+    return colours[region_labels(chart, regions) + 1]
+
+
+def _field(chart: StitchChart, field: FieldColours | None) -> Colours:
+    if field is None or len(field.values) != chart.rows * chart.columns:
+        raise InputError(
+            "field",
+            "has not one value for each stitch.",
+            f"Send {chart.rows * chart.columns} values, row by row from the bottom.",
+        )
+    values = np.array(field.values).reshape(chart.rows, chart.columns)
+    if field.log and (min(field.low, field.high) <= 0 or values.min() <= 0):
+        raise InputError("field", "has values that no logarithm has.", "Send positive ones.")
+    if field.map == "vik":
+        return diverging(values, max(abs(field.low), abs(field.high)))
+    return sequential(values, field.low, field.high, log=field.log)

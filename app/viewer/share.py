@@ -1,0 +1,103 @@
+"""Views to give away: pictures, pages that need no service, recordings, solids."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from app.problems import UnavailableError
+from app.viewer.fabric import FabricScene
+from app.viewer.views import View, new_view
+from knitcore.geometry.instances import resampled
+from knitcore.geometry.placing import placed_lines
+from knitcore.geometry.tubes import tube_faces, tube_vertices
+
+FRAME_S = 0.14
+PICTURE_TIMEOUT_S = 25.0
+SOLID_LEVELS = ((1_000, 33, 8), (4_000, 17, 6), (10_000, 11, 5))
+"""(largest number of stitches, points, sides) of solids."""
+MOST_SOLID = SOLID_LEVELS[-1][0]
+
+
+def picture_png(view: View, width: int, height: int) -> bytes:
+    """A picture as the last of the browsers that look sees it, with a transparent background.
+
+    Raises
+    ------
+    UnavailableError
+        If nobody looks, or the browser does not answer.
+    """
+    clients = sorted(view.server.get_clients().items())
+    if not clients:
+        raise UnavailableError("Nobody looks at this view, so there is no picture of it.")
+    try:
+        pixels = clients[-1][1].get_render(
+            height, width, transport_format="png", timeout=PICTURE_TIMEOUT_S
+        )
+    except (TimeoutError, RuntimeError, ConnectionError) as error:
+        raise UnavailableError("The browser that shows this view sent no picture.") from error
+    return png(pixels)
+
+
+def png(pixels: NDArray[np.uint8]) -> bytes:
+    """Pixels (height, width, 3 or 4) as a file."""
+    content = io.BytesIO()
+    Image.fromarray(pixels).save(content, "PNG")
+    return content.getvalue()
+
+
+def page_html(scenes: Iterable[FabricScene], *, dark: bool) -> str:
+    """A page that shows a fabric, and plays the steps if there are several."""
+    with _recorded(scenes) as serializer:
+        page: str = serializer.as_html(dark_mode=dark)
+    return page
+
+
+def recording(scenes: Iterable[FabricScene]) -> bytes:
+    """A ``.viser`` file."""
+    with _recorded(scenes) as serializer:
+        content: bytes = serializer.serialize()
+    return content
+
+
+@contextmanager
+def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
+    """A server of one's own: nobody who looks at the design sees the steps run by."""
+    view = new_view()
+    try:
+        remaining = iter(scenes)
+        view.show(next(remaining))
+        serializer = view.server.get_scene_serializer()
+        for scene in remaining:
+            serializer.insert_sleep(FRAME_S)
+            view.show(scene)
+        serializer.insert_sleep(FRAME_S)
+        yield serializer
+    finally:
+        view.server.stop()
+
+
+def solid_glb(scene: FabricScene) -> bytes:
+    """The yarn as it lies, with its colours: binary glTF 2.0 in metres."""
+    import trimesh
+
+    stitches = scene.shapes.index.size
+    points, sides = next((p, s) for most, p, s in SOLID_LEVELS if stitches <= most)
+    placed = placed_lines(scene.shapes, scene.placement).reshape(stitches, -1, 3)
+    vertices = tube_vertices(resampled(placed, points), scene.shapes.yarn_radius_mm, sides)
+    count = vertices.shape[1]
+    faces = tube_faces(points, sides).astype(np.int64)
+    solid: Any = trimesh.Trimesh(
+        vertices.reshape(-1, 3) * 0.001,
+        (faces[None] + count * np.arange(stitches)[:, None, None]).reshape(-1, 3),
+        vertex_colors=np.repeat(scene.colours.reshape(-1, 3), count, axis=0),
+        process=False,
+    )
+    content = solid.export(file_type="glb")
+    return bytes(content)
