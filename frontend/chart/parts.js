@@ -153,6 +153,7 @@ export function drawRepeats(context, view, { grid, repeats }, palette) {
  * @param {Palette} palette
  */
 export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
+  if (!repeats.length) return; // setting a font is slow
   context.font = "600 13px system-ui, sans-serif";
   context.textAlign = "left";
   context.textBaseline = "middle";

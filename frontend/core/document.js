@@ -121,8 +121,7 @@ export class ChartDocument {
     }
     this.#lay(target, wanted, fresh);
     if (own?.fill) {
-      const layer = stroke.layers.get(target);
-      this.#lay("stitches", this.#linked(this.#filling(own, (i) => layer?.has(i) === true)), true);
+      this.#lay("stitches", this.#linked(this.#filling(own, stroke.layers.get(target))), true);
     }
   }
 
@@ -433,7 +432,7 @@ export class ChartDocument {
     if (laid) {
       this.begin();
       if (laid instanceof Repeat) this.#lay("stitches", this.#linked(this.#laying(laid), true), false);
-      else if (laid.fill) this.paint(this.#filling(laid, () => true), false);
+      else if (laid.fill) this.paint(this.#filling(laid), false);
       const stroke = this.#stroke;
       this.#stroke = null;
       const { runs } = stroke?.layers.get("stitches") ?? { runs: [] };
@@ -470,19 +469,24 @@ export class ChartDocument {
   }
 
   /**
+   * The stitches of a region's fill; under a stroke, only where it has added to the region.
+   *
    * @param {Region} region
-   * @param {(i: number) => boolean} among
+   * @param {Layer} [added]
    */
-  #filling(region, among) {
+  #filling(region, added) {
     const { columns } = this.grid;
-    const above = this.regions.slice(this.regions.findIndex(({ id }) => id === region.id) + 1);
-    const filled = above.filter(({ fill }) => fill);
+    const at = this.regions.findIndex(({ id }) => id === region.id);
+    const above = this.regions.slice(at + 1).filter(({ fill }) => fill);
     const brush = new Brush(region.cells.length);
-    region.cells.forEach((cell, i) => {
-      if (!cell || !among(i) || filled.some(({ cells }) => cells[i])) return;
-      const row = Math.floor(i / columns);
-      brush.set(i, region.filling(row, i - row * columns));
-    });
+    const { row0, row1, column0, column1 } = (added ? added.reach : null) ?? this.grid.box;
+    for (let row = row0; row < row1; row++) {
+      for (let column = column0; column < column1; column++) {
+        const i = row * columns + column;
+        if (!region.cells[i] || (added && !added.has(i)) || above.some(({ cells }) => cells[i])) continue;
+        brush.set(i, region.filling(row, column));
+      }
+    }
     return brush;
   }
 

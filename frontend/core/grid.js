@@ -35,15 +35,14 @@ export class Grid {
 
   /** The chart as K/P lines, top row first. */
   get text() {
-    const lines = [];
-    for (let row = this.rows - 1; row >= 0; row--) {
-      let line = "";
-      for (let i = row * this.columns; i < (row + 1) * this.columns; i++) {
-        line += this.purl[i] ? "P" : "K";
-      }
-      lines.push(line);
+    const { rows, columns, purl } = this;
+    const bytes = new Uint8Array(rows * (columns + 1) - 1);
+    for (let row = rows - 1, k = 0; row >= 0; row--, k++) {
+      const end = (row + 1) * columns;
+      for (let i = end - columns; i < end; i++) bytes[k++] = purl[i] ? 80 : 75; // P, K
+      if (row) bytes[k] = 10;
     }
-    return lines.join("\n");
+    return new TextDecoder().decode(bytes);
   }
 
   /** @returns {Box} */

@@ -86,12 +86,17 @@ export function inked(grid, spans, ink, origin, symmetry) {
   const brush = new Brush(rows * columns);
   const across = symmetry === "across" || symmetry === "both";
   const up = symmetry === "up" || symmetry === "both";
-  for (const [row, from, to] of spans) {
+  const repeat = /** @type {Grid} */ (ink.repeat);
+  for (const [row, start, end] of spans) {
     if (row < 0 || row >= rows) continue;
+    const [from, to] = [Math.max(0, start), Math.min(columns, end)];
     const base = row * columns;
     const mirrored = (rows - 1 - row) * columns;
-    for (let column = Math.max(0, from); column < Math.min(columns, to); column++) {
-      const value = ink.at([row, column], origin);
+    const line = modulo(row - origin[0], repeat.rows) * repeat.columns;
+    let c = modulo(from - origin[1], repeat.columns);
+    for (let column = from; column < to; column++) {
+      const value = repeat.purl[line + c];
+      if (++c === repeat.columns) c = 0;
       const other = columns - 1 - column;
       brush.set(base + column, value);
       if (across) brush.set(base + other, value);

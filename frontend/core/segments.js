@@ -71,12 +71,11 @@ export function surroundings(grid, outline = null) {
 export function countSegments({ rows, columns, purl }) {
   let course = 0;
   let wale = 0;
-  for (let row = 0, i = 0; row < rows; row++) {
-    for (let column = 0; column < columns; column++, i++) {
-      if (column + 1 < columns) course += purl[i] ^ purl[i + 1];
-      if (row + 1 < rows) wale += purl[i] ^ purl[i + columns];
-    }
+  for (let row = 0; row < rows; row++) {
+    const end = (row + 1) * columns;
+    for (let i = end - columns + 1; i < end; i++) course += purl[i] ^ purl[i - 1];
   }
+  for (let i = columns; i < purl.length; i++) wale += purl[i] ^ purl[i - columns];
   return {
     course: { even: rows * (columns - 1) - course, odd: course },
     wale: { even: (rows - 1) * columns - wale, odd: wale },

@@ -12,9 +12,9 @@ import { icon } from "../icons.js";
 
 /** @type {[Look, string][]} */
 const LOOKS = [
-  ["both", "Colours and symbols"],
-  ["colours", "Colours"],
-  ["symbols", "Symbols"],
+  ["both", "Colour & dot"],
+  ["colours", "Colour"],
+  ["symbols", "Symbol"],
   ["loops", "Loops"],
 ];
 
