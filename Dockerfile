@@ -1,4 +1,5 @@
-FROM node:20-bookworm-slim AS page
+FROM debian:bookworm-slim AS page
+RUN apt-get update && apt-get install -y --no-install-recommends nodejs npm
 WORKDIR /page
 COPY frontend .
 RUN npm ci --no-audit --no-fund && node build.mjs

@@ -41,14 +41,28 @@ def test_no_secret_has_a_default() -> None:
                 assert ":?" in value, f"{name} must come from outside"
 
 
+def test_the_cluster_is_the_one_that_the_service_asks() -> None:
+    """The commands themselves are run by tests/app/test_cluster.py."""
+    services = COMPOSE["services"]
+    address = services["app"]["environment"]["KNITCORE_SCHEDULER"]
+    name, port = address.removeprefix("tcp://").split(":")
+    assert services[name]["command"][1:4] == ["scheduler", "--port", port]
+    worker = services["worker"]["command"]
+    assert worker[2] == address
+    assert worker[4] == services["app"]["environment"]["KNITCORE_WORKERS"]
+    assert services[name]["networks"] == services["worker"]["networks"] == ["cluster"]
+    assert COMPOSE["networks"]["cluster"]["internal"]
+
+
 def test_services_wait_for_each_other_and_keep_their_data() -> None:
     services, volumes = COMPOSE["services"], COMPOSE["volumes"]
     for service in services.values():
         assert service["healthcheck"]["test"]
         for other in service.get("depends_on", {}):
             assert "healthcheck" in services[other]
-        for volume in service["volumes"]:
+        for volume in service.get("volumes", []):
             assert volume.split(":")[0] in volumes
+        assert set(service["networks"]) <= set(COMPOSE["networks"])
     database = services["database"]["environment"]
     url = services["app"]["environment"]["KNITCORE_DATABASE_URL"]
     assert url.startswith(f"postgresql+psycopg://{database['POSTGRES_USER']}:")
@@ -56,20 +70,22 @@ def test_services_wait_for_each_other_and_keep_their_data() -> None:
 
 
 def test_the_service_has_no_more_rights_than_it_needs() -> None:
-    app = COMPOSE["services"]["app"]
-    assert app["read_only"]
-    assert app["cap_drop"] == ["ALL"]
-    assert all(port.startswith("127.0.0.1:") for port in app["ports"])
-    assert "ports" not in COMPOSE["services"]["database"]
+    services = COMPOSE["services"]
+    for name in ("app", "scheduler", "worker"):
+        assert services[name]["read_only"]
+        assert services[name]["cap_drop"] == ["ALL"]
+    assert all(port.startswith("127.0.0.1:") for port in services["app"]["ports"])
+    assert [name for name, service in services.items() if "ports" in service] == ["app"]
 
 
 def test_the_image_runs_as_a_plain_user_from_debian_packages() -> None:
     lines = DOCKERFILE.splitlines()
-    assert lines[0].startswith("FROM debian:")
+    bases = [line for line in lines if line.startswith("FROM ")]
+    assert all(line.startswith("FROM debian:") for line in bases)
     user = next(i for i, line in enumerate(lines) if line.startswith("USER "))
     assert lines[user] != "USER root"
     assert user < next(i for i, line in enumerate(lines) if line.startswith("RUN make install"))
-    for file in re.findall(r"^(?:COPY|ADD) (?:--\S+ )?(\S+) ", DOCKERFILE, re.MULTILINE):
+    for file in re.findall(r"^COPY (?:--chown=\S+ )?([^-\s]\S*) ", DOCKERFILE, re.MULTILINE):
         assert (ROOT / file).exists()
     folder = COMPOSE["services"]["app"]["volumes"][0].split(":")[1]
     assert f"mkdir -p {folder}" in DOCKERFILE

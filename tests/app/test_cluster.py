@@ -10,8 +10,10 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
 from app import compute as compute_module
 from app.cluster import Cluster, ClusterError, ClusterPlace
@@ -21,14 +23,19 @@ from knitcore import InputError
 from tests.app import jobs
 
 ROOT = Path(__file__).resolve().parents[2]
+COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "compose.yaml").read_text())
 
 
-def _dask(name: str, folder: Path, *arguments: str) -> subprocess.Popen[bytes]:
+def _dask(name: str, folder: Path, *options: str, **changed: str) -> subprocess.Popen[bytes]:
+    """What the compose file runs, with some of its words changed and options added."""
+    service = COMPOSE["services"][name]
+    program, *words = service["command"]
+    assert program == ".venv/bin/dask"
+    command = [changed.get(word, word) for word in words]
     with (folder / f"{name}.log").open("w") as log:
         return subprocess.Popen(
-            [sys.executable, "-m", f"distributed.cli.dask_{name}", "--no-dashboard", *arguments],
-            env=os.environ
-            | {"PYTHONPATH": str(ROOT), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"},
+            [sys.executable, "-m", "dask", *command, *options],
+            env=os.environ | service["environment"] | {"PYTHONPATH": str(ROOT)},
             stdout=log,
             stderr=log,
         )
@@ -46,8 +53,9 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         assert time.monotonic() < deadline, (folder / "scheduler.log").read_text()
         time.sleep(0.05)
     found: str = json.loads(file.read_text())["address"]
-    one = ("--nworkers=2", "--nthreads=1", f"--local-directory={folder}")
-    running.append(_dask("worker", folder, found, *one))
+    (scratch,) = COMPOSE["services"]["worker"]["tmpfs"]
+    changed = {"tcp://scheduler:8786": found, scratch: str(folder)}
+    running.append(_dask("worker", folder, **changed))
     yield found
     for process in reversed(running):
         process.terminate()
