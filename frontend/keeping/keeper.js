@@ -230,7 +230,6 @@ export class Keeper {
     try {
       const outcome = await deliver(parcel, designs);
       if (this.#parcel.id !== parcel.id) return; // another design was opened meanwhile
-      this.studio.online.value = true;
       if (outcome.kind === "conflict") this.#clash(outcome);
       else this.#delivered(outcome, change, sent);
     } catch (error) {
@@ -301,7 +300,7 @@ export class Keeper {
   #failed(error) {
     if (error.offline) {
       this.state.value = { kind: "offline" };
-      this.studio.online.value = false;
+      this.#sendLater(RETRY_MS);
     } else if (error.problem.status >= 500 || error.problem.status === 429) {
       this.state.value = { kind: "waiting" };
       this.#sendLater(RETRY_MS);

@@ -12,14 +12,20 @@ import { loadSettings, saveSettings } from "../core/store.js";
 export function split(handle, property, { axis, least, size, most }) {
   const root = document.documentElement;
   const stored = /** @type {Record<string, number>} */ (loadSettings({}))[property];
+  const tell = () => {
+    handle.setAttribute("aria-valuemin", String(least));
+    handle.setAttribute("aria-valuemax", String(Math.max(least, most())));
+    handle.setAttribute("aria-valuenow", String(Math.round(size())));
+  };
   /** @param {number} pixels */
   const set = (pixels) => {
     const value = Math.round(Math.max(least, Math.min(most(), pixels)));
     root.style.setProperty(property, `${value}px`);
-    handle.setAttribute("aria-valuenow", String(value));
+    tell();
     return value;
   };
   if (Number.isFinite(stored)) set(stored);
+  else tell();
 
   handle.addEventListener("pointerdown", (event) => {
     handle.setPointerCapture(event.pointerId);

@@ -69,8 +69,7 @@ export function topbar(host, studio, context) {
   });
   const showSize = () => {
     const { columns, rows } = studio.document.grid;
-    size.replaceChildren(icon("resize"), h("span", {}, `${columns} × ${rows}`), h("span", { class: "label" }, "sts"));
-    size.setAttribute("aria-label", `${columns} stitches by ${rows} rows: change size`);
+    size.replaceChildren(icon("resize"), h("span", {}, `${columns} × ${rows}`), h("span", { class: "label" }, "sts"), h("span", { class: "visually-hidden" }, "change size"));
   };
   studio.document.onChange(({ resized }) => resized && showSize());
   showSize();
@@ -103,7 +102,6 @@ function materialMenu(studio) {
     const all = studio.materials.value;
     const chosen = all.find(({ id }) => id === studio.materialId.value);
     label.textContent = chosen?.name ?? studio.materialId.value;
-    button.setAttribute("aria-label", `Material: ${label.textContent}`);
     setItems(
       all.map((material) => ({
         id: `material-${material.id}`,

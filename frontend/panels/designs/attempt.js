@@ -1,8 +1,4 @@
-/**
- * Ask the service for something on behalf of a dialog, and show there what goes wrong.
- *
- * @import {Studio} from "../../studio.js"
- */
+/** Ask the service for something on behalf of a dialog, and show there what goes wrong. */
 
 import { ApiError } from "../../api.js";
 import { problemBox } from "../dialogs/dialog.js";
@@ -10,18 +6,16 @@ import { problemBox } from "../dialogs/dialog.js";
 /**
  * @template T
  * @param {HTMLElement} status where a problem is told; emptied first
- * @param {Studio} studio
  * @param {() => Promise<T>} work
  * @returns {Promise<T | null>} null if it failed
  */
-export async function attempt(status, studio, work) {
+export async function attempt(status, work) {
   status.replaceChildren();
   try {
     return await work();
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    if (error.offline) studio.online.value = false;
-    status.replaceChildren(problemBox(error.problem, () => void attempt(status, studio, work)));
+    status.replaceChildren(problemBox(error.problem, () => void attempt(status, work)));
     return null;
   }
 }

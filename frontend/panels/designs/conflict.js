@@ -28,7 +28,7 @@ export function create(studio, { keeper }) {
         type: "button",
         id: `conflict-${choice}`,
         onclick: async () => {
-          if ((await attempt(status, studio, () => keeper.resolve(choice).then(() => true))) !== null) element.close();
+          if ((await attempt(status, () => keeper.resolve(choice).then(() => true))) !== null) element.close();
         },
       }, label),
       h("span", { class: "muted" }, note));

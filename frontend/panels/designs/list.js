@@ -92,7 +92,7 @@ export function create(studio, context) {
     await load();
   };
   const load = async () => {
-    const page = await attempt(status, studio, () => designs.list({ cursor, deleted }));
+    const page = await attempt(status, () => designs.list({ cursor, deleted }));
     if (cursor === null) list.replaceChildren();
     more.hidden = !page?.next_cursor;
     if (!page) return;
@@ -129,7 +129,7 @@ export function create(studio, context) {
       "aria-current": here ? "true" : undefined,
       onclick: async () => {
         if (here) return element.close();
-        const kept = await attempt(status, studio, () => designs.read(design.id));
+        const kept = await attempt(status, () => designs.read(design.id));
         if (kept) leave(() => keeper.openKept(kept));
       },
     }, frame);
@@ -160,7 +160,7 @@ export function create(studio, context) {
       if (!wanted || wanted === design.name) return;
       if (design.id === keeper.remoteId) studio.name.value = wanted; // the keeper delivers it
       else {
-        const kept = await attempt(status, studio, () => designs.rename(design.id, wanted, design.revision));
+        const kept = await attempt(status, () => designs.rename(design.id, wanted, design.revision));
         if (!kept) return;
         design.revision = kept.revision;
       }
@@ -183,12 +183,12 @@ export function create(studio, context) {
   /** @param {Summary} design */
   const duplicate = async (design) => {
     if (design.id === keeper.remoteId) await keeper.flush();
-    if (await attempt(status, studio, () => designs.duplicate(design.id))) await reload();
+    if (await attempt(status, () => designs.duplicate(design.id))) await reload();
   };
 
   /** @param {Summary} design @param {HTMLElement} item */
   const remove = async (design, item) => {
-    if ((await attempt(status, studio, () => designs.remove(design.id).then(() => true))) === null) return;
+    if ((await attempt(status, () => designs.remove(design.id).then(() => true))) === null) return;
     const next = /** @type {HTMLElement | null} */ (item.nextElementSibling ?? item.previousElementSibling);
     item.remove();
     filter();
@@ -202,7 +202,7 @@ export function create(studio, context) {
 
   /** @param {Summary} design @param {HTMLElement | null} item */
   const recover = async (design, item) => {
-    if (!(await attempt(status, studio, () => designs.recover(design.id)))) return;
+    if (!(await attempt(status, () => designs.recover(design.id)))) return;
     item?.remove();
     if (item) filter();
     else await reload();

@@ -24,7 +24,7 @@ const MODES = {
  * @param {Studio} studio
  * @param {ActionContext} context
  */
-export function create(studio, { keeper }) {
+export function create(_studio, { keeper }) {
   /** @type {ShareMode} */ let mode = "read";
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ul", { class: "rows-list", id: "share-list" });
@@ -52,7 +52,7 @@ export function create(studio, { keeper }) {
     id: "share-make",
     onclick: async () => {
       const id = await remote();
-      const share = id && (await attempt(status, studio, () => designs.share(id, mode)));
+      const share = id && (await attempt(status, () => designs.share(id, mode)));
       if (!share) return;
       link.value = linkTo(share.token);
       copied.textContent = "Copy it now: for safety, the link itself is shown only this once.";
@@ -78,7 +78,7 @@ export function create(studio, { keeper }) {
   };
   const load = async () => {
     const id = keeper.remoteId;
-    const found = id ? await attempt(status, studio, () => designs.shares(id)) : { shares: [] };
+    const found = id ? await attempt(status, () => designs.shares(id)) : { shares: [] };
     list.replaceChildren(...(found?.shares ?? []).map(row));
   };
   /** @param {Share} share */
@@ -91,7 +91,7 @@ export function create(studio, { keeper }) {
         type: "button",
         onclick: async () => {
           const id = keeper.remoteId;
-          if (id && (await attempt(status, studio, () => designs.unshare(id, share.id).then(() => true)))) await load();
+          if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();
         },
       }, "Take back"));
 

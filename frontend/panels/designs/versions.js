@@ -35,7 +35,7 @@ export function create(studio, { keeper }) {
       event.preventDefault();
       const id = await remote();
       const wanted = name.value.trim() || new Date().toLocaleString("en", { dateStyle: "medium", timeStyle: "short" });
-      if (id && (await attempt(status, studio, () => designs.keepVersion(id, wanted)))) {
+      if (id && (await attempt(status, () => designs.keepVersion(id, wanted)))) {
         name.value = "";
         await load();
       }
@@ -58,7 +58,7 @@ export function create(studio, { keeper }) {
   };
   const load = async () => {
     const id = keeper.remoteId;
-    const found = id ? await attempt(status, studio, () => designs.versions(id)) : { versions: [] };
+    const found = id ? await attempt(status, () => designs.versions(id)) : { versions: [] };
     if (!found) return;
     const { versions } = found;
     list.replaceChildren(...versions.reverse().map(row));
@@ -84,7 +84,7 @@ export function create(studio, { keeper }) {
         "aria-label": `Restore ${version.name}`,
         onclick: async () => {
           const known = await remote();
-          const kept = known && (await attempt(status, studio, () => designs.restore(known, version.number, keeper.revision)));
+          const kept = known && (await attempt(status, () => designs.restore(known, version.number, keeper.revision)));
           if (!kept) return;
           keeper.takeOver(kept);
           element.close();

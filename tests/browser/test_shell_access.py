@@ -1,0 +1,89 @@
+"""Everybody can use the page: axe finds nothing serious, keys reach everything."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.axe import violations
+from tests.browser.page import kept_chart
+
+MENUS = ["designs", "material", "export"]
+PANELS: dict[str, Callable[[Page], None]] = {
+    "help-dialog": lambda page: page.keyboard.press("?"),
+    "palette-dialog": lambda page: page.keyboard.press("Control+k"),
+    "resize-dialog": lambda page: page.click("#chart-size"),
+    "import-dialog": lambda page: page.click("#action-import"),
+    "designs-dialog": lambda page: page.keyboard.press("Control+o"),
+    "gallery-dialog": lambda page: page.keyboard.press("Shift+N"),
+    "versions-dialog": lambda page: page.keyboard.press("Control+s"),
+    "share-dialog": lambda page: page.click("#action-share"),
+}
+
+
+THEMES: list[Literal["light", "dark"]] = ["light", "dark"]
+
+
+def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page) -> None:
+    page, found = flat_studio, []
+    for theme in THEMES:
+        page.emulate_media(color_scheme=theme)
+        found += [f"{theme} page: {wrong}" for wrong in violations(page)]
+        for name in MENUS:
+            page.click(f"#{name}-button")
+            found += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}-menu")]
+            page.keyboard.press("Escape")
+        for name, open_panel in PANELS.items():
+            open_panel(page)
+            expect(page.locator(f"#{name}")).to_be_visible()
+            found += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}")]
+            page.keyboard.press("Escape")
+            expect(page.locator(f"#{name}")).to_be_hidden()
+    assert not found, "\n".join(found)
+
+
+def test_a_chart_is_painted_with_keys_alone(flat_studio: Page) -> None:
+    page = flat_studio
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.id") == "chart":
+            break
+    assert page.evaluate("document.activeElement.id") == "chart"
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    assert kept_chart(page).count("P") == 1
+    assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle !== 'none'"), (
+        "the focus cannot be seen"
+    )
+
+
+def test_reduced_motion_stills_the_page(flat_studio: Page) -> None:
+    moving = flat_studio.evaluate(
+        """() => [...document.querySelectorAll('*')].filter((element) => {
+            const { transitionDuration, animationName } = getComputedStyle(element);
+            return Number.parseFloat(transitionDuration) > 0 || animationName !== 'none';
+        }).map(({ id, className }) => `${id}.${className}`)"""
+    )
+    assert moving == []
+
+
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1024, 768), (820, 1180)])
+def test_everything_is_in_reach_on_small_screens(
+    flat_studio: Page, width: int, height: int
+) -> None:
+    page = flat_studio
+    page.set_viewport_size({"width": width, "height": height})
+    page.wait_for_timeout(200)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for part in ("#designs-button", "#action-undo", "#export-button", "#action-help", "#chart"):
+        box = page.locator(part).bounding_box()
+        assert box, f"{part} is not shown"
+        assert box["x"] >= 0
+        assert box["x"] + box["width"] <= width + 0.5, f"{part} is cut off"
+    chart = page.locator("#chart").bounding_box()
+    assert chart
+    assert chart["width"] > 300
+    assert chart["height"] > 250

@@ -1,0 +1,219 @@
+"""Designs are kept, listed, versioned and shared, and nothing is lost on the way."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.conftest import CHART, wait_for_numbers
+from tests.browser.page import drag, kept_chart
+
+NO_3D = "**/view/**"
+SERVICE = "**/api/v1/designs**"
+LINK = re.compile(r"#shared/[\w-]{20,}$")
+
+
+def painted(page: Page, dx: float = 60, dy: float = 30) -> str:
+    """Paint a stroke and wait until the service has it; the chart then."""
+    drag(page, dx, dy)
+    saved(page)
+    return kept_chart(page)
+
+
+def saved(page: Page) -> None:
+    expect(page.locator("#kept")).to_contain_text("Saved")
+
+
+def renamed(page: Page, name: str) -> None:
+    page.fill(".design-name", name)
+    page.keyboard.press("Enter")
+
+
+def at_the_service(page: Page) -> dict[str, str]:
+    """The design's document as the service has it."""
+    document = page.evaluate(
+        """async () => {
+            const { remote } = JSON.parse(localStorage['knitcore.design']);
+            const answer = await fetch(`/api/v1/designs/${remote.id}`);
+            return (await answer.json()).document;
+        }"""
+    )
+    assert isinstance(document, dict)
+    return document
+
+
+def beside(page: Page, address: str) -> Page:
+    """The same browser's second window."""
+    second = page.context.new_page()
+    second.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
+    second.goto(address)
+    wait_for_numbers(second)
+    return second
+
+
+def test_strokes_and_names_reach_the_service(flat_studio: Page) -> None:
+    chart = painted(flat_studio)
+    renamed(flat_studio, "Cuff")
+    saved(flat_studio)
+    assert at_the_service(flat_studio)["chart"] == chart != CHART
+    assert at_the_service(flat_studio)["name"] == "Cuff"
+    assert "#design/" in flat_studio.url
+
+
+def test_what_is_painted_while_the_service_is_away_is_delivered_later(flat_studio: Page) -> None:
+    painted(flat_studio)
+    flat_studio.route(SERVICE, lambda route: route.abort())
+    drag(flat_studio, 0, -50, start=(-80, -30))
+    expect(flat_studio.locator("#kept")).to_contain_text("Kept here")
+    chart = kept_chart(flat_studio)
+    flat_studio.reload()  # the page dies meanwhile
+    wait_for_numbers(flat_studio)
+    assert kept_chart(flat_studio) == chart
+    flat_studio.unroute(SERVICE)
+    saved(flat_studio)
+    assert at_the_service(flat_studio)["chart"] == chart
+
+
+def test_two_windows_merge_their_strokes(flat_studio: Page) -> None:
+    painted(flat_studio)
+    second = beside(flat_studio, flat_studio.url)
+    theirs = painted(second, 0, 50)
+    flat_studio.bring_to_front()
+    drag(flat_studio, 40, 0, start=(-120, 60))
+    saved(flat_studio)
+    flat_studio.wait_for_timeout(300)
+    saved(flat_studio)
+    chart = kept_chart(flat_studio)
+    assert at_the_service(flat_studio)["chart"] == chart
+    assert all(mine == "P" for mine, other in zip(chart, theirs, strict=True) if other == "P")
+    assert chart.count("P") > theirs.count("P")
+
+
+def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page) -> None:
+    painted(flat_studio)
+    flat_studio.route(SERVICE, lambda route: route.abort())
+    renamed(flat_studio, "Mine")
+    expect(flat_studio.locator("#kept")).to_contain_text("Kept here")
+    second = beside(flat_studio, flat_studio.url)
+    renamed(second, "Theirs")
+    saved(second)
+    second.close()
+    flat_studio.unroute(SERVICE)
+    expect(flat_studio.locator("#conflict-dialog")).to_be_visible()
+    expect(flat_studio.locator("#conflict-dialog")).to_contain_text("name")
+    flat_studio.click("#conflict-both")
+    expect(flat_studio.locator(".design-name")).to_have_value("Mine (mine)")
+    saved(flat_studio)
+    flat_studio.keyboard.press("Control+o")
+    names = flat_studio.locator("#designs-list .card-name")
+    expect(names.filter(has_text="Mine (mine)")).to_have_count(1)
+    expect(names.filter(has_text="Theirs")).not_to_have_count(0)
+
+
+def test_a_deleted_design_comes_back(flat_studio: Page) -> None:
+    painted(flat_studio)
+    renamed(flat_studio, "Dispensable")
+    saved(flat_studio)
+    flat_studio.keyboard.press("Control+o")
+    card = flat_studio.locator("#designs-list .card", has_text="Dispensable")
+    card.get_by_label("Delete: Dispensable").click()
+    expect(card).to_have_count(0)
+    flat_studio.click("#designs-undo")
+    expect(card).to_have_count(1)
+
+
+def test_a_version_is_restored_and_the_state_before_it_kept(flat_studio: Page) -> None:
+    first = painted(flat_studio)
+    flat_studio.keyboard.press("Control+s")
+    flat_studio.fill("#version-name", "First stroke")
+    flat_studio.click("#version-keep")
+    rows = flat_studio.locator("#versions-list .row")
+    expect(rows).to_have_count(1)
+    flat_studio.keyboard.press("Escape")
+    second = painted(flat_studio, 0, 50)
+    assert second != first
+    flat_studio.keyboard.press("Control+s")
+    flat_studio.get_by_label("Restore First stroke").click()
+    expect(flat_studio.locator("#versions-dialog")).to_be_hidden()
+    assert kept_chart(flat_studio) == first
+    assert at_the_service(flat_studio)["chart"] == first
+    flat_studio.keyboard.press("Control+z")  # what is restored can be undone like any step
+    assert kept_chart(flat_studio) == second
+
+
+def test_a_link_shows_the_design_to_others_and_lets_them_copy_it(
+    flat_studio: Page, browser: Browser
+) -> None:
+    chart = painted(flat_studio)
+    flat_studio.click("#action-share")
+    flat_studio.check("#share-copy")
+    flat_studio.click("#share-make")
+    expect(flat_studio.locator("#share-link")).to_have_value(LINK)
+    link = flat_studio.input_value("#share-link")
+    stranger = browser.new_context(viewport={"width": 1280, "height": 720})
+    page = stranger.new_page()
+    page.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
+    page.goto(link)
+    expect(page.locator("#shared")).to_contain_text("Shared with you")
+    drag(page, 0, 50, start=(-80, -30))
+    assert at_the_service(flat_studio)["chart"] == chart
+    page.click("#shared-copy")
+    expect(page.locator("#shared")).to_be_hidden()
+    saved(page)
+    copy = at_the_service(page)
+    assert copy["chart"].count("P") > chart.count("P")
+    assert copy["name"].endswith("(copy)")
+    stranger.close()
+
+
+def test_the_gallery_opens_a_glove_and_the_design_before_it_stays(flat_studio: Page) -> None:
+    chart = painted(flat_studio)
+    before = flat_studio.url
+    flat_studio.keyboard.press("Shift+N")
+    flat_studio.click("#gallery-glove")
+    expect(flat_studio.locator(".design-name")).to_have_value("Therapeutic glove")
+    kept_chart(flat_studio)
+    design = json.loads(flat_studio.evaluate("localStorage['knitcore.design']"))
+    assert "." in design["outline"]
+    assert {region["name"] for region in design["regions"]} >= {"cuff", "thumb", "fingers"}
+    flat_studio.goto(before)
+    expect(flat_studio.locator(".design-name")).to_have_value("Test")
+    assert kept_chart(flat_studio) == chart
+
+
+def test_a_project_file_goes_out_and_comes_in(flat_studio: Page, tmp_path: Path) -> None:
+    chart = painted(flat_studio)
+    with flat_studio.expect_download() as download:
+        flat_studio.keyboard.press("Control+Shift+E")
+    file = tmp_path / "design.json"
+    download.value.save_as(file)
+    document = json.loads(file.read_text())
+    assert document["format"] == "knitcore-design"
+    assert document["chart"] == chart
+    drag(flat_studio, 0, 50, start=(-80, -30))
+    flat_studio.click("#action-import")
+    flat_studio.set_input_files("#import-file", file)
+    flat_studio.wait_for_function(
+        "chart => JSON.parse(localStorage['knitcore.design']).chart === chart", arg=chart
+    )
+
+
+def test_the_tour_is_walked_with_keys_and_ends(visitor: Page, service: str) -> None:
+    visitor.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
+    visitor.goto(service)
+    visitor.get_by_role("button", name="Take the tour").click()
+    expect(visitor.locator("#tour")).to_be_visible()
+    seen = set()
+    for _ in range(20):
+        if not visitor.locator("#tour").is_visible():
+            break
+        seen.add(visitor.locator("#tour-title").inner_text())
+        visitor.keyboard.press("ArrowRight")
+    expect(visitor.locator("#tour")).to_be_hidden()
+    assert len(seen) >= 8
+    visitor.reload()
+    wait_for_numbers(visitor)
+    expect(visitor.get_by_role("button", name="Take the tour")).to_have_count(0)
