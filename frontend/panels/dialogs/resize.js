@@ -1,49 +1,103 @@
 /**
- * The size of the chart, and a new one.
+ * The chart's size: cut or add at chosen sides, repeat what there is, or begin anew.
  *
  * @import {Studio} from "../../studio.js"
  */
 
 import { Grid, MAX_SIDE } from "../../core/grid.js";
+import { resized } from "../../core/reshape.js";
 import { h } from "../../dom.js";
 import { dialog } from "./dialog.js";
 
+const UP = /** @type {const} */ ([[1, "top"], [0.5, "middle"], [0, "bottom"]]);
+const ACROSS = /** @type {const} */ ([[0, "left"], [0.5, "middle"], [1, "right"]]);
+
 /** @param {Studio} studio */
 export function create(studio) {
+  const { document } = studio;
   /** @param {string} label @param {string} id */
   const field = (label, id) => {
-    const input = h("input", { type: "number", class: "number figures", id, min: "1", max: String(MAX_SIDE), required: true });
+    const input = h("input", { type: "number", class: "number figures", id, min: "1", max: String(MAX_SIDE), required: true, oninput: () => advise() });
     return { input, row: h("label", { class: "field" }, h("span", {}, label), input) };
   };
   const columns = field("Stitches", "new-columns");
   const rows = field("Rows", "new-rows");
   const problem = h("p", { class: "problem-text", role: "alert" });
-  /** @param {(rows: number, columns: number) => Grid} make @param {string} label */
-  const apply = (make, label) => {
+  const advice = h("div", { class: "resize-advice" });
+  const anchors = UP.flatMap(([up, vertical]) =>
+    ACROSS.map(([across, horizontal]) => {
+      const name = vertical === horizontal ? "middle" : `${vertical} ${horizontal}`;
+      return h("input", { type: "radio", name: "anchor", class: "anchor", value: `${up} ${across}`, "aria-label": name, title: name, id: `anchor-${vertical}-${horizontal}` });
+    }),
+  );
+
+  const wanted = () => {
     const size = [rows.input, columns.input].map(({ valueAsNumber }) => valueAsNumber);
-    if (!size.every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE)) {
-      problem.textContent = `Use whole numbers from 1 to ${MAX_SIDE}.`;
-      return;
-    }
-    studio.document.replace(make(size[0], size[1]), label);
+    const well = size.every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE);
+    problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
+    return well ? size : null;
+  };
+  /** @param {(rows: number, columns: number) => void} make */
+  const apply = (make) => {
+    const size = wanted();
+    if (!size) return;
+    make(size[0], size[1]);
     element.close();
   };
-  const { document } = studio;
+  /** Repeats that span the chart stay whole only at some sizes: offer the nearest. */
+  const advise = () => {
+    const size = wanted();
+    const { grid, repeats } = document;
+    const spanning = repeats.filter(({ placements }) =>
+      placements.some((place) => place.columns === grid.columns || place.rows === grid.rows),
+    );
+    advice.replaceChildren(
+      ...spanning.flatMap((repeat) => {
+        if (!size) return [];
+        const wide = repeat.placements.some((place) => place.columns === grid.columns);
+        const high = repeat.placements.some((place) => place.rows === grid.rows);
+        const fits = repeat.snapped(size[0], size[1]);
+        const next = { rows: high ? fits.rows : size[0], columns: wide ? fits.columns : size[1] };
+        if (next.rows === size[0] && next.columns === size[1]) return [];
+        return [
+          h("p", { class: "muted" }, `${repeat.name} is a ${repeat.rule}.`),
+          h("button", { class: "button", type: "button", onclick: () => {
+            columns.input.value = String(next.columns);
+            rows.input.value = String(next.rows);
+            advise();
+          } }, `Keep it whole: ${next.columns} × ${next.rows}`),
+        ];
+      }),
+    );
+  };
+  const anchor = () => {
+    const chosen = anchors.find(({ checked }) => checked)?.value ?? "0 0";
+    const [up, across] = chosen.split(" ").map(Number);
+    return /** @type {const} */ ([up, across]);
+  };
+
   const element = dialog(
     "resize-dialog",
     "Size of the chart",
-    h("div", { class: "fields" }, columns.row, rows.row),
+    h("div", { class: "resize-fields" },
+      h("div", { class: "fields" }, columns.row, rows.row),
+      h("fieldset", { class: "anchors" }, h("legend", {}, "The chart stays at"), h("div", { class: "anchor-grid" }, ...anchors))),
     problem,
-    h("p", { class: "muted" }, "The chart is kept at its bottom left corner. All three can be undone."),
+    advice,
+    h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
     h("div", { class: "dialog-buttons" },
-      h("button", { class: "button", type: "button", onclick: () => apply((r, c) => new Grid(r, c), "New chart") }, "New, all knit"),
-      h("button", { class: "button", type: "button", onclick: () => apply((r, c) => document.grid.tiled(r, c), "Repeat") }, "Repeat to this size"),
-      h("button", { class: "button primary", type: "button", id: "resize-apply", onclick: () => apply((r, c) => document.grid.resized(r, c), "Resize") }, "Resize")),
+      h("button", { class: "button", type: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) }, "New, all knit"),
+      h("button", { class: "button", type: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) }, "Repeat to this size"),
+      h("button", { class: "button primary", type: "button", id: "resize-apply", onclick: () => apply((r, c) => {
+        const same = r === document.grid.rows && c === document.grid.columns;
+        if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
+      }) }, "Resize")),
   );
   return () => {
     columns.input.value = String(document.grid.columns);
     rows.input.value = String(document.grid.rows);
-    problem.textContent = "";
+    if (!anchors.some(({ checked }) => checked)) anchors[6].checked = true; // bottom left
+    advise();
     element.showModal();
     columns.input.select();
   };
