@@ -9,9 +9,9 @@ import click
 
 from app.cli.common import emit, json_option, material_option
 from app.cli.materials import resolve_material
-from app.operations.garment import GarmentRequest, GarmentResult, garment_result
+from app.operations.garment import GarmentRequest, GarmentResult, WornResult, plan_garment
 from knitcore.errors import InputError
-from knitcore.formats.design import DesignFile, write_design
+from knitcore.formats.design import write_design
 
 
 @click.command("garment")
@@ -24,10 +24,22 @@ from knitcore.formats.design import DesignFile, write_design
     metavar="NAME=VALUE",
     help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
 )
+@click.option("--gauge", metavar="STSxROWS", help="The knitter's own, such as 22x30.")
+@click.option("--per", type=click.Choice(["10 cm", "4 in", "5 cm"]), default="10 cm")
+@click.option("--tex", type=float, help="Linear density of the yarn (g/km), for its mass.")
+@click.option("--intarsia", is_flag=True, help="Give each fabric a yarn of its own.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Write a design (.json).")
 @json_option
 def command(
-    template: str, material: str, settings: tuple[str, ...], out: Path | None, as_json: bool
+    template: str,
+    material: str,
+    settings: tuple[str, ...],
+    gauge: str | None,
+    per: str,
+    tex: float | None,
+    intarsia: bool,
+    out: Path | None,
+    as_json: bool,
 ) -> None:
     """Plan a garment from a TEMPLATE and measurements."""
     values: dict[str, object] = {"template": template}
@@ -39,13 +51,14 @@ def command(
             values[name] = json.loads(value)
         except json.JSONDecodeError:
             values[name] = value
-    request = GarmentRequest.model_validate({"garment": values, "material": material})
-    result = garment_result(request.garment.plan(resolve_material(material)))
+    asked: dict[str, object] = {"garment": values, "material": material, "intarsia": intarsia}
+    if gauge is not None:
+        stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
+        asked["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
+    request = GarmentRequest.model_validate(asked | {"linear_density_tex": tex})
+    result = plan_garment(request, resolve_material(material))
     if out is not None:
-        design = DesignFile(
-            name=result.name, material=material, chart=result.chart, outline=result.outline
-        )
-        out.write_text(write_design(design), encoding="utf-8")
+        out.write_text(write_design(result.design), encoding="utf-8")
     emit(result, _text(result), as_json=as_json)
 
 
@@ -60,4 +73,14 @@ def _text(r: GarmentResult) -> str:
         f"{region.extensibility_wale_mm_per_n:8.2f}"
         for region in r.regions
     ]
+    lines += [_pressure(place) for place in r.worn]
     return "\n".join([*lines, *r.notes, *(f"warning: {w}" for w in r.warnings)])
+
+
+def _pressure(place: WornResult) -> str:
+    sizes = (
+        f"{place.part} at {place.at_mm:.0f} mm: {place.rest_mm:.0f} mm on {place.worn_mm:.0f} mm"
+    )
+    if place.mmhg is None:
+        return f"{sizes}; {place.warnings[0]}"
+    return f"{sizes} presses {place.mmhg.low:.1f} to {place.mmhg.high:.1f} mmHg"

@@ -56,6 +56,9 @@ def read_piece(path: str | Path) -> Piece:
 
 
 def _checked(file: Path) -> Path:
+    if not file.is_file():
+        what = "is a folder, not a file" if file.is_dir() else "does not exist"
+        raise InputError("chart", f"{file} {what}.", "Check the name and the folder.")
     if file.suffix.lower() not in _READERS:
         raise InputError(
             "chart",
@@ -63,9 +66,6 @@ def _checked(file: Path) -> Path:
             "Use a .txt file of K/P lines or written rows, a .ks file of KnitSpeak, a .png with one"
             " pixel a stitch, a .json design or a .k knitout program.",
         )
-    if not file.is_file():
-        what = "is a folder, not a file" if file.is_dir() else "does not exist"
-        raise InputError("chart", f"{file} {what}.", "Check the name and the folder.")
     if file.stat().st_size > MAX_FILE_BYTES:
         raise InputError(
             "chart", f"{file.name} is too large.", f"Use at most {MAX_FILE_BYTES // 10**6} MB."

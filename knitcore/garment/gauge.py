@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -97,6 +98,72 @@ class Gauge:
         """Stitches along a course, or rows along a wale."""
         along_course = direction is Direction.COURSE
         return self.stitches_for(length_mm) if along_course else self.rows_for(length_mm)
+
+
+@dataclass(frozen=True)
+class GaugeSet:
+    """The gauge of each pure fabric.
+
+    Attributes
+    ----------
+    gauges : by fabric; the material may lack some.
+    material : its identifier.
+    length_factor : loop lengths over the material's own, by the root of a stitch's area.
+    """
+
+    gauges: Mapping[Fabric, Gauge]
+    material: str
+    length_factor: float = 1.0
+
+    @classmethod
+    def of_material(
+        cls,
+        material: Material,
+        swatch: Gauge | None = None,
+        fabric: Fabric = Fabric.STOCKINETTE,
+    ) -> GaugeSet:
+        """The gauges of a material, or of a knitter who knits ``fabric`` at a swatch's gauge.
+
+        The other fabrics are scaled alike: a looser hand is looser in all of them.
+
+        Raises
+        ------
+        InputError
+            If there is a swatch of a fabric that the material lacks.
+        """
+        found = {f: Gauge.of_material(material, f) for f in Fabric if f in material.fabrics}
+        if swatch is None:
+            return cls(found, material.identifier)
+        if fabric not in found:
+            Gauge.of_material(material, fabric)  # tells what is missing
+        own = found[fabric]
+        across = swatch.stitch_course_mm / own.stitch_course_mm
+        along = swatch.stitch_wale_mm / own.stitch_wale_mm
+        scaled = {
+            f: Gauge(
+                g.stitch_course_mm * across,
+                g.stitch_wale_mm * along,
+                f"{swatch.source} {fabric}, other fabrics scaled alike",
+            )
+            for f, g in found.items()
+        }
+        return cls(scaled, material.identifier, math.sqrt(across * along))
+
+    def __getitem__(self, fabric: Fabric) -> Gauge:
+        """The gauge of a fabric.
+
+        Raises
+        ------
+        InputError
+            If the material lacks it.
+        """
+        if fabric not in self.gauges:
+            raise InputError(
+                "material",
+                f"{self.material} has no {fabric}.",
+                "Choose another fabric, or a material that has it.",
+            )
+        return self.gauges[fabric]
 
 
 def _rounded(count: float, multiple: int, extra: int) -> int:

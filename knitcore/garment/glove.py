@@ -4,7 +4,11 @@ Columns run from the forearm to the finger tips, rows around the hand: half of t
 fingers' backs from index to little finger, their fronts back to the index, and the other half of
 the thumb, which is grafted to the first row. Stockinette lies around the wrist along its stiff
 direction, the wales; ribs let the fingers bend, garter the hand close, seed the thumb move both
-ways. Between fingers a few rows end at the crotch.
+ways. Between fingers a few rows end at the crotch, and between thumb and hand a gusset of seed
+tapers from the thumb down to its crotch on either side. Thumb and gusset begin at the wrist
+support, not at the cuff, so that they do not widen the wrist. Steps at the finger tips are on
+right-side rows and steps at the wrist on wrong-side rows, which begin there: stitches are bound off
+and cast on without cutting the yarn.
 """
 
 from __future__ import annotations
@@ -16,12 +20,15 @@ import numpy as np
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.garment.gauge import Gauge
+from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.plan import GarmentPlan, Part, make_plan
+from knitcore.garment.worn import Fit, Worn, worn
 from knitcore.materials import Material
 
 CROTCH_ROWS = 2
 PALM_TOLERANCE = 0.10
+LEAST_EASE, MOST_EASE = -0.4, 0.3
+STUDY_GLOVE = "glove-wool:glove"
 
 
 @dataclass(frozen=True)
@@ -40,18 +47,24 @@ class Hand:
     ----------
     cuff_mm : garter edge on the forearm.
     wrist_mm : length of the wrist support.
+    wrist_circumference_mm : around the wrist, for the pressure there.
     palm_mm : from the support to the crotch of the fingers.
     thumb_crotch_mm : from the support to the crotch of the thumb.
     palm_circumference_mm : around the knuckles, without the thumb.
+    gusset_mm : height of the thumb's gusset above its crotch; 0 for none.
+    gusset_girth_mm : what the gusset adds to the thumb's girth at the crotch.
     thumb : from its crotch.
     fingers : index, middle, ring and little finger.
     """
 
     cuff_mm: float = 12.0
     wrist_mm: float = 55.0
+    wrist_circumference_mm: float = 165.0
     palm_mm: float = 80.0
     thumb_crotch_mm: float = 45.0
     palm_circumference_mm: float = 205.0
+    gusset_mm: float = 22.0
+    gusset_girth_mm: float = 22.0
     thumb: Finger = Finger(55.0, 65.0)
     fingers: tuple[Finger, ...] = (
         Finger(70.0, 64.0),
@@ -66,12 +79,20 @@ class Hand:
             "wrist_mm": self.wrist_mm,
             "palm_mm": self.palm_mm,
             "thumb_crotch_mm": self.thumb_crotch_mm,
+            "wrist_circumference_mm": self.wrist_circumference_mm,
             "palm_circumference_mm": self.palm_circumference_mm,
             "thumb": min(self.thumb.length_mm, self.thumb.circumference_mm),
         }
         for name, value in lengths.items():
             if not (math.isfinite(value) and 5 <= value <= 600):
                 raise InputError(name, f"{value:g} mm is no part of a hand.", "Give 5 to 600 mm.")
+        if not (0 <= self.gusset_mm < self.thumb.length_mm and 0 <= self.gusset_girth_mm <= 100):
+            raise InputError(
+                "gusset_mm",
+                "the gusset does not fit the thumb.",
+                f"Give a height below the thumb's {self.thumb.length_mm:g} mm and 0 to 100 mm of "
+                "girth.",
+            )
         if len(self.fingers) != 4 or not all(
             5 <= value <= 300 for f in self.fingers for value in (f.length_mm, f.circumference_mm)
         ):
@@ -89,75 +110,127 @@ def glove(
     material: Material,
     *,
     ease: float = -0.10,
+    mmhg: float | None = None,
+    gauges: GaugeSet | None = None,
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
     """The plan of a glove.
 
+    Parameters
+    ----------
+    hand : its measurements.
+    material : gives gauges and laws; ``glove-wool:glove`` is the study's.
+    ease : of fingers and thumb.
+    mmhg : wanted pressure of the wrist support; a note says how many rows it takes.
+    gauges : the knitter's; the material's own if left out.
+    linear_density_tex : for the mass of yarn.
+
+    Notes
+    -----
     Stitches along the hand come from the gauge of each part's own fabric, rows around it from the
-    fingers' (rib) and the thumb's (seed); what does not fit is told as misfits.
+    fingers' (rib) and the thumb's (seed); what does not fit is told as misfits, and the pressure on
+    the wrist is that of the rows which come out.
 
     Raises
     ------
     InputError
         If measurements or ease cannot be used, or the material lacks a fabric.
     """
-    if not (math.isfinite(ease) and -0.4 <= ease <= 0.3):
-        raise InputError("ease", f"{ease:g} is no ease of a glove.", "Give -0.4 to 0.3.")
-    gauges = {fabric: Gauge.of_material(material, fabric) for fabric in Fabric}
-    cuff = gauges[Fabric.GARTER].stitches_for(hand.cuff_mm)
+    if not (math.isfinite(ease) and LEAST_EASE <= ease <= MOST_EASE):
+        raise InputError(
+            "ease", f"{ease:g} is no ease of a glove.", f"Give {LEAST_EASE} to {MOST_EASE}."
+        )
+    gauges = gauges or GaugeSet.of_material(material)
+    palm, seed, rib = (gauges[f] for f in (Fabric.GARTER, Fabric.SEED, Fabric.RIB))
+    cuff = palm.stitches_for(hand.cuff_mm)
     support = cuff + gauges[Fabric.STOCKINETTE].stitches_for(hand.wrist_mm)
-    palm = gauges[Fabric.GARTER]
     thumb_crotch = support + palm.stitches_for(hand.thumb_crotch_mm)
     crotch = max(support + palm.stitches_for(hand.palm_mm), thumb_crotch + 1)
 
-    thumb_rows = gauges[Fabric.SEED].rows_for(hand.thumb.circumference_mm / 2 * (1 + ease))
-    thumb_tip = thumb_crotch + gauges[Fabric.SEED].stitches_for(hand.thumb.length_mm)
-    rib = gauges[Fabric.RIB]
-    ends: list[tuple[str, int]] = [("thumb", thumb_tip)] * thumb_rows
-    ends += [("hand", thumb_crotch)] * CROTCH_ROWS
+    thumb_rows = seed.rows_for(hand.thumb.circumference_mm / 2 * (1 + ease), multiple=2)
+    thumb_tip = thumb_crotch + seed.stitches_for(hand.thumb.length_mm)
+    gusset = _gusset(hand, seed, thumb_crotch)
+    thumb = [("thumb", thumb_tip)] * thumb_rows + gusset + [("hand", thumb_crotch)] * CROTCH_ROWS
     backs = [
-        (rib.rows_for(f.circumference_mm / 2 * (1 + ease)), crotch + rib.stitches_for(f.length_mm))
+        (
+            rib.rows_for(f.circumference_mm / 2 * (1 + ease), multiple=2),
+            crotch + rib.stitches_for(f.length_mm),
+        )
         for f in hand.fingers
     ]
+    ends = list(thumb)
     for side in (backs, backs[::-1]):
         for index, (rows, tip) in enumerate(side):
             ends += [("finger", tip)] * rows
             if index < len(side) - 1:
                 ends += [("hand", crotch)] * CROTCH_ROWS
-    ends += [("hand", thumb_crotch)] * CROTCH_ROWS + [("thumb", thumb_tip)] * thumb_rows
+    ends += thumb[::-1]
 
     tips = np.array([tip for _, tip in ends])
     kinds = np.array([kind for kind, _ in ends])[:, None]
     column = np.broadcast_to(np.arange(int(tips.max())), (len(ends), int(tips.max())))
-    stitch = column < tips[:, None]
+    # One row of the crotch more on either side: wrong-side rows begin at the wrist.
+    wrist_rows = slice(len(thumb) - 1, len(ends) - len(thumb) + 1)
+    start = np.full((len(ends), 1), support)
+    start[wrist_rows] = 0
     beyond = column >= support
+    is_gusset = (kinds == "gusset") & (column >= thumb_crotch)
     is_thumb = beyond & (kinds == "thumb")
     is_finger = (column >= crotch) & (kinds == "finger")
     parts = (
         Part("cuff", column < cuff, Fabric.GARTER),
         Part("wrist support", (column >= cuff) & ~beyond, Fabric.STOCKINETTE),
-        Part("hand", beyond & ~is_thumb & ~is_finger, Fabric.GARTER),
+        Part("hand", beyond & ~is_thumb & ~is_gusset & ~is_finger, Fabric.GARTER),
         Part("thumb", is_thumb, Fabric.SEED),
+        Part("thumb gusset", is_gusset, Fabric.SEED),
         Part("fingers", is_finger, Fabric.RIB),
+    )
+    around = wrist_rows.stop - wrist_rows.start
+    pressed = worn(
+        material,
+        Fabric.STOCKINETTE,
+        Direction.WALE,
+        around * gauges[Fabric.STOCKINETTE].stitch_wale_mm,
+        hand.wrist_circumference_mm,
+        at_mm=hand.cuff_mm + hand.wrist_mm / 2,
+        part="wrist support",
     )
     return make_plan(
         "therapeutic glove",
-        stitch,
+        (column >= start) & (column < tips[:, None]),
         parts,
         material,
+        gauges,
         around=Direction.WALE,
-        closing="graft the last row to the first along the thumb; seam the finger tips and sides",
-        notes=_notes(hand, ends, gauges[Fabric.GARTER], ease),
+        worn=(pressed,),
+        closing="graft the last row to the first along the thumb, join the wrist's two edges, and "
+        "seam finger tips and sides",
+        notes=_notes(hand, around, palm, ease, material)
+        + _wrist_notes(pressed, gauges[Fabric.STOCKINETTE], material, around, mmhg),
         linear_density_tex=linear_density_tex,
     )
 
 
-def _notes(hand: Hand, ends: list[tuple[str, int]], garter: Gauge, ease: float) -> tuple[str, ...]:
+def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[tuple[str, int]]:
+    """Rows that end ever nearer to the crotch, two of each length, on one side of the thumb."""
+    height = round(hand.gusset_mm / seed.stitch_course_mm)
+    steps = round(hand.gusset_girth_mm / 2 / seed.stitch_wale_mm / 2)
+    if height < 1 or steps < 1:
+        return []
+    lengths = [round(height * (1 - step / steps)) for step in range(steps)]
+    return [("gusset", thumb_crotch + length) for length in lengths for _ in range(2) if length > 0]
+
+
+def _notes(
+    hand: Hand, rows: int, garter: Gauge, ease: float, material: Material
+) -> tuple[str, ...]:
     notes = [
-        "The wrist support is stockinette; the study knitted it on 2.0 mm needles and the rest on "
-        "2.75 mm ones, which is a material of its own: measure it.",
+        "Knit the wrist support on 2.0 mm needles (US 0) and all else on 2.75 mm (US 2), as the "
+        "study did: each row changes needles at the support's edges."
+        if material.identifier == STUDY_GLOVE
+        else "The study knitted the wrist support on 2.0 mm needles and all else on 2.75 mm; "
+        f"{STUDY_GLOVE} is measured so, {material.identifier} is of one needle."
     ]
-    rows = sum(kind != "thumb" for kind, _ in ends)
     wanted = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / wanted - 1) > PALM_TOLERANCE:
         notes.append(
@@ -165,3 +238,26 @@ def _notes(hand: Hand, ends: list[tuple[str, int]], garter: Gauge, ease: float) 
             "garter: ease the palm, or change the fingers' circumferences."
         )
     return tuple(notes)
+
+
+def _wrist_notes(
+    pressed: Worn, gauge: Gauge, material: Material, rows: int, mmhg: float | None
+) -> tuple[str, ...]:
+    """How many rows the wrist support takes to press, and how to come by them."""
+    if pressed.pressure is None:
+        loose = (
+            f"The wrist support is {pressed.rest_mm:.0f} mm around, the wrist "
+            f"{pressed.worn_mm:.0f} mm: it does not press."
+        )
+        if mmhg is None:
+            return (f"{loose} Give a wanted pressure to learn how many rows it takes.",)
+    if mmhg is None:
+        return ()
+    rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, Fabric.STOCKINETTE, Direction.WALE)
+    wanted = gauge.rows_for(rest, multiple=2)
+    if wanted >= rows:
+        return (f"For {mmhg:g} mmHg the wrist support takes {wanted} rows; it has {rows}.",)
+    return (
+        f"For {mmhg:g} mmHg the wrist support takes {wanted} of the {rows} rows ({rest:.0f} mm): "
+        f"turn {rows - wanted} rows, in pairs, at its edge to the hand (short rows).",
+    )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.fabric import Direction, Fabric
-from knitcore.garment.gauge import Gauge
+from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.regions import (
     Misfit,
     Region,
@@ -21,6 +21,7 @@ from knitcore.garment.regions import (
     yarn_use,
 )
 from knitcore.garment.shaped import ShapedChart
+from knitcore.garment.worn import Worn
 from knitcore.materials import Material
 
 FABRIC_COLOURS = {
@@ -40,7 +41,10 @@ class GarmentPlan:
     name : of the template.
     shaped : chart and outline.
     regions : its parts.
+    fabrics : of the regions.
+    gauges : of its fabrics.
     around : which material direction runs around the limb.
+    worn : how it presses, place by place; empty where nothing is known of the limb.
     closing : how the piece is closed, in words.
     notes : of shaping and assumptions.
     misfits : where regions of unlike gauge meet.
@@ -51,12 +55,24 @@ class GarmentPlan:
     name: str
     shaped: ShapedChart
     regions: tuple[Region, ...]
+    fabrics: tuple[Fabric, ...]
+    gauges: GaugeSet
     around: Direction
+    worn: tuple[Worn, ...]
     closing: str
     notes: tuple[str, ...]
     misfits: tuple[Misfit, ...]
     numbers: tuple[RegionNumbers, ...]
     yarn: YarnUse
+
+    def yarn_of(
+        self, region: Region, material: Material, linear_density_tex: float | None = None
+    ) -> YarnUse:
+        """What one region takes."""
+        use = yarn_use(
+            self.shaped, material, linear_density_tex=linear_density_tex, cells=region.cells
+        )
+        return _scaled(use, self.gauges.length_factor)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +89,11 @@ def make_plan(
     stitch: NDArray[np.bool_],
     parts: tuple[Part, ...],
     material: Material,
+    gauges: GaugeSet,
     *,
     around: Direction,
     closing: str,
+    worn: tuple[Worn, ...] = (),
     notes: tuple[str, ...] = (),
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
@@ -90,16 +108,25 @@ def make_plan(
     regions = tuple(
         Region(p.name, p.cells, fabric_repeat(p.fabric), FABRIC_COLOURS[p.fabric]) for p in used
     )
-    gauges = [Gauge.of_material(material, part.fabric) for part in used]
+    sizes = [gauges[part.fabric] for part in used]
     shaped = fill_regions(stitch, regions)
     return GarmentPlan(
         name=name,
         shaped=shaped,
         regions=regions,
+        fabrics=tuple(part.fabric for part in used),
+        gauges=gauges,
         around=around,
+        worn=worn,
         closing=closing,
         notes=notes,
-        misfits=misfits(regions, gauges, stitch),
+        misfits=misfits(regions, sizes, stitch),
         numbers=region_numbers(shaped, regions, material),
-        yarn=yarn_use(shaped, material, linear_density_tex=linear_density_tex),
+        yarn=_scaled(
+            yarn_use(shaped, material, linear_density_tex=linear_density_tex), gauges.length_factor
+        ),
     )
+
+
+def _scaled(use: YarnUse, factor: float) -> YarnUse:
+    return YarnUse(use.length_m * factor, None if use.mass_g is None else use.mass_g * factor)

@@ -11,12 +11,16 @@ import numpy as np
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.garment.gauge import Gauge
+from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.plan import GarmentPlan, Part, make_plan
+from knitcore.garment.worn import Fit, Worn, worn
 from knitcore.materials import Material
 
 LARGEST_CHANGE = 2
 """Stitches that a row may gain or lose: one at each edge."""
+SNUG = Fit()
+PLACES = 5
+"""Places along a limb where the pressure is told, beside those that were measured."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +36,12 @@ def limb_tube(
     profile: Sequence[Girth],
     material: Material,
     *,
-    ease: float = -0.15,
+    fit: Fit = SNUG,
+    gauges: GaugeSet | None = None,
     body: Fabric = Fabric.STOCKINETTE,
     hem: Fabric = Fabric.RIB,
     hem_mm: float = 40.0,
+    notes: tuple[str, ...] = (),
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
     """A tube along a limb, worked in the round or flat and seamed; courses run around the limb.
@@ -44,29 +50,33 @@ def limb_tube(
     ----------
     name : of the garment.
     profile : circumferences along the limb, from where the knitting begins.
-    material : gives the gauge, taken from the body's fabric.
-    ease : rest circumference over the limb's, minus one; negative is tighter.
+    material : its laws press the limb.
+    fit : ease, or a wanted pressure of the body.
+    gauges : the knitter's; the material's own if left out. Sizes follow the body's fabric.
     body, hem : fabrics of the middle, and of the first and last ``hem_mm``.
+    notes : said beside the plan's own.
     linear_density_tex : for the mass of yarn.
 
     Raises
     ------
     InputError
-        If the profile cannot be used, or it widens faster than one stitch at each edge of a row.
+        If the profile or the fit cannot be used.
     """
-    _check_profile(profile, ease)
-    gauge = Gauge.of_material(material, body)
+    _check_profile(profile)
+    gauges = gauges or GaugeSet.of_material(material)
+    gauge = gauges[body]
     length = profile[-1].at_mm - profile[0].at_mm
     rows = gauge.rows_for(length)
-    at = profile[0].at_mm + (np.arange(rows) + 0.5) * length / rows
-    girth = np.interp(at, [g.at_mm for g in profile], [g.circumference_mm for g in profile])
+    at = (np.arange(rows) + 0.5) * length / rows
+    places = [g.at_mm - profile[0].at_mm for g in profile]
+    rests = [fit.rest_mm(g.circumference_mm, material, body, Direction.COURSE) for g in profile]
     # Even counts: shaping is symmetrical, and 1x1 rib closes around the limb.
-    counts = [gauge.stitches_for(float(c) * (1 + ease), multiple=2) for c in girth]
-    notes = []
+    counts = [gauge.stitches_for(float(c), multiple=2) for c in np.interp(at, places, rests)]
+    said = list(notes)
     shaped = _limit_changes(counts)
     if shaped != counts:
         worst = max(range(rows), key=lambda row: abs(shaped[row] - counts[row]))
-        notes.append(
+        said.append(
             f"The limb widens faster than one stitch at each edge of a row: row {worst + 1} has "
             f"{shaped[worst]} stitches instead of {counts[worst]}."
         )
@@ -81,24 +91,61 @@ def limb_tube(
         Part("body", (row >= hem_rows) & (row < rows - hem_rows), body),
         Part("last hem", row >= rows - hem_rows, hem),
     )
+
+    def place(along: float) -> Worn:
+        index = min(int(along / length * rows), rows - 1)
+        part = next(p for p in parts if p.cells[index, 0])
+        rest = shaped[index] * gauges[part.fabric].stitch_course_mm
+        return worn(
+            material,
+            part.fabric,
+            Direction.COURSE,
+            rest,
+            float(np.interp(along, places, [g.circumference_mm for g in profile])),
+            at_mm=along,
+            part=part.name,
+        )
+
     return make_plan(
         name,
         stitch,
         parts,
         material,
+        gauges,
         around=Direction.COURSE,
+        worn=tuple(
+            place(along) for along in sorted({*places, *np.linspace(0, length, PLACES).tolist()})
+        ),
         closing="work in the round, or work flat and seam the edges",
-        notes=tuple(notes),
+        notes=tuple(said),
         linear_density_tex=linear_density_tex,
     )
 
 
 def sock_leg(
-    ankle_mm: float, calf_mm: float, length_mm: float, material: Material, *, ease: float = -0.15
+    ankle_mm: float,
+    calf_mm: float,
+    length_mm: float,
+    material: Material,
+    *,
+    fit: Fit = SNUG,
+    gauges: GaugeSet | None = None,
+    linear_density_tex: float | None = None,
 ) -> GarmentPlan:
     """The leg of a sock from the ankle up to the calf, with rib at both ends."""
     profile = (Girth(0.0, ankle_mm), Girth(length_mm / 3, ankle_mm), Girth(length_mm, calf_mm))
-    return limb_tube("sock leg", profile, material, ease=ease)
+    return limb_tube(
+        "sock leg",
+        profile,
+        material,
+        fit=fit,
+        gauges=gauges,
+        notes=(
+            "The leg only: a heel is turned with short rows and a foot is a tube of its own, which "
+            "one chart of whole rows cannot hold. Knit them on from the ankle's stitches.",
+        ),
+        linear_density_tex=linear_density_tex,
+    )
 
 
 def wrist_brace(
@@ -106,7 +153,8 @@ def wrist_brace(
     length_mm: float,
     material: Material,
     *,
-    ease: float = -0.15,
+    fit: Fit = SNUG,
+    gauges: GaugeSet | None = None,
     edge_mm: float = 15.0,
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
@@ -116,16 +164,18 @@ def wrist_brace(
     ----------
     wrist_mm : circumference of the wrist.
     length_mm : along the arm.
-    material : gives the gauge of stockinette.
-    ease : rest circumference over the wrist's, minus one.
+    material : its law presses the wrist.
+    fit : ease, or a wanted pressure.
+    gauges : the knitter's; the material's own if left out.
     edge_mm : width of the garter edges, which give way around the arm.
     linear_density_tex : for the mass of yarn.
     """
     _check_length("wrist_mm", wrist_mm)
     _check_length("length_mm", length_mm)
-    _check_ease(ease)
-    gauge = Gauge.of_material(material, Fabric.STOCKINETTE)
-    rows = gauge.rows_for(wrist_mm * (1 + ease), multiple=2)
+    gauges = gauges or GaugeSet.of_material(material)
+    gauge = gauges[Fabric.STOCKINETTE]
+    rest = fit.rest_mm(wrist_mm, material, Fabric.STOCKINETTE, Direction.WALE)
+    rows = gauge.rows_for(rest, multiple=2)
     columns = gauge.stitches_for(length_mm)
     edge = min(gauge.stitches_for(edge_mm), columns // 3) if edge_mm > 0 else 0
     column = np.broadcast_to(np.arange(columns), (rows, columns))
@@ -134,12 +184,23 @@ def wrist_brace(
         Part("support", (column >= edge) & (column < columns - edge), Fabric.STOCKINETTE),
         Part("edge at the hand", column >= columns - edge, Fabric.GARTER),
     )
+    pressed = worn(
+        material,
+        Fabric.STOCKINETTE,
+        Direction.WALE,
+        rows * gauge.stitch_wale_mm,
+        wrist_mm,
+        at_mm=length_mm / 2,
+        part="support",
+    )
     return make_plan(
         "wrist brace",
         np.ones((rows, columns), dtype=bool),
         parts,
         material,
+        gauges,
         around=Direction.WALE,
+        worn=(pressed,),
         closing="graft the last row to the first",
         linear_density_tex=linear_density_tex,
     )
@@ -155,7 +216,7 @@ def _limit_changes(counts: Sequence[int]) -> list[int]:
     return limited
 
 
-def _check_profile(profile: Sequence[Girth], ease: float) -> None:
+def _check_profile(profile: Sequence[Girth]) -> None:
     if len(profile) < 2:
         raise InputError("profile", "it has no length.", "Give at least two circumferences.")
     for before, after in pairwise(profile):
@@ -168,14 +229,8 @@ def _check_profile(profile: Sequence[Girth], ease: float) -> None:
     for girth in profile:
         _check_length("profile", girth.circumference_mm)
     _check_length("profile", profile[-1].at_mm - profile[0].at_mm)
-    _check_ease(ease)
 
 
 def _check_length(name: str, value: float) -> None:
     if not (math.isfinite(value) and 5 <= value <= 2000):
         raise InputError(name, f"{value:g} mm cannot be knitted.", "Give 5 to 2000 mm.")
-
-
-def _check_ease(ease: float) -> None:
-    if not (math.isfinite(ease) and -0.6 <= ease <= 1):
-        raise InputError("ease", f"{ease:g} is no ease.", "Give -0.6 (tight) to 1 (wide).")

@@ -1,0 +1,88 @@
+"""How a garment presses where it is worn, and how wide it must be knitted to press by a target."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import Material
+from knitcore.mechanics.pressure import LimbPressure, limb_pressure, rest_circumference
+
+
+@dataclass(frozen=True)
+class Worn:
+    """One place along a limb.
+
+    Attributes
+    ----------
+    at_mm : along the limb, from where the garment begins.
+    part : of the garment there.
+    rest_mm, worn_mm : circumferences of the garment unworn, and of the limb.
+    pressure : what it presses; None if it cannot.
+    problem : why it cannot, such as a loose fit, or a strain beyond the lock-up; else empty.
+    """
+
+    at_mm: float
+    part: str
+    rest_mm: float
+    worn_mm: float
+    pressure: LimbPressure | None
+    problem: str = ""
+
+    @property
+    def ease(self) -> float:
+        """Rest over worn circumference, minus one: negative where it presses."""
+        return self.rest_mm / self.worn_mm - 1
+
+
+def worn(
+    material: Material,
+    fabric: Fabric,
+    around: Direction,
+    rest_mm: float,
+    worn_mm: float,
+    *,
+    at_mm: float = 0.0,
+    part: str = "",
+) -> Worn:
+    """A place of a garment of one fabric, whose direction ``around`` runs around the limb."""
+    try:
+        found = limb_pressure(material.law(fabric), around, rest_mm, worn_mm)
+    except InputError as error:
+        return Worn(at_mm, part, rest_mm, worn_mm, None, f"{error.problem} {error.remedy}")
+    return Worn(at_mm, part, rest_mm, worn_mm, found)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How tight a garment is: by its ease, or by a pressure that it shall have.
+
+    Parameters
+    ----------
+    ease : rest circumference over the limb's, minus one; negative is tighter.
+    mmhg : wanted pressure; it goes before the ease.
+    """
+
+    ease: float = -0.15
+    mmhg: float | None = None
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.ease) and -0.6 <= self.ease <= 1):
+            raise InputError("ease", f"{self.ease:g} is no ease.", "Give -0.6 (tight) to 1 (wide).")
+
+    def rest_mm(
+        self, worn_mm: float, material: Material, fabric: Fabric, around: Direction
+    ) -> float:
+        """The rest circumference for a limb's: the middle of those that may reach the pressure.
+
+        Raises
+        ------
+        InputError
+            If the pressure or the circumference cannot be used.
+        """
+        if self.mmhg is None:
+            return worn_mm * (1 + self.ease)
+        wanted = rest_circumference(material.law(fabric), around, worn_mm, self.mmhg)
+        return (wanted.low + wanted.high) / 2
