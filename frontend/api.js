@@ -61,7 +61,22 @@ async function problemOf(response) {
  *   keepalive?: boolean}} [options]
  * @returns {Promise<T>} undefined where the service has nothing to say (204, 304)
  */
-export async function call(path, { method = "GET", body, signal, headers = {}, keepalive } = {}) {
+export async function call(path, options) {
+  const response = await fetched(path, options);
+  if (response.status === 204 || response.status === 304) {
+    return /** @type {T} */ (undefined);
+  }
+  return /** @type {Promise<T>} */ (response.json());
+}
+
+/**
+ * The same, for answers that are not JSON.
+ *
+ * @param {string} path below /api/v1
+ * @param {{method?: string, body?: unknown, signal?: AbortSignal, headers?: Record<string, string>,
+ *   keepalive?: boolean}} [options]
+ */
+export async function fetched(path, { method = "GET", body, signal, headers = {}, keepalive } = {}) {
   /** @type {Response} */
   let response;
   try {
@@ -76,11 +91,8 @@ export async function call(path, { method = "GET", body, signal, headers = {}, k
     if (isAbort(error)) throw error;
     throw new ApiError(UNREACHABLE);
   }
-  if (response.status === 204 || response.status === 304) {
-    return /** @type {T} */ (undefined);
-  }
-  if (!response.ok) throw new ApiError(await problemOf(response));
-  return /** @type {Promise<T>} */ (response.json());
+  if (!response.ok && response.status !== 304) throw new ApiError(await problemOf(response));
+  return response;
 }
 
 export const api = {
@@ -124,4 +136,49 @@ export const api = {
    */
   view: (design, body) =>
     call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
+
+  /**
+   * Outline stitches in the 3D view, or none.
+   *
+   * @param {string} design
+   * @param {import("./core/grid.js").Box | null} box
+   * @returns {Promise<void>}
+   */
+  mark: (design, box) =>
+    call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body: { box } }),
+
+  /**
+   * @param {string} design
+   * @param {import("./types.js").Side} side
+   * @returns {Promise<void>}
+   */
+  look: (design, side) =>
+    call(`/views/${encodeURIComponent(design)}/camera`, { method: "PUT", body: { side } }),
+
+  /**
+   * @param {import("./types.js").CurveRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").ChartCurve>}
+   */
+  curve: (body, signal) => call("/curve", { method: "POST", body, signal }),
+
+  /**
+   * Run something in the background.
+   *
+   * @param {string} kind
+   * @param {unknown} request
+   * @returns {Promise<import("./types.js").JobStatus>}
+   */
+  startJob: (kind, request) => call("/jobs", { method: "POST", body: { kind, request } }),
+
+  /**
+   * @template T
+   * @param {string} id
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<T>}
+   */
+  jobResult: (id, signal) => call(`/jobs/${id}/result`, { signal }),
+
+  /** @type {(id: string) => Promise<void>} */
+  cancelJob: (id) => call(`/jobs/${id}`, { method: "DELETE" }),
 };

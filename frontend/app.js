@@ -111,7 +111,7 @@ void firstPaint().then(async () => {
   ]);
   themed.push(inspector(byId("inspector"), studio));
   byId("fabric").replaceChildren();
-  showAgain = fabricview(byId("fabric"), studio);
+  showAgain = fabricview(byId("fabric"), studio, view);
 });
 
 const material = new Latest(0);

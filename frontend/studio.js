@@ -24,6 +24,7 @@ import { loadSettings, saveSettings } from "./core/store.js";
 import { ChartDocument } from "./core/document.js";
 import { Editing } from "./chart/editing.js";
 import { OVERLAYS } from "./chart/overlays.js";
+import { Seeing } from "./chart/seeing.js";
 import { TOOLS } from "./tools/registry.js";
 
 const SETTINGS = {
@@ -64,6 +65,7 @@ export class Studio {
       OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1],
     );
     this.rectangles = new Signal(settings.rectangles);
+    this.seeing = new Seeing();
 
     this.prediction = new Signal(
       /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),

@@ -82,6 +82,34 @@ export interface StretchRequest {
   direction: Direction;
   strain: number;
   steps: number;
+  clamps?: "clamped" | "sliding";
+  model?: "published" | "full";
+  shear_modulus_n_per_mm?: number | null;
+}
+
+/** A computation in the background. */
+export interface JobStatus {
+  id: string;
+  kind: string;
+  state: "waiting" | "running" | "done" | "failed" | "cancelled" | "interrupted";
+  progress: number;
+  problem: Problem | null;
+}
+
+export interface CurveRequest {
+  chart: string;
+  material: string;
+  direction: Direction;
+  stress_n_per_mm?: number[];
+}
+
+/** Strain at each stress, with the ends of its 90 % interval. */
+export interface ChartCurve {
+  stress_n_per_mm: number[];
+  strain: number[];
+  strain_low: number[];
+  strain_high: number[];
+  provenance: string;
 }
 
 export interface Stretch {
@@ -106,14 +134,24 @@ export interface ViewRequest {
   chart: string;
   material: string;
   colour: string;
+  palette?: Partial<Record<FabricName | "yarn", string>>;
+  regions?: DesignRegion[];
   rectangles: boolean;
+  rectangle_groups?: "stitch" | "block" | "region";
+  rectangle_block?: number;
   stretch: { id: string; step: number } | null;
+  /** Where a chart is drawn as yarn that is too large to be drawn whole. */
+  focus?: { row: number; column: number } | null;
 }
 
 export interface View {
   stitches: number;
+  /** Where the shapes of the stitches come from. */
+  source: string;
   url: string;
 }
+
+export type Side = "face" | "back" | "edge" | "angle";
 
 /** A part of the chart with a fill or a yarn of its own; later regions lie on top. */
 export interface DesignRegion {

@@ -2,8 +2,9 @@
  * The fabric in 3D: the service's viewer in a frame, kept in step with the chart. At most one request
  * is under way; of the changes meanwhile only the last is sent.
  *
+ * @import {ChartView} from "../chart/view.js"
  * @import {Studio} from "../studio.js"
- * @import {ViewRequest} from "../types.js"
+ * @import {Side, ViewRequest} from "../types.js"
  */
 
 import { ApiError, api } from "../api.js";
@@ -11,6 +12,9 @@ import { OVERLAYS } from "../chart/overlays.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { FrameGovernor } from "./framegovernor.js";
+import { ViewLink } from "./fabric/link.js";
+import { onTheme } from "./fabric/theme.js";
+import { toolbar } from "./fabric/toolbar.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
@@ -19,19 +23,37 @@ const DRAW_MS = 1500;
 const START_MS = 6000;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
+/** The service draws so many stitches as yarn at most; of larger charts only a part. */
+const MOST_DRAWN = 40_000;
 
 /**
  * @param {HTMLElement} host
  * @param {Studio} studio
+ * @param {ChartView} view
  * @returns {() => void} sends the design again, for a service that has forgotten it
  */
-export function fabricview(host, studio) {
+export function fabricview(host, studio, view) {
   const frame = h("iframe", { title: "Fabric in 3D", class: "fabric-frame", tabIndex: 0 });
   const status = h("div", { class: "fabric-status", role: "status" });
   const caption = h("div", { class: "fabric-caption" });
-  host.append(frame, caption, status);
-
   const governor = new FrameGovernor();
+  const link = new ViewLink(studio, view, {
+    lost: () => now(),
+    drawn: () => governor.wake(DRAW_MS),
+    slow: () => governor.slow,
+  });
+
+  /** @param {Side} side */
+  const look = async (side) => {
+    try {
+      await api.look(studio.designId, side);
+      governor.wake(DRAW_MS);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      studio.tellProblem(error.problem);
+    }
+  };
+
   frame.addEventListener("load", () => {
     if (!frame.contentWindow || !shown) return;
     governor.govern(frame.contentWindow);
@@ -52,20 +74,12 @@ export function fabricview(host, studio) {
   let sending = false;
   let again = false;
   let shown = "";
+  let source = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
-  /** @returns {ViewRequest} */
-  const wish = () => {
-    const stretch = studio.currentStretch();
-    const overlay = studio.overlay.value.available(studio) ? studio.overlay.value : OVERLAYS[1];
-    return {
-      ...studio.request,
-      colour: overlay.view,
-      rectangles: studio.rectangles.value,
-      stretch: stretch ? { id: stretch.id, step: studio.step.value } : null,
-    };
-  };
+  const wish = () => wanted(studio, view);
+  host.append(frame, caption, toolbar(studio, (side) => void look(side), wish), status);
 
   const send = async () => {
     if (sending) {
@@ -74,14 +88,18 @@ export function fabricview(host, studio) {
     }
     sending = true;
     try {
-      const { url } = await api.view(studio.designId, wish());
+      const answer = await api.view(studio.designId, wish());
       status.replaceChildren();
+      source = answer.source;
+      describe();
       governor.wake(DRAW_MS);
       studio.online.value = true;
-      if (shown !== url) {
-        shown = url;
-        frame.src = url;
+      if (shown !== answer.url) {
+        shown = answer.url;
+        frame.src = answer.url;
+        link.disconnect();
       }
+      link.connect();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
@@ -110,28 +128,75 @@ export function fabricview(host, studio) {
     void send();
   };
 
-  status.append(h("span", { class: "spinner" }), "Knitting …");
-  studio.document.onChange(soon);
-  studio.materialId.listen(soon);
-  studio.overlay.listen(soon);
-  studio.rectangles.listen(soon);
-  studio.stretch.listen(soon);
-  studio.step.listen(now);
-
   const describe = () => {
     const stretch = studio.currentStretch();
     const strain = stretch?.strain[studio.step.value];
     caption.replaceChildren(
       stretch && strain !== undefined
         ? `Stretched ${studio.stretchDirection()}-wise by ${(100 * strain).toFixed(0)} %`
-        : "Relaxed, face side",
+        : "Relaxed",
     );
+    caption.title = source && `Yarn: ${source}`;
   };
+
+  status.append(h("span", { class: "spinner" }), "Knitting …");
+  studio.document.onChange(soon);
+  const { yarnColours, groups, block } = studio.seeing;
+  for (const signal of [studio.materialId, studio.overlay, studio.rectangles, studio.stretch, groups, block]) {
+    signal.listen(soon);
+  }
+  yarnColours.listen(now);
+  studio.step.listen(now);
+  onTheme(soon);
   studio.stretch.watch(describe);
   studio.step.listen(describe);
   now();
   return () => {
     shown = ""; // a restarted service has new scenes, so the frame must connect anew
     now();
+  };
+}
+
+/**
+ * What the view is to show.
+ *
+ * @param {Studio} studio
+ * @param {ChartView} view
+ * @returns {ViewRequest}
+ */
+function wanted(studio, view) {
+  const { document: chart, seeing } = studio;
+  const stretch = studio.currentStretch();
+  const overlay = studio.overlay.value.available(studio) ? studio.overlay.value : OVERLAYS[1];
+  const colour = seeing.yarnColours.value === "chart" ? overlay.view : seeing.yarnColours.value;
+  const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
+  const { rows, columns } = chart.grid;
+  const seen = view.viewport.visible(chart.grid);
+  return {
+    ...studio.request,
+    colour,
+    palette: palette(),
+    regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],
+    rectangles: studio.rectangles.value,
+    rectangle_groups: seeing.groups.value,
+    rectangle_block: seeing.block.value,
+    stretch: stretch ? { id: stretch.id, step: studio.step.value } : null,
+    focus:
+      rows * columns > MOST_DRAWN
+        ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }
+        : null,
+  };
+}
+
+/** The theme's colours. @returns {NonNullable<ViewRequest["palette"]>} */
+function palette() {
+  const style = getComputedStyle(document.documentElement);
+  /** @param {string} name */
+  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  return {
+    stockinette: colour("stockinette"),
+    garter: colour("garter"),
+    rib: colour("rib"),
+    seed: colour("seed"),
   };
 }

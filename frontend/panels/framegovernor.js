@@ -62,6 +62,11 @@ export class FrameGovernor {
     if (!held) this.#release();
   }
 
+  /** Whether this machine draws too slowly to follow the pointer. */
+  get slow() {
+    return this.#pace >= SLOW_MS;
+  }
+
   #beat() {
     if (this.#beating) return;
     this.#beating = true;

@@ -56,14 +56,14 @@ export async function exportAs(studio, to) {
 }
 
 /** @param {Studio} studio */
-export export const fileName = ({ name }) =>
+export const fileName = ({ name }) =>
   name.value.replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "").toLowerCase() || "chart";
 
 /**
  * @param {string} name
  * @param {Blob} blob
  */
-export export function download(name, blob) {
+export function download(name, blob) {
   const link = h("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);

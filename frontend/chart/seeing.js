@@ -1,0 +1,33 @@
+/**
+ * How the fabric and its mechanics are looked at: state of the panels that is no part of the design.
+ *
+ * @import {Cell} from "../core/raster.js"
+ *
+ * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
+ *   has them, or one of its own
+ * @typedef {"stitch" | "block" | "region"} Groups what an extensibility rectangle stands for
+ */
+
+import { Signal } from "../core/signal.js";
+import { loadSettings, saveSettings } from "../core/store.js";
+
+const SETTINGS = {
+  yarnColours: /** @type {YarnColours} */ ("chart"),
+  groups: /** @type {Groups} */ ("stitch"),
+  block: 4,
+};
+
+export class Seeing {
+  constructor() {
+    const settings = loadSettings(SETTINGS);
+    this.yarnColours = new Signal(settings.yarnColours);
+    this.groups = new Signal(settings.groups);
+    /** Stitches on a side of a block. */
+    this.block = new Signal(settings.block);
+    /** The stitch that was clicked in the 3D view last. */
+    this.found = new Signal(/** @type {Cell | null} */ (null));
+    this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));
+    this.groups.listen((groups) => saveSettings({ groups }));
+    this.block.listen((block) => saveSettings({ block }));
+  }
+}

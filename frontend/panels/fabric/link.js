@@ -1,0 +1,123 @@
+/**
+ * Ties the chart and the 3D view together: what is pointed at or selected in the chart is outlined
+ * on the fabric, and a stitch that is clicked on the fabric is shown in the chart.
+ *
+ * @import {ChartView} from "../../chart/view.js"
+ * @import {Box} from "../../core/grid.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { ApiError, api } from "../../api.js";
+
+/** Outlines follow the pointer this often. */
+const PERIOD_MS = 150;
+/** A view that is gone is looked for again after this time. */
+const RETRY_MS = 2500;
+
+export class ViewLink {
+  /** @type {EventSource | null} */ #events = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
+  #marked = "";
+  #sending = false;
+
+  /**
+   * @param {Studio} studio
+   * @param {ChartView} view
+   * @param {{lost: () => void, drawn: () => void, slow: () => boolean}} hooks called when the view is
+   *   gone and when there is something new to draw; whether drawing takes too long for the pointer
+   */
+  constructor(studio, view, hooks) {
+    this.studio = studio;
+    this.view = view;
+    this.hooks = hooks;
+    const later = () => {
+      this.#timer ??= setTimeout(() => {
+        this.#timer = undefined;
+        void this.mark();
+      }, PERIOD_MS);
+    };
+    view.hover.listen(later);
+    studio.selection.listen(later);
+    studio.step.listen(later);
+  }
+
+  /** Listen to the clicks in a view that is open now. */
+  connect() {
+    if (this.#events && this.#events.readyState !== EventSource.CLOSED) return;
+    const events = new EventSource(`/api/v1/views/${encodeURIComponent(this.studio.designId)}/events`);
+    this.#events = events;
+    events.addEventListener("stitch", ({ data }) => {
+      const { row, column } = JSON.parse(data);
+      this.#find(row, column);
+    });
+    events.onerror = () => {
+      // While the service is away the browser tries again by itself; a refusal is final.
+      if (events.readyState === EventSource.CLOSED) setTimeout(this.hooks.lost, RETRY_MS);
+    };
+  }
+
+  /** The design is another one now. */
+  disconnect() {
+    this.#events?.close();
+    this.#events = null;
+    this.#marked = "";
+  }
+
+  /** Outline what is pointed at or selected. */
+  async mark() {
+    const { studio } = this;
+    if (studio.document.painting || this.#sending || !this.#events) return;
+    const box = this.#wanted();
+    const key = JSON.stringify(box && [box, studio.step.value]);
+    if (key === this.#marked) return;
+    this.#sending = true;
+    try {
+      await api.mark(studio.designId, box);
+      this.#marked = key;
+      this.hooks.drawn();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error; // the next change tries again
+    } finally {
+      this.#sending = false;
+    }
+    if (JSON.stringify(this.#wanted() && [this.#wanted(), studio.step.value]) !== key) void this.mark();
+  }
+
+  /** @returns {Box | null} */
+  #wanted() {
+    const { studio, view } = this;
+    const { grid } = studio.document;
+    const cell = this.hooks.slow() && studio.seeing.found.value !== view.hover.value ? null : view.hover.value;
+    if (cell && grid.has(...cell)) {
+      const [row, column] = cell;
+      return { row0: row, column0: column, row1: row + 1, column1: column + 1 };
+    }
+    const selection = studio.selection.value;
+    if (!selection) return null;
+    const { row0, column0, row1, column1 } = selection;
+    return { row0, column0, row1, column1 };
+  }
+
+  /** @param {number} row @param {number} column */
+  #find(row, column) {
+    const { studio, view } = this;
+    if (!studio.document.grid.has(row, column)) return;
+    /** @type {import("../../core/raster.js").Cell} */
+    const cell = [row, column];
+    studio.seeing.found.value = cell;
+    this.#reveal(row, column);
+    view.hover.value = cell;
+  }
+
+  /** Move the chart so that a stitch is seen. @param {number} row @param {number} column */
+  #reveal(row, column) {
+    const { view, studio } = this;
+    const { viewport } = view;
+    const { grid } = studio.document;
+    const seen = viewport.visible(grid);
+    if (row > seen.row0 && row < seen.row1 - 1 && column > seen.column0 && column < seen.column1 - 1) return;
+    if (viewport.fitted) return;
+    const place = viewport.place({ row0: row, column0: column, row1: row + 1, column1: column + 1 }, grid);
+    view.pan(viewport.width / 2 - place.x, viewport.height / 2 - place.y);
+  }
+}

@@ -1,0 +1,98 @@
+/**
+ * What can be done with the fabric in 3D: look from another side, colour its yarn, give it away.
+ *
+ * @import {Studio} from "../../studio.js"
+ * @import {Side} from "../../types.js"
+ */
+
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { menu } from "../menu.js";
+
+/** @type {{side: Side, label: string, hint: string}[]} */
+const SIDES = [
+  { side: "face", label: "Face", hint: "Look at the face" },
+  { side: "back", label: "Back", hint: "Look at the back" },
+  { side: "edge", label: "Edge", hint: "Look along the wales, from the cast-on edge" },
+  { side: "angle", label: "Angle", hint: "Look from below right" },
+];
+
+/** @type {[import("../../chart/seeing.js").YarnColours, string][]} */
+const COLOURS = [
+  ["chart", "Colours of the chart"],
+  ["yarn", "Yarn"],
+  ["region", "Regions"],
+  ["fabric", "Fabrics, mixed"],
+  ["phase", "Strongest fabric"],
+];
+
+/**
+ * @param {Studio} studio
+ * @param {(side: Side) => void} look
+ * @param {import("./share.js").Wish} wish
+ */
+export function toolbar(studio, look, wish) {
+  const sides = SIDES.map(({ side, label, hint }) =>
+    h("button", { class: "segment", type: "button", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
+  );
+  const { root, setItems, button } = menu({
+    id: "fabric-colours",
+    label: "Colours of the yarn",
+    content: [icon("yarn"), h("span", { class: "label" }, "Yarn"), icon("down")],
+    class: "button",
+  });
+  button.title = "Colours of the yarn";
+  studio.seeing.yarnColours.watch((chosen) =>
+    setItems(
+      COLOURS.map(([id, content]) => ({
+        id: `yarn-${id}`,
+        content,
+        checked: id === chosen,
+        perform: () => (studio.seeing.yarnColours.value = id),
+      })),
+    ),
+  );
+  return h(
+    "div",
+    { class: "fabric-tools", role: "toolbar", "aria-label": "The fabric in 3D" },
+    h("div", { class: "segmented", role: "group", "aria-label": "Side" }, ...sides),
+    root,
+    shareMenu(studio, wish),
+  );
+}
+
+/**
+ * @param {Studio} studio
+ * @param {import("./share.js").Wish} wish
+ */
+function shareMenu(studio, wish) {
+  const { root, setItems, button } = menu({
+    id: "fabric-share",
+    label: "Give the view away",
+    content: [icon("camera"), h("span", { class: "label" }, "Save"), icon("down")],
+    class: "button",
+  });
+  button.title = "A picture, page, recording or solid of this fabric";
+  /** @param {string} id @param {string} content @param {(files: typeof import("./share.js")) => Promise<void>} save @param {boolean} [disabled] */
+  const item = (id, content, save, disabled = false) => ({
+    id: `share-${id}`,
+    content,
+    disabled,
+    perform: () => void import("./share.js").then(save),
+  });
+  const show = () => {
+    const still = studio.currentStretch() === null;
+    setItems([
+      item("picture", "Picture (.png)", (files) => files.savePicture(studio, 1600)),
+      item("picture-large", "Large picture (.png)", (files) => files.savePicture(studio, 3200)),
+      null,
+      item("page", "Page to turn it in (.html)", (files) => files.saveFile(studio, wish, "page", false)),
+      item("animation", "Page with the stretch (.html)", (files) => files.saveFile(studio, wish, "page", true), still),
+      item("recording", "Recording of the stretch (.viser)", (files) => files.saveFile(studio, wish, "recording", true), still),
+      null,
+      item("solid", "Solid with colours (.glb)", (files) => files.saveFile(studio, wish, "solid", false)),
+    ]);
+  };
+  studio.stretch.watch(show);
+  return root;
+}
