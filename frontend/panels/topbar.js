@@ -92,7 +92,7 @@ export function topbar(host, studio, context) {
 /** @param {Studio} studio */
 function materialMenu(studio) {
   const label = h("span", { class: "ellipsis" }, "Material");
-  const { root, setItems, button } = menu({
+  const { root, setItems } = menu({
     id: "material",
     label: "Material",
     content: [h("span", { class: "muted label" }, "Material"), label, icon("down")],

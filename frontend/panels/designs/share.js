@@ -21,7 +21,7 @@ const MODES = {
 };
 
 /**
- * @param {Studio} studio
+ * @param {Studio} _studio
  * @param {ActionContext} context
  */
 export function create(_studio, { keeper }) {
