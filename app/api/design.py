@@ -7,6 +7,7 @@ from fastapi import APIRouter, Request
 from app.operations.atlas import AtlasRequest, AtlasResult, run_atlas
 from app.operations.fill import FillRequest, FillResult, run_fill
 from app.operations.find import FindRequest, FindResult, run_find
+from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 
 router = APIRouter(tags=["design"])
 
@@ -32,4 +33,12 @@ async def post_fill(body: FillRequest, request: Request) -> FillResult:
     """Patches from the atlas, fitted to each other; tells what is not reached."""
     compute = request.app.state.compute
     result: FillResult = await compute.run(request.is_disconnected, run_fill, body)
+    return result
+
+
+@router.post("/shape", summary="A chart that takes a wanted outline when it is stretched")
+async def post_shape(body: ShapeRequest, request: Request) -> ShapeResult:
+    """Bands across the pull, chosen, pulled in the finite swatch and chosen again."""
+    compute = request.app.state.compute
+    result: ShapeResult = await compute.run(request.is_disconnected, run_shape, body)
     return result

@@ -36,6 +36,7 @@ from app.operations.measure import (
     run_compression,
 )
 from app.operations.relax import RelaxRequest, RelaxResult, run_relax
+from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
 
@@ -83,6 +84,10 @@ class FillJob(JobOf[Literal["fill"], FillRequest]):
     """A chart for a map of wanted stiffness."""
 
 
+class ShapeJob(JobOf[Literal["shape"], ShapeRequest]):
+    """A chart that takes a wanted outline when it is stretched."""
+
+
 class FitJob(JobOf[Literal["fit"], FitRequest]):
     """A law from two stretch tests."""
 
@@ -112,6 +117,7 @@ JobRequest = Annotated[
     | AtlasJob
     | FindJob
     | FillJob
+    | ShapeJob
     | FitJob
     | BendingJob
     | CompressionJob
@@ -155,6 +161,7 @@ KINDS: dict[str, JobKind] = {
     "atlas": JobKind(AtlasRequest, AtlasResult, run_atlas),
     "find": JobKind(FindRequest, FindResult, run_find),
     "fill": JobKind(FillRequest, FillResult, run_fill),
+    "shape": JobKind(ShapeRequest, ShapeResult, run_shape),
     "fit": JobKind(FitRequest, FitResult, run_fit),
     "bending": JobKind(BendingRequest, BendingResult, run_bending),
     "compression": JobKind(CompressionRequest, CompressionResult, run_compression),

@@ -1,39 +1,54 @@
 """Fill a field: a chart whose local moduli follow a map of wanted ones.
 
-A map that is some chart's own gives that chart back (:mod:`knitcore.design.readback`). Any other
-map is filled by patches (:mod:`knitcore.design.patches`): every region gets the repeat of an atlas
-whose effective moduli are nearest. Then every patch is shifted or turned over so that it fits its
-neighbours, and at last single stitches along the borders are turned where that brings the local
-moduli of the quarter-cell composite nearer to the map. The same seed gives the same chart.
+A map that is (nearly) some chart's own gives that chart back (:mod:`knitcore.design.readback`). Any
+other map is filled by patches (:mod:`knitcore.design.patches`): every region gets the repeat whose
+effective moduli are nearest, from an atlas or between those of an atlas
+(:mod:`knitcore.design.mixtures`). Patches are fitted to their neighbours
+(:mod:`knitcore.design.placing`), measured in the finite swatch
+(:mod:`knitcore.design.patch_check`), and where one departs from its wish there, chosen again. The
+same seed gives the same chart.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
+from knitcore.design.mixtures import Mixer
+from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import patches_of, smooth, unevenness, wanted_labels
-from knitcore.design.readback import chart_of_local_moduli
+from knitcore.design.placing import placed
+from knitcore.design.readback import EXACT, deviation, nearest_chart
+from knitcore.design.repeats import repeat_key
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
-from knitcore.phases import surroundings
 
 Array = NDArray[np.float64]
-Grid = NDArray[np.bool_]
+Labels = NDArray[np.intp]
 
 OFF = 0.10
 """Relative deviation above which a stitch counts as off."""
-BORDER = 2
-"""Stitches on each side of a border that may be turned one by one."""
-_SWEEPS = 6
+CLOSE = 0.03
+"""A repeat of the atlas that is nearer (in logarithms) is not improved."""
+MOST_MIXED = 8
+"""Patches that may hold a mixture of two repeats, the largest ones."""
+LEAST_MIXED = 48
+"""Stitches of the smallest of them."""
+MOST_CHECKED = 10_000
+"""Stitches of the largest chart that is pulled in the finite swatch."""
+_CHECKS = 3
+_NEARLY = 0.25
+"""Largest rms deviation (in logarithms) of a map that is nearly a chart's own."""
+_AS_GOOD = 1.25
+"""A chart read back stitch by stitch may depart so much more from the map than patches do: it needs
+no choice of repeats that fit a rough map by chance."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +62,8 @@ class Patch:
     row, column : of its first stitch, from 1 at the bottom left.
     deviation_course, deviation_wale : the repeat's effective modulus over the median of the
         wanted ones, minus one; NaN without a wish.
+    swatch_course, swatch_wale : the same for the patch in the finite swatch, where its size and its
+        neighbours count; NaN without a wish, or if it was not pulled.
     """
 
     repeat: str
@@ -55,6 +72,8 @@ class Patch:
     column: int
     deviation_course: float
     deviation_wale: float
+    swatch_course: float = float("nan")
+    swatch_wale: float = float("nan")
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,16 +84,17 @@ class FilledField:
     ----------
     chart : the stitches.
     patches : number of the patch of every stitch, into ``regions``.
-    regions : the patches; none if the map is a chart's own and was read back.
+    regions : the patches; none if the map is (nearly) a chart's own and was read back.
     local : local moduli of the chart.
-    off_share : share of the stitches whose local moduli are off by more than 10 % in a wanted
-        direction. Inside a repeat that mixes fabrics local moduli alternate, so for such repeats
-        look at the deviations of the regions instead.
+    off_share : share of the stitches off by more than 10 % in a wanted direction: of patches by
+        their effective moduli in the swatch beside the wish at each stitch (of a single patch in a
+        large cloth: the edges of its swatch are none of its own), of a chart that was read back by
+        its local moduli.
     messages : what was not reached.
     """
 
     chart: StitchChart
-    patches: NDArray[np.intp]
+    patches: Labels
     regions: tuple[Patch, ...]
     local: LocalModuli
     off_share: float
@@ -89,6 +109,7 @@ def fill_field(
     *,
     smallest_patch: int = 4,
     seed: int = 0,
+    check: bool = True,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> FilledField:
@@ -102,6 +123,7 @@ def fill_field(
     atlas : of that material.
     smallest_patch : smallest side of a patch in stitches.
     seed : of the order in which stitches are tried.
+    check : pull the chart in the finite swatch, and choose again what departs there.
     progress : called with the share done.
     cancelled : asked between steps.
 
@@ -117,156 +139,265 @@ def fill_field(
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    table = stitch_table(material)
-    own = chart_of_local_moduli(wanted, table)
-    if own is not None:
-        return _read_back(own, material, wanted)
-    chosen, cost = wanted_labels(atlas, unevenness(atlas, table), *wanted)
-    labels = smooth(cost, smallest_patch)
-    patches = patches_of(labels)
-    first = np.unique(patches, return_index=True)[1]
-    entries = chosen[labels.ravel()[first]].tolist()
-    charts = [atlas.chart(entry) for entry in entries]
-    work = _Work(material, wanted, progress, cancelled)
-    rng = np.random.default_rng(seed)
-    purl = np.zeros(labels.shape, dtype=bool)
-    for patch, repeat in enumerate(charts):
-        purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
-    _place(purl, patches, charts, work, rng)
-    _turn(purl, patches, work, rng)
-    chart = StitchChart(purl)
-    local = local_moduli(chart, material)
-    regions = _regions(patches, entries, atlas, wanted)
-    return FilledField(chart, patches, regions, local, off_share(local, wanted), _messages(regions))
-
-
-def _read_back(chart: StitchChart, material: Material, wanted: Array) -> FilledField:
-    local = local_moduli(chart, material)
-    return FilledField(
-        chart,
-        np.zeros(chart.purl.shape, dtype=np.intp),
-        (),
-        local,
-        off_share(local, wanted),
-        ("The map is that of a chart, which was read back stitch by stitch.",),
+    return _Fill(wanted, material, atlas, seed, _Telling(progress, cancelled)).run(
+        smallest_patch, check=check and wanted[0].size <= MOST_CHECKED
     )
 
 
-def off_share(local: LocalModuli, wanted: Array) -> float:
-    """Share of stitches off by more than 10 % (``wanted``: logarithms (2, rows, columns))."""
-    have = np.log(np.stack([local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm]))
-    ratio = np.exp(have - wanted)
-    return float((np.abs(ratio - 1) > OFF).any(axis=0).mean())  # NaN compares as not off
+@dataclass(frozen=True)
+class _Choice:
+    """A repeat for a patch, with its effective moduli."""
+
+    repeat: StitchChart
+    log_moduli: Array
 
 
-class _Work:
-    """Costs of charts against the map, by windows."""
+@dataclass(frozen=True, eq=False)
+class _Trial:
+    """A chart of chosen repeats, and each patch's finite-size factors (logarithms)."""
+
+    chart: StitchChart
+    choices: tuple[_Choice, ...]
+    factors: Array
+    score: float
+
+
+class _Fill:
+    """One run."""
 
     def __init__(
-        self,
-        material: Material,
-        wanted: Array,
-        progress: Callable[[float], None] | None,
-        cancelled: Callable[[], bool] | None,
+        self, wanted: Array, material: Material, atlas: Atlas, seed: int, telling: _Telling
     ) -> None:
-        table = stitch_table(material)
-        have = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
-        self._cost = np.nansum((have[:, None, None, :] - wanted[..., None]) ** 2, axis=0)
-        self._progress, self._cancelled = progress, cancelled
+        self._wanted, self._material, self._atlas = wanted, material, atlas
+        self._seed, self._telling = seed, telling
+        self._table = stitch_table(material)
+        self._have = np.log(np.stack([atlas.modulus(d) for d in Direction], axis=1))
+        self._mixer: Mixer | None = None
 
-    def step(self, done: float) -> None:
-        """Tell the progress, and stop if asked to."""
-        if self._cancelled is not None and self._cancelled():
-            raise CancelledError(f"stopped after {done:.0%}")
-        if self._progress is not None:
-            self._progress(done)
+    def run(self, smallest_patch: int, *, check: bool) -> FilledField:
+        self._telling.look(0.01)
+        own = nearest_chart(self._wanted, self._table)
+        exact = float(np.nanmax(np.abs(deviation(own, self._wanted, self._table))))
+        if exact <= EXACT:
+            return self._read_back(own, "The map is that of a chart, which was read back.")
+        uneven = unevenness(self._atlas, self._table)
+        chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
+        labels = smooth(cost, smallest_patch)
+        effective = self._have[chosen[labels]].transpose(2, 0, 1)
+        rough = self._rms(deviation(own, self._wanted, self._table))
+        if rough <= min(_NEARLY, _AS_GOOD * self._rms(effective - self._wanted)):
+            return self._read_back(own, "The map is nearly that of a chart, which was read back.")
+        patches = patches_of(labels)
+        first = np.unique(patches, return_index=True)[1]
+        choices = [self._of_atlas(int(entry)) for entry in chosen[labels.ravel()[first]]]
+        choices = self._mixed(patches, choices)
+        best = self._trial(patches, choices, 0.45, check=check)
+        for turn in range(1, _CHECKS if check else 1):
+            again = self._chosen_again(patches, best)
+            if again is None:
+                break
+            trial = self._trial(patches, again, 0.45 + 0.5 * turn / _CHECKS, check=True)
+            if trial.score >= best.score:
+                break
+            best = trial
+        return self._filled(patches, best, check=check)
 
-    def around(self, purl: Grid, rows: slice, columns: slice) -> float:
-        """Cost of all stitches whose surroundings a change inside the window can alter."""
-        (row, far_row), (column, far_column) = (
-            _window(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
+    def _of_atlas(self, entry: int) -> _Choice:
+        return _Choice(self._atlas.chart(entry), self._have[entry])
+
+    def _mixed(self, patches: Labels, choices: list[_Choice]) -> list[_Choice]:
+        """Mixtures where they come nearer than the atlas."""
+        wishes = self._wishes(patches, len(choices))
+        off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - wishes)).max(axis=1)
+        sizes = np.bincount(patches.ravel())
+        large = [k for k in np.argsort(-sizes) if sizes[k] >= LEAST_MIXED]
+        poor = [k for k in large if off[k] > CLOSE][:MOST_MIXED]
+        known: dict[tuple[float, ...], _Choice | None] = {}
+        found = list(choices)
+        for count, patch in enumerate(poor):
+            self._telling.look(0.45 * count / len(poor))
+            rows, columns = _extent(patches == patch)
+            key = (*np.nan_to_num(wishes[patch].round(3)).tolist(), rows, columns)
+            if key not in known:
+                known[key] = self._mixture(wishes[patch], rows, columns, off[patch])
+            found[patch] = known[key] or choices[patch]
+        return found
+
+    def _mixture(self, wish: Array, rows: int, columns: int, off: float) -> _Choice | None:
+        if self._mixer is None:
+            self._mixer = Mixer(self._atlas, self._material)
+        mixture = self._mixer.nearest(
+            *np.exp(wish).tolist(),
+            most_rows=min(rows, 12),
+            most_columns=min(columns, 12),
+            look=self._telling.stop_if_asked,
         )
-        codes = surroundings(StitchChart(purl[far_row, far_column]))[
-            row.start - far_row.start : row.stop - far_row.start,
-            column.start - far_column.start : column.stop - far_column.start,
-        ]
-        costs = self._cost[row, column]
-        return float(np.take_along_axis(costs, codes[..., None].astype(np.intp), axis=2).sum())
+        if mixture is None or mixture.off > 0.8 * off:
+            return None
+        return _Choice(mixture.repeat, mixture.log_moduli)
 
+    def _chosen_again(self, patches: Labels, last: _Trial) -> list[_Choice] | None:
+        """The nearest of the atlas to what the swatch asks of each repeat; None if none changes."""
+        wishes = self._wishes(patches, len(last.choices)) - last.factors
+        if len(last.choices) == 1:
+            return None
+        found = list(last.choices)
+        for patch, choice in enumerate(last.choices):
+            off = np.nan_to_num(np.abs(self._have - wishes[patch])).max(axis=1)
+            entry = int(off.argmin())
+            own = float(np.nan_to_num(np.abs(choice.log_moduli - wishes[patch])).max())
+            if own > CLOSE and off[entry] < 0.8 * own:
+                found[patch] = self._of_atlas(entry)
+        changed = any(a is not b for a, b in zip(found, last.choices, strict=True))
+        return found if changed else None
 
-def _window(touched: slice, size: int) -> tuple[slice, slice]:
-    """Stitches whose codes change, and those that decide them (an edge borrows from inside)."""
-    changed = slice(max(touched.start - 1, 0), min(touched.stop + 1, size))
-    return changed, slice(max(changed.start - 2, 0), min(changed.stop + 2, size))
+    def _trial(
+        self, patches: Labels, choices: list[_Choice], start: float, *, check: bool
+    ) -> _Trial:
+        repeats = [choice.repeat for choice in choices]
+        chart = placed(
+            patches,
+            repeats,
+            self._wanted,
+            self._table,
+            seed=self._seed,
+            look=lambda share: self._telling.look(start + 0.15 * share),
+        )
+        factors = np.zeros((len(choices), 2))
+        if check:
+            factors = np.log(
+                finite_size(
+                    chart, self._material, patches, repeats, cancelled=self._telling.cancelled
+                )
+            )
+        off = _judged(choices, factors)[patches].transpose(2, 0, 1) - self._wanted
+        return _Trial(chart, tuple(choices), factors, _off_share(off) + 0.1 * self._rms(off))
 
+    def _wishes(self, patches: Labels, count: int) -> Array:
+        """(patches, 2) medians of the wanted logarithms, NaN where a patch has no wish."""
+        found = np.full((count, 2), np.nan)
+        for patch in range(count):
+            for axis, wish in enumerate(self._wanted):
+                here = wish[patches == patch]
+                if not np.isnan(here).all():
+                    found[patch, axis] = np.nanmedian(here)
+        return found
 
-def _place(
-    purl: Grid,
-    patches: NDArray[np.intp],
-    repeats: list[StitchChart],
-    work: _Work,
-    rng: np.random.Generator,
-) -> None:
-    """Shift or turn every patch so that it fits its neighbours, until nothing improves."""
-    boxes = ndimage.find_objects(patches + 1)
-    for sweep in range(_SWEEPS):
-        improved = False
-        for count, patch in enumerate(rng.permutation(len(repeats)).tolist()):
-            work.step(0.5 * (sweep + count / len(repeats)) / _SWEEPS)
-            rows, columns = boxes[patch]
+    def _rms(self, off: Array) -> float:
+        return float(np.sqrt(np.nanmean(off**2)))
+
+    def _read_back(self, chart: StitchChart, message: str) -> FilledField:
+        self._telling.look(1.0)
+        off = deviation(chart, self._wanted, self._table)
+        return FilledField(
+            chart,
+            np.zeros(chart.purl.shape, dtype=np.intp),
+            (),
+            local_moduli(chart, self._material),
+            _off_share(off),
+            (message,),
+        )
+
+    def _filled(self, patches: Labels, trial: _Trial, *, check: bool) -> FilledField:
+        moduli = np.stack([choice.log_moduli for choice in trial.choices])
+        wishes = self._wishes(patches, len(trial.choices))
+        off, there = np.expm1(moduli - wishes), np.full(moduli.shape, np.nan)
+        if check:
+            there = np.expm1(moduli + trial.factors - wishes)
+        regions = []
+        for patch, choice in enumerate(trial.choices):
             cells = patches == patch
-            best = purl[cells]
-            least = work.around(purl, rows, columns)
-            for image in _images(repeats[patch]):
-                purl[cells] = _tiled(image, purl)[cells]
-                cost = work.around(purl, rows, columns)
-                if cost < least - 1e-12:
-                    best, least, improved = purl[cells], cost, True
-            purl[cells] = best
-        if not improved:
-            return
+            row, column = (int(k) + 1 for k in np.argwhere(cells)[0])
+            place = int(cells.sum()), row, column
+            regions.append(Patch(repeat_key(choice.repeat), *place, *off[patch], *there[patch]))
+        judged = _judged(trial.choices, trial.factors)
+        self._telling.look(1.0)
+        return FilledField(
+            trial.chart,
+            patches,
+            tuple(regions),
+            local_moduli(trial.chart, self._material),
+            _off_share(judged[patches].transpose(2, 0, 1) - self._wanted),
+            tuple(self._messages(regions, wishes, np.expm1(judged - wishes))),
+        )
+
+    def _messages(self, regions: list[Patch], wishes: Array, off: Array) -> list[str]:
+        said = []
+        for region, wish, away in zip(regions, wishes, off, strict=True):
+            for axis, direction in enumerate(Direction):
+                if abs(away[axis]) > OFF:
+                    said.append(
+                        f"The patch of {region.stitches} stitches from row {region.row}, column "
+                        f"{region.column} is {away[axis]:+.0%} off {direction}-wise: "
+                        f"{region.repeat} is the nearest. {self._reach(wish, direction)}"
+                    )
+        if len(regions) == 1:
+            only = regions[0]
+            there = np.array([only.swatch_course, only.swatch_wale])
+            if (np.abs(there) > OFF).any():
+                said.append(
+                    "A swatch of just this size with free edges departs from a large cloth: "
+                    f"{_percent(there[0])} course-wise and {_percent(there[1])} wale-wise."
+                )
+        return said
+
+    def _reach(self, wish: Array, direction: Direction) -> str:
+        """What would work."""
+        own, other = direction.axis, direction.other.axis
+        whole = np.exp(self._have[:, own])
+        text = f"This yarn reaches {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"
+        if not np.isnan(wish[other]):
+            near = np.abs(self._have[:, other] - wish[other]) < OFF
+            if near.any():
+                part = np.exp(self._have[near, own])
+                text += (
+                    f", beside the wanted {np.exp(wish[other]):.3g} {direction.other}-wise "
+                    f"{part.min():.3g} to {part.max():.3g}"
+                )
+            else:
+                text += f", but not the wanted {np.exp(wish[other]):.3g} {direction.other}-wise"
+        return text + "; search other yarns and needles for more."
 
 
-def _tiled(repeat: StitchChart, purl: Grid) -> Grid:
-    rows, columns = purl.shape
-    return repeat.resized(rows, columns).purl
+@dataclass
+class _Telling:
+    """Progress that never falls back, and the wish to stop."""
+
+    progress: Callable[[float], None] | None
+    cancelled: Callable[[], bool] | None
+    done: float = 0.0
+
+    def look(self, done: float) -> None:
+        """Tell the progress, and stop if asked to."""
+        self.stop_if_asked()
+        self.done = max(self.done, min(done, 1.0))
+        if self.progress is not None:
+            self.progress(self.done)
+
+    def stop_if_asked(self) -> None:
+        """Stop if asked to."""
+        if self.cancelled is not None and self.cancelled():
+            raise CancelledError(f"stopped after {self.done:.0%}")
 
 
-def _images(repeat: StitchChart) -> list[StitchChart]:
-    """All shifts of a repeat and of its mirror, with knits and purls as they are and swapped."""
-    grids = [repeat.purl, repeat.purl[:, ::-1]]
-    images = [
-        StitchChart(np.roll(grid, (down, across), axis=(0, 1)) ^ swapped)
-        for grid in grids
-        for down in range(repeat.rows)
-        for across in range(repeat.columns)
-        for swapped in (False, True)
-    ]
-    return list(dict.fromkeys(images))
+def _off_share(off: Array) -> float:
+    """Share of stitches off by more than 10 % (logarithms (2, rows, columns); NaN is not off)."""
+    return float((np.abs(np.expm1(off)) > OFF).any(axis=0).mean())
 
 
-def _turn(purl: Grid, patches: NDArray[np.intp], work: _Work, rng: np.random.Generator) -> None:
-    """Turn single stitches, and pairs of neighbours, near borders where that lowers the cost."""
-    edge = np.zeros(purl.shape, dtype=bool)
-    edge[:, :-1] |= patches[:, :-1] != patches[:, 1:]
-    edge[:-1] |= patches[:-1] != patches[1:]
-    near = np.argwhere(ndimage.binary_dilation(edge, iterations=BORDER))
-    for sweep in range(_SWEEPS):
-        improved = False
-        for count, (row, column) in enumerate(rng.permutation(near).tolist()):
-            if count % 200 == 0:
-                work.step(0.5 + 0.5 * (sweep + count / len(near)) / _SWEEPS)
-            for height, width in ((1, 1), (1, 2), (2, 1)):
-                rows = slice(row, min(row + height, purl.shape[0]))
-                columns = slice(column, min(column + width, purl.shape[1]))
-                before = work.around(purl, rows, columns)
-                purl[rows, columns] ^= True
-                if work.around(purl, rows, columns) < before - 1e-12:
-                    improved = True
-                    break
-                purl[rows, columns] ^= True
-        if not improved:
-            return
+def _judged(choices: Sequence[_Choice], factors: Array) -> Array:
+    """(patches, 2) logarithms of moduli: in the swatch, but of a single patch in a large cloth."""
+    moduli = np.stack([choice.log_moduli for choice in choices])
+    return moduli + factors if len(choices) > 1 else moduli
+
+
+def _percent(value: float) -> str:
+    return "no wish" if np.isnan(value) else f"{value:+.0%}"
+
+
+def _extent(cells: NDArray[np.bool_]) -> tuple[int, int]:
+    rows, columns = (np.flatnonzero(cells.any(axis=axis)) for axis in (1, 0))
+    return int(np.ptp(rows)) + 1, int(np.ptp(columns)) + 1
 
 
 def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
@@ -284,36 +415,3 @@ def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
         raise InputError("smallest_patch", f"{smallest_patch} is no size.", "Give 1 to 100.")
     logarithms: Array = np.log(both)
     return logarithms
-
-
-def _regions(
-    patches: NDArray[np.intp], entries: list[int], atlas: Atlas, wanted: Array
-) -> tuple[Patch, ...]:
-    names = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
-    have = [np.log(atlas.column(name)) for name in names]
-    found = []
-    for patch, entry in enumerate(entries):
-        cells = patches == patch
-        row, column = np.argwhere(cells)[0] + 1
-        off = []
-        for logs, wish in zip(have, wanted, strict=True):
-            wishes = wish[cells][~np.isnan(wish[cells])]
-            off.append(float(np.expm1(logs[entry] - np.median(wishes))) if len(wishes) else np.nan)
-        found.append(
-            Patch(atlas.keys[entry], int(cells.sum()), int(row), int(column), off[0], off[1])
-        )
-    return tuple(found)
-
-
-def _messages(regions: tuple[Patch, ...]) -> tuple[str, ...]:
-    said = []
-    for region in regions:
-        for direction in ("course", "wale"):
-            deviation = getattr(region, f"deviation_{direction}")
-            if abs(deviation) > OFF:
-                said.append(
-                    f"The patch of {region.stitches} stitches from row {region.row}, column "
-                    f"{region.column} is {deviation:+.0%} off {direction}-wise: {region.repeat} is "
-                    "the nearest in this atlas. Search more repeats, yarns or needles."
-                )
-    return tuple(said)

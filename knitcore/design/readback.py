@@ -1,16 +1,22 @@
-"""Read a chart back from its own local moduli.
+"""Read a chart back from its own local moduli, exact or roughly painted.
 
 The local moduli of a stitch depend on how many of its course-wise and of its wale-wise segments
 are odd: 0, 1 or 2 of each, nine kinds. At the left edge both course-wise segments are alike, so
-the first count tells the first segment, and each further count tells the next one: along a row
-h_c = n_c - h_(c-1), along a column likewise. So a map that is exactly some chart's has one chart,
-up to swapping all knits and purls.
+the first count tells the first segment, and each further count tells the next one. So a map that
+is exactly some chart's has one chart, up to swapping all knits and purls.
+
+A map may also be only near a chart's own: the segments of every row are those of least deviation
+together (dynamic programming along the row), likewise those of every column, in turns. Of the
+segments around four stitches an even number must be odd; where it is not, the least certain are
+given up: a spanning tree of the most certain segments decides knit or purl.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
@@ -18,40 +24,115 @@ from knitcore.mechanics.local import StitchTable
 from knitcore.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
 
 Array = NDArray[np.float64]
+Odd = NDArray[np.bool_]
 
 EXACT = 0.01
 """Largest deviation (in logarithms) of a map that counts as a chart's own."""
+_TURNS = 3
 
 
-def chart_of_local_moduli(wanted: Array, table: StitchTable) -> StitchChart | None:
-    """The chart whose local moduli these are; None if there is none.
+def nearest_chart(wanted: Array, table: StitchTable) -> StitchChart:
+    """A chart whose local moduli are near a map, stitch by stitch.
 
     Parameters
     ----------
-    wanted : (2, rows, columns) logarithms of the moduli, course-wise and wale-wise.
+    wanted : (2, rows, columns) logarithms; NaN is no wish.
     table : of the material.
     """
-    if np.isnan(wanted).any():
-        return None
-    have = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
-    code = ((wanted[..., None] - have[:, None, None]) ** 2).sum(axis=0).argmin(axis=-1)
-    across = _segments(((code & LEFT) > 0).astype(int) + ((code & RIGHT) > 0))
-    up = _segments((((code & BELOW) > 0).astype(int) + ((code & ABOVE) > 0)).T)
-    if across is None or up is None:
-        return None
-    first = np.concatenate([[False], np.logical_xor.accumulate(up[0])])[:, None]
-    steps = np.logical_xor.accumulate(across, axis=1)
-    chart = StitchChart(first ^ np.concatenate([np.zeros_like(first), steps], axis=1))
-    off = np.abs(have[:, surroundings(chart)] - wanted).max()
-    return chart if off <= EXACT else None
+    have = _log_moduli(table)
+    cost = np.nansum((wanted[..., None] - have[:, None, None]) ** 2, axis=0)  # (rows, columns, 16)
+    rows, columns = cost.shape[:2]
+    by_bit = cost.reshape(rows, columns, 2, 2, 2, 2)  # above, below, right, left
+    rowwise = by_bit.transpose(0, 1, 5, 4, 3, 2)  # left, right, below, above
+    columnwise = rowwise.transpose(1, 0, 4, 5, 2, 3)  # below, above, left, right
+    course = _least(rowwise.min(axis=(4, 5)))
+    wale = _least(_given(columnwise, course)).T
+    for _ in range(_TURNS):
+        course = _least(_given(rowwise, wale.T))
+        wale = _least(_given(columnwise, course)).T
+    return _integrated(course, wale, cost)
 
 
-def _segments(odd: NDArray[np.int_]) -> NDArray[np.bool_] | None:
-    """Segments between neighbours along axis 1 from each stitch's number of odd ones."""
-    count = odd.shape[1]
-    segments = np.zeros((odd.shape[0], max(count - 1, 0)), dtype=int)
-    if count > 1:
-        segments[:, 0] = odd[:, 0] // 2
-    for column in range(1, count - 1):
-        segments[:, column] = odd[:, column] - segments[:, column - 1]
-    return segments.astype(bool) if np.isin(segments, (0, 1)).all() else None
+def _given(costs: Array, across: Odd) -> Array:
+    """Costs (lines, stitches, before, after) if the segments across the lines are known.
+
+    ``costs`` is (lines, stitches, before, after, below, above); ``across`` (stitches, lines - 1)
+    holds the segments from line to line.
+    """
+    lines, stitches = costs.shape[:2]
+    below, above = (ends.T.astype(int) for ends in _ends(across, lines))  # (lines, stitches)
+    line, stitch = np.indices((lines, stitches))
+    found: Array = costs[line, stitch, :, :, below, above]
+    return found
+
+
+def _ends(segments: Odd, stitches: int) -> tuple[Odd, Odd]:
+    """Segments before and after each stitch along axis 1; an edge borrows the other side's."""
+    if stitches == 1:
+        none = np.zeros((len(segments), 1), dtype=bool)
+        return none, none
+    first, last = segments[:, :1], segments[:, -1:]
+    return np.concatenate([first, segments], axis=1), np.concatenate([segments, last], axis=1)
+
+
+def _least(costs: Array) -> Odd:
+    """Segments (lines, stitches - 1) of least total cost, each line for itself.
+
+    ``costs`` is (lines, stitches, before, after).
+    """
+    lines, stitches = costs.shape[:2]
+    if stitches == 1:
+        return np.zeros((lines, 0), dtype=bool)
+    both = np.arange(2)
+    total = costs[:, 0, both, both]  # (lines, segment)
+    came = np.zeros((stitches - 1, lines, 2), dtype=np.intp)
+    for stitch in range(1, stitches - 1):
+        options = total[:, :, None] + costs[:, stitch]
+        came[stitch] = options.argmin(axis=1)
+        total = options.min(axis=1)
+    total = total + costs[:, -1, both, both]
+    segments = np.zeros((lines, stitches - 1), dtype=np.intp)
+    segments[:, -1] = total.argmin(axis=1)
+    for stitch in range(stitches - 2, 0, -1):
+        segments[:, stitch - 1] = came[stitch, np.arange(lines), segments[:, stitch]]
+    return segments.astype(bool)
+
+
+def _integrated(course: Odd, wale: Odd, cost: Array) -> StitchChart:
+    """The chart that has the most certain of the segments."""
+    rows, columns = cost.shape[:2]
+    left, right = _ends(course, columns)
+    below, above = (ends.T for ends in _ends(wale.T, rows))
+    code = left * LEFT | right * RIGHT | below * BELOW | above * ABOVE
+    here = np.take_along_axis(cost, code[..., None], axis=2)[..., 0]
+
+    def dearer(bit: int) -> Array:
+        there = np.take_along_axis(cost, (code ^ bit)[..., None], axis=2)[..., 0]
+        found: Array = there - here
+        return found
+
+    node = np.arange(rows * columns).reshape(rows, columns)
+    edges = [
+        (node[:, :-1], node[:, 1:], course, dearer(RIGHT)[:, :-1] + dearer(LEFT)[:, 1:]),
+        (node[:-1], node[1:], wale, dearer(ABOVE)[:-1] + dearer(BELOW)[1:]),
+    ]
+    start, end, odd, certain = (np.concatenate([e[k].ravel() for e in edges]) for k in range(4))
+    weight = 1 / (1e-3 + np.maximum(certain, 0))
+    tree = minimum_spanning_tree(coo_array((weight, (start, end)), shape=(node.size,) * 2))
+    order, before = breadth_first_order(tree, 0, directed=False)
+    parity = {(int(a), int(b)): bool(o) for a, b, o in zip(start, end, odd, strict=True)}
+    purl = np.zeros(node.size, dtype=bool)
+    for stitch in order[1:].tolist():
+        last = int(before[stitch])
+        purl[stitch] = purl[last] ^ parity[min(last, stitch), max(last, stitch)]
+    return StitchChart(purl.reshape(rows, columns))
+
+
+def deviation(chart: StitchChart, wanted: Array, table: StitchTable) -> Array:
+    """(2, rows, columns) logarithms of a chart's local moduli over the wanted ones."""
+    off: Array = _log_moduli(table)[:, surroundings(chart)] - wanted
+    return off
+
+
+def _log_moduli(table: StitchTable) -> Array:
+    return np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)

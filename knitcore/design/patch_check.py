@@ -1,0 +1,79 @@
+"""What patches of a chart do in a finite swatch, beside what their repeats do in a large cloth.
+
+A patch is small, its repeat may be cut off, and its neighbours hold it. The swatch is pulled a
+little along the course and along the wale; the mean stresses and strains of a patch in both pulls
+give its own stiffness, and so its moduli. Divided by those of its repeat's flat composite (which
+is what the swatch is made of) they tell by how much the patch departs from a large cloth of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.materials import Material
+from knitcore.mechanics.homogenisation import homogenise
+from knitcore.swatch import Fields, strip_test
+
+Array = NDArray[np.float64]
+
+SMALL_STRAIN = 0.005
+
+
+def finite_size(
+    chart: StitchChart,
+    material: Material,
+    patches: NDArray[np.intp],
+    repeats: Sequence[StitchChart],
+    *,
+    cancelled: Callable[[], bool] | None = None,
+) -> Array:
+    """(patches, 2) moduli of each patch in the swatch over those of its repeat, course and wale.
+
+    Parameters
+    ----------
+    chart : of the patches.
+    patches : (rows, columns) number of each stitch's patch.
+    repeats : of each patch.
+
+    Raises
+    ------
+    CancelledError
+        If ``cancelled`` returned True.
+    """
+    count = len(repeats)
+    stress, strain = np.empty((2, count, 2, 2))  # patch, component, pull
+    for pull in Direction:
+        test = strip_test(
+            chart, material, pull, SMALL_STRAIN, steps=1, cancelled=cancelled, clamps="sliding"
+        )
+        fields = test.fields()
+        area = _stitch_areas(fields).ravel()
+        total = np.bincount(patches.ravel(), area, count)
+        for component, name in enumerate(("xx", "yy")):
+            for array, kind in ((stress, "stress"), (strain, "strain")):
+                at_stitches = getattr(fields, f"{kind}_{name}")[1::2, 1::2].ravel()
+                sums = np.bincount(patches.ravel(), area * at_stitches, count)
+                array[:, component, pull.axis] = sums / total
+    compliance = strain @ np.linalg.inv(stress)
+    in_swatch = 1 / np.stack([compliance[:, 0, 0], compliance[:, 1, 1]], axis=1)
+    large = {repeat: _flat_moduli(repeat, material) for repeat in dict.fromkeys(repeats)}
+    found: Array = in_swatch / np.array([large[repeat] for repeat in repeats])
+    return found
+
+
+def _flat_moduli(repeat: StitchChart, material: Material) -> tuple[float, float]:
+    sheet = homogenise(repeat, material)
+    return sheet.modulus_n_per_mm(Direction.COURSE), sheet.modulus_n_per_mm(Direction.WALE)
+
+
+def _stitch_areas(fields: Fields) -> Array:
+    """Rest areas (rows, columns): every stitch is two quarter cells wide and high."""
+    width = np.diff(fields.x_mm[0, ::2])
+    height = np.diff(fields.y_mm[::2, 0])
+    areas: Array = np.outer(height, width)
+    return areas

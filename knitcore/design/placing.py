@@ -1,0 +1,152 @@
+"""Put repeats into patches, and fit the patches to each other stitch by stitch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.mechanics.local import StitchTable
+from knitcore.phases import surroundings
+
+Array = NDArray[np.float64]
+Grid = NDArray[np.bool_]
+Look = Callable[[float], None]
+
+BORDER = 2
+"""Stitches on each side of a border that may be turned one by one."""
+_SWEEPS = 6
+_ENOUGH = 1e-12
+
+
+def placed(
+    patches: NDArray[np.intp],
+    repeats: list[StitchChart],
+    wanted: Array,
+    table: StitchTable,
+    *,
+    seed: int,
+    look: Look,
+) -> StitchChart:
+    """The chart of patches that each hold a repeat, fitted to their neighbours.
+
+    Parameters
+    ----------
+    patches : (rows, columns) number of each stitch's patch.
+    repeats : of each patch.
+    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN is no wish.
+    table : of the material.
+    seed : of the order in which patches and stitches are tried.
+    look : told the share done, now and then; may raise to stop.
+    """
+    rng = np.random.default_rng(seed)
+    local = _LocalCost(wanted, table)
+    purl = np.zeros(patches.shape, dtype=bool)
+    for patch, repeat in enumerate(repeats):
+        purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
+    if len(repeats) > 1:
+        _shift(purl, patches, repeats, local, rng, look)
+        _turn(purl, patches, local, rng, look)
+    return StitchChart(purl)
+
+
+class _LocalCost:
+    """Squared deviations of local moduli from the map, by windows."""
+
+    def __init__(self, wanted: Array, table: StitchTable) -> None:
+        have = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
+        self._cost = np.nansum((have[:, None, None, :] - wanted[..., None]) ** 2, axis=0)
+
+    def around(self, purl: Grid, rows: slice, columns: slice) -> float:
+        """Cost of all stitches whose surroundings a change inside the window can alter."""
+        (row, far_row), (column, far_column) = (
+            _window(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
+        )
+        codes = surroundings(StitchChart(purl[far_row, far_column]))[
+            row.start - far_row.start : row.stop - far_row.start,
+            column.start - far_column.start : column.stop - far_column.start,
+        ]
+        costs = self._cost[row, column]
+        return float(np.take_along_axis(costs, codes[..., None].astype(np.intp), axis=2).sum())
+
+
+def _window(touched: slice, size: int) -> tuple[slice, slice]:
+    """Stitches whose codes change, and those that decide them (an edge borrows from inside)."""
+    changed = slice(max(touched.start - 1, 0), min(touched.stop + 1, size))
+    return changed, slice(max(changed.start - 2, 0), min(changed.stop + 2, size))
+
+
+def _shift(
+    purl: Grid,
+    patches: NDArray[np.intp],
+    repeats: list[StitchChart],
+    local: _LocalCost,
+    rng: np.random.Generator,
+    look: Look,
+) -> None:
+    """Shift or turn every patch so that it fits its neighbours, until nothing improves."""
+    boxes = ndimage.find_objects(patches + 1)
+    for sweep in range(_SWEEPS):
+        improved = False
+        for count, patch in enumerate(rng.permutation(len(repeats)).tolist()):
+            look(0.5 * (sweep + count / len(repeats)) / _SWEEPS)
+            rows, columns = boxes[patch]
+            cells = patches == patch
+            best = purl[cells]
+            least = local.around(purl, rows, columns)
+            for image in _images(repeats[patch]):
+                purl[cells] = _tiled(image, purl)[cells]
+                cost = local.around(purl, rows, columns)
+                if cost < least - _ENOUGH:
+                    best, least, improved = purl[cells], cost, True
+            purl[cells] = best
+        if not improved:
+            return
+
+
+def _turn(
+    purl: Grid, patches: NDArray[np.intp], local: _LocalCost, rng: np.random.Generator, look: Look
+) -> None:
+    """Turn single stitches, and pairs of neighbours, near borders where that lowers the cost."""
+    edge = np.zeros(purl.shape, dtype=bool)
+    edge[:, :-1] |= patches[:, :-1] != patches[:, 1:]
+    edge[:-1] |= patches[:-1] != patches[1:]
+    near = np.argwhere(ndimage.binary_dilation(edge, iterations=BORDER))
+    for sweep in range(_SWEEPS):
+        improved = False
+        for count, (row, column) in enumerate(rng.permutation(near).tolist()):
+            if count % 200 == 0:
+                look(0.5 + 0.5 * (sweep + count / len(near)) / _SWEEPS)
+            for height, width in ((1, 1), (1, 2), (2, 1)):
+                rows = slice(row, min(row + height, purl.shape[0]))
+                columns = slice(column, min(column + width, purl.shape[1]))
+                before = local.around(purl, rows, columns)
+                purl[rows, columns] ^= True
+                if local.around(purl, rows, columns) < before - _ENOUGH:
+                    improved = True
+                    break
+                purl[rows, columns] ^= True
+        if not improved:
+            return
+
+
+def _tiled(repeat: StitchChart, purl: Grid) -> Grid:
+    rows, columns = purl.shape
+    return repeat.resized(rows, columns).purl
+
+
+def _images(repeat: StitchChart) -> list[StitchChart]:
+    """All shifts of a repeat and of its mirror, with knits and purls as they are and swapped."""
+    grids = [repeat.purl, repeat.purl[:, ::-1]]
+    images = [
+        StitchChart(np.roll(grid, (down, across), axis=(0, 1)) ^ swapped)
+        for grid in grids
+        for down in range(repeat.rows)
+        for across in range(repeat.columns)
+        for swapped in (False, True)
+    ]
+    return list(dict.fromkeys(images))

@@ -1,0 +1,390 @@
+"""A chart that takes a wanted outline when it is stretched.
+
+The swatch is pulled between two clamps, and its width is wanted line by line: row by row under a
+wale-wise pull, column by column under a course-wise one. It is made of bands across the pull, each
+of one repeat of the atlas. All bands carry one force, so each stretches by its own curve and
+narrows by its Poisson ratio: that gives the first choice. The finite swatch is then pulled, the
+wish of each band is shifted by what the swatch misses there, and the bands are chosen again; at
+last single bands are changed where that helps. What counts is the outline of the swatch, never the
+estimate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from knitcore.chart import StitchChart, check_size
+from knitcore.design.atlas import Atlas
+from knitcore.design.curves import STRESS_N_PER_MM
+from knitcore.errors import CancelledError, InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import Material
+from knitcore.mechanics.prediction import Provenance
+from knitcore.swatch import strip_test
+
+Array = NDArray[np.float64]
+
+FORCES_N_PER_MM = (0.01, 0.05, 0.2)
+"""First guesses of the common force: soft bands and stiff ones can narrow alike."""
+ROUNDS = 4
+"""Times that all bands are chosen and pulled, from each first guess."""
+TRIES = 72
+"""Changes of one or two bands that are pulled after that."""
+_STEPS = 4
+_PALETTE = 40
+_DAMPING = 0.8
+_MOST_STITCHES = 10_000
+OFF = 0.03
+"""Error of a width, as a part of the width at rest, that is told."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """Lines of one repeat.
+
+    Attributes
+    ----------
+    repeat : its key.
+    first, lines : from 1, at the bottom (wale-wise pull) or the left.
+    """
+
+    repeat: str
+    first: int
+    lines: int
+
+
+@dataclass(frozen=True, eq=False)
+class ShapedSwatch:
+    """A chart and the outline that it takes.
+
+    Attributes
+    ----------
+    chart : the stitches.
+    bands : of one repeat each, from the bottom or the left.
+    width : (lines,) stretched width over width at rest, from the swatch.
+    wanted : what was wanted, NaN where nothing was.
+    rms, largest : of the differences.
+    force_n : at the clamps.
+    pulls : how many swatches were pulled.
+    messages : what was not reached.
+    """
+
+    chart: StitchChart
+    bands: tuple[Band, ...]
+    width: Array
+    wanted: Array
+    rms: float
+    largest: float
+    force_n: float
+    pulls: int
+    messages: tuple[str, ...]
+
+
+def fill_shape(
+    width: Sequence[float] | Array,
+    across: int,
+    direction: Direction,
+    strain: float,
+    material: Material,
+    atlas: Atlas,
+    *,
+    smallest_band: int = 4,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> ShapedSwatch:
+    """A chart whose outline follows a profile when it is stretched.
+
+    Parameters
+    ----------
+    width : wanted width over width at rest of every line across the pull, from the bottom or the
+        left; NaN where nothing is wanted. Near 1 at the clamps, which hold the ends.
+    across : stitches of a line.
+    direction : of the pull.
+    strain : from clamp to clamp.
+    material, atlas : of one yarn.
+    smallest_band : lines of the narrowest band.
+    seed : of the order in which bands are changed.
+    progress : called with the share done.
+    cancelled : asked between and within pulls.
+
+    Raises
+    ------
+    InputError
+        If the profile cannot be used, or no chart can be stretched so far.
+    CancelledError
+        If it was asked to stop.
+    """
+    wanted = _checked(width, across, strain, smallest_band, direction)
+    if atlas.material != material.identifier:
+        raise InputError(
+            "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
+        )
+    run = _Run(wanted, across, direction, strain, material, atlas, smallest_band, cancelled)
+    return run.solve(np.random.default_rng(seed), progress)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pulled:
+    """Bands, and the outline of their swatch."""
+
+    labels: tuple[int, ...]
+    chart: StitchChart
+    width: Array
+    force_n: float
+    error: float
+
+
+class _Run:
+    """One search."""
+
+    def __init__(
+        self,
+        wanted: Array,
+        across: int,
+        direction: Direction,
+        strain: float,
+        material: Material,
+        atlas: Atlas,
+        smallest_band: int,
+        cancelled: Callable[[], bool] | None,
+    ) -> None:
+        self._wanted, self._across, self._direction = wanted, across, direction
+        self._strain, self._material, self._atlas = strain, material, atlas
+        self._cancelled = cancelled
+        count = max(len(wanted) // smallest_band, 1)
+        self._edges = np.linspace(0, len(wanted), count + 1).round().astype(int)
+        self._palette = _palette(atlas, direction, strain, across)
+        self._curves = atlas.strains[self._palette, direction.axis]
+        self._poisson = atlas.poisson(direction)[self._palette]
+        self._pulls = 0
+
+    def solve(
+        self, rng: np.random.Generator, progress: Callable[[float], None] | None
+    ) -> ShapedSwatch:
+        """Choose, pull and correct; then change single bands."""
+        chosen = ROUNDS * len(FORCES_N_PER_MM)
+        total = chosen + TRIES
+
+        def look(done: int) -> None:
+            if self._cancelled is not None and self._cancelled():
+                raise CancelledError(f"stopped after {done} of {total} swatches")
+            if progress is not None:
+                progress(done / total)
+
+        wish = self._by_band(1 - self._wanted)
+        best: _Pulled | None = None
+        aim = wish
+        for turn in range(chosen):
+            look(turn)
+            if turn % ROUNDS == 0:
+                aim = wish
+            pulled = self._pull(self._choose(aim, FORCES_N_PER_MM[turn // ROUNDS]))
+            if pulled is None:
+                aim = _DAMPING * aim  # too far for some band: ask for less
+                continue
+            if best is None or pulled.error < best.error:
+                best = pulled
+            aim = aim + _DAMPING * np.nan_to_num(wish - self._by_band(1 - pulled.width))
+        if best is None:
+            raise InputError(
+                "strain",
+                f"no swatch of this yarn that narrows so can be stretched to {self._strain:g} "
+                f"{self._direction}-wise.",
+                "Ask for a smaller strain.",
+            )
+        best = self._change_bands(best, rng, lambda turn: look(chosen + turn))
+        if progress is not None:
+            progress(1.0)
+        return self._result(best)
+
+    def _choose(self, aim: Array, force: float) -> tuple[int, ...]:
+        """Labels whose narrowing at the common force is nearest to the aims."""
+        heights = np.diff(self._edges)
+        labels = np.zeros(len(aim), dtype=int)
+        for _ in range(4):
+            narrowing = self._poisson * self._strains(force)
+            off = np.abs(narrowing[:, None] - np.nan_to_num(aim, nan=float(np.nanmean(aim))))
+            labels = off.argmin(axis=0)
+            force = self._force(labels, heights)
+        return tuple(labels.tolist())
+
+    def _strains(self, force: float) -> Array:
+        """Strain of every repeat of the palette at a stress, N/mm."""
+        return np.array([np.interp(force, STRESS_N_PER_MM, curve) for curve in self._curves])
+
+    def _force(self, labels: NDArray[np.int_], heights: Array) -> float:
+        """Stress (N/mm) that stretches the bands together by the strain of the test."""
+
+        def excess(force: float) -> float:
+            mean = np.average(self._strains(force)[labels], weights=heights)
+            return float(mean) - self._strain
+
+        last = float(STRESS_N_PER_MM[-1])
+        return last if excess(last) < 0 else float(brentq(excess, 0.0, last, xtol=1e-4))
+
+    def _pull(self, labels: tuple[int, ...]) -> _Pulled | None:
+        """The outline of these bands; None if the swatch cannot be stretched so far."""
+        chart = self._chart(labels)
+        self._pulls += 1
+        try:
+            test = strip_test(
+                chart,
+                self._material,
+                self._direction,
+                self._strain,
+                steps=_STEPS,
+                cancelled=self._cancelled,
+            )
+        except InputError:
+            return None
+        if not test.converged:
+            return None
+        course = self._direction is Direction.COURSE
+        rest, moved = (test.y_mm, test.uy_mm[-1]) if course else (test.x_mm, test.ux_mm[-1])
+        if not course:
+            rest, moved = rest.T, moved.T
+        lines = slice(1, None, 2)  # nodes in the middle of a line of stitches
+        size = rest[-1, lines] - rest[0, lines]
+        width = 1 + (moved[-1, lines] - moved[0, lines]) / size
+        error = float(np.sqrt(np.nanmean((width - self._wanted) ** 2)))
+        return _Pulled(labels, chart, width, float(test.force_n[-1]), error)
+
+    def _change_bands(
+        self, best: _Pulled, rng: np.random.Generator, look: Callable[[int], None]
+    ) -> _Pulled:
+        """Change a band, or two, to a repeat that narrows a little more or less, or to any."""
+        narrowing = self._poisson * self._strains(0.05)
+        rank = np.argsort(narrowing, kind="stable")
+        place = np.argsort(rank)
+        tried = {best.labels}
+        for turn in range(TRIES):
+            look(turn)
+            off = np.abs(np.nan_to_num(self._by_band(best.width - self._wanted))) + 1e-6
+            labels = list(best.labels)
+            band = int(rng.choice(len(off), p=off / off.sum()))
+            if rng.random() < 0.5:
+                step = int(rng.integers(1, 4)) * (1 if rng.random() < 0.5 else -1)
+                other = int(rank[np.clip(place[labels[band]] + step, 0, len(rank) - 1)])
+            else:
+                other = int(rng.integers(len(rank)))
+            for changed in range(band, min(band + int(rng.integers(1, 3)), len(labels))):
+                labels[changed] = other
+            if tuple(labels) in tried:
+                continue
+            tried.add(tuple(labels))
+            pulled = self._pull(tuple(labels))
+            if pulled is not None and pulled.error < best.error:
+                best = pulled
+        return best
+
+    def _chart(self, labels: tuple[int, ...]) -> StitchChart:
+        course = self._direction is Direction.COURSE
+        parts = []
+        for label, lines in zip(labels, np.diff(self._edges).tolist(), strict=True):
+            repeat = self._atlas.chart(int(self._palette[label]))
+            rows, columns = (self._across, lines) if course else (lines, self._across)
+            parts.append(repeat.resized(rows, columns).purl)
+        return StitchChart(np.concatenate(parts, axis=1 if course else 0))
+
+    def _by_band(self, values: Array) -> Array:
+        """Means over the lines of each band, NaN where all are."""
+        return np.array(
+            [
+                np.nan if np.isnan(part).all() else float(np.nanmean(part))
+                for part in np.split(values, self._edges[1:-1])
+            ]
+        )
+
+    def _result(self, best: _Pulled) -> ShapedSwatch:
+        off = best.width - self._wanted
+        keys = [self._atlas.keys[int(self._palette[label])] for label in best.labels]
+        bands: list[Band] = []
+        for key, first, last in zip(keys, self._edges[:-1], self._edges[1:], strict=True):
+            lines = int(last - first)
+            if bands and bands[-1].repeat == key:
+                bands[-1] = Band(key, bands[-1].first, bands[-1].lines + lines)
+            else:
+                bands.append(Band(key, int(first) + 1, lines))
+        return ShapedSwatch(
+            chart=best.chart,
+            bands=tuple(bands),
+            width=best.width,
+            wanted=self._wanted,
+            rms=best.error,
+            largest=float(np.nanmax(np.abs(off))),
+            force_n=best.force_n,
+            pulls=self._pulls,
+            messages=tuple(self._messages(best.width, off)),
+        )
+
+    def _messages(self, width: Array, off: Array) -> list[str]:
+        worst = int(np.nanargmax(np.abs(off)))
+        if abs(off[worst]) <= OFF:
+            return []
+        narrowing = self._poisson * np.array(
+            [min(self._strain, float(curve[-1])) for curve in self._curves]
+        )
+        line = "column" if self._direction is Direction.COURSE else "row"
+        return [
+            f"{line.capitalize()} {worst + 1} is {off[worst]:+.0%} of the width off. Far from the "
+            f"clamps and from other bands this yarn comes to {1 - narrowing.max():.2f} to "
+            f"{1 - narrowing.min():.2f} of its width at a strain of {self._strain:g}; the clamps "
+            "hold the ends, and the width changes gradually between bands. A longer swatch, a "
+            "smoother profile or another strain comes nearer."
+        ]
+
+
+def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> NDArray[np.intp]:
+    """Repeats that differ in how they stretch and narrow; as the flat swatch would see them."""
+    shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
+    side = shapes[:, 0] if direction is Direction.COURSE else shapes[:, 1]
+    flat = [source != Provenance.CORRECTED for source in atlas.provenance]
+    usable = np.flatnonzero(np.array(flat) & (side <= across) & (shapes.max(axis=1) <= 4))
+    stretch = atlas.strain_at(direction, 0.05)[usable]
+    narrowing = atlas.poisson(direction)[usable] * np.minimum(stretch, 2 * strain)
+    points = np.stack([np.log(stretch), 3 * narrowing / max(np.ptp(narrowing), 1e-9)], axis=1)
+    # Farthest-point choice: each next one is the least like those already chosen.
+    pure = [atlas.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) for fabric in Fabric]
+    chosen = [k for k, entry in enumerate(usable.tolist()) if entry in pure] or [0]
+    while len(chosen) < min(_PALETTE, len(usable)):
+        away = ((points[:, None] - points[chosen]) ** 2).sum(axis=2).min(axis=1)
+        chosen.append(int(away.argmax()))
+    return usable[chosen]
+
+
+def _checked(
+    width: Sequence[float] | Array,
+    across: int,
+    strain: float,
+    smallest_band: int,
+    direction: Direction,
+) -> Array:
+    wanted = np.asarray(width, dtype=float)
+    if wanted.ndim != 1 or len(wanted) < 3 or np.isnan(wanted).all():
+        raise InputError("width", "is no profile.", "Give the width of at least three lines.")
+    given = wanted[~np.isnan(wanted)]
+    if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
+        raise InputError(
+            "width", "is not 0.05 to 3 times that at rest.", "Give width over width at rest."
+        )
+    lines = (across, len(wanted)) if direction is Direction.COURSE else (len(wanted), across)
+    check_size(*lines)
+    if across < 3 or across * len(wanted) > _MOST_STITCHES:
+        raise InputError(
+            "across",
+            f"{across} x {len(wanted)} stitches cannot be pulled again and again.",
+            f"Use at least 3 across and at most {_MOST_STITCHES} stitches.",
+        )
+    if not 0 < strain <= 5:
+        raise InputError("strain", f"{strain:g} is no stretch.", "Give a strain above 0, like 0.3.")
+    if not 1 <= smallest_band <= len(wanted):
+        raise InputError(
+            "smallest_band", f"{smallest_band} lines do not fit.", f"Give 1 to {len(wanted)}."
+        )
+    return wanted

@@ -1,0 +1,103 @@
+"""Wishes for parts of a chart, as maps of wanted moduli."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import check_size
+from knitcore.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Wish:
+    """Stiffness wanted in one part of a chart.
+
+    Attributes
+    ----------
+    name : for messages.
+    runs : (row, first column, length) of its stitches, row 0 at the bottom; of any shape.
+    course_n_per_mm, wale_n_per_mm : wanted moduli; None is no wish.
+    """
+
+    name: str
+    runs: tuple[tuple[int, int, int], ...]
+    course_n_per_mm: float | None
+    wale_n_per_mm: float | None
+
+
+def wanted_maps(
+    wishes: Sequence[Wish], rows: int, columns: int, *, smallest_patch: int = 1
+) -> tuple[Array, Array]:
+    """Maps (rows, columns) of the wanted moduli, NaN where nothing is wanted.
+
+    Raises
+    ------
+    InputError
+        If a wish lies outside the chart, is narrower than a patch, or contradicts another.
+    """
+    check_size(rows, columns)
+    maps = np.full((2, rows, columns), np.nan)
+    owner = np.full((2, rows, columns), -1)
+    for number, wish in enumerate(wishes):
+        cells = _cells(wish, rows, columns)
+        _check_width(wish, cells, smallest_patch)
+        for axis, value in enumerate((wish.course_n_per_mm, wish.wale_n_per_mm)):
+            if value is None:
+                continue
+            other = cells & (owner[axis] >= 0) & ~np.isclose(maps[axis], value, rtol=1e-9)
+            if other.any():
+                _refuse(wish, wishes[int(owner[axis][other][0])], other, axis)
+            maps[axis][cells] = value
+            owner[axis][cells] = number
+    return maps[0], maps[1]
+
+
+def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:
+    cells = np.zeros((rows, columns), dtype=bool)
+    for row, column, length in wish.runs:
+        if not (0 <= row < rows and column >= 0 and length >= 1 and column + length <= columns):
+            raise InputError(
+                "wishes",
+                f"“{wish.name}” reaches row {row + 1}, columns {column + 1} to {column + length}: "
+                f"the chart has {columns} columns and {rows} rows.",
+                "Draw it inside the chart.",
+            )
+        cells[row, column : column + length] = True
+    if not cells.any():
+        raise InputError("wishes", f"“{wish.name}” has no stitch.", "Draw it, or leave it out.")
+    values = (wish.course_n_per_mm, wish.wale_n_per_mm)
+    if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
+        raise InputError(
+            "wishes", f"“{wish.name}” wants a stiffness that is not positive.", "Give N/mm above 0."
+        )
+    return cells
+
+
+def _check_width(wish: Wish, cells: NDArray[np.bool_], smallest: int) -> None:
+    extents = [int(np.ptp(np.flatnonzero(cells.any(axis=axis)))) + 1 for axis in (1, 0)]
+    for extent, whole, name in zip(extents, cells.shape, ("rows", "columns"), strict=True):
+        if extent < min(smallest, whole):
+            raise InputError(
+                "wishes",
+                f"“{wish.name}” has {extent} {name}: no patch of {smallest} fits.",
+                f"Make it larger, or allow patches of {extent}.",
+            )
+
+
+def _refuse(wish: Wish, other: Wish, cells: NDArray[np.bool_], axis: int) -> None:
+    row, column = np.argwhere(cells)[0] + 1
+    values = [(w.course_n_per_mm, w.wale_n_per_mm)[axis] for w in (other, wish)]
+    raise InputError(
+        "wishes",
+        f"“{other.name}” and “{wish.name}” contradict each other in {int(cells.sum())} stitches "
+        f"(the first in row {row}, column {column}): {values[0]:g} and {values[1]:g} N/mm "
+        f"{('course', 'wale')[axis]}-wise.",
+        "Take these stitches out of one of them, or give both the same value.",
+    )

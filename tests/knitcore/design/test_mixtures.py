@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from knitcore import StitchChart
+from knitcore.design.atlas_build import build_atlas, predict_repeat
+from knitcore.design.mixtures import Mixer
+from knitcore.design.repeats import repeats_up_to
+from knitcore.errors import CancelledError
+from knitcore.fabric import Direction
+from knitcore.materials import material
+
+ACRYLIC = material("acrylic")
+ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 2))
+MIXER = Mixer(ATLAS, ACRYLIC)
+
+
+def test_a_wish_between_two_fabrics_is_met_by_stripes_of_them() -> None:
+    hidden = StitchChart.parse("KKKKKKPKP\nKKKKKKKPK")
+    wish = predict_repeat(hidden, ACRYLIC)
+    found = MIXER.nearest(wish.modulus_course_n_per_mm, wish.modulus_wale_n_per_mm)
+    assert found is not None
+    assert found.off <= math.log(1.05)
+    again = predict_repeat(found.repeat, ACRYLIC)
+    for direction in Direction:
+        assert again.modulus_n_per_mm(direction) == pytest.approx(
+            wish.modulus_n_per_mm(direction), rel=0.05
+        )
+
+
+def test_one_wish_alone_is_enough() -> None:
+    found = MIXER.nearest(0.1, float("nan"))
+    assert found is not None
+    assert found.modulus_course_n_per_mm == pytest.approx(0.1, rel=0.05)
+
+
+def test_mixtures_fit_their_room() -> None:
+    found = MIXER.nearest(0.1, 0.1, most_rows=4, most_columns=5)
+    assert found is not None
+    assert found.repeat.rows <= 4
+    assert found.repeat.columns <= 5
+
+
+def test_it_stops_when_asked() -> None:
+    def stop() -> None:
+        raise CancelledError("stopped")
+
+    with pytest.raises(CancelledError):
+        MIXER.nearest(0.1, 0.1, look=stop)

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore import InputError
+from knitcore.design.wishes import Wish, wanted_maps
+
+
+def box(name: str, rows: range, columns: range, course: float | None, wale: float | None) -> Wish:
+    runs = tuple((row, columns.start, len(columns)) for row in rows)
+    return Wish(name, runs, course, wale)
+
+
+def test_parts_become_maps() -> None:
+    slope = Wish("slope", tuple((row, row, 6 - row) for row in range(6)), 0.1, None)
+    course, wale = wanted_maps([slope, box("top", range(6, 8), range(8), None, 0.2)], 8, 8)
+    assert np.nansum(course) == pytest.approx(0.1 * 21)
+    assert np.isnan(wale[:6]).all()
+    assert (wale[6:] == 0.2).all()
+
+
+def test_the_same_wish_twice_is_no_contradiction() -> None:
+    one = box("one", range(4), range(4), 0.1, None)
+    other = box("other", range(2, 6), range(2, 6), 0.1, 0.2)
+    course, wale = wanted_maps([one, other], 8, 8)
+    assert np.count_nonzero(~np.isnan(course)) == 28
+    assert np.count_nonzero(~np.isnan(wale)) == 16
+
+
+def test_contradictions_are_named_with_both_parts_and_where() -> None:
+    palm = box("palm", range(4), range(4), 0.1, None)
+    thumb = box("thumb", range(2, 6), range(2, 6), 0.2, None)
+    with pytest.raises(InputError, match=r"“palm” and “thumb” contradict .* in 4 stitches") as told:
+        wanted_maps([palm, thumb], 8, 8)
+    assert "row 3, column 3" in told.value.problem
+    assert "0.1 and 0.2 N/mm course-wise" in told.value.problem
+
+
+@pytest.mark.parametrize(
+    ("wish", "says"),
+    [
+        (box("far", range(6, 9), range(3), 0.1, None), "reaches row 9"),
+        (box("thin", range(2), range(8), 0.1, None), "has 2 rows: no patch of 3"),
+        (box("narrow", range(8), range(1), 0.1, None), "has 1 columns"),
+        (Wish("empty", (), 0.1, None), "has no stitch"),
+        (box("odd", range(4), range(4), -0.1, None), "not positive"),
+    ],
+)
+def test_wishes_that_cannot_be_used(wish: Wish, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        wanted_maps([wish], 8, 8, smallest_patch=3)
