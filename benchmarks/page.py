@@ -1,0 +1,156 @@
+"""The page as people meet it: first paint, strokes, and the weight of its scripts.
+
+Headless Chromium without a GPU, against a service of its own on this machine. A time from an event
+to its paint is the browser's own (Event Timing, in steps of 8 ms, shorter ones count as 8).
+
+    make bench                             (RUNS=5 STROKES=40)
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from tests.app.service import Service
+from tests.browser.conftest import CHROMIUM, FLAGS
+
+ROOT = Path(__file__).resolve().parent.parent
+RUNS = int(os.environ.get("RUNS", "5"))
+STROKES = int(os.environ.get("STROKES", "40"))
+SHORTEST_MS = 8.0
+
+WATCH = """() => {
+    window.measured = [];
+    new PerformanceObserver((list) => {
+        for (const { name, startTime, duration } of list.getEntries())
+            window.measured.push([name, startTime, duration]);
+    }).observe({ type: "event", durationThreshold: 16 });
+}"""
+PAINTED = """() => ({
+    first: performance.getEntriesByName("first-contentful-paint")[0]?.startTime,
+    studio: performance.getEntriesByName("studio")[0]?.startTime,
+})"""
+
+
+def told(what: str, value: float, unit: str, target: float) -> None:
+    """Print a figure with its target."""
+    verdict = "ok" if value <= target else "MISSED"
+    print(f"{what:58s} {value:8.1f} {unit:3s} target {target:g} {unit:3s} {verdict}", flush=True)
+
+
+def p95(values: list[float]) -> float:
+    """The value that one in twenty exceeds."""
+    return sorted(values)[max(0, -(-95 * len(values) // 100) - 1)]
+
+
+def weight() -> None:
+    """Build the page and tell what its own scripts weigh."""
+    subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    sizes = json.loads((ROOT / "frontend/dist/sizes.json").read_text())
+    total, initial = sizes["total"], sizes["initial"]
+    told("the page's own scripts, all of them", total["bytes"] / 1000, "kB", 200)
+    told("… those of the first visit", initial["bytes"] / 1000, "kB", 200)
+    told("… packed, as they travel", initial["gzip_bytes"] / 1000, "kB", 200)
+
+
+def first_paint(browser: Browser, url: str) -> None:
+    """Cold visits: nothing is cached, the example is painted and stretched."""
+    visits = []
+    for _ in range(RUNS):
+        context = browser.new_context(viewport={"width": 1440, "height": 900})
+        page = context.new_page()
+        page.goto(url)
+        page.wait_for_function(f"() => Object.values(({PAINTED})()).every(Number.isFinite)")
+        visits.append(page.evaluate(PAINTED))
+        context.close()
+    told("first paint of a cold visit, median", median(visits, "first"), "ms", 1500)
+    told("chart there to be painted on, median", median(visits, "studio"), "ms", 1500)
+
+
+def median(visits: list[dict[str, float]], what: str) -> float:
+    return statistics.median(visit[what] for visit in visits)
+
+
+def open_chart(browser: Browser, url: str, side: int) -> Page:
+    """A mixed chart of side x side stitches with a map of moduli."""
+    rng = random.Random(7)
+    chart = "\n".join("".join(rng.choices("KP", k=side)) for _ in range(side))
+    design = {"id": f"bench-{side}", "name": "Bench", "material": "acrylic", "chart": chart}
+    page = browser.new_context(viewport={"width": 1440, "height": 900}).new_page()
+    page.add_init_script(
+        f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))};"
+        'localStorage["knitcore.settings"] ??= \'{"overlay":"modulus-course"}\';'
+    )
+    page.goto(url)
+    page.wait_for_function(
+        "() => document.querySelector('#modulus-course .value')?.textContent.match(/\\d/)",
+        timeout=120_000,
+    )
+    page.wait_for_timeout(6000)  # the 3D view has settled
+    return page
+
+
+def strokes(page: Page) -> tuple[list[float], list[float]]:
+    """From each event of a stroke to its paint: the whole strokes' worst, and the last event's."""
+    page.evaluate(WATCH)
+    box = page.locator("#chart").bounding_box()
+    assert box
+    rng = random.Random(1)
+    worst, last = [], []
+    for _ in range(STROKES):
+        x = box["x"] + box["width"] * rng.uniform(0.3, 0.7)
+        y = box["y"] + box["height"] * rng.uniform(0.3, 0.7)
+        start = page.evaluate("performance.now()")
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 30, y + 5, steps=4)
+        page.mouse.up()
+        page.wait_for_timeout(200)
+        events = page.evaluate("start => window.measured.filter(([, at]) => at >= start)", start)
+        painted = [ms for name, _, ms in events if name in ("pointerdown", "pointermove")]
+        ended = [ms for name, _, ms in events if name == "pointerup"]
+        worst.append(max(painted, default=SHORTEST_MS))
+        last.append(max(painted + ended, default=SHORTEST_MS))
+    return worst, last
+
+
+def painting(browser: Browser, url: str) -> None:
+    """Strokes with the map of moduli on show and the stretch panel open."""
+    for side, target in ((100, 60), (400, 120)):
+        page = open_chart(browser, url, side)
+        painted, mapped = strokes(page)
+        page.context.close()
+        size = f"{side} x {side}"
+        told(f"stroke to painted cell at {size}, median", statistics.median(painted), "ms", 16)
+        told(f"stroke to painted cell at {size}, p95", p95(painted), "ms", 16)
+        told(f"stroke to the map at {size}, p95", p95(mapped), "ms", target)
+
+
+def main() -> None:
+    weight()
+    if not CHROMIUM.exists():
+        print("needs Chromium for the rest (scripts/ensure-chromium)")
+        return
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        service = Service(Path(folder))
+        service.start().close()
+        try:
+            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+            first_paint(browser, service.url)
+            painting(browser, service.url)
+            browser.close()
+        finally:
+            service.stop()
+
+
+if __name__ == "__main__":
+    main()
