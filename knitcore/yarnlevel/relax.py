@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from knitcore.chart import StitchChart
 from knitcore.errors import ConvergenceError, InputError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell
+from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.growth import Start, grow, shaken
@@ -321,6 +322,8 @@ class _Search:
             return "cores overlap"
         if found.state[-2] > 0.9 * float(np.mean(self.lengths)):
             return "pulled straight"
+        if not cell_is_knitted(self.cell, found.state):
+            return "unravelled"
         return "relaxed" if found.converged else "not converged"
 
     def best(self) -> Minimum:

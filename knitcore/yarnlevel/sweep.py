@@ -16,6 +16,7 @@ import numpy as np
 
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
+from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.relax import (
     SAME_ENERGY,
     Branch,
@@ -139,6 +140,8 @@ def _held(
     )  # fmt: skip
     if overlong(cell.energy, found) or abs(found.state[along.axis - 2] - size_mm) > 1e-9:
         raise ConvergenceError("the yarn locks before it gets there.")
+    if not cell_is_knitted(cell.cell, found.state):
+        raise UnravelledError("the stitches have come undone.")
     return relaxed_repeat(
         cell.chart, cell.cell, cell.yarn, cell.loop_lengths_mm, cell.convention,
         Branch(cell.branch), found,

@@ -7,12 +7,14 @@ tolerance serves thread and rope.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
 
 from knitcore.threads import one_blas_thread
+from knitcore.yarnlevel.published.certificate import is_certified
 from knitcore.yarnlevel.published.shape import PARAMETERS, unknown_names
 from knitcore.yarnlevel.published.stitch import Evaluation, Stitch
 from knitcore.yarnlevel.results import FloatArray
@@ -86,6 +88,7 @@ class Minimum:
     residual : largest component of the dimensionless Lagrangian gradient of the free unknowns.
     evaluations : evaluations of the energy with its gradient.
     converged : whether the optimiser met its tolerance with all constraints satisfied.
+    certified : whether the yarn can go there from the start without meeting itself.
     """
 
     unknowns: FloatArray
@@ -94,6 +97,7 @@ class Minimum:
     residual: float
     evaluations: int
     converged: bool
+    certified: bool
 
     @property
     def energy_n_mm(self) -> float:
@@ -141,6 +145,7 @@ def minimise(
         {"type": "ineq", "fun": problem.above, "jac": problem.above_jacobian},
     ]
     converged, energy = False, np.inf
+    iterates = [start]
     for _ in range(_NEAR_ROUNDS if near else _ROUNDS):
         # A box around the start keeps a line search from pulling yarn through yarn.
         reach = _REACH * problem.typical
@@ -154,6 +159,7 @@ def minimise(
                 bounds=list(zip(near_lower, near_upper, strict=True)),
                 constraints=rules,
                 options={"ftol": tolerance, "maxiter": max_iterations},
+                callback=lambda iterate: iterates.append(iterate * problem.scale),
             )
         if not np.all(np.isfinite(result.x)):
             break
@@ -166,7 +172,12 @@ def minimise(
         stuck = result.status != 0 and energy > before - 1e-3
         if converged or stuck or (near and energy > _HIGH):
             break
-    return problem.report(x, converged)
+    iterates.append(x * problem.scale)
+    # any way without a meeting will do: the straight one, else the one that was taken
+    certified = is_certified(stitch, start, iterates[-1]) or all(
+        is_certified(stitch, *leg) for leg in pairwise(iterates)
+    )
+    return problem.report(x, converged, certified)
 
 
 def _even_rows(stitch: Stitch) -> FloatArray:
@@ -253,7 +264,7 @@ class _Problem:
         even = _EVEN_BY_LENGTH[:, None] * lengths[_EVEN_CURVE] + self.even
         return np.vstack([lengths[_DISTINCT], even]) * self.scale / self.loop_length_mm
 
-    def report(self, x: FloatArray, converged: bool) -> Minimum:
+    def report(self, x: FloatArray, converged: bool, certified: bool) -> Minimum:
         """Multipliers by least squares give the force along a held size of the cell."""
         lower, upper = self.bounds()
         at_bound = (x - lower < 1e-9) | (upper - x < 1e-9)
@@ -278,4 +289,5 @@ class _Problem:
             float(np.max(np.abs(lagrangian[inner]), initial=0.0)),
             self.evaluations,
             converged and violation < 1e-6 and bool(np.isfinite(evaluation.energy_n_mm)),
+            certified,
         )

@@ -10,6 +10,7 @@ from dataclasses import replace
 from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.published.certificate import is_clasped
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch
@@ -17,7 +18,6 @@ from knitcore.yarnlevel.published.walk import (
     Walk,
     free_constraints,
     has_room,
-    is_clasped,
     is_knitted,
 )
 from knitcore.yarnlevel.results import FloatArray, RelaxedCell
@@ -124,7 +124,7 @@ def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
             f"None of {len(found)} starts of {stitch.fabric} converged; give the stitch more yarn "
             "or a size nearer to its natural one."
         )
-    clasped = [m for m in converged if is_clasped(stitch, m.unknowns)]
+    clasped = [m for m in converged if m.certified and is_clasped(stitch, m.unknowns)]
     if not clasped:
         raise UnravelledError(f"Every minimum found of {stitch.fabric} has lost its clasps.")
     roomy = [m for m in clasped if has_room(stitch, m)]
@@ -211,18 +211,22 @@ def _settle(
     stitch: Stitch, start: FloatArray, loop_length_mm: float, constraints: Constraints
 ) -> Minimum:
     """Minimise from a start whose yarns may overlap: grow the core, then the rest."""
+    certified = is_clasped(stitch, start)
     closest = stitch.evaluate(start).closest_mm
     core = stitch.yarn.core_radius_mm
     if closest < 2.0 * _CLEAR * core:
         room = 0.45 * closest
         for share in (0.0, 0.5, 0.8):
             thinner = replace(stitch.yarn, core_radius_mm=room + share * max(core - room, 0.0))
-            start = minimise(
+            grown = minimise(
                 replace(stitch, yarn=thinner),
                 start,
                 loop_length_mm,
                 constraints,
                 tolerance=1e-6,
                 max_iterations=60,
-            ).unknowns
-    return minimise(stitch, start, loop_length_mm, constraints)
+            )
+            certified = certified and grown.certified
+            start = grown.unknowns
+    found = minimise(stitch, start, loop_length_mm, constraints)
+    return replace(found, certified=certified and found.certified)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from knitcore.yarnlevel.published.elastic import bernstein
+from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.results import FloatArray
@@ -29,25 +29,9 @@ def free_constraints(
 
 
 def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
-    """Whether the strands hold each other and no core is pressed into another."""
-    return is_clasped(stitch, minimum.unknowns) and has_room(stitch, minimum)
-
-
-def is_clasped(stitch: Stitch, unknowns: FloatArray) -> bool:
-    """Whether the two strands of the crossover still hold each other.
-
-    In their common frame the strands make half a turn about each other, A bulging towards E1 (see
-    :mod:`~knitcore.yarnlevel.published.shape`); passing through each other would turn that around.
-    """
-    controls = stitch.controls(unknowns)
-    strand_b, strand_a = controls[0], controls[2].copy()
-    strand_a[:, 1] -= unknowns[-1]
-    if stitch.fabric.wale_odd:
-        strand_a[:, 2] *= -1.0
-    apart = bernstein(np.array([0.0, 0.5, 1.0])) @ (strand_a - strand_b)
-    middle, turn = apart[1], apart[2] - apart[0]
-    along = strand_a[-1] + strand_b[-1] - strand_a[0] - strand_b[0]
-    return float(np.cross(middle, turn) @ along) > 0.0
+    """Whether the yarn is knotted as it should be, got there without passing through yarn, and no
+    core is pressed into another."""
+    return minimum.certified and has_room(stitch, minimum) and is_clasped(stitch, minimum.unknowns)
 
 
 def has_room(stitch: Stitch, minimum: Minimum) -> bool:
@@ -133,7 +117,11 @@ class Walk:
                 starts.insert(0, last + np.clip(ratio, -2.0, 2.0) * change)
         for start in starts:
             found = self.minimise_at(course_mm, wale_mm, start)
-            if found.converged and is_knitted(self.stitch, found):
+            if (
+                found.converged
+                and is_knitted(self.stitch, found)
+                and is_certified(self.stitch, last, _resized(start, course_mm, wale_mm))
+            ):
                 return found
         return None
 

@@ -6,12 +6,13 @@ import pytest
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
 from knitcore.yarnlevel.published.minimise import minimise
 from knitcore.yarnlevel.published.relax import lowest, relax_published
 from knitcore.yarnlevel.published.shape import unknown_names
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.published.walk import free_constraints, is_clasped, is_knitted
+from knitcore.yarnlevel.published.walk import free_constraints, is_knitted
 from knitcore.yarnlevel.samples import load_samples, sample
 
 SAMPLES = load_samples()
@@ -159,3 +160,5 @@ def test_strands_that_passed_through_each_other_are_noticed(fabric):
     swapped[unknown_names(fabric).index("tilt")] *= -1.0
     assert not is_clasped(stitch, swapped)
     assert not is_knitted(stitch, replace(minimum, unknowns=swapped))
+    assert is_certified(stitch, start, minimum.unknowns)
+    assert not is_certified(stitch, minimum.unknowns, swapped)
