@@ -26,6 +26,7 @@ const action = (id, label, key, icon, perform) => ({
 export const DESIGNS = [
   action("designs", "My designs …", "Mod+O", "folder", ({ open }) => open("designs")),
   action("gallery", "New design, examples …", "Shift+N", "gallery", ({ open }) => open("gallery")),
+  action("garments", "Plan a garment …", "Mod+Shift+G", "yarn", ({ open }) => open("garments")),
   action("versions", "Versions …", "Mod+S", "pin", ({ open }) => open("versions")),
   action("share", "Share …", "Mod+Shift+S", "share", ({ open }) => open("share")),
   action("duplicate", "Duplicate this design", "Mod+Shift+D", "copy", ({ studio, keeper }) => {
@@ -33,6 +34,7 @@ export const DESIGNS = [
     keeper.openNew({ ...design, name: `${design.name.slice(0, 190)} (copy)` });
     studio.tell("This is the copy now; the design itself is among your designs.");
   }),
+  action("exports", "Export, all formats …", "Mod+E", "export", ({ open }) => open("exports")),
   action("project-file", "Save as a project file", "Mod+Shift+E", "export", ({ studio }) =>
     void import("../services/exporter.js").then(({ exportProject }) => exportProject(studio)),
   ),

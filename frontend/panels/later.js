@@ -15,7 +15,11 @@ const PANELS = {
   /** @returns {Promise<PanelModule>} */
   designs: () => import("./designs/list.js"),
   /** @returns {Promise<PanelModule>} */
+  exports: () => import("./exports/exports.js"),
+  /** @returns {Promise<PanelModule>} */
   gallery: () => import("./gallery/gallery.js"),
+  /** @returns {Promise<PanelModule>} */
+  garments: () => import("./garments/planner.js"),
   /** @returns {Promise<PanelModule>} */
   help: () => import("./dialogs/help.js"),
   /** @returns {Promise<PanelModule>} */

@@ -158,6 +158,7 @@ function exportMenu(studio, context) {
     perform: () => void files().then(({ exportAs }) => exportAs(studio, kind)),
   });
   setItems([
+    item(action("exports"), context, "All formats, with options …"),
     item(action("project-file"), context, "Project file (.json)"),
     {
       id: "export-text",
@@ -216,7 +217,7 @@ function designsMenu(context) {
   /** @param {string} id */
   const one = (id) => item(action(id), context);
   setItems([
-    ...["gallery", "designs", "duplicate"].map(one),
+    ...["gallery", "garments", "designs", "duplicate"].map(one),
     null,
     ...["versions", "share"].map(one),
     null,

@@ -1,0 +1,117 @@
+/**
+ * The export panel: all formats with their options, and what was checked of the file that came out.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ * @import {ExportKind, Option} from "./kinds.js"
+ *
+ * @typedef {{name: string, media_type: string, content: string, bytes: number, notes: string[],
+ *   transfers: number | null, carriers: number | null}} ExportedFile
+ */
+
+import { call } from "../../api.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { download } from "../../services/exporter.js";
+import { attempt } from "../designs/attempt.js";
+import { dialog } from "../dialogs/dialog.js";
+import { choice, labelled } from "../garments/fields.js";
+import { KINDS } from "./kinds.js";
+
+/** Characters of a text file that are shown. */
+const MOST_SHOWN = 6000;
+
+/** @param {Studio} studio @param {ActionContext} _ */
+export function create(studio, _) {
+  let kind = KINDS[0];
+  const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
+  const tex = h("input", { type: "number", class: "number figures", min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
+  const sides = choice("export-side", "Side of row 1", [["RS", "row 1 is a right side"], ["WS", "a wrong side"]], "RS", (value) => (chosen.first_side = value));
+  const note = h("p", { class: "muted" });
+  /** @type {Record<Option, HTMLElement>} */
+  const options = {
+    worked: h("div", { class: "exports-options" },
+      choice("export-worked", "Worked", [["flat", "worked flat"], ["round", "in the round"]], "flat", (value) => {
+        chosen.construction = value;
+        sides.hidden = value === "round";
+      }),
+      sides),
+    finish: choice("export-finish", "The last row", [["waste", "ends in waste yarn"], ["bind-off", "is bound off"]], "waste", (value) => (chosen.finish = value)),
+    tex: labelled("Yarn, tex (g/km)", tex, "for its mass in the key"),
+    note,
+  };
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
+  const make = h("button", { class: "button primary", type: "button", id: "export-make", onclick: () => void run() }, icon("export"), "Make the file");
+
+  /** @param {ExportKind} one */
+  const choose = (one) => {
+    kind = one;
+    for (const [name, row] of Object.entries(options)) row.hidden = !one.options.includes(/** @type {Option} */ (name));
+    outcome.replaceChildren();
+    status.replaceChildren();
+  };
+  const groups = [...new Set(KINDS.map(({ group }) => group))];
+  const element = dialog(
+    "export-dialog",
+    "Export",
+    h("div", { class: "exports" },
+      h("div", {},
+        ...groups.map((group) =>
+          h("fieldset", { class: "exports-kinds" },
+            h("legend", {}, group),
+            ...KINDS.filter((one) => one.group === group).map((one) =>
+              h("label", { class: "exports-kind" },
+                h("input", { type: "radio", name: "export-kind", value: one.to, checked: one === kind, onchange: () => choose(one) }),
+                h("span", {}, one.name, h("span", { class: "muted" }, one.note))))))),
+      h("section", { class: "exports-options", "aria-label": "Options and file" }, ...Object.values(options), status, outcome)),
+    h("div", { class: "dialog-buttons" }, make),
+  );
+
+  async function run() {
+    const { format: _format, version: _version, ...design } = studio.toDocument();
+    const body = {
+      ...design,
+      ...chosen,
+      to: kind.to,
+      linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
+    };
+    make.disabled = true;
+    outcome.replaceChildren(h("p", { class: "muted" }, kind.to === "knitout" ? "A virtual machine knits it …" : "One moment …"));
+    const file = await attempt(status, () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })));
+    make.disabled = false;
+    outcome.replaceChildren();
+    if (file) show(file);
+  }
+
+  /** @param {ExportedFile} file */
+  function show(file) {
+    const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
+    const save = () => download(file.name, new Blob([bytes], { type: file.media_type }));
+    const found = [
+      `${file.name}, ${(file.bytes / 1000).toFixed(1)} kB`,
+      ...(file.transfers === null ? [] : [`${file.transfers} transfers between the beds, ${file.carriers} ${file.carriers === 1 ? "carrier" : "carriers"}`]),
+      ...file.notes,
+    ];
+    const text = kind.text ? new TextDecoder().decode(bytes.slice(0, MOST_SHOWN)) : "";
+    outcome.replaceChildren(
+      h("ul", { class: "planner-notes" }, ...found.map((words) => h("li", {}, icon("check"), words))),
+      text && kind.to !== "svg" ? h("pre", { class: "exports-text", tabIndex: 0, "aria-label": "The file" }, text) : "",
+      h("div", { class: "dialog-buttons" }, h("button", { class: "button", type: "button", onclick: save }, "Save it again")),
+    );
+    save();
+  }
+
+  choose(kind);
+  return () => {
+    const { regions, outline } = studio.toDocument();
+    const yarns = new Set(regions.flatMap(({ yarn }) => yarn ?? []));
+    note.textContent = [
+      studio.note.value ? "The design's note goes with it." : "A note of the design would go with it.",
+      outline ? "The chart has an outline." : "",
+      yarns.size ? `Its yarns: ${[...yarns].join(", ")}.` : "",
+    ].filter(Boolean).join(" ");
+    choose(kind);
+    element.showModal();
+  };
+}

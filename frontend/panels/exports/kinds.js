@@ -1,0 +1,23 @@
+/**
+ * What a design can become.
+ *
+ * @typedef {"worked" | "finish" | "note" | "tex"} Option
+ * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
+ */
+
+/** @type {ExportKind[]} */
+export const KINDS = [
+  { to: "written", name: "Written rows", note: "as knitters write them, with shaping and colours", group: "To knit by hand", options: ["worked"], text: true },
+  { to: "pdf", name: "Chart to print", note: "PDF with key, row numbers, repeat and notes", group: "To knit by hand", options: ["worked", "note", "tex"] },
+  { to: "svg", name: "Chart as a drawing", note: "SVG", group: "To knit by hand", options: ["worked", "note", "tex"], text: true },
+  { to: "knitspeak", name: "KnitSpeak", note: "for Stitch Maps and other tools; rectangles only", group: "To knit by hand", options: ["worked"], text: true },
+  { to: "knitout", name: "Knitout", note: "for a V-bed machine; knitted on a virtual one first", group: "For a machine", options: ["finish"], text: true },
+  { to: "report", name: "Report", note: "PDF: numbers with intervals, maps, curves, assumptions, chart", group: "To keep and to compute with", options: ["worked", "note", "tex"] },
+  { to: "design", name: "Project file", note: "everything of this design, to be opened again", group: "To keep and to compute with", options: ["note"], text: true },
+  { to: "png", name: "Picture", note: "one pixel a stitch; purls are dark, no stitch is see-through", group: "To keep and to compute with", options: [] },
+  { to: "text", name: "Lines of K and P", note: "rectangles only", group: "To keep and to compute with", options: [], text: true },
+  { to: "csv", name: "Values of every stitch", note: "CSV", group: "To keep and to compute with", options: [], text: true },
+  { to: "vtu", name: "Mesh for ParaView", note: "VTU", group: "To keep and to compute with", options: [] },
+  { to: "glb", name: "Loops in 3D", note: "glTF", group: "To keep and to compute with", options: [] },
+  { to: "stl", name: "Loops to print in 3D", note: "STL", group: "To keep and to compute with", options: [] },
+];

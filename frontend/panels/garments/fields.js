@@ -1,0 +1,73 @@
+/** Fields of the garment planner. Lengths are kept in mm and shown in mm or inches. */
+
+import { h } from "../../dom.js";
+
+const MM_PER_INCH = 25.4;
+
+/** A field for a length that can change its unit. */
+export class LengthField {
+  /**
+   * @param {string} label
+   * @param {number} mm
+   * @param {() => void} changed
+   */
+  constructor(label, mm, changed) {
+    this.mm = mm;
+    this.unit = "mm";
+    this.input = h("input", {
+      type: "number",
+      class: "number figures",
+      min: "0",
+      step: "any",
+      required: true,
+      "aria-label": label,
+      oninput: () => {
+        const value = this.input.valueAsNumber;
+        this.mm = this.unit === "mm" ? value : value * MM_PER_INCH;
+        changed();
+      },
+    });
+    this.#show();
+  }
+
+  /** @param {string} unit */
+  show(unit) {
+    this.unit = unit;
+    this.#show();
+  }
+
+  #show() {
+    const inches = this.unit === "in";
+    this.input.step = inches ? "0.125" : "1";
+    const shown = inches ? (this.mm / MM_PER_INCH).toFixed(2) : this.mm.toFixed(0);
+    this.input.value = Number.isFinite(this.mm) ? String(Number(shown)) : "";
+  }
+}
+
+/**
+ * A row of choices of which one holds.
+ *
+ * @param {string} name
+ * @param {string} label
+ * @param {[string, string][]} choices value and words
+ * @param {string} chosen
+ * @param {(value: string) => void} changed
+ */
+export function choice(name, label, choices, chosen, changed) {
+  return h("fieldset", { class: "choice" },
+    h("legend", { class: "visually-hidden" }, label),
+    ...choices.map(([value, words]) =>
+      h("label", { class: "choice-item" },
+        h("input", { type: "radio", name, value, checked: value === chosen, onchange: () => changed(value) }),
+        h("span", {}, words))));
+}
+
+/**
+ * @param {string} label
+ * @param {Node} field
+ * @param {string} [hint]
+ */
+export const labelled = (label, field, hint) =>
+  h("label", { class: "planner-field" },
+    h("span", {}, label, hint && h("span", { class: "muted" }, ` ${hint}`)),
+    field);

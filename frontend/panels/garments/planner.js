@@ -1,0 +1,260 @@
+/**
+ * The garment planner: measurements, yarn and gauge at the left; at the right what comes of them, as
+ * they are typed. What it makes is a design like any other.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ * @import {DesignDocument} from "../../types.js"
+ *
+ * @typedef {{low: number, high: number}} Span
+ * @typedef {{at_mm: number, part: string, rest_mm: number, worn_mm: number, ease: number,
+ *   mmhg: Span | null, kpa: Span | null, warnings: string[]}} Worn
+ * @typedef {{name: string, colour: string, stitches: number, columns: number, rows: number,
+ *   width_mm: number, height_mm: number, extensibility_course_mm_per_n: number,
+ *   extensibility_wale_mm_per_n: number, yarn_m: number, yarn_g: number | null}} GarmentRegion
+ * @typedef {{fabric: string, stitches_per_10_cm: number, rows_per_10_cm: number}} FabricGauge
+ * @typedef {{name: string, rows: number, columns: number, stitches: number, closing: string,
+ *   regions: GarmentRegion[], gauges: FabricGauge[], worn: Worn[], yarn_m: number,
+ *   yarn_g: number | null, notes: string[], warnings: string[], design: DesignDocument}} Garment
+ */
+
+import { ApiError, call, isAbort } from "../../api.js";
+import { Latest } from "../../core/latest.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { dialog, problemBox } from "../dialogs/dialog.js";
+import { LengthField, choice, labelled } from "./fields.js";
+import { drawGarment } from "./preview.js";
+import { facts } from "./facts.js";
+import { DIGITS, TEMPLATES } from "./templates.js";
+
+const TYPING_MS = 250;
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, { keeper }) {
+  let unit = "mm";
+  let template = TEMPLATES[0];
+  /** @type {LengthField[]} */
+  let lengths = [];
+  /** @type {() => Record<string, unknown>} */
+  let measured = () => ({});
+  /** @type {Garment | null} */
+  let garment = null;
+  const latest = new Latest(TYPING_MS);
+  const changed = () => latest.run(plan);
+
+  // --- what is asked ----------------------------------------------------------------------------
+  const measures = h("div", { class: "planner-measures" });
+  const about = h("p", { class: "muted" });
+  const ease = h("input", { type: "number", class: "number figures", id: "planner-ease", min: "-60", max: "100", step: "1", "aria-label": "Ease in percent", oninput: changed });
+  const target = h("input", { type: "number", class: "number figures", id: "planner-target", min: "1", max: "300", step: "1", value: "20", "aria-label": "Wanted pressure in mmHg", oninput: changed });
+  let byPressure = false;
+  const easeRow = labelled("Ease, %", ease, "negative is tighter");
+  const targetRow = labelled("Wanted pressure, mmHg", target);
+  const fit = choice("planner-fit", "How tight", [["ease", "by ease"], ["pressure", "by pressure"]], "ease", (value) => {
+    byPressure = value === "pressure";
+    easeRow.hidden = byPressure && template.id !== "glove";
+    targetRow.hidden = !byPressure;
+    changed();
+  });
+  const yarn = h("select", { class: "text-field", id: "planner-material", onchange: changed });
+  const tex = h("input", { type: "number", class: "number figures", min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex", oninput: changed });
+  const intarsia = h("input", { type: "checkbox", id: "planner-intarsia", onchange: changed });
+  const own = h("input", {
+    type: "checkbox",
+    id: "planner-own-gauge",
+    onchange: () => {
+      gaugeRow.hidden = !own.checked;
+      changed();
+    },
+  });
+  /** @param {string} label @param {string} value */
+  const count = (label, value) =>
+    h("input", { type: "number", class: "number figures", min: "1", step: "any", value, "aria-label": label, oninput: changed });
+  const [stitches, rows] = [count("Stitches", "22"), count("Rows", "30")];
+  const per = h("select", { class: "text-field", "aria-label": "Counted over", onchange: changed }, ...["10 cm", "4 in", "5 cm"].map((one) => h("option", {}, one)));
+  const of = h("select", { class: "text-field", "aria-label": "Fabric of the swatch", onchange: changed }, ...["stockinette", "garter", "rib", "seed"].map((one) => h("option", {}, one)));
+  const gaugeRow = h("div", { class: "planner-gauge", hidden: true }, stitches, "sts ×", rows, "rows per", per, "of", of);
+
+  // --- what comes of it -------------------------------------------------------------------------
+  const canvas = h("canvas", { role: "img", id: "planner-preview" });
+  const result = h("div", { class: "planner-facts", id: "planner-facts", "aria-live": "polite" });
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const make = h("button", {
+    class: "button primary",
+    type: "button",
+    id: "planner-make",
+    disabled: true,
+    onclick: () => {
+      if (!garment) return;
+      element.close();
+      keeper.openNew(garment.design);
+      studio.tell(`${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`);
+    },
+  }, "Make this design");
+
+  const element = dialog(
+    "planner-dialog",
+    "Plan a garment",
+    h("div", { class: "planner" },
+      h("form", { class: "planner-form", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
+        choice("planner-template", "Garment", TEMPLATES.map(({ id, name }) => [id, name]), template.id, (id) => {
+          template = TEMPLATES.find((one) => one.id === id) ?? template;
+          showTemplate();
+          changed();
+        }),
+        about,
+        h("div", { class: "planner-heading" },
+          h("h3", {}, "Measurements"),
+          choice("planner-unit", "Unit", [["mm", "mm"], ["in", "inches"]], unit, (value) => {
+            unit = value;
+            for (const field of lengths) field.show(unit);
+            if (garment) show(garment);
+          })),
+        measures,
+        h("div", { class: "planner-heading" }, h("h3", {}, "Fit"), fit),
+        easeRow,
+        targetRow,
+        h("h3", {}, "Yarn and gauge"),
+        labelled("Material", yarn),
+        labelled("Yarn, tex (g/km)", tex, "for its mass"),
+        h("label", { class: "planner-check" }, own, "My own gauge"),
+        gaugeRow,
+        h("label", { class: "planner-check" }, intarsia, "A colour for each fabric (intarsia)")),
+      h("section", { class: "planner-result", "aria-label": "The garment" }, h("div", { class: "planner-picture" }, canvas), status, result)),
+    h("div", { class: "dialog-buttons" }, make),
+  );
+  targetRow.hidden = true;
+
+  function showTemplate() {
+    about.textContent = template.note;
+    ease.value = String(Math.round(template.ease * 100));
+    const chosen = yarn.value;
+    showMaterials(template.id === "glove" || !chosen ? template.material : chosen);
+    lengths = [];
+    /** @param {string} label @param {number} mm */
+    const length = (label, mm) => {
+      const field = new LengthField(label, mm, changed);
+      field.show(unit);
+      lengths.push(field);
+      return field;
+    };
+    const fields = template.measures.map(({ key, label, value, hint }) => ({ key, label, hint, field: length(label, value) }));
+    const parts = fields.map(({ label, hint, field }) => labelled(label, field.input, hint));
+    const digits = template.fingers ? DIGITS.map(([name, long, around]) => ({ name, long: length(`${name}: length`, long), around: length(`${name}: around`, around) })) : [];
+    const profile = template.profile ? profileTable(template.profile, length) : null;
+    measures.replaceChildren(
+      ...(profile ? [profile.element] : []),
+      ...parts,
+      ...(digits.length
+        ? [h("table", { class: "planner-table" },
+            h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "Length"), h("th", {}, "Around"))),
+            h("tbody", {}, ...digits.map(({ name, long, around }) => h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, long.input), h("td", {}, around.input)))))]
+        : []),
+    );
+    measured = () => ({
+      ...Object.fromEntries(fields.map(({ key, field }) => [key, field.mm])),
+      ...(profile ? { profile: profile.read() } : {}),
+      ...(digits.length ? fingers(digits) : {}),
+    });
+  }
+
+  /** @param {{long: LengthField, around: LengthField}[]} digits */
+  function fingers(digits) {
+    const [thumb, ...rest] = digits.map(({ long, around }) => ({ length_mm: long.mm, circumference_mm: around.mm }));
+    return { thumb, fingers: rest };
+  }
+
+  /**
+   * @param {[number, number][]} start
+   * @param {(label: string, mm: number) => LengthField} length
+   */
+  function profileTable(start, length) {
+    /** @type {{at: LengthField, around: LengthField}[]} */
+    const places = [];
+    const body = h("tbody", {});
+    /** @param {[number, number]} place */
+    const add = ([at, around]) => {
+      const place = { at: length("Distance along the limb", at), around: length("Circumference there", around) };
+      places.push(place);
+      const row = h("tr", {},
+        h("td", {}, place.at.input),
+        h("td", {}, place.around.input),
+        h("td", {}, h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Remove this place", onclick: () => {
+          if (places.length <= 2) return;
+          places.splice(places.indexOf(place), 1);
+          row.remove();
+          changed();
+        } }, icon("close"))));
+      body.append(row);
+    };
+    start.forEach(add);
+    const element = h("div", { class: "planner-profile" },
+      h("table", { class: "planner-table" },
+        h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))), body),
+      h("button", { class: "button", type: "button", id: "planner-add", onclick: () => {
+        const last = places[places.length - 1];
+        add([last.at.mm + 40, last.around.mm]);
+        changed();
+      } }, icon("plus"), "Add a place"));
+    return { element, read: () => places.map(({ at, around }) => [at.mm, around.mm]) };
+  }
+
+  /** @param {string} chosen */
+  function showMaterials(chosen) {
+    const all = studio.materials.value
+      .filter(({ fabrics }) => Object.keys(fabrics).length === 4)
+      .map(({ id, name }) => ({ id, name }));
+    if (!all.some(({ id }) => id === "glove-wool:glove")) {
+      all.push({ id: "glove-wool:glove", name: "Glove wool, stockinette on 2.0 mm needles as in the study" });
+    }
+    yarn.replaceChildren(...all.map(({ id, name }) => h("option", { value: id, selected: id === chosen }, name)));
+  }
+
+  /** @param {AbortSignal} signal */
+  async function plan(signal) {
+    const body = {
+      garment: {
+        template: template.id,
+        ...measured(),
+        ease: ease.valueAsNumber / 100,
+        target_mmhg: byPressure ? target.valueAsNumber : null,
+      },
+      material: yarn.value,
+      gauge: own.checked ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value } : null,
+      linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
+      intarsia: intarsia.checked,
+    };
+    result.classList.add("busy");
+    try {
+      garment = /** @type {Garment} */ (await call("/garment", { method: "POST", body, signal }));
+      status.replaceChildren();
+      show(garment);
+    } catch (error) {
+      if (isAbort(error)) return;
+      if (!(error instanceof ApiError)) throw error;
+      garment = null;
+      status.replaceChildren(problemBox({ ...error.problem, title: "This garment cannot be planned" }));
+    }
+    result.classList.remove("busy");
+    make.disabled = garment === null;
+  }
+
+  /** @param {Garment} found */
+  function show(found) {
+    const gauge = found.gauges.find(({ fabric }) => fabric === "stockinette") ?? found.gauges[0];
+    drawGarment(canvas, found.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);
+    canvas.setAttribute("aria-label", `${found.name}: ${found.columns} stitches by ${found.rows} rows, with ${found.regions.map(({ name }) => name).join(", ")}`);
+    result.replaceChildren(...facts(found, unit));
+  }
+
+  showTemplate();
+  return () => {
+    element.showModal();
+    showMaterials(yarn.value || template.material);
+    changed();
+  };
+}
