@@ -20,7 +20,8 @@ from 0.03 to 0.2 N/mm for ribs and welts; a study of folded shapes found 6 % and
 
 Across the folds nothing is in series. A rib pulled wale-wise strains as the course-parity-weighted
 mean of its phases at equal force per wale, a balanced rib (k x k) as the pure rib does; plain
-parallel mixing is 25-50 % too stiff there. A welt pulled course-wise has its rows in parallel.
+parallel mixing is 25-50 % too stiff there. A welt pulled course-wise has its rows in parallel, per
+flat height: per shortened height it would be a quarter too stiff (benchmarks/stored_repeats.py).
 """
 
 from __future__ import annotations
@@ -131,7 +132,8 @@ def folded_repeat(repeat: StitchChart, material: Material, relaxed: RelaxedSize)
         return FoldedRepeat(layout, relaxed, along, across)
     along = _series(repeat, material, Direction.WALE, relaxed.wale_mm, relaxed.course_mm)
     parts = tuple(replace(p, along_mm=p.across_mm, across_mm=p.along_mm) for p in along.parts)
-    return FoldedRepeat(layout, relaxed, along, Parallel(Direction.COURSE, parts, relaxed.wale_mm))
+    # per flat height: pulled along its rows a shortened welt is softer than its rows laid flat
+    return FoldedRepeat(layout, relaxed, along, Parallel(Direction.COURSE, parts, along.flat_mm))
 
 
 def flat_rib_wale_wise(repeat: StitchChart, material: Material) -> Series:

@@ -23,7 +23,7 @@ PATCHWORK = (
     "numbers for the whole chart are those of a large sheet of such patches."
 )
 RELAXED_ONLY_TABLED = (
-    "Draw-in is taken over from a yarn-level study of another yarn by ratio; it has no friction "
+    "Draw-in is taken over from the yarn level by its ratio to a pure fabric; it has no friction "
     "or set, so it is probably exaggerated. Your own gauge is better."
 )
 

@@ -4,8 +4,10 @@ Ribs draw in and welts shorten, because they fold. Their relaxed size comes from
 from a user's gauge, or from a packaged table of common repeats. The table is of one yarn (loop
 length 11.28 mm, radius 0.74 mm, core 0.30 mm, B = 0.045 N·mm², k = 6e-4 N/mm³, p = 2.4, convention
 ``authors-code``), relaxed freely in a study, or with the chart's mirror symmetries by
-:mod:`knitcore.yarnlevel`. It is carried to a material by ratio: to the pure fabric that the repeat
-resembles (1x1 rib for ribs, garter for welts), at equal loop length, because lengths scale with it.
+:mod:`knitcore.yarnlevel`. What it lacks comes from ``data/stored_sizes.csv``, the sizes of the
+packaged store of relaxed repeats of acrylic and cotton (:mod:`knitcore.yarnlevel.store_build`
+writes it). Both are carried to a material by ratio: to the pure fabric that the repeat resembles
+(1x1 rib for ribs, garter for welts), at equal loop length, because lengths scale with it.
 """
 
 from __future__ import annotations
@@ -33,6 +35,7 @@ class SizeSource(StrEnum):
     """Where a relaxed size comes from."""
 
     TABLE = "packaged table"
+    STORE = "packaged store"
     YARN_LEVEL = "yarn level"
     GAUGE = "gauge"
 
@@ -78,6 +81,9 @@ class RelaxedSize:
 def canonical_repeat(repeat: StitchChart) -> StitchChart:
     """One chart for all that are the same cloth: shifted, mirrored, or seen from the back.
 
+    A welt turned upside down is the same cloth too. Other repeats are not, because a stitch is not:
+    the columns of its upside-down neighbours lie half a stitch aside.
+
     Examples
     --------
     >>> print(canonical_repeat(StitchChart.parse("PPKK")))
@@ -85,7 +91,7 @@ def canonical_repeat(repeat: StitchChart) -> StitchChart:
     """
     best: tuple[bytes, StitchChart] | None = None
     for chart in (repeat, repeat.mirror()):
-        for upright in (chart, chart.mirror_vertical()):
+        for upright in (chart, chart.mirror_vertical()) if chart.columns == 1 else (chart,):
             for side in (upright, upright.swap()):
                 for down in range(side.rows):
                     for across in range(side.columns):
@@ -98,7 +104,7 @@ def canonical_repeat(repeat: StitchChart) -> StitchChart:
 
 
 def tabled_size(repeat: StitchChart, material: Material) -> RelaxedSize | None:
-    """Relaxed size of a common repeat in a material, or None if the table lacks it.
+    """Relaxed size of a repeat in a material, or None if neither table nor store has it.
 
     Parameters
     ----------
@@ -119,7 +125,25 @@ def tabled_size(repeat: StitchChart, material: Material) -> RelaxedSize | None:
         if cell is not None:
             pure = {f: _table()[branch, text] for f, text in _PURE_CHARTS.items()}
             return carried_over(cell, pure, repeat, material, SizeSource.TABLE)
-    return None
+    ratio = stored_ratio(repeat, material)
+    if ratio is None:
+        return None
+    like = {reference_fabric(repeat): (1.0, 1.0)}
+    return carried_over(ratio, like, repeat, material, SizeSource.STORE)
+
+
+def stored_ratio(repeat: StitchChart, material: Material) -> tuple[float, float] | None:
+    """Size of a repeat over that of its pure fabric at equal loop length, from the store.
+
+    Acrylic and cotton have their own; other yarns get the geometric mean of the two.
+    """
+    own = material.identifier.partition(":")[0]
+    ratios = _stored().get(canonical_repeat(repeat).text, {})
+    used = [ratios[own]] if own in ratios else list(ratios.values())
+    if not used:
+        return None
+    course, wale = np.exp(np.mean(np.log(used), axis=0))
+    return float(course), float(wale)
 
 
 def carried_over(
@@ -193,4 +217,16 @@ def _table() -> Mapping[tuple[str, str], tuple[float, float]]:
     for row in csv.DictReader(resource.read_text(encoding="utf-8").splitlines()):
         chart = canonical_repeat(StitchChart.parse(row["chart"].replace("/", "\n")))
         found[row["branch"], chart.text] = (float(row["course_mm"]), float(row["wale_mm"]))
+    return found
+
+
+@cache
+def _stored() -> Mapping[str, Mapping[str, tuple[float, float]]]:
+    """(course, wale) ratios by text of the canonical chart, and by yarn."""
+    resource = files("knitcore.mechanics").joinpath("data", "stored_sizes.csv")
+    found: dict[str, dict[str, tuple[float, float]]] = {}
+    for row in csv.DictReader(resource.read_text(encoding="utf-8").splitlines()):
+        chart = canonical_repeat(StitchChart.parse(row["chart"].replace("/", "\n")))
+        ratio = (float(row["course_ratio"]), float(row["wale_ratio"]))
+        found.setdefault(chart.text, {})[row["yarn"]] = ratio
     return found

@@ -107,7 +107,7 @@ class Parallel:
     Attributes
     ----------
     direction, parts : as in :class:`Series`; shares are by number of stitches across the pull.
-    across_mm : relaxed mean size of a stitch across the pull, t_0.
+    across_mm : mean size of a stitch across the pull that the force is shared over.
     """
 
     direction: Direction

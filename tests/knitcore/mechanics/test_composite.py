@@ -12,6 +12,7 @@ from knitcore.mechanics.relaxed import (
     RelaxedSize,
     SizeSource,
     canonical_repeat,
+    stored_ratio,
     tabled_size,
 )
 from knitcore.mechanics.uniaxial import free_strains_at_stress, strain_at_stress
@@ -107,7 +108,8 @@ def test_welts_course_wise_have_their_rows_in_parallel():
     assert isinstance(welt.across, Parallel)
     rows = [yarn.record(f) for f in (Fabric.STOCKINETTE, Fabric.GARTER)]
     force = sum(r.law.modulus_course * r.stitch_wale_mm for r in rows) / 2
-    assert welt.across.modulus_n_per_mm == pytest.approx(force / welt.relaxed.wale_mm)
+    flat = sum(r.stitch_wale_mm for r in rows) / 2
+    assert welt.across.modulus_n_per_mm == pytest.approx(force / flat)
 
 
 def test_layouts():
@@ -131,7 +133,30 @@ def test_one_cloth_has_one_canonical_repeat():
     ]
     assert {canonical_repeat(v) for v in variants} == {canonical_repeat(basket)}
     assert tabled_size(basket.turn_over(), material("cotton")) is not None
-    assert tabled_size(StitchChart.parse("KKKPPP"), material("cotton")) is None
+    assert tabled_size(StitchChart.parse("KKKKKPPPPP"), material("cotton")) is None
+
+
+def test_only_welts_are_the_same_cloth_upside_down():
+    welt = StitchChart.parse("P\nK\nP\nP\nK\nK\nK")
+    assert canonical_repeat(welt.mirror_vertical()) == canonical_repeat(welt)
+    other = StitchChart.parse("PK\nKP\nKP\nKK")
+    assert canonical_repeat(other.mirror_vertical()) != canonical_repeat(other)
+
+
+@pytest.mark.parametrize("text", ["KKKPP", "K\nK\nP\nK\nP"])
+def test_repeats_of_the_store_have_a_size_in_every_yarn(text):
+    """Acrylic and cotton have their own ratio, other yarns the mean of the two."""
+    repeat = StitchChart.parse(text)
+    ratios = {name: stored_ratio(repeat, material(name)) for name in ("acrylic", "cotton")}
+    mean = stored_ratio(repeat, material("glove-wool"))
+    np.testing.assert_allclose(mean, np.sqrt(np.prod(list(ratios.values()), axis=0)))
+    size = tabled_size(repeat, material("glove-wool"))
+    assert size is not None
+    assert size.source is SizeSource.STORE
+    pure = tabled_size(StitchChart.parse("KP" if repeat.rows == 1 else "K\nP"), material("acrylic"))
+    drawn_in = tabled_size(repeat, material("acrylic"))
+    along = "course_mm" if repeat.rows == 1 else "wale_mm"
+    assert getattr(drawn_in, along) < getattr(pure, along) * 1.2
 
 
 def test_pure_fabrics_keep_their_size_in_the_table():

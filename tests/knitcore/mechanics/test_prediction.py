@@ -42,7 +42,8 @@ def test_sources_are_labelled_by_the_rule():
         "KKPP": "composite, corrected",
         "PKKP": "composite, corrected",
         "K\nK\nP\nP": "composite, corrected",
-        "KKKPPP": "composite, stretched state only",
+        "KKKPPP": "composite, corrected",
+        "KKKKKPPPPP": "composite, stretched state only",
         "KKPP\nKKPP\nPPKK\nPPKK": "composite, stretched state only",
         "KP\nPK": "measured",
     }

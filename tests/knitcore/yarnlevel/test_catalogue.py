@@ -1,20 +1,38 @@
 """Repeats up to symmetry."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from knitcore.chart import StitchChart
-from knitcore.yarnlevel.catalogue import COMMON, canonical, distinct_repeats, place
+from knitcore.yarnlevel.catalogue import COMMON, canonical, distinct_repeats, place, placements
 
 charts = arrays(bool, st.tuples(st.integers(1, 3), st.integers(1, 4))).map(StitchChart)
 
 
-def test_there_are_36_fabrics_with_repeats_up_to_three_by_three():
-    """Count of the composite study."""
-    small = [c for c in distinct_repeats(9) if c.rows <= 3 and c.columns <= 3]
-    assert len(small) == 36
+@pytest.mark.parametrize("shape", [(1, 8), (8, 1), (2, 4), (4, 2), (2, 3), (3, 3)])
+def test_no_fabric_is_missing_or_counted_twice(shape):
+    """Burnside: the number of fabrics is the mean number of grids that a symmetry leaves alone."""
+    rows, columns = shape
+    grids = ((np.arange(2 ** (rows * columns))[:, None] >> np.arange(rows * columns)) & 1) == 1
+    charts = [StitchChart(grid) for grid in grids.reshape(-1, rows, columns)]
+    alone = sum(
+        np.array_equal(chart.purl, turned)
+        for chart in charts
+        if chart.repeat() == chart
+        for _, turned in placements(chart.purl)
+    )
+    found = [c for c in distinct_repeats(rows * columns) if (c.rows, c.columns) == shape]
+    assert len(found) == alone / (4 * rows * columns)
+
+
+def test_the_counts_are_those_of_the_composite_study():
+    """36 repeats up to 3x3, 53 of at most 8 stitches and four a side."""
+    repeats = distinct_repeats(9)
+    assert sum(c.rows <= 3 and c.columns <= 3 for c in repeats) == 36
+    assert sum(max(c.rows, c.columns) <= 4 and c.purl.size <= 8 for c in repeats) == 53
 
 
 def test_common_repeats_are_primitive_and_different():

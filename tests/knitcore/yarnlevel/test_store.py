@@ -15,7 +15,7 @@ from knitcore.yarnlevel.store import stored_charts, stored_stitch
 def test_common_repeats_are_packaged(material, name):
     stored = stored_stitch(StitchChart.parse(COMMON[name]), material)
     assert stored is not None
-    assert stored.free_course_mm is not None
+    assert stored.free is not None
     lines = stored.centre_lines()
     assert lines.shape[0] == stored.chart.rows
     step = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
@@ -43,7 +43,7 @@ def test_two_by_two_rib_is_narrower_than_one_by_one():
     assert one is not None
     assert two is not None
     assert two.cell_course_mm < one.cell_course_mm
-    assert two.free_course_mm < one.free_course_mm
+    assert two.free.cell_course_mm < one.free.cell_course_mm
 
 
 def test_unknown_repeats_and_yarns_are_not_in_the_store():
