@@ -1,0 +1,126 @@
+"""Random starts and charts: nothing unravelled may come back as a result.
+
+Each trial draws a chart, a yarn, a loop length, a branch and rough starts and relaxes it; every
+tenth also takes a few steps of a stretch. What comes back must be finite, with the right length of
+yarn, its cores apart and its clasps as knitted. Errors of the product's own kinds are fine; others
+are crashes.
+
+    python benchmarks/yarnlevel_stress.py --trials 1000 --minutes 30
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections import Counter
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.errors import KnitcoreError
+from knitcore.fabric import Direction, Fabric
+from knitcore.yarnlevel.clasps import cell_is_knitted
+from knitcore.yarnlevel.growth import Start
+from knitcore.yarnlevel.published.certificate import is_clasped
+from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.relax import RelaxedRepeat, relax
+from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.sweep import sweep
+from knitcore.yarnlevel.yarn import YarnModel
+
+_LARGEST = 3
+
+
+def trial(seed: int) -> str:
+    """What became of one random relaxation: its kind, or what is wrong with it."""
+    rng = np.random.default_rng(seed)
+    radius = float(10.0 ** rng.uniform(-1.0, 0.7))
+    length = radius * float(rng.uniform(9.0, 40.0))
+    bending = 0.045 * (radius / 0.74) ** 3 * float(10.0 ** rng.uniform(-1.0, 1.0))
+    stiffness = float(10.0 ** rng.uniform(-4.5, -2.0))
+    yarn = YarnModel(
+        bending, stiffness, float(rng.uniform(1.2, 4.0)), radius,
+        radius * float(rng.uniform(0.0, 0.7)),
+    )  # fmt: skip
+    try:
+        if rng.random() < 0.1:
+            fabric = list(Fabric)[rng.integers(4)]
+            published = relax_published(fabric, yarn, length, starts=2)
+            return _judged_published(published, Stitch(fabric, yarn), length)
+        rows, columns = rng.integers(1, _LARGEST + 1, 2)
+        chart = StitchChart(rng.random((rows, columns)) < 0.5)
+        start = Start(
+            "random", course=float(rng.uniform(0.7, 1.5)), wale=float(rng.uniform(0.7, 1.5)),
+            noise=float(rng.uniform(0.0, 0.4)), seed=seed,
+        )  # fmt: skip
+        branch = "free" if rng.random() < 0.2 and rows * columns <= 4 else "mirrored"
+        found = relax(chart, yarn, length, branch=branch, starts=[start])
+        outcome = _judged(found)
+        if outcome == "relaxed" and seed % 10 == 0:
+            along = Direction.COURSE if rng.random() < 0.5 else Direction.WALE
+            curve = sweep(found, along, 0.5, points=4)
+            worst = [_judged(cell) for cell in curve.cells if isinstance(cell, RelaxedRepeat)]
+            outcome = next((w for w in worst if w.startswith("WRONG")), outcome)
+        return outcome
+    except KnitcoreError as error:
+        return type(error).__name__
+    except Exception as error:  # a crash is what is looked for
+        return f"WRONG: crash, {error!r}"
+
+
+def _judged(found: RelaxedRepeat) -> str:
+    numbers = [found.energy_n_mm, found.cell_course_mm, found.cell_wale_mm, found.contact_share]
+    if not np.all(np.isfinite(numbers)) or not np.all(np.isfinite(found.centre_lines)):
+        return "WRONG: not finite"
+    if abs(found.yarn_length_mm / float(np.mean(found.loop_lengths_mm)) - 1.0) > 2e-4:
+        return "WRONG: length"
+    if found.min_distance_mm <= 2.0 * found.yarn.core_radius_mm:
+        return "WRONG: cores overlap"
+    if not cell_is_knitted(found.cell, found.state):
+        return "WRONG: unravelled"
+    return "relaxed" if found.converged else "relaxed, not to the tolerance"
+
+
+def _judged_published(found: RelaxedCell, stitch: Stitch, length: float) -> str:
+    if not np.isfinite(found.energy_n_mm) or not np.all(np.isfinite(found.centre_lines)):
+        return "WRONG: published, not finite"
+    if abs(found.yarn_length_mm / length - 1.0) > 1e-4:
+        return "WRONG: published, length"
+    if not is_clasped(stitch, found.state):
+        return "WRONG: published, unravelled"
+    return "published, relaxed"
+
+
+def run(trials: int, seconds: float, first: int = 0) -> Counter[str]:
+    """Count the outcomes of so many trials, or of as many as the time allows."""
+    outcomes: Counter[str] = Counter()
+    began = time.monotonic()
+    for seed in range(first, first + trials):
+        if time.monotonic() - began > seconds:
+            break
+        outcome = trial(seed)
+        outcomes[outcome] += 1
+        if outcome.startswith("WRONG"):
+            print(f"seed {seed}: {outcome}", flush=True)
+    return outcomes
+
+
+def main() -> None:
+    """Entry of the script."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--trials", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0, help="seed of the first trial")
+    parser.add_argument("--minutes", type=float, default=30.0, help="stop after this time")
+    asked = parser.parse_args()
+    began = time.process_time()
+    outcomes = run(asked.trials, 60.0 * asked.minutes, asked.first)
+    for outcome, count in outcomes.most_common():
+        print(f"{count:6d}  {outcome}")
+    wrong = sum(n for outcome, n in outcomes.items() if outcome.startswith("WRONG"))
+    print(f"{outcomes.total()} trials, {wrong} wrong, {time.process_time() - began:.0f} CPU s")
+    raise SystemExit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()
