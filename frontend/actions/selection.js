@@ -106,11 +106,13 @@ export const paste = {
   keys: ["Mod+V"],
   // The browser's own paste event brings it, or what another program has copied.
   native: true,
-  enabled: ({ editing }) => editing.clip !== null,
   perform: ({ studio, view }) => {
     const { document, editing, selection } = studio;
     const { clip } = editing;
-    if (!clip) return;
+    if (!clip) {
+      studio.tell("Nothing is copied yet: select stitches, then copy them (Ctrl+C).");
+      return;
+    }
     const { grid } = document;
     const corner = selection.value && /** @type {const} */ ([selection.value.row0, selection.value.column0]);
     const [row, column] = view.hover.value ?? corner ?? [0, 0];

@@ -31,7 +31,7 @@ export function chartstrip(host, context) {
     const drawn = look === "loops" ? "loops" : look === "colours" ? "plain" : "dots";
     /** @param {string} kind @param {string} label */
     const entry = (kind, label) =>
-      h("span", { class: "legend-item" }, h("span", { class: `key-cell ${kind} ${drawn}` }), label);
+      h("span", { class: "legend-item" }, h("span", { class: `key-cell ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }), label);
     key.replaceChildren(
       entry("knit", "knit"),
       entry("purl", "purl"),

@@ -28,13 +28,14 @@ export function create(studio, context) {
   const list = h("ol", { class: "part-list", reversed: true });
   let chosen = chart.regions.at(-1)?.id ?? "";
 
-  const fromSelection = h("button", { class: "button", type: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) }, icon("select"), "From the selection");
+  const fromSelection = h("button", { class: "button", type: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) }, icon("select"), "From selection");
   const empty = h(
     "button",
     {
       class: "button",
       type: "button",
       id: "region-new",
+      title: "A new region, to be painted",
       onclick: () => {
         const name = `Region ${chart.regions.length + 1}`;
         const region = chart.region(chart.addRegion({ name, colour: nextRegionColour(chart.regions) }));
@@ -42,7 +43,7 @@ export function create(studio, context) {
       },
     },
     icon("plus"),
-    "New, to paint",
+    "New",
   );
 
   /** @param {Region} region */
@@ -135,7 +136,7 @@ export function create(studio, context) {
     refreshed(list, () =>
       chart.regions.length
         ? chart.regions.map(item).reverse()
-        : [h("li", { class: "muted part-empty" }, "Regions name parts of the chart, such as a cuff or a heel: select some stitches (M, Q or W) and press “From the selection”, or paint a new one.")],
+        : [h("li", { class: "muted part-empty" }, "Regions name parts of the chart, such as a cuff or a heel: select some stitches (M, Q or W) and press “From selection”, or paint a new one.")],
     );
   };
   const soon = () => {

@@ -1,5 +1,5 @@
 /**
- * What can be done with the selection, at the foot of the chart while there is one.
+ * What can be done with the selection; while there is one, it takes the place of the strip's choices.
  *
  * @import {ActionContext} from "../actions/action.js"
  */
@@ -40,7 +40,7 @@ export function selectionbar(host, context) {
         onclick: () => perform(context),
       },
       picture && icon(picture),
-      text,
+      text && h("span", {}, text),
     );
   };
   const count = h("span", { class: "bar-count figures" });
@@ -48,14 +48,15 @@ export function selectionbar(host, context) {
     "div",
     { class: "selection-bar", role: "toolbar", "aria-label": "Selection", id: "selection-bar", hidden: true },
     count,
-    ...GROUPS.flatMap((group) => [...group.map((id) => button(id)), h("span", { class: "bar-divider" })]),
-    ...NAMED.map(([id, text]) => button(id, text)),
-    h("span", { class: "bar-divider" }),
+    ...GROUPS.map((group) => h("span", { class: "bar-group" }, ...group.map((id) => button(id)))),
+    h("span", { class: "bar-group" }, ...NAMED.map(([id, text]) => button(id, text))),
     button("deselect"),
   );
-  host.append(bar);
+  const strip = host.querySelector(".chart-strip");
+  strip?.append(bar);
   studio.selection.watch((selection) => {
     bar.hidden = !selection;
+    strip?.toggleAttribute("data-selecting", selection !== null);
     if (!selection) return;
     const wide = selection.column1 - selection.column0;
     const high = selection.row1 - selection.row0;

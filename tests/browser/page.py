@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -60,3 +61,98 @@ def wait_for_colour(page: Page, selector: str, least: int) -> np.ndarray:
 def number(page: Page, selector: str) -> float:
     """A number on show."""
     return float(page.locator(f"{selector} .value").inner_text().replace("−", "-"))
+
+
+def kept_design(page: Page) -> dict[str, Any]:
+    """The design as the browser keeps it, once it is kept."""
+    page.wait_for_function("() => !('unsaved' in document.documentElement.dataset)")
+    design = json.loads(page.evaluate("localStorage['knitcore.design']"))
+    assert isinstance(design, dict)
+    return design
+
+
+class Chart:
+    """Where the stitches are on the screen, found with the read-out under the pointer."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.look()
+
+    def look(self) -> None:
+        """Find the stitches again, after the chart has moved."""
+        found = self.page.evaluate(
+            """async () => {
+                // A panel that has opened beside the chart moves it with the next frame.
+                for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
+                const canvas = document.querySelector("#chart");
+                const readout = document.querySelector("#readout");
+                const box = canvas.getBoundingClientRect();
+                const at = (clientX, clientY) => {
+                    canvas.dispatchEvent(new PointerEvent("pointermove", { clientX, clientY }));
+                    const found = readout.textContent.match(/row (\\d+).*?stitch (\\d+)/i);
+                    return found && [Number(found[1]), Number(found[2])];
+                };
+                const rows = {}, stitches = {};
+                const [x0, y0] = [box.x + box.width / 2, box.y + 5 + box.height / 2];
+                for (let x = box.x; x < box.right; x += 2) {
+                    const stitch = at(x, y0)?.[1];
+                    if (stitch) (stitches[stitch] ??= []).push(x);
+                }
+                for (let y = box.y; y < box.bottom; y += 2) {
+                    const row = at(x0, y)?.[0];
+                    if (row) (rows[row] ??= []).push(y);
+                }
+                const middle = (list) => (list[0] + list[list.length - 1]) / 2;
+                const middles = (lists) =>
+                    Object.fromEntries(Object.entries(lists).map(([k, v]) => [k, middle(v)]));
+                return { rows: middles(rows), stitches: middles(stitches) };
+            }"""
+        )
+        self.rows = {int(row): float(y) for row, y in found["rows"].items()}
+        self.stitches = {int(stitch): float(x) for stitch, x in found["stitches"].items()}
+
+    def at(self, row: int, stitch: int) -> tuple[float, float]:
+        """Middle of a stitch: row from the bottom, stitch from the right of the face, from 1."""
+        return self.stitches[stitch], self.rows[row]
+
+    def click(self, row: int, stitch: int, **options: Any) -> None:
+        """Click on a stitch."""
+        self.page.mouse.click(*self.at(row, stitch), **options)
+
+    def drag(self, *path: tuple[int, int]) -> None:
+        """Press on the first stitch, go along the others, let go on the last."""
+        self.page.mouse.move(*self.at(*path[0]))
+        self.page.mouse.down()
+        for cell in path[1:]:
+            self.page.mouse.move(*self.at(*cell), steps=3)
+        self.page.mouse.up()
+
+
+def purls(text: str) -> set[tuple[int, int]]:
+    """The purls of a chart as (row, stitch), both from 1, stitches from the right."""
+    lines = text.splitlines()
+    return {
+        (len(lines) - k, len(line) - column)
+        for k, line in enumerate(lines)
+        for column, mark in enumerate(line)
+        if mark == "P"
+    }
+
+
+def block(rows: tuple[int, int], stitches: tuple[int, int]) -> set[tuple[int, int]]:
+    """All (row, stitch) of a box, its ends included."""
+    return {
+        (r, s) for r in range(rows[0], rows[1] + 1) for s in range(stitches[0], stitches[1] + 1)
+    }
+
+
+def drop(page: Page, name: str, kind: str, content: bytes) -> None:
+    """Drop a file on the page."""
+    page.evaluate(
+        """([name, type, bytes]) => {
+            const data = new DataTransfer();
+            data.items.add(new File([Uint8Array.from(bytes)], name, { type }));
+            window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+        }""",
+        [name, kind, list(content)],
+    )

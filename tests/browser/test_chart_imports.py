@@ -1,0 +1,94 @@
+"""Files dropped on the page: pictures with a preview, projects, and what is broken."""
+
+from __future__ import annotations
+
+import io
+import json
+
+import numpy as np
+from PIL import Image
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import CHART
+from tests.browser.page import drop, kept_chart, kept_design
+
+
+def picture(cells: np.ndarray, size: int) -> bytes:
+    """PNG of a chart, each cell as large, dark for 1."""
+    grey = np.where(np.kron(cells, np.ones((size, size))) > 0, 40, 225).astype(np.uint8)
+    file = io.BytesIO()
+    Image.fromarray(grey).save(file, "PNG")
+    return file.getvalue()
+
+
+CELLS = np.array([[0, 1, 0, 0, 1], [1, 0, 0, 1, 1], [0, 0, 1, 0, 1]])
+TEXT = "\n".join("".join("KP"[c] for c in row) for row in CELLS)
+
+
+def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
+    drop(flat_studio, "chart.png", "image/png", picture(CELLS, 12))
+    dialog = flat_studio.locator("#picture-dialog")
+    expect(dialog).to_contain_text("Grid found: 5 × 3")
+    expect(flat_studio.locator("#picture-columns")).to_have_value("5")
+    expect(dialog.locator("output")).to_have_text("47 % purl")
+    flat_studio.check("#picture-inverted")
+    expect(dialog.locator("output")).to_have_text("53 % purl")
+    flat_studio.uncheck("#picture-inverted")
+    flat_studio.fill("#picture-columns", "0")
+    expect(flat_studio.locator("#picture-apply")).to_be_disabled()
+    flat_studio.click("#picture-found")
+    flat_studio.click("#picture-apply")
+    assert kept_chart(flat_studio) == TEXT
+
+    drop(flat_studio, "small.png", "image/png", picture(CELLS, 1))
+    expect(flat_studio.locator("#picture-rows")).to_have_value("3")
+    flat_studio.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    flat_studio.click("#action-undo")
+    assert kept_chart(flat_studio) == CHART
+
+
+def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:
+    before = kept_design(flat_studio)
+    told = flat_studio.locator("#messages")
+    old = {"format": "knitcore-design", "version": 1, "name": "Old", "material": "cotton"}
+    for name, kind, content, message in (
+        ("broken.png", "image/png", b"\x89PNG nonsense", "not a picture"),
+        ("empty.txt", "text/plain", b"", "is empty"),
+        ("program.bin", "", b"\x00\x01\x02", "no text file"),
+        ("half.json", "application/json", b'{"format": "knitcore-des', "not valid JSON"),
+        ("other.json", "application/json", b'{"a": 1}', "not a design"),
+        ("new.json", "", json.dumps(old | {"version": 9, "chart": "K"}).encode(), "version 9"),
+        ("ragged.json", "", json.dumps(old | {"chart": "KP\nK"}).encode(), "rows of K and P"),
+    ):
+        drop(flat_studio, name, kind, content)
+        expect(told).to_contain_text(message)
+    assert kept_design(flat_studio) == before
+
+
+def test_project_files_of_both_versions_open(flat_studio: Page) -> None:
+    old = {
+        "format": "knitcore-design",
+        "version": 1,
+        "name": "Old cuff",
+        "material": "cotton",
+        "chart": "KPKP\nKPKP",
+    }
+    drop(flat_studio, "old.json", "application/json", json.dumps(old).encode())
+    expect(flat_studio.locator(".design-name")).to_have_value("Old cuff")
+    assert kept_chart(flat_studio) == old["chart"]
+    region = {
+        "id": "r",
+        "name": "Edge",
+        "colour": "#336699",
+        "yarn": None,
+        "fill": None,
+        "runs": [[0, 0, 4]],
+        "locked": False,
+        "hidden": False,
+    }
+    new = old | {"version": 2, "name": "New cuff", "outline": "xxx.\nxxxx", "regions": [region]}
+    drop(flat_studio, "new.json", "application/json", json.dumps(new).encode())
+    expect(flat_studio.locator(".design-name")).to_have_value("New cuff")
+    design = kept_design(flat_studio)
+    assert (design["outline"], design["regions"]) == ("xxx.\nxxxx", [region])
