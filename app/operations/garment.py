@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from knitcore.fabric import Direction, Fabric
@@ -207,8 +206,8 @@ class RegionResult(BaseModel):
     fill: str
     colour: str
     stitches: int
-    columns: int = Field(description="From its first to its last column.")
-    rows: int
+    columns: int = Field(description="Stitches of its longest row.")
+    rows: int = Field(description="Rows of its longest column.")
     width_mm: float = Field(description="Of that many stitches at rest.")
     height_mm: float
     extensibility_course_mm_per_n: float
@@ -328,8 +327,7 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
     for region, fabric in zip(plan.regions, plan.fabrics, strict=True):
         n = numbers[region.name]
         cells = region.cells & plan.shaped.stitch
-        rows, columns = np.nonzero(cells)
-        spans = int(np.ptp(columns)) + 1, int(np.ptp(rows)) + 1
+        spans = int(cells.sum(axis=1).max()), int(cells.sum(axis=0).max())
         gauge = plan.gauges[fabric]
         use = plan.yarn_of(region, material, tex)
         results.append(

@@ -26,7 +26,7 @@ MARGIN_MM = 12.0
 HEADER_MM = 14.0
 KEY_MM = 24.0
 KEY_LINE_MM = 5.0
-NOTE_CHARACTERS, NOTE_LINES = 100, 8
+NOTE_CHARACTERS, NOTE_LINES = 110, 14
 TINT = 0.55
 """Share of a yarn's colour in its stitches; the rest is white."""
 A4_MM = (210.0, 297.0)

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
 
 from knitcore.formats.chart_drawing import tinted
 from knitcore.formats.drawing import Box, Label, Shape
@@ -35,7 +36,7 @@ class RegionField:
     stitches : inside the outline and not covered by later regions.
     modulus_course, modulus_wale : N/mm, with half the width of their 90 % intervals as a factor:
         the value lies between modulus / factor and modulus * factor.
-    row, column : of the region's middle, for a label.
+    row, column : the middle of the region's largest part.
     """
 
     name: str
@@ -72,7 +73,9 @@ def region_fields(
         codes = local.codes[cells]
         course = _mean(table.modulus_course_n_per_mm[codes], table.log_sd_course[codes])
         wale = _mean(table.modulus_wale_n_per_mm[codes], table.log_sd_wale[codes])
-        row, column = (float(np.median(place)) for place in np.nonzero(cells))
+        parts, _ = label(cells)
+        largest = parts == np.bincount(parts[cells]).argmax()
+        row, column = (float(np.median(place)) for place in np.nonzero(largest))
         found.append(RegionField(name, colour, int(cells.sum()), course, wale, row, column))
     return tuple(found)
 
@@ -90,49 +93,53 @@ def field_shapes(
     regions: Sequence[DesignRegion],
     material: Material,
     *,
+    aspect: float,
     left: float,
     top: float,
     width: float,
     height: float,
 ) -> Iterator[Shape]:
-    """The field inside a box on paper, in mm."""
+    """The field inside a box on paper, in mm; ``aspect`` is height over width of a stitch."""
     chart, stitch = piece.chart, piece.shaped.stitch
     local = local_moduli(piece.shaped.continued(), material)
     course, wale = local.extensibility_course_mm_per_n, local.extensibility_wale_mm_per_n
-    cell = min(width / chart.columns, height / chart.rows)
+    cell = min(width / chart.columns, height / (chart.rows * aspect))
+    high = cell * aspect
     most = max(float(course[stitch].max()), float(wale[stitch].max()))
-    yield Box(left, top, cell * chart.columns, cell * chart.rows, fill=_OUTSIDE)
+    yield Box(left, top, cell * chart.columns, high * chart.rows, fill=_OUTSIDE)
     owner = np.full(stitch.shape, -1)
     for index, region in enumerate(regions):
         owner[region_cells(region, chart.rows, chart.columns)] = index
     for row in range(chart.rows):
-        y = top + cell * (chart.rows - 1 - row)
+        y = top + high * (chart.rows - 1 - row)
         for start, stop, index in _runs(np.where(stitch[row], owner[row], -2)):
             if index > -2:
                 fill = tinted(regions[index].colour) if index >= 0 else "#ffffff"
-                yield Box(left + cell * start, y, cell * (stop - start), cell, fill=fill)
+                yield Box(left + cell * start, y, cell * (stop - start), high, fill=fill)
     step = max(1, int(np.ceil(np.sqrt(stitch.sum() / MOST_RECTANGLES))))
-    largest = 0.9 * cell * step / most
+    scale = 0.9 * step * min(cell, high) / most
     for row, column in np.argwhere(stitch).tolist():
         if row % step or column % step:
             continue
-        wide, high = largest * course[row, column], largest * wale[row, column]
-        x = left + cell * (column + 0.5 * step) - wide / 2
-        y = top + cell * (chart.rows - row - 0.5 * step) - high / 2
-        yield Box(x, y, wide, high, stroke=_INK, line_width=0.12)
+        sides = scale * course[row, column], scale * wale[row, column]
+        middle = left + cell * (column + 0.5), top + high * (chart.rows - 0.5 - row)
+        yield _rectangle(middle, sides, _INK, 0.12)
+    scale = 0.16 * min(cell * chart.columns, high * chart.rows) / most
     for part in region_fields(piece, regions, material):
-        scale = 0.16 * min(cell * chart.columns, cell * chart.rows) / most
-        wide, high = scale / part.modulus_course[0], scale / part.modulus_wale[0]
-        x = left + cell * (part.column + 0.5)
-        y = top + cell * (chart.rows - 0.5 - part.row)
-        yield Box(x - wide / 2, y - high / 2, wide, high, stroke="#ffffff", line_width=1.4)
-        yield Box(x - wide / 2, y - high / 2, wide, high, stroke=_INK, line_width=0.7)
-    note = (
-        f"large rectangles: regions; small ones: every {step}. stitch"
-        if step > 1
-        else ("large rectangles: regions; small ones: stitches")
-    )
-    yield Label(left, top + cell * chart.rows + 4.0, note, 2.8)
+        sides = scale / part.modulus_course[0], scale / part.modulus_wale[0]
+        middle = left + cell * (part.column + 0.5), top + high * (chart.rows - 0.5 - part.row)
+        yield _rectangle(middle, sides, "#ffffff", 1.4)
+        yield _rectangle(middle, sides, _INK, 0.7)
+    share = f"one stitch in {step} × {step}" if step > 1 else "stitches"
+    note = f"large rectangles: regions; small ones: {share}"
+    yield Label(left, top + high * chart.rows + 4.0, note, 2.8)
+
+
+def _rectangle(
+    middle: tuple[float, float], sides: tuple[float, float], ink: str, line: float
+) -> Box:
+    corner = middle[0] - sides[0] / 2, middle[1] - sides[1] / 2
+    return Box(*corner, *sides, stroke=ink, line_width=line)
 
 
 def _runs(values: NDArray[np.intp]) -> Iterator[tuple[int, int, int]]:

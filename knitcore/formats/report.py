@@ -56,11 +56,14 @@ def design_report(
     if piece.is_rectangle:
         found = predict(piece.chart, material)
         curves, said = _curves(piece.chart, material)
-        shapes = [*_numbers(piece.chart, material, name, found), *_maps(piece, material, 73.0)]
+        shapes = [
+            *_numbers(piece.chart, material, name, found),
+            *_maps(piece, material, style.aspect, 73.0),
+        ]
         shapes += [*_plot(curves, said), *_assumptions(_said(found), 228.0)]
         pages.append(Page(*A4_MM, tuple(shapes)))
     if regions or not piece.is_rectangle:
-        pages.append(Page(*A4_MM, tuple(_regions(piece, material, name, regions))))
+        pages.append(Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions))))
     return to_pdf([*pages, *chart_pages(piece, style)], name)
 
 
@@ -74,7 +77,7 @@ def _said(found: Prediction) -> list[str]:
 
 
 def _regions(
-    piece: Piece, material: Material, name: str, regions: Sequence[DesignRegion]
+    piece: Piece, material: Material, name: str, aspect: float, regions: Sequence[DesignRegion]
 ) -> Iterator[Shape]:
     """Regions with their means, the maps of all stitches, and the extensibility field."""
     yield Label(MARGIN_MM, 16.0, f"{name}: regions", 6.0)
@@ -94,13 +97,14 @@ def _regions(
         for x, text in zip(places, (*cells, _factor(*part.modulus_wale), sides), strict=True):
             yield Label(x, y, text, 3.0)
         y += 5.0
-    yield from _maps(piece, material, y + 5.0)
+    yield from _maps(piece, material, aspect, y + 5.0)
     top = y + 86.0
     yield Label(MARGIN_MM, top - 2.0, "extensibility, 1/Y course wide and 1/Y wale high", 3.0)
     yield from field_shapes(
         piece,
         regions,
         material,
+        aspect=aspect,
         left=MARGIN_MM,
         top=top,
         width=A4_MM[0] - 2 * MARGIN_MM,
@@ -179,25 +183,26 @@ def _size(value: float | None) -> str:
     return "not certified" if value is None else f"{value:.2f}"
 
 
-def _maps(piece: Piece, material: Material, top: float) -> Iterator[Shape]:
+def _maps(piece: Piece, material: Material, aspect: float, top: float) -> Iterator[Shape]:
     """Local moduli as two maps with one logarithmic scale."""
     chart, stitch = piece.chart, piece.shaped.stitch
     local = local_moduli(piece.shaped.continued(), material)
     logs = {d: np.log(local.table.modulus_n_per_mm(d)[local.codes]) for d in Direction}
     low = float(min(m[stitch].min() for m in logs.values()))
     high = max(float(max(m[stitch].max() for m in logs.values())), low + 1e-9)
-    cell = min(_MAP_MM[0] / chart.columns, _MAP_MM[1] / chart.rows)
+    cell = min(_MAP_MM[0] / chart.columns, _MAP_MM[1] / (chart.rows * aspect))
+    high_mm = cell * aspect
     for direction, left in zip(Direction, (MARGIN_MM, 108.0), strict=True):
         yield Label(left, top, f"local modulus along the {direction}, N/mm", 3.0)
         level = ((logs[direction] - low) / (high - low) * (_LEVELS - 1)).round().astype(int)
         level[~stitch] = _NO_STITCH
         for row in range(chart.rows):
-            y = top + 2.5 + cell * (chart.rows - 1 - row)
+            y = top + 2.5 + high_mm * (chart.rows - 1 - row)
             for start, stop in _runs(level[row]):
                 if level[row, start] != _NO_STITCH:
                     width = cell * (stop - start)
                     fill = _colour(int(level[row, start]))
-                    yield Box(left + cell * start, y, width, cell, fill=fill)
+                    yield Box(left + cell * start, y, width, high_mm, fill=fill)
     for step in range(_LEVELS):
         yield Box(MARGIN_MM + 2.0 * step, top + 68.0, 2.0, 3.0, fill=_colour(step))
     yield Label(MARGIN_MM, top + 75.0, f"{np.exp(low):.3g}", 2.8)

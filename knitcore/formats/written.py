@@ -246,8 +246,8 @@ def _longest_repeat(purls: tuple[bool, ...]) -> tuple[int, int, int]:
             times = (int(runs[start]) + period) // period
             if times < LATER_USE:
                 continue
-            unit = purls[start : start + period]
-            gain = (times - 1) * len(_tokens(unit)) - 1
+            unit, written = purls[start : start + period], purls[start : start + period * times]
+            gain = len(_tokens(written)) - len(_tokens(unit)) - 1
             if gain > saved:
                 best, saved = (start, period, times), gain
     return best

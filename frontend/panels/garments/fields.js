@@ -54,10 +54,10 @@ export class LengthField {
  * @param {(value: string) => void} changed
  */
 export function choice(name, label, choices, chosen, changed) {
-  return h("fieldset", { class: "choice" },
+  return h("fieldset", { class: "planner-choice" },
     h("legend", { class: "visually-hidden" }, label),
     ...choices.map(([value, words]) =>
-      h("label", { class: "choice-item" },
+      h("label", { class: "planner-choice-item" },
         h("input", { type: "radio", name, value, checked: value === chosen, onchange: () => changed(value) }),
         h("span", {}, words))));
 }

@@ -56,8 +56,7 @@ export function create(studio, { keeper }) {
   const targetRow = labelled("Wanted pressure, mmHg", target);
   const fit = choice("planner-fit", "How tight", [["ease", "by ease"], ["pressure", "by pressure"]], "ease", (value) => {
     byPressure = value === "pressure";
-    easeRow.hidden = byPressure && template.id !== "glove";
-    targetRow.hidden = !byPressure;
+    showFit();
     changed();
   });
   const yarn = h("select", { class: "text-field", id: "planner-material", onchange: changed });
@@ -127,9 +126,14 @@ export function create(studio, { keeper }) {
       h("section", { class: "planner-result", "aria-label": "The garment" }, h("div", { class: "planner-picture" }, canvas), status, result)),
     h("div", { class: "dialog-buttons" }, make),
   );
-  targetRow.hidden = true;
+  /** A glove's ease is that of its fingers; the pressure is told for its wrist. */
+  function showFit() {
+    easeRow.hidden = byPressure && template.id !== "glove";
+    targetRow.hidden = !byPressure;
+  }
 
   function showTemplate() {
+    showFit();
     about.textContent = template.note;
     ease.value = String(Math.round(template.ease * 100));
     const chosen = yarn.value;

@@ -15,20 +15,41 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
-from knitcore.fabric import Direction
+from knitcore.fabric import Direction, Fabric
 from knitcore.formats import report
-from knitcore.formats.chart_drawing import ChartStyle, chart_pdf, chart_svg
-from knitcore.formats.chart_files import read_chart
+from knitcore.formats.chart_drawing import ChartStyle, chart_pdf, chart_svg, tinted
+from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.drawing import Box, Label, Page
-from knitcore.formats.export import SUFFIXES, ExportKind, export_chart
+from knitcore.formats.export import (
+    COLOURLESS_KINDS,
+    RECTANGULAR_KINDS,
+    SUFFIXES,
+    ExportKind,
+    ExportOptions,
+    export_chart,
+)
+from knitcore.formats.extensibility_drawing import region_fields
+from knitcore.formats.garment_design import design_of_plan
+from knitcore.formats.layout import DesignLayout, DesignRegion, layout_of
 from knitcore.formats.yarn_mesh import MAXIMUM_STITCHES, yarn_mesh, yarn_radius_mm
+from knitcore.garment.glove import Hand, glove
+from knitcore.garment.piece import Piece
 from knitcore.materials import material
 from knitcore.mechanics.local import local_moduli
 from knitcore.worked import Construction
 from tests.knitcore.charts import stitch_charts
+from tests.knitcore.pieces import pieces
 
 ACRYLIC = material("acrylic")
-CHEAP = (ExportKind.TEXT, ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN)
+CHEAP = (
+    ExportKind.TEXT,
+    ExportKind.PNG,
+    ExportKind.WRITTEN,
+    ExportKind.KNITSPEAK,
+    ExportKind.DESIGN,
+)
+WHOLE = (ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN)
+"""Formats that hold outlines and yarns, and are cheap to read back."""
 
 
 def round_trip(chart: StitchChart, kind: ExportKind, folder: Path) -> StitchChart:
@@ -54,6 +75,87 @@ def test_round_trips_of_large_charts(
 ) -> None:
     chart = StitchChart(np.random.default_rng(seed).random((rows, columns)) < 0.5)
     assert round_trip(chart, kind, tmp_path) == chart
+
+
+@pytest.mark.parametrize("kind", WHOLE)
+@settings(
+    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(piece=pieces())
+def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
+    options = ExportOptions(layout=layout_of(piece))
+    file = tmp_path / f"piece{SUFFIXES[kind][0]}"
+    file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
+    found = read_piece(file)
+    assert found == (piece.cropped() if kind is ExportKind.WRITTEN else piece)
+
+
+@pytest.mark.parametrize("kind", WHOLE)
+@settings(
+    max_examples=1, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(piece=pieces(most_rows=200, most_columns=200))
+def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
+    options = ExportOptions(layout=layout_of(piece))
+    file = tmp_path / f"piece{SUFFIXES[kind][0]}"
+    file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
+    assert read_piece(file).cropped() == piece.cropped()
+
+
+def test_what_a_format_cannot_hold_is_told() -> None:
+    chart = StitchChart.of_fabric("seed", rows=3, columns=4)
+    shaped = ExportOptions(layout=DesignLayout(outline="xxx.\nxxxx\nxxxx"))
+    for kind in RECTANGULAR_KINDS:
+        with pytest.raises(InputError, match="cannot hold a chart with an outline"):
+            export_chart(chart, kind, ACRYLIC, shaped)
+    region = DesignRegion(id="a", name="A", colour="#112233", yarn="navy", runs=[(0, 0, 2)])
+    coloured = ExportOptions(layout=DesignLayout(regions=[region]))
+    for kind in COLOURLESS_KINDS:
+        assert "no colours" in export_chart(chart, kind, ACRYLIC, coloured).notes[-1]
+    apart = ExportOptions(layout=DesignLayout(outline="xx..\n..xx\nxxxx"))
+    with pytest.raises(InputError, match="the outline falls apart"):
+        export_chart(chart, ExportKind.SVG, ACRYLIC, apart)
+
+
+def test_a_coloured_chart_has_its_yarns_in_the_key_with_length_and_mass() -> None:
+    chart = StitchChart.of_fabric("stockinette", rows=4, columns=10)
+    region = DesignRegion(
+        id="a", name="A", colour="#1f3b70", yarn="navy", runs=[(r, 0, 5) for r in range(4)]
+    )
+    options = ExportOptions(
+        note="Mind the edge.", layout=DesignLayout(regions=[region]), linear_density_tex=500
+    )
+    drawing = export_chart(chart, ExportKind.SVG, ACRYLIC, options).content.decode()
+    metres = 20 * (ACRYLIC.record(Fabric.STOCKINETTE).loop_length_mm or 0) / 1000
+    assert f"B: navy (#1f3b70), 20 sts, {metres:.1f} m, {metres / 2:.1f} g" in drawing
+    assert "A: main yarn" in drawing
+    assert "Mind the edge." in drawing
+    assert drawing.count(f'fill="{tinted("#1f3b70")}"') == 4 + 1  # a stretch a row, and the key
+
+
+def test_values_are_those_of_the_stitches_inside() -> None:
+    chart = StitchChart.of_fabric("rib", rows=4, columns=6)
+    options = ExportOptions(layout=DesignLayout(outline="xxxx..\n" * 2 + "xxxxxx\n" * 2))
+    lines = export_chart(chart, ExportKind.CSV, ACRYLIC, options).content.decode().splitlines()
+    assert len(lines) == 1 + 2 * 4 + 2 * 6
+    moduli = {line.split(",")[3] for line in lines[1:]}
+    assert len(moduli) == 1  # the outline's edge does not change the fabric
+
+
+def test_the_report_of_a_piece_speaks_by_regions() -> None:
+    plan = glove(Hand(), material("glove-wool:glove"))
+    document = design_of_plan(plan, "glove-wool:glove")
+    options = ExportOptions(name="Glove", layout=document)
+    content = export_chart(
+        document.to_chart(), ExportKind.REPORT, material("glove-wool:glove"), options
+    ).content
+    assert content.startswith(b"%PDF")
+    fields = region_fields(document.to_piece(), document.regions, material("glove-wool:glove"))
+    support = next(field for field in fields if field.name == "wrist support")
+    value, factor = support.modulus_wale
+    assert value == pytest.approx(1.05, abs=0.03)  # table 20, stockinette on 2.0 mm, Y_y
+    assert factor > 1
+    assert sum(field.stitches for field in fields) == plan.shaped.stitches
 
 
 def test_knitout_is_read_from_a_file(tmp_path: Path) -> None:
