@@ -17,7 +17,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
-from knitcore.swatch import EnergyModel, StripTest, strip_test
+from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
 
 Array = NDArray[np.float32]
 
@@ -38,6 +38,9 @@ class StretchOptions(BaseModel):
         gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
     )
     steps: int = Field(12, ge=1, le=1000)
+    clamps: Clamps = Field(
+        Clamps.CLAMPED, description="Ends gripped, or free to slide along the clamps."
+    )
     model: EnergyModel = EnergyModel.FULL
     shear_modulus_n_per_mm: float | None = Field(
         None, ge=1e-4, le=10, allow_inf_nan=False, description="Replaces the assumed C_xyxy."
@@ -179,6 +182,7 @@ def stretch_chart(
         options.direction,
         options.strain,
         steps=options.steps,
+        clamps=options.clamps,
         model=options.model,
         shear_modulus=options.shear_modulus_n_per_mm,
         width_mm=options.width_mm,

@@ -14,7 +14,7 @@ FIELD_OF_VIEW = 0.5
 """Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""
 ASPECT = 1.25
 """Width over height of the view that a fabric must fit in; panels are rarely narrower."""
-MARGIN = 1.06
+MARGIN = 1.14
 
 
 class Side(StrEnum):
@@ -31,7 +31,7 @@ _TOWARDS: dict[Side, tuple[tuple[float, float, float], tuple[float, float, float
     Side.FACE: ((0.0, -0.06, 1.0), (0.0, 1.0, 0.0)),
     Side.BACK: ((0.0, -0.06, -1.0), (0.0, 1.0, 0.0)),
     Side.EDGE: ((0.0, -1.0, 0.16), (0.0, 0.0, 1.0)),
-    Side.ANGLE: ((0.45, -0.75, 0.75), (0.0, 1.0, 0.0)),
+    Side.ANGLE: ((0.3, -0.65, 0.9), (0.0, 1.0, 0.0)),
 }
 
 

@@ -138,4 +138,5 @@ def new_view() -> View:
         "/light/sky", sky_color=(255, 252, 246), ground_color=(120, 112, 108), intensity=1.35
     )
     scene.add_light_directional("/light/key", intensity=2.6, position=(-70.0, 100.0, 90.0))
+    scene.add_light_directional("/light/back", intensity=2.6, position=(70.0, 100.0, -90.0))
     return View(server, SceneWriter(server))

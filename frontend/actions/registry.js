@@ -7,8 +7,10 @@
 import { TOOLS } from "../tools/registry.js";
 import { redo, undo } from "./history.js";
 import { DESIGNS } from "./designs.js";
+import { INVERSE } from "./inverse.js";
 import { LOOK } from "./look.js";
 import { SELECTION } from "./selection.js";
+import { STRETCH } from "./stretch.js";
 import { TRANSFORM } from "./transform.js";
 
 /** @type {Action[]} */
@@ -22,7 +24,7 @@ const CHOOSE = TOOLS.map((tool) => ({
 }));
 
 /** @type {Action[]} */
-export const ACTIONS = [...CHOOSE, undo, redo, ...SELECTION, ...TRANSFORM, ...DESIGNS, ...LOOK];
+export const ACTIONS = [...CHOOSE, undo, redo, ...SELECTION, ...TRANSFORM, ...DESIGNS, ...INVERSE, ...LOOK, ...STRETCH];
 
 /** @param {string} id */
 export function action(id) {

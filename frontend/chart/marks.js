@@ -1,12 +1,11 @@
 /**
- * What is drawn over the cells' colours: symbols, the grid, segments, extensibility rectangles. All
+ * What is drawn over the cells' colours: symbols, the grid, segments. All
  * of it in face coordinates: the view exchanges left and right for the back.
  *
  * @import {Box, Grid} from "../core/grid.js"
  * @import {Viewport} from "./viewport.js"
  * @import {ColourLayer} from "./layer.js"
  * @import {Palette} from "./palette.js"
- * @import {StitchKind} from "../types.js"
  */
 
 import { lightness } from "./palette.js";
@@ -145,54 +144,4 @@ export function drawSegments(context, view, grid, box, palette) {
   context.fill(even);
   context.fillStyle = palette.odd;
   context.fill(odd);
-}
-
-/**
- * Extensibility rectangles: as wide as the stitch yields along the course, as high as along the
- * wale, all on one scale. Stitches are averaged in blocks where single ones would be too small.
- *
- * @param {CanvasRenderingContext2D} context
- * @param {Viewport} view
- * @param {Grid} grid
- * @param {Uint8Array} codes
- * @param {Box} box
- * @param {StitchKind[]} kinds by code
- */
-export function drawRectangles(context, view, grid, codes, box, kinds) {
-  const { cellWidth: w, cellHeight: h } = view;
-  const block = Math.max(1, Math.ceil(12 / Math.min(w, h)));
-  const largest = Math.max(
-    ...kinds.flatMap((k) => [k.extensibility_course_mm_per_n, k.extensibility_wale_mm_per_n]),
-  );
-  // The square root keeps stiff fabrics visible beside ribs that give fifty times as much.
-  const room = 0.94 * block * Math.min(w, h);
-  /** @param {number} extensibility */
-  const side = (extensibility) => Math.sqrt(extensibility / largest) * room;
-  const path = new Path2D();
-  for (let row = box.row0 - (box.row0 % block); row < box.row1; row += block) {
-    const rowEnd = Math.min(row + block, grid.rows);
-    for (let column = box.column0 - (box.column0 % block); column < box.column1; column += block) {
-      const columnEnd = Math.min(column + block, grid.columns);
-      let course = 0;
-      let wale = 0;
-      for (let r = row; r < rowEnd; r++) {
-        for (let c = column; c < columnEnd; c++) {
-          const kind = kinds[codes[r * grid.columns + c]];
-          course += kind.extensibility_course_mm_per_n;
-          wale += kind.extensibility_wale_mm_per_n;
-        }
-      }
-      const count = (rowEnd - row) * (columnEnd - column);
-      const wide = side(course / count);
-      const high = side(wale / count);
-      const x = view.x + ((column + columnEnd) / 2) * w;
-      const y = view.y + (grid.rows - (row + rowEnd) / 2) * h;
-      path.rect(x - wide / 2, y - high / 2, wide, high);
-    }
-  }
-  context.fillStyle = "rgb(255 252 246 / 0.5)";
-  context.fill(path);
-  context.lineWidth = Math.max(1, Math.min(1.6, w / 14));
-  context.strokeStyle = "rgb(24 18 14 / 0.85)";
-  context.stroke(path);
 }

@@ -10,10 +10,11 @@
 
 import { Signal } from "../core/signal.js";
 import { ColourLayer } from "./layer.js";
-import { drawGrid, drawRectangles, drawSegments, drawSymbols } from "./marks.js";
+import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
 import { OVERLAYS } from "./overlays.js";
 import { pixel, readPalette } from "./palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
+import { drawRectangles } from "./rectangles.js";
 import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
 
@@ -60,12 +61,15 @@ export class ChartView {
         if (this.viewport.fitted) this.viewport.fit(studio.document.grid);
         this.recolour();
       } else this.#mark(box);
+      // A rectangle of several stitches reaches beyond those that changed.
+      if (studio.rectangles.value && studio.seeing.groups.value !== "stitch") this.redraw();
     });
     for (const signal of [studio.overlay, studio.stretch, studio.step, studio.material]) {
       signal.listen(() => this.recolour());
     }
     const { look, back, round } = studio.editing;
-    for (const signal of [studio.rectangles, round]) signal.listen(() => this.redraw());
+    const { groups, block } = studio.seeing;
+    for (const signal of [studio.rectangles, groups, block, round]) signal.listen(() => this.redraw());
     look.listen(() => this.recolour());
     back.watch((turned) => {
       this.viewport.mirrored = turned;
@@ -246,9 +250,8 @@ export class ChartView {
       const style = look === "loops" ? "loops" : "symbols";
       drawSymbols(context, viewport, grid, this.#layer, around, style, viewport.mirrored);
     }
-    const kinds = studio.kinds();
-    if (studio.rectangles.value && kinds.length) {
-      drawRectangles(context, viewport, grid, codes, around, kinds);
+    if (studio.rectangles.value && studio.kinds().length) {
+      drawRectangles(context, viewport, studio, around);
     }
     const chart = studio.document;
     if (chart.shaped) drawAbsent(context, viewport, chart, around, palette);

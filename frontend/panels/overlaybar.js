@@ -8,9 +8,12 @@
  */
 
 import { OVERLAYS } from "../chart/overlays.js";
+import { groupAt, meanExtensibility } from "../chart/rectangles.js";
 import { percent, figure, range } from "../core/format.js";
 import { h } from "../dom.js";
 
+/** Sides of the blocks that rectangles may stand for. */
+const BLOCKS = [2, 4, 8, 16];
 const IDLE = "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
 
 /**
@@ -47,6 +50,25 @@ export function overlaybar(host, studio, view) {
     h("span", { class: "chip-rectangle", "aria-hidden": "true" }),
     "Rectangles",
   );
+  const grouping = h(
+    "select",
+    {
+      class: "chip-select",
+      id: "rectangle-groups",
+      title: "What one rectangle stands for",
+      "aria-label": "What one rectangle stands for",
+      onchange: () => {
+        const [groups, block] = grouping.value.split("-");
+        if (block) studio.seeing.block.value = Number(block);
+        studio.seeing.groups.value = /** @type {import("../chart/seeing.js").Groups} */ (groups);
+      },
+    },
+    h("option", { value: "stitch" }, "each stitch"),
+    ...BLOCKS.map((n) => h("option", { value: `block-${n}` }, `${n} × ${n} stitches`)),
+    h("option", { value: "region" }, "each region"),
+  );
+  const { groups, block } = studio.seeing;
+  grouping.value = groups.value === "block" ? `block-${block.value}` : groups.value;
   const legend = h("div", { class: "legend" });
   const readout = h("output", { class: "readout figures", id: "readout" });
 
@@ -69,10 +91,13 @@ export function overlaybar(host, studio, view) {
           })),
     );
     if (studio.rectangles.value) {
-      legend.append(h("span", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), "give, √ scale"));
+      legend.append(
+        h("label", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), "give (√ scale) of", grouping),
+      );
     }
   };
   for (const signal of [studio.overlay, studio.material, studio.rectangles]) signal.listen(show);
+  for (const signal of [studio.rectangles, groups, block]) signal.listen(() => read());
   studio.stretch.watch(show);
   studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
 
@@ -127,6 +152,10 @@ function describe(studio, cell) {
   const parts = [
     `Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`,
   ];
+  if (studio.rectangles.value && studio.kinds().length) {
+    parts.push(give(studio, row, column));
+    return parts.join(" · ");
+  }
   const kind = studio.kinds()[codes[i]];
   const strain = studio.field("strain")?.[i];
   const used = studio.field("utilisation")?.[i];
@@ -142,4 +171,32 @@ function describe(studio, cell) {
     parts.push(`${value("course")}, ${value("wale")} N/mm`);
   }
   return parts.join(" · ");
+}
+
+/**
+ * What the rectangle at a stitch says.
+ *
+ * @param {Studio} studio
+ * @param {number} row
+ * @param {number} column
+ */
+function give(studio, row, column) {
+  const group = groupAt(studio, row, column);
+  if (!group) return "in no region";
+  const kinds = studio.kinds();
+  const { codes } = studio.document;
+  const { course, wale } = meanExtensibility(kinds, codes, group.cells, group.count);
+  const interval = (/** @type {"course" | "wale"} */ direction) => {
+    let low = 0;
+    let high = 0;
+    for (const i of group.cells) {
+      const [least, most] = kinds[codes[i]][`modulus_${direction}_interval`] ?? [NaN, NaN];
+      low += 1 / most;
+      high += 1 / least;
+    }
+    const text = range([low / group.count, high / group.count]);
+    return Number.isFinite(low) && text ? ` (${text})` : "";
+  };
+  const of = group.count > 1 ? `${group.count} stitches give` : "gives";
+  return `${of} course ${figure(course)}${interval("course")}, wale ${figure(wale)}${interval("wale")} mm/N`;
 }

@@ -66,10 +66,17 @@ export function stretchdrawer(host, studio, stretcher) {
       amount.focus();
       return;
     }
-    void stretcher.run(direction, strain);
+    const shear = Number(options.shear.value);
+    void stretcher.run(direction, strain, {
+      clamps: /** @type {"clamped" | "sliding"} */ (options.clamps.value),
+      model: /** @type {"full" | "published"} */ (options.model.value),
+      shear_modulus_n_per_mm: shear > 0 ? shear : null,
+    });
   };
   const run = h("button", { class: "button primary", type: "button", id: "stretch-run", onclick: () => (studio.stretch.value.busy ? stretcher.cancel() : start()) });
-  const progress = h("div", { class: "progress", hidden: true }, h("span"));
+  const done = h("span");
+  const progress = h("div", { class: "progress", role: "progressbar", "aria-label": "Stretch test", hidden: true }, done);
+  const options = stretchOptions();
   const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
 
   const play = h("button", {
@@ -99,6 +106,7 @@ export function stretchdrawer(host, studio, stretcher) {
       h("h2", {}, "Stretch test"),
       h("div", { class: "segmented", role: "radiogroup", "aria-label": "Direction of the pull" }, choices.course, choices.wale),
       h("label", { class: "amount" }, h("span", { class: "muted" }, "by"), amount, h("span", { class: "muted" }, "%")),
+      options.element,
       run),
     progress,
     note,
@@ -123,10 +131,11 @@ export function stretchdrawer(host, studio, stretcher) {
   const show = () => {
     const { value, busy, stale, problem } = studio.stretch.value;
     run.replaceChildren(...(busy ? [icon("stop"), "Cancel"] : [icon(direction), "Stretch"]));
+    run.title = busy ? "Give the test up (J)" : "Pull the chart between two clamps (J)";
     run.classList.toggle("primary", !busy);
     progress.hidden = !busy;
     const current = value !== null && !stale;
-    player.classList.toggle("empty", !current);
+    player.classList.toggle("idle", !current);
     slider.disabled = play.disabled = !current;
     if (value) {
       slider.max = String(value.strain.length - 1);
@@ -136,7 +145,7 @@ export function stretchdrawer(host, studio, stretcher) {
     note.replaceChildren();
     if (problem) {
       note.append(icon("warning"), h("span", {}, h("strong", {}, problem.title), `: ${inPercent(problem)}`));
-    } else if (busy) note.append("Pulling the cloth between two clamps …");
+    } else if (busy) note.append(waiting() ? "Waiting for its turn …" : "Pulling the cloth between two clamps …");
     else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
     else if (value) {
       note.append(
@@ -147,14 +156,58 @@ export function stretchdrawer(host, studio, stretcher) {
     } else note.append("Pull the chart along its rows or columns and see where it gives.");
     host.classList.toggle("busy", busy);
   };
+  const waiting = () => stretcher.progress.value === null;
   studio.stretch.watch(show);
   studio.step.listen(showStep);
+  stretcher.progress.watch((share) => {
+    progress.classList.toggle("open-ended", !share);
+    done.style.width = share ? `${Math.round(100 * share)}%` : "";
+    if (share) progress.setAttribute("aria-valuenow", String(Math.round(100 * share)));
+    else progress.removeAttribute("aria-valuenow");
+    if (studio.stretch.value.busy) show();
+  });
   stretcher.onPlay(() => {
     play.replaceChildren(icon(stretcher.playing ? "pause" : "play"));
     play.setAttribute("aria-label", stretcher.playing ? "Pause" : "Play the stretch");
-    play.title = stretcher.playing ? "Pause" : "Play the stretch";
+    play.title = stretcher.playing ? "Pause (Shift+J)" : "Play the stretch (Shift+J)";
   });
   stretcher.pause();
+}
+
+/** How the ends are held and what is computed; the usual choice is made. */
+function stretchOptions() {
+  /** @param {string} id @param {[string, string][]} choices */
+  const select = (id, choices) =>
+    h("select", { class: "select", id }, ...choices.map(([value, text]) => h("option", { value }, text)));
+  const clamps = select("stretch-clamps", [
+    ["clamped", "gripped"],
+    ["sliding", "free to slide sideways"],
+  ]);
+  const model = select("stretch-model", [
+    ["full", "with lock-up"],
+    ["published", "as published, without lock-up"],
+  ]);
+  const shear = h("input", { type: "number", class: "number figures", id: "stretch-shear", min: "0.0001", max: "10", step: "0.001", placeholder: "assumed" });
+  /** @param {string} text @param {HTMLElement} field */
+  const row = (text, field, unit = "") => h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
+  const panel = h("div", { class: "stretch-options", id: "stretch-options", popover: "auto" },
+    row("Ends", clamps),
+    row("Law", model),
+    row("Shear modulus", shear, "N/mm"),
+    h("p", { class: "muted" }, "Nobody measured the shear modulus; where none is given, the paper's assumption is taken."));
+  const button = h("button", {
+    class: "button quiet",
+    type: "button",
+    id: "stretch-more",
+    title: "Ends, law and shear modulus",
+    popoverTargetElement: panel,
+    onclick: () => {
+      const { left, top } = button.getBoundingClientRect();
+      panel.style.left = `${left}px`;
+      panel.style.bottom = `${innerHeight - top + 6}px`;
+    },
+  }, "Options", icon("down"));
+  return { clamps, model, shear, element: h("div", {}, button, panel) };
 }
 
 /**

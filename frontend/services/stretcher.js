@@ -2,11 +2,15 @@
  * Runs stretch tests and plays them.
  *
  * @import {Studio} from "../studio.js"
- * @import {Direction} from "../types.js"
+ * @import {Direction, Stretch, StretchRequest} from "../types.js"
+ *
+ * @typedef {Partial<Pick<StretchRequest, "clamps" | "model" | "shear_modulus_n_per_mm">>} StretchOptions
  */
 
-import { ApiError, api, isAbort } from "../api.js";
+import { ApiError, isAbort } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
+import { Signal } from "../core/signal.js";
+import { runJob } from "./jobs.js";
 
 const STEPS = 20;
 const FRAME_MS = 140;
@@ -15,6 +19,8 @@ export class Stretcher {
   /** @type {AbortController | null} */ #running = null;
   /** @type {ReturnType<typeof setInterval> | undefined} */ #timer;
   /** @type {Set<() => void>} */ #played = new Set();
+  /** Share of the test that is done; null while it waits for its turn. */
+  progress = new Signal(/** @type {number | null} */ (null));
 
   /** @param {Studio} studio */
   constructor(studio) {
@@ -43,18 +49,27 @@ export class Stretcher {
   /**
    * @param {Direction} direction
    * @param {number} strain
+   * @param {StretchOptions} [options]
    */
-  async run(direction, strain) {
+  async run(direction, strain, options = {}) {
     const { studio } = this;
     this.cancel();
     this.pause();
     const controller = new AbortController();
     this.#running = controller;
+    this.progress.value = null;
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
-      const value = await api.stretch(
-        { ...studio.request, direction, strain, steps: STEPS },
-        controller.signal,
+      /** @type {Stretch} */
+      const value = await runJob(
+        "stretch",
+        { ...studio.request, direction, strain, steps: STEPS, ...options },
+        {
+          signal: controller.signal,
+          onProgress: ({ state, progress }) => {
+            this.progress.value = state === "waiting" ? null : progress;
+          },
+        },
       );
       if (controller.signal.aborted) return;
       studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };

@@ -1,0 +1,139 @@
+/**
+ * Extensibility rectangles: as wide as the fabric yields along the course, as high as along the wale
+ * (its principal directions), all on one scale. For single stitches, blocks of them, or regions.
+ *
+ * @import {Box} from "../core/grid.js"
+ * @import {Studio} from "../studio.js"
+ * @import {StitchKind} from "../types.js"
+ * @import {Viewport} from "./viewport.js"
+ *
+ * @typedef {{box: Box, cells: Iterable<number>, count: number}} Group
+ */
+
+/** Smaller ones cannot be read, so stitches are averaged in blocks of this many pixels. */
+const SMALLEST = 12;
+/** A region's rectangle is never larger than this many stitches. */
+const LARGEST = 12;
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} viewport
+ * @param {Studio} studio
+ * @param {Box} box stitches to draw
+ */
+export function drawRectangles(context, viewport, studio, box) {
+  const kinds = studio.kinds();
+  const { grid, codes } = studio.document;
+  const { cellWidth: w, cellHeight: h } = viewport;
+  const largest = Math.max(...kinds.flatMap((k) => [k.extensibility_course_mm_per_n, k.extensibility_wale_mm_per_n]));
+  const path = new Path2D();
+  for (const { box: place, cells, count } of groups(studio, box, Math.min(w, h))) {
+    const { course, wale } = meanExtensibility(kinds, codes, cells, count);
+    const room = 0.94 * Math.min(Math.sqrt(count), LARGEST) * Math.min(w, h);
+    // The square root keeps stiff fabrics visible beside ribs that give fifty times as much.
+    const wide = Math.sqrt(course / largest) * room;
+    const high = Math.sqrt(wale / largest) * room;
+    const { x, y, width, height } = viewport.place(place, grid);
+    path.rect(x + (width - wide) / 2, y + (height - high) / 2, wide, high);
+  }
+  context.fillStyle = "rgb(255 252 246 / 0.5)";
+  context.fill(path);
+  context.lineWidth = Math.max(1, Math.min(1.6, w / 14));
+  context.strokeStyle = "rgb(24 18 14 / 0.85)";
+  context.stroke(path);
+}
+
+/**
+ * The group of stitches that one rectangle stands for, at a stitch; null where there is none.
+ *
+ * @param {Studio} studio
+ * @param {number} row
+ * @param {number} column
+ * @returns {Group | null}
+ */
+export function groupAt(studio, row, column) {
+  const { document: chart, seeing } = studio;
+  if (seeing.groups.value === "region") {
+    const region = chart.regionAt(chart.grid.index(row, column));
+    return region ? regionGroup(studio, region) : null;
+  }
+  const size = seeing.groups.value === "block" ? seeing.block.value : 1;
+  return blockGroup(studio, row - (row % size), column - (column % size), size);
+}
+
+/**
+ * @param {StitchKind[]} kinds by code
+ * @param {Uint8Array} codes
+ * @param {Iterable<number>} cells
+ * @param {number} count
+ */
+export function meanExtensibility(kinds, codes, cells, count) {
+  let course = 0;
+  let wale = 0;
+  for (const i of cells) {
+    const kind = kinds[codes[i]];
+    course += kind.extensibility_course_mm_per_n;
+    wale += kind.extensibility_wale_mm_per_n;
+  }
+  return { course: course / count, wale: wale / count };
+}
+
+/**
+ * @param {Studio} studio
+ * @param {Box} box
+ * @param {number} side of a stitch, in pixels
+ * @returns {Iterable<Group>}
+ */
+function* groups(studio, box, side) {
+  const { document: chart, seeing } = studio;
+  if (seeing.groups.value === "region") {
+    for (const region of chart.regions) {
+      if (!region.hidden && region.count) yield regionGroup(studio, region);
+    }
+    return;
+  }
+  const readable = Math.max(1, Math.ceil(SMALLEST / side));
+  const size = seeing.groups.value === "block" ? Math.max(seeing.block.value, readable) : readable;
+  for (let row = box.row0 - (box.row0 % size); row < box.row1; row += size) {
+    for (let column = box.column0 - (box.column0 % size); column < box.column1; column += size) {
+      yield blockGroup(studio, row, column, size);
+    }
+  }
+}
+
+/**
+ * @param {Studio} studio
+ * @param {number} row0
+ * @param {number} column0
+ * @param {number} size
+ * @returns {Group}
+ */
+function blockGroup({ document: { grid } }, row0, column0, size) {
+  const box = { row0, column0, row1: Math.min(row0 + size, grid.rows), column1: Math.min(column0 + size, grid.columns) };
+  const cells = [];
+  for (let row = row0; row < box.row1; row++) {
+    for (let column = column0; column < box.column1; column++) cells.push(grid.index(row, column));
+  }
+  return { box, cells, count: cells.length };
+}
+
+/**
+ * @param {Studio} studio
+ * @param {import("../core/regions.js").Region} region
+ * @returns {Group}
+ */
+function regionGroup({ document: { grid } }, region) {
+  const cells = [];
+  let row = 0;
+  let column = 0;
+  for (let i = 0; i < region.cells.length; i++) {
+    if (!region.cells[i]) continue;
+    cells.push(i);
+    row += Math.floor(i / grid.columns);
+    column += i % grid.columns;
+  }
+  const count = cells.length;
+  row /= count;
+  column /= count;
+  return { box: { row0: row, column0: column, row1: row + 1, column1: column + 1 }, cells, count };
+}
