@@ -73,7 +73,8 @@ def main() -> None:
         print(f"| {sample.yarn_id} {sample.fabric} | " + " | ".join(cells) + " |", flush=True)
     logs = np.log(ratios)
     print(
-        f"rms factor {np.exp(np.sqrt(np.mean(logs**2))):.2f}, worst {np.exp(np.abs(logs).max()):.2f} "
+        f"rms factor {np.exp(np.sqrt(np.mean(logs**2))):.2f}, "
+        f"worst {np.exp(np.abs(logs).max()):.2f} "
         "(the paper's simulation: 2.16, worst 4.4)"
     )
 
