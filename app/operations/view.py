@@ -97,11 +97,12 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
     """
     chart, material = to_chart(request.chart), find_material(request.material)
     shapes = stitch_shapes(chart, material)
-    placement = at_rest(shapes)
+    placement, room = at_rest(shapes), None
     step = _checked_step(request, stretch, chart)
     if stretch is not None:
         centres = stretch.positions_mm[step].astype(float)
         placement = carried(shapes, centres, flat_lattice(chart, material))
+        room = np.ptp(stretch.positions_mm, axis=(1, 2)).max(axis=0).astype(float)
     colours = stitch_colours(
         request.colour,
         chart,
@@ -118,6 +119,7 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
         colours=colours,
         rectangles_mm=_rectangles(request, chart, material, placement),
         focus=(request.focus.row, request.focus.column) if request.focus else None,
+        room_mm=room,
     )
 
 

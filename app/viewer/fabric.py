@@ -41,6 +41,7 @@ class FabricScene:
     rectangles_mm : (rectangles, 4, 2) corners of the layer of rectangles, or None.
     focus : (row, column) around which a chart that is too large is drawn as yarn; its middle if
         None.
+    room_mm : width and height that the fabric takes at most while it is stretched.
     """
 
     shapes: StitchShapes
@@ -48,6 +49,7 @@ class FabricScene:
     colours: Colours
     rectangles_mm: Array | None = None
     focus: tuple[int, int] | None = None
+    room_mm: Array | None = None
 
     @property
     def middle_mm(self) -> Array:

@@ -22,6 +22,7 @@ RESIZE = 0.06
 """Logarithm of the change of size up to which tubes are scaled instead of drawn anew."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
+PAPER = (255, 252, 246)
 
 
 class SceneWriter:
@@ -40,7 +41,8 @@ class SceneWriter:
         self._handles: dict[int, Any] = {}
         self._members: dict[int, NDArray[np.intp]] = {}
         self._layers: dict[str, Any] = {}
-        self._framed: tuple[int, ...] | None = None
+        self._framed: tuple[float, ...] | None = None
+        self._side = Side.FACE
 
     @property
     def scene(self) -> FabricScene | None:
@@ -60,9 +62,10 @@ class SceneWriter:
                 self._build(part, scene.middle_mm)
             self._draw_rectangles(part, scene.middle_mm)
             self._draw_sheet(None if part is scene else scene)
-            if scene.shapes.index.shape != self._framed:
-                self._framed = scene.shapes.index.shape
-                self.look(Side.FACE)
+            room = _room(scene)
+            if room != self._framed:
+                self._framed = room
+                self.look(self._side)
         return stitches
 
     def mark(self, box: Box | None) -> None:
@@ -91,8 +94,12 @@ class SceneWriter:
     def look(self, side: Side) -> None:
         """Turn everybody's camera to a side."""
         with self._lock:
+            self._side = side
             if self._scene is not None:
-                place_camera(self._server, side, self._scene.extent_mm)
+                room = self._scene.extent_mm
+                if self._scene.room_mm is not None:
+                    room = np.maximum(room, self._scene.room_mm)
+                place_camera(self._server, side, room)
 
     # -- yarn ---------------------------------------------------------------------------------
 
@@ -148,15 +155,28 @@ class SceneWriter:
     def _draw_rectangles(self, scene: FabricScene, middle: Array) -> None:
         if scene.rectangles_mm is None:
             self._put("rectangles", None)
+            self._put("panes", None)
             return
+        corners = _lifted_rectangles(scene, middle)
+        first = 4 * np.arange(len(corners))[:, None]
+        self._put(
+            "panes",
+            self._server.scene.add_mesh_simple(
+                "/panes",
+                vertices=corners.reshape(-1, 3),
+                faces=(first + np.array([0, 1, 2, 0, 2, 3])).reshape(-1, 3).astype(np.uint32),
+                color=PAPER,
+                opacity=0.55,
+                side="double",
+                cast_shadow=False,
+                receive_shadow=False,
+            ),
+        )
+        lines = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 3)
         self._put(
             "rectangles",
             self._server.scene.add_line_segments(
-                "/rectangles",
-                points=_rectangle_lines(scene, middle),
-                colors=INK,
-                thickness=1.5,
-                thickness_units="screen",
+                "/rectangles", points=lines, colors=INK, thickness=1.5, thickness_units="screen"
             ),
         )
 
@@ -190,6 +210,12 @@ class SceneWriter:
             old.remove()
 
 
+def _room(scene: FabricScene) -> tuple[float, ...]:
+    """What the camera is placed for; it stays where people turned it until this changes."""
+    shape = scene.shapes.index.shape
+    return shape if scene.room_mm is None else (*shape, *scene.room_mm.round(1).tolist())
+
+
 def _instances(scene: FabricScene, middle: Array, meshes: StitchMeshes) -> dict[str, Any]:
     """What viser takes of every stitch, in the order of the chart's cells."""
     places, index = scene.placement, scene.shapes.index.ravel()
@@ -208,11 +234,11 @@ def _of(instances: dict[str, Any], stitches: NDArray[np.intp]) -> dict[str, Any]
     return {name: values[stitches] for name, values in instances.items()}
 
 
-def _rectangle_lines(scene: FabricScene, middle: Array) -> NDArray[np.float32]:
+def _lifted_rectangles(scene: FabricScene, middle: Array) -> NDArray[np.float32]:
+    """Corners of the rectangles over the face, (rectangles, 4, 3)."""
     assert scene.rectangles_mm is not None  # noqa: S101 - the caller checked
     corners = scene.rectangles_mm - middle
     highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
     height = highest + 1.3 * scene.shapes.yarn_radius_mm
     lifted = np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)
-    pairs = np.stack([lifted, np.roll(lifted, -1, axis=1)], axis=2)
-    return pairs.reshape(-1, 2, 3).astype(np.float32)
+    return lifted.astype(np.float32)
