@@ -28,11 +28,14 @@ export const refusal = (detail, remedy) => ({
 
 /**
  * @param {ActionContext} context
- * @param {string} text K/P lines or a project file
+ * @param {string} text K/P lines, a project file, written rows, KnitSpeak or knitout
+ * @param {string} [name] of the file
  * @returns {Promise<Problem | null>} what is wrong, or null if the chart is now this one
  */
-export async function importText(context, text) {
+export async function importText(context, text, name = "Pasted.txt") {
   if (/^\s*[{[]/.test(text)) return importProject(context, text);
+  const { isKnitting, importKnitting } = await import("./knitreader.js");
+  if (isKnitting(name, text)) return importKnitting(context, name, text);
   const { studio } = context;
   try {
     const { rows, columns, text: chart } = await api.parse(text);
@@ -91,7 +94,7 @@ export async function importFile(context, file) {
   if (text.includes("\0")) {
     return refusal(`${file.name} is no text file.`, "Use lines of K and P, a PNG, or a project file (.json).");
   }
-  return importText(context, text);
+  return importText(context, text, file.name);
 }
 
 /**

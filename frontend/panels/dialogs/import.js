@@ -35,14 +35,14 @@ export function create(_, context) {
   const file = h("input", {
     type: "file",
     id: "import-file",
-    accept: ".txt,.json,text/plain,application/json,image/*",
+    accept: ".txt,.json,.k,.ks,.knitout,text/plain,application/json,image/*",
     class: "visually-hidden",
     onchange: () => file.files?.[0] && void settle(importFile(context, file.files[0])),
   });
   const element = dialog(
     "import-dialog",
     "Import a chart",
-    h("p", { class: "muted" }, "Lines of K and P (or | and •), the top row first, as seen from the face. A text, a picture or a project file can also be dropped anywhere on the page."),
+    h("p", { class: "muted" }, "Lines of K and P (or | and •), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page."),
     text,
     problem,
     h("div", { class: "dialog-buttons" },

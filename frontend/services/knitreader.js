@@ -1,0 +1,51 @@
+/**
+ * Files that knit: written rows, KnitSpeak and knitout. The service reads them, with their outline
+ * and yarns, and they are opened as a design of their own.
+ *
+ * @import {ActionContext} from "../actions/action.js"
+ * @import {DesignDocument, Problem} from "../types.js"
+ */
+
+import { ApiError, call } from "../api.js";
+import { readDesign } from "../core/design.js";
+
+const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
+
+/**
+ * Whether a text is to be knitted rather than lines of K and P.
+ *
+ * @param {string} name of the file
+ * @param {string} text
+ */
+export const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || text.startsWith(";!knitout") || WRITTEN.test(text);
+
+/**
+ * @param {ActionContext} context
+ * @param {string} name
+ * @param {string} text
+ * @returns {Promise<Problem | null>}
+ */
+export async function importKnitting({ studio, keeper }, name, text) {
+  const bytes = new TextEncoder().encode(text);
+  const content = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  const suffixed = text.startsWith(";!knitout") && !/\.(k|knitout)$/i.test(name) ? `${name}.k` : name;
+  try {
+    /** @type {Pick<DesignDocument, "chart" | "outline" | "regions"> & {rows: number, columns: number}} */
+    const found = await call("/import", { method: "POST", body: { file: { name: suffixed, content } } });
+    const design = readDesign({
+      format: "knitcore-design",
+      version: 2,
+      name: name.replace(/\.\w+$/, "") || "Imported",
+      material: studio.materialId.value,
+      chart: found.chart,
+      outline: found.outline,
+      regions: found.regions,
+    });
+    keeper.openNew(design);
+    studio.tell(`Opened ${found.columns} stitches × ${found.rows} rows from ${name}. The design before it is still among your designs.`);
+    return null;
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    return { ...error.problem, title: "This file cannot be read" };
+  }
+}

@@ -1,0 +1,95 @@
+"""Planning a garment and exporting it, on the page."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from knitcore.formats.chart_files import read_piece
+from knitcore.formats.design import design_from_mapping
+from tests.browser.axe import violations
+
+
+def _plan(page: Page, template: str) -> None:
+    page.keyboard.press("Control+Shift+G")
+    page.locator(f"input[name=planner-template][value={template}]").check(force=True)
+    page.wait_for_function(
+        """() => !document.querySelector('#planner-facts').classList.contains('busy')
+             && !document.querySelector('#planner-make').disabled"""
+    )
+
+
+def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: Path) -> None:
+    page = flat_studio
+    _plan(page, "glove")
+    page.locator("#planner-intarsia").check()
+    facts = page.locator("#planner-facts")
+    expect(facts).to_contain_text("wrist support")
+    expect(facts).to_contain_text("To close: graft")
+    page.locator("input[name=planner-unit][value=in]").check(force=True)
+    expect(page.get_by_label("Thumb: length")).to_have_value("2.17")
+    with page.expect_response("**/garment"):
+        page.get_by_label("Thumb: length").fill("3")
+    expect(page.locator("#planner-make")).to_be_enabled()
+    page.locator("#planner-make").click()
+    expect(page.locator("#planner-dialog")).not_to_be_visible()
+    page.keyboard.press("Control+E")
+    with page.expect_download() as caught:
+        page.locator("#export-make").click()
+    caught.value.save_as(tmp_path / "glove.txt")
+    piece = read_piece(tmp_path / "glove.txt")
+    assert {yarn.name for yarn in piece.yarns} == {"blue", "orange", "green", "purple"}
+    kept = design_from_mapping(
+        {"format": "knitcore-design", "version": 2}
+        | {k: v for k, v in _kept(page).items() if k in ("name", "chart", "outline", "regions")}
+    )
+    assert kept.to_piece() == piece
+    assert {region.name for region in kept.regions} >= {"thumb", "thumb gusset", "fingers"}
+
+
+def test_a_brace_for_a_pressure_says_what_it_presses(flat_studio: Page) -> None:
+    page = flat_studio
+    _plan(page, "wrist-brace")
+    with page.expect_response("**/garment"):
+        page.locator("input[name=planner-fit][value=pressure]").check(force=True)
+    expect(page.locator("#planner-pressure")).to_contain_text("mmHg")
+    page.get_by_label("Around the wrist").fill("-3")
+    expect(page.locator("#planner-dialog .problem")).to_contain_text("wrist_mm")
+    expect(page.locator("#planner-make")).to_be_disabled()
+
+
+def test_knitout_is_checked_before_it_is_given(flat_studio: Page) -> None:
+    page = flat_studio
+    page.keyboard.press("Control+E")
+    page.locator("input[name=export-kind][value=knitout]").check()
+    with page.expect_download() as caught:
+        page.locator("#export-make").click()
+    assert caught.value.suggested_filename.endswith(".k")
+    expect(page.locator("#export-outcome")).to_contain_text("Knitted on a virtual V-bed machine")
+
+
+def test_written_rows_are_opened_as_a_design(flat_studio: Page, tmp_path: Path) -> None:
+    page = flat_studio
+    file = tmp_path / "scarf.txt"
+    file.write_text("Cast on 4 sts. Worked flat.\nRow 1: Knit.\nRow 2: Bind off 2 sts, k2.\n")
+    page.keyboard.press("i")
+    page.locator("#import-file").set_input_files(file)
+    expect(page.locator("#chart-size")).to_contain_text("4 × 2")
+    assert _kept(page)["outline"] == "..xx\nxxxx"
+
+
+def test_both_panels_are_accessible(flat_studio: Page) -> None:
+    page = flat_studio
+    _plan(page, "limb")
+    assert not violations(page)
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+E")
+    assert not violations(page)
+
+
+def _kept(page: Page) -> dict[str, object]:
+    page.wait_for_function("() => !('unsaved' in document.documentElement.dataset)")
+    kept: dict[str, object] = json.loads(page.evaluate("localStorage['knitcore.design']"))
+    return kept
