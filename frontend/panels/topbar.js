@@ -151,14 +151,7 @@ function exportMenu(studio, context) {
     class: "button primary",
   });
   const files = () => import("../services/exporter.js");
-  /** @param {string} id @param {string} content @param {import("../services/exporter.js").Kind} kind */
-  const made = (id, content, kind) => ({
-    id: `export-${id}`,
-    content,
-    perform: () => void files().then(({ exportAs }) => exportAs(studio, kind)),
-  });
   setItems([
-    item(action("exports"), context, "All formats, with options …"),
     item(action("project-file"), context, "Project file (.json)"),
     {
       id: "export-text",
@@ -180,15 +173,7 @@ function exportMenu(studio, context) {
       perform: () => void files().then(({ exportPixels }) => exportPixels(studio)),
     },
     null,
-    made("svg", "Chart to print (.svg)", "svg"),
-    made("pdf", "Chart to print (.pdf)", "pdf"),
-    made("report", "Report with the mechanics (.pdf)", "report"),
-    made("written", "Written rows (.txt)", "written"),
-    made("knitout", "For a knitting machine (knitout, checked)", "knitout"),
-    null,
-    made("glb", "Loops in 3D (.glb)", "glb"),
-    made("vtu", "Mesh for ParaView (.vtu)", "vtu"),
-    made("csv", "Values of every stitch (.csv)", "csv"),
+    item(action("exports"), context, "Written rows, PDF, knitout, 3D …"),
   ]);
   return root;
 }

@@ -1,13 +1,10 @@
 /**
- * The design as a file: the project file from the page itself, everything else from the service.
+ * The design as a file that the page makes by itself.
  *
  * @import {Studio} from "../studio.js"
  */
 
-import { ApiError, call } from "../api.js";
 import { h } from "../dom.js";
-
-/** @typedef {"knitout" | "svg" | "pdf" | "report" | "written" | "glb" | "stl" | "vtu" | "csv"} Kind */
 
 /** @param {Studio} studio */
 export function exportProject(studio) {
@@ -34,25 +31,6 @@ export async function exportPixels(studio) {
   });
   context.putImageData(image, 0, 0);
   download(`${fileName(studio)}.png`, await canvas.convertToBlob({ type: "image/png" }));
-}
-
-/**
- * @param {Studio} studio
- * @param {Kind} to
- */
-export async function exportAs(studio, to) {
-  const { name, chart, material, outline } = studio.toDocument();
-  try {
-    /** @type {{name: string, media_type: string, content: string, notes: string[]}} */
-    const file = await call("/export", { method: "POST", body: { name, chart, material, outline, to } });
-    const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
-    download(file.name, new Blob([bytes], { type: file.media_type }));
-    if (file.notes.length) studio.tell(`${file.name}: ${file.notes.join(" ")}`);
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    if (error.offline) studio.online.value = false;
-    studio.tellProblem({ ...error.problem, title: "This file cannot be made" });
-  }
 }
 
 /** @param {Studio} studio */

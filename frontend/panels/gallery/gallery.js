@@ -84,6 +84,10 @@ export function create(studio, { keeper, open }) {
         const design = fitted.get(id);
         return design ? [card(id, name, note, thumbnail(design), () => begin(design))] : [];
       }),
+      card("measured", "To measure", "A brace, sock, sleeve or glove from your measurements.", icon("yarn"), () => {
+        element.close();
+        open("garments");
+      }),
     );
   };
 
