@@ -1,0 +1,239 @@
+"""Make the pictures of docs/images again: the page and each of its panels, light and dark.
+
+.venv/bin/python scripts/screenshots.py            (needs Chromium and the page's tools for bundling)
+.venv/bin/python scripts/screenshots.py stretch designs     only these
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+from PIL import Image
+from playwright.sync_api import Browser, Page, sync_playwright
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from tests.app.service import Service
+from tests.browser.conftest import CHROMIUM, FLAGS
+
+ROOT = Path(__file__).resolve().parent.parent
+IMAGES = ROOT / "docs" / "images"
+MOST_BYTES = 200_000
+SCREEN = {"width": 1440, "height": 900}
+THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+DRAWN_MS = 9000
+"""How long a machine without a GPU takes to draw the 3D view."""
+
+Scene = Callable[[Page], str | None]
+"""Brings the page into a state and names the part to picture; all of it if None."""
+
+
+def page(page: Page) -> str | None:
+    """The first visit: the example is stretched."""
+    page.wait_for_timeout(DRAWN_MS)
+    return None
+
+
+def fabrics(page: Page) -> str | None:
+    page.click("#overlay-fabrics")
+    page.wait_for_timeout(800)
+    return ".chart-pane"
+
+
+def segments(page: Page) -> str | None:
+    page.click("#overlay-segments")
+    page.wait_for_timeout(800)
+    return ".chart-pane"
+
+
+def stiffness(page: Page) -> str | None:
+    page.click("#overlay-modulus-course")
+    page.click("#overlay-rectangles")
+    page.wait_for_timeout(800)
+    page.evaluate("document.activeElement.blur()")
+    return ".chart-pane"
+
+
+def fabric(page: Page) -> str | None:
+    page.wait_for_timeout(DRAWN_MS)
+    return "#fabric"
+
+
+def inspector(page: Page) -> str | None:
+    page.click("#tab-rigidity")
+    page.wait_for_timeout(1500)
+    return "#inspector"
+
+
+def curve(page: Page) -> str | None:
+    page.click("#tab-curve")
+    page.wait_for_timeout(1500)
+    return "#inspector"
+
+
+def stretch(page: Page) -> str | None:
+    page.locator("#stretch-slider").wait_for()
+    return "#stretch"
+
+
+def opened(action: str, panel: str, settled: str | None = None) -> Scene:
+    """A panel that an action opens."""
+
+    def scene(page: Page) -> str | None:
+        page.keyboard.press("Control+k")
+        page.fill("#command-search", action)
+        page.keyboard.press("Enter")
+        page.locator(panel).wait_for()
+        if settled:
+            page.locator(settled).first.wait_for()
+        page.wait_for_timeout(1200)
+        return panel
+
+    return scene
+
+
+def commands(page: Page) -> str | None:
+    page.keyboard.press("Control+k")
+    page.wait_for_timeout(400)
+    return "#palette-dialog"
+
+
+def designs(page: Page) -> str | None:
+    for name in ("seed", "diamonds", "basket", "glove", "wrist-brace"):
+        page.keyboard.press("Shift+N")
+        page.click(f"#gallery-{name}")
+        page.wait_for_timeout(600)
+        page.keyboard.press("Control+s")  # the versions need it at the service
+        page.locator("#version-keep").click()
+        page.locator("#versions-list .row").wait_for()
+        page.keyboard.press("Escape")
+    page.keyboard.press("Control+o")
+    page.locator("#designs-list .card canvas").nth(4).wait_for()
+    page.wait_for_timeout(600)
+    return "#designs-dialog"
+
+
+def versions(page: Page) -> str | None:
+    page.keyboard.press("Control+s")
+    for name in ("All knit so far", "With a rib cuff", "Softer panel"):
+        page.fill("#version-name", name)
+        page.click("#version-keep")
+        page.locator("#versions-list", has_text=name).wait_for()
+    page.wait_for_timeout(800)
+    return "#versions-dialog"
+
+
+def share(page: Page) -> str | None:
+    page.click("#action-share")
+    page.click("#share-make")
+    page.locator("#share-list .row").wait_for()
+    return "#share-dialog"
+
+
+def tour(page: Page) -> str | None:
+    page.click("#designs-button")
+    page.click("#menu-tour")
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_timeout(500)
+    return None
+
+
+def offline(page: Page) -> str | None:
+    page.route("**/api/**", lambda route: route.abort())
+    page.route("**/healthz", lambda route: route.abort())
+    page.keyboard.press("x")
+    page.locator("#offline").wait_for()
+    page.wait_for_timeout(2500)
+    return None
+
+
+def glove(page: Page) -> str | None:
+    page.keyboard.press("Shift+N")
+    page.click("#gallery-glove")
+    page.click("#overlay-fabrics")
+    page.wait_for_timeout(DRAWN_MS)
+    return None
+
+
+SCENES: dict[str, Scene] = {
+    "page": page,
+    "fabrics": fabrics,
+    "segments": segments,
+    "stiffness": stiffness,
+    "fabric": fabric,
+    "inspector": inspector,
+    "curve": curve,
+    "stretch": stretch,
+    "regions": opened("Regions", "#dock"),
+    "repeats": opened("Linked repeats", "#dock"),
+    "garments": opened("Plan a garment", "#planner-dialog"),
+    "atlas": opened("Atlas of all repeats", "#inverse-dialog"),
+    "exports": opened("Export, all formats", "#export-dialog"),
+    "gallery": opened("New design", "#gallery-dialog", "#gallery-glove canvas"),
+    "resize": opened("Size and new chart", "#resize-dialog"),
+    "import": opened("Import a chart", "#import-dialog"),
+    "help": opened("Keys and tools", "#help-dialog"),
+    "commands": commands,
+    "designs": designs,
+    "versions": versions,
+    "share": share,
+    "tour": tour,
+    "glove": glove,
+    "offline": offline,
+}
+
+
+def visit(browser: Browser, url: str, theme: Literal["light", "dark"]) -> Page:
+    """A first visit, with the example stretched and the offer of a tour declined."""
+    context = browser.new_context(viewport=SCREEN, color_scheme=theme, reduced_motion="reduce")
+    context.set_default_timeout(60_000)
+    page = context.new_page()
+    page.goto(url)
+    page.click(".message-close")
+    page.wait_for_function("() => !document.querySelector('#stretch-slider').disabled")
+    page.wait_for_timeout(1500)
+    return page
+
+
+def keep(name: str, picture: bytes) -> None:
+    """Write a picture with as many colours as fit into its size."""
+    image = Image.open(io.BytesIO(picture)).convert("RGB")
+    file = IMAGES / f"{name}.png"
+    for colours in (256, 160, 96, 64, 32):
+        packed = io.BytesIO()
+        image.quantize(colours, dither=Image.Dither.NONE).save(packed, "PNG", optimize=True)
+        if packed.tell() <= MOST_BYTES:
+            break
+    file.write_bytes(packed.getvalue())
+    print(f"{file.relative_to(ROOT)}  {packed.tell() / 1000:.0f} kB", flush=True)
+
+
+def main(wanted: list[str]) -> None:
+    subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
+    IMAGES.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+        for theme in THEMES:
+            service = Service(Path(folder) / theme)
+            service.folder.mkdir()
+            service.start().close()
+            try:
+                for name in wanted or SCENES:
+                    page = visit(browser, service.url, theme)
+                    part = SCENES[name](page)
+                    picture = page.locator(part).screenshot() if part else page.screenshot()
+                    keep(f"{name}-{theme}", picture)
+                    page.context.close()
+            finally:
+                service.stop()
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
