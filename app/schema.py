@@ -31,10 +31,10 @@ def install_schema(app: FastAPI) -> None:
     def openapi() -> dict[str, Any]:
         if app.openapi_schema is None:
             schema = made()
-            requests, found = _read("requests.json"), _read("answers.json")
+            asked, found = _read("requests.json"), _read("answers.json")
             for name, operation in _operations(schema):
                 _mark_problems(operation["responses"])
-                _show(operation, requests.get(name), found["answers"].get(name))
+                _show(operation, asked.get(name), found["answers"].get(name))
                 for parameter in operation.get("parameters", []):
                     if parameter["in"] == "path":
                         parameter["example"] = found["parameters"].get(parameter["name"])

@@ -43,6 +43,7 @@ def job_requests(folder: Path) -> dict[str, dict[str, Any]]:
             "modulus_course_n_per_mm": target,
             "modulus_wale_n_per_mm": target,
         },
+        "shape": {"material": "acrylic", "strain": 0.2, "across": 6, "width": [0.9] * 8},
         "fit": {"test_course": _upload(course), "test_wale": _upload(wale)},
         "bending": {
             "images": [_upload(photo)],

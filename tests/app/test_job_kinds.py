@@ -47,7 +47,7 @@ def runner(tmp_path: Path, compute: Compute) -> Iterator[JobRunner]:
 
 
 async def _ended(runner: JobRunner, job: str) -> JobStatus:
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(150):
         while not (status := await runner.status("ada", job)).state.is_final:
             await asyncio.sleep(0.02)
     return status
