@@ -42,6 +42,7 @@ def test_export_writes_the_file(kind: ExportKind, tmp_path: Path) -> None:
         ExportKind.PNG,
         ExportKind.TEXT,
         ExportKind.WRITTEN,
+        ExportKind.KNITSPEAK,
         ExportKind.DESIGN,
     ],
 )
@@ -62,6 +63,61 @@ def test_what_was_exported_is_imported(
     assert run("import", str(path)) == told.json()
     if kind is ExportKind.DESIGN:
         assert (told.json()["name"], told.json()["material"]) == ("A/b", "acrylic")
+
+
+SHAPED = {
+    "chart": "KPKK\nPPKP\nKKPP",
+    "outline": "xx..\nxxxx\nxxxx",
+    "regions": [
+        {"id": "a", "name": "Navy", "colour": "#1f3b70", "yarn": "navy", "runs": [[0, 0, 4]]}
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    "kind", [ExportKind.KNITOUT, ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN]
+)
+def test_outlines_and_yarns_go_there_and_back(kind: ExportKind, client: TestClient) -> None:
+    asked = client.post("/api/v1/export", json=SHAPED | {"to": kind, "linear_density_tex": 400})
+    assert asked.status_code == 200, asked.text
+    file = asked.json()
+    assert file["carriers"] == (2 if kind is ExportKind.KNITOUT else None)
+    upload = {"file": {"name": file["name"], "content": file["content"]}}
+    told = client.post("/api/v1/import", json=upload).json()
+    assert told["outline"] == SHAPED["outline"]
+    (region,) = told["regions"]
+    assert (region["yarn"], region["colour"], region["runs"]) == ("navy", "#1f3b70", [[0, 0, 4]])
+    again = client.post("/api/v1/export", json=SHAPED | {k: told[k] for k in SHAPED} | {"to": kind})
+    assert again.status_code == 200
+
+
+def test_the_command_line_keeps_what_a_design_holds(tmp_path: Path) -> None:
+    document = SHAPED | {"format": "knitcore-design", "version": 2, "note": "Mind the edge."}
+    design = tmp_path / "shaped.json"
+    design.write_text(json.dumps(document | {"name": "Shaped", "material": "cotton"}))
+    out = tmp_path / "again.json"
+    run("export", str(design), "--to", "design", "-o", str(out))
+    kept = run("import", str(out))
+    assert (kept["name"], kept["material"], kept["note"]) == ("Shaped", "cotton", "Mind the edge.")
+    assert kept["outline"] == SHAPED["outline"]
+    assert kept["regions"][0]["yarn"] == "navy"
+
+
+def test_what_may_not_be_meant_is_said_on_import(tmp_path: Path) -> None:
+    cover = {"id": "b", "name": "Cover", "colour": "#ffffff", "runs": [[0, 0, 4]]}
+    regions = [*SHAPED["regions"], cover]
+    design = tmp_path / "lost.json"
+    document = SHAPED | {"format": "knitcore-design", "version": 2, "regions": regions}
+    design.write_text(json.dumps(document))
+    (note,) = run("import", str(design))["notes"]
+    assert "Navy is lost" in note
+
+
+@pytest.mark.parametrize(("name", "says"), [("none.png", "does not exist"), (".", "is a folder")])
+def test_a_missing_file_is_told(name: str, says: str, tmp_path: Path) -> None:
+    refused = CliRunner().invoke(main, ["import", str(tmp_path / name)])
+    assert refused.exit_code == 2
+    assert says in refused.stderr
 
 
 def test_limits_are_told(client: TestClient) -> None:

@@ -44,6 +44,52 @@ def test_rest_and_command_line_agree(
     assert read_design(out).to_piece().shaped.stitches == asked.json()["stitches"]
 
 
+def test_a_garment_is_kept_as_a_design(client: TestClient) -> None:
+    request = {"garment": {"template": "glove"}, "material": "glove-wool", "intarsia": True}
+    planned = client.post("/api/v1/garment", json=request).json()
+    kept = client.post("/api/v1/designs", json=planned["design"])
+    assert kept.status_code == 201, kept.text
+    document = kept.json()["document"]
+    assert document["regions"] == planned["design"]["regions"]
+    assert document["outline"] == planned["outline"]
+    facts = {r["name"]: r for r in planned["regions"]}
+    assert facts["wrist support"]["yarn_m"] == pytest.approx(
+        facts["wrist support"]["stitches"] * 11.7 / 1000,
+        rel=0.01,  # table 6: mm a stitch
+    )
+
+
+def test_gauge_yarn_and_pressure_of_ones_own(client: TestClient) -> None:
+    brace = {"template": "wrist-brace", "wrist_mm": 170, "length_mm": 90, "target_mmhg": 20}
+    request = {"garment": brace, "material": "acrylic", "linear_density_tex": 500}
+    plain = client.post("/api/v1/garment", json=request).json()
+    (place,) = plain["worn"]
+    assert place["mmhg"]["low"] < 22
+    assert place["mmhg"]["high"] > 18
+    assert plain["yarn_g"] == pytest.approx(plain["yarn_m"] / 2)
+    inches = request | {"gauge": {"stitches": 22, "rows": 30, "per": "4 in"}}
+    fine = client.post("/api/v1/garment", json=inches).json()
+    gauge = next(g for g in fine["gauges"] if g["fabric"] == "stockinette")
+    assert gauge["stitches_per_4_in"] == pytest.approx(22)
+    assert gauge["rows_per_5_cm"] == pytest.approx(30 * 50 / 101.6)
+    told = CliRunner().invoke(
+        main,
+        [
+            "garment",
+            "wrist-brace",
+            "--material=acrylic",
+            "--set=wrist_mm=170",
+            "--set=length_mm=90",
+            "--set=target_mmhg=20",
+            "--gauge=22x30",
+            "--per=4 in",
+            "--tex=500",
+            "--json",
+        ],
+    )
+    assert json.loads(told.stdout) == fine
+
+
 def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:
     design, drawing = tmp_path / "glove.json", tmp_path / "glove.svg"
     make = ["garment", "glove", "--material=glove-wool", f"-o{design}"]
