@@ -66,16 +66,16 @@ export function lightness(value) {
   return (0.299 * red + 0.587 * green + 0.114 * blue) / 255;
 }
 
-/** For regions: told apart also by the colour-blind, legible on light and dark (after Okabe and Ito). */
+/** For regions: apart from the fabrics' colours, and from each other also for the colour-blind. */
 export const REGION_COLOURS = [
+  "#c2185b",
+  "#b58900",
+  "#00838f",
+  "#6d4c41",
   "#0072b2",
   "#d55e00",
-  "#009e73",
-  "#cc79a7",
-  "#b58900",
-  "#56b4e9",
-  "#8c564b",
   "#7f7f7f",
+  "#009e73",
 ];
 
 /** The one that is used least. @param {readonly {colour: string}[]} regions */

@@ -4,12 +4,12 @@
  *
  * @import {ChartDocument} from "../core/document.js"
  * @import {Box, Grid} from "../core/grid.js"
- * @import {Selection} from "../core/selection.js"
+ * @import {Edges} from "./edges.js"
  * @import {Viewport} from "./viewport.js"
  * @import {Palette} from "./palette.js"
  */
 
-import { selects } from "../core/selection.js";
+import { edgePath, edgesOf } from "./edges.js";
 
 /**
  * Paint over cells that are no stitches.
@@ -20,7 +20,8 @@ import { selects } from "../core/selection.js";
  * @param {Box} box
  * @param {Palette} palette
  */
-export function drawAbsent(context, view, { grid, outline }, box, palette) {
+export function drawAbsent(context, view, chart, box, palette) {
+  const { grid, outline } = chart;
   const { cellWidth: w, cellHeight: h } = view;
   const path = new Path2D();
   for (let row = box.row0; row < box.row1; row++) {
@@ -35,51 +36,8 @@ export function drawAbsent(context, view, { grid, outline }, box, palette) {
   context.fill(path);
   context.lineWidth = 1.5;
   context.strokeStyle = palette.muted;
-  context.stroke(edges(view, grid, (row, column) => outline[row * grid.columns + column] === 1, grid.box));
+  context.stroke(edgePath(view, grid, known(outline, chart), box));
 }
-
-/**
- * The edge of a set of stitches, drawn just inside of it.
- *
- * @param {Viewport} view
- * @param {Grid} grid
- * @param {(row: number, column: number) => boolean} within asked only for stitches of the chart
- * @param {Box} box where to look; lines along its own sides are drawn, too
- * @param {number} [inset] CSS pixels
- */
-export function edges({ x, y, cellWidth: w, cellHeight: h }, grid, within, box, inset = 0) {
-  const path = new Path2D();
-  /** @param {number} row @param {number} column */
-  const has = (row, column) => grid.has(row, column) && within(row, column);
-  for (let row = box.row0; row <= box.row1; row++) {
-    for (let column = box.column0; column < box.column1; column++) {
-      const above = has(row, column);
-      if (above === has(row - 1, column)) continue;
-      const from = column;
-      while (column < box.column1 && has(row, column) === above && has(row - 1, column) !== above) column++;
-      const at = y + (grid.rows - row) * h + (above ? -inset : inset);
-      path.moveTo(x + from * w + inset * end(has(above ? row : row - 1, from - 1)), at);
-      path.lineTo(x + column * w - inset * end(has(above ? row : row - 1, column)), at);
-      column--;
-    }
-  }
-  for (let column = box.column0; column <= box.column1; column++) {
-    for (let row = box.row0; row < box.row1; row++) {
-      const right = has(row, column);
-      if (right === has(row, column - 1)) continue;
-      const from = row;
-      while (row < box.row1 && has(row, column) === right && has(row, column - 1) !== right) row++;
-      const at = x + column * w + (right ? inset : -inset);
-      path.moveTo(at, y + (grid.rows - from) * h - inset * end(has(from - 1, right ? column : column - 1)));
-      path.lineTo(at, y + (grid.rows - row) * h + inset * end(has(row, right ? column : column - 1)));
-      row--;
-    }
-  }
-  return path;
-}
-
-/** At an outer corner lines are shortened, at an inner one prolonged. @param {boolean} inner */
-const end = (inner) => (inner ? -1 : 1);
 
 /**
  * @param {CanvasRenderingContext2D} context
@@ -88,11 +46,12 @@ const end = (inner) => (inner ? -1 : 1);
  * @param {Box} box in view
  * @param {Palette} palette
  */
-export function drawRegions(context, view, { grid, regions }, box, palette) {
+export function drawRegions(context, view, chart, box, palette) {
+  const { grid, regions } = chart;
   const thin = Math.min(view.cellWidth, view.cellHeight) < 6;
   for (const { cells, colour, hidden, locked } of regions) {
     if (hidden) continue;
-    const path = edges(view, grid, (row, column) => cells[row * grid.columns + column] === 1, box, thin ? 0.5 : 2);
+    const path = edgePath(view, grid, known(cells, chart), box, { inset: thin ? 0.5 : 2 });
     context.setLineDash(locked ? [7, 4] : []);
     context.lineWidth = thin ? 2.5 : 5;
     context.strokeStyle = palette.pane;
@@ -175,13 +134,32 @@ export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
   }
 }
 
+/** Edges of bitmaps, as long as these do not change. @type {WeakMap<Uint8Array, {edition: number, edges: Edges}>} */
+const found = new WeakMap();
+
 /**
- * The edge of a selection.
+ * @param {Uint8Array} cells of the chart
+ * @param {ChartDocument} chart
+ */
+function known(cells, chart) {
+  const edition = chart.edition(cells);
+  let entry = found.get(cells);
+  if (entry?.edition !== edition) {
+    entry = { edition, edges: edgesOf(cells, chart.grid.rows, chart.grid.columns) };
+    found.set(cells, entry);
+  }
+  return entry.edges;
+}
+
+/**
+ * The edge of a selection that is not a whole box.
  *
  * @param {Viewport} view
  * @param {Grid} grid
- * @param {Selection} selection
+ * @param {Box & {mask: Uint8Array}} selection
  */
-export function selectionEdge(view, grid, selection) {
-  return edges(view, grid, (row, column) => selects(selection, row, column), selection);
+export function selectionEdge(view, grid, { mask, row0, column0, row1, column1 }) {
+  let entry = found.get(mask);
+  if (!entry) found.set(mask, (entry = { edition: 0, edges: edgesOf(mask, row1 - row0, column1 - column0) }));
+  return edgePath(view, grid, entry.edges, view.visible(grid), { row: row0, column: column0 });
 }

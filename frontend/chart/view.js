@@ -291,7 +291,7 @@ export class ChartView {
     if (selection?.mask) {
       context.save();
       if (viewport.mirrored) context.transform(-1, 0, 0, 1, 2 * x + grid.columns * w, 0);
-      this.#strokeOver(selectionEdge(viewport, grid, selection), 2.5);
+      this.#strokeOver(selectionEdge(viewport, grid, { ...selection, mask: selection.mask }), 2.5);
       context.restore();
     } else if (selection) this.#outline(selection, 2.5);
     if (this.preview.value) this.#outline(this.preview.value, 3);

@@ -35,6 +35,7 @@ export class ChartDocument {
   /** @type {Set<(names: string[]) => void>} */ #refused = new Set();
   /** @type {{target: Target, layers: Map<string, Layer>, refused: boolean} | null} */ #stroke = null;
   /** @type {Links | null} */ #links = null;
+  /** How often each bitmap was changed. @type {WeakMap<Uint8Array, number>} */ #editions = new WeakMap();
 
   /**
    * @param {Grid} grid
@@ -84,6 +85,11 @@ export class ChartDocument {
    */
   onRefuse(listener) {
     this.#refused.add(listener);
+  }
+
+  /** Grows whenever a bitmap (a region's cells, the outline) changes. @param {Uint8Array} bitmap */
+  edition(bitmap) {
+    return this.#editions.get(bitmap) ?? 0;
   }
 
   // --- strokes --------------------------------------------------------------------------------
@@ -575,6 +581,8 @@ export class ChartDocument {
   #refresh(on, box) {
     if (!box) return;
     const { rows, columns } = this.grid;
+    const bitmap = this.#bitmap(on);
+    if (bitmap) this.#editions.set(bitmap, this.edition(bitmap) + 1);
     if (on === "outline") this.shaped = this.outline.includes(0);
     // A flip changes its own segments and so the kinds of its four neighbours.
     const wider = {
