@@ -1,7 +1,6 @@
 """Make the pictures of docs/images again: the page and each of its panels, light and dark.
 
-.venv/bin/python scripts/screenshots.py            (needs Chromium and the page's tools for bundling)
-.venv/bin/python scripts/screenshots.py stretch designs     only these
+Needs Chromium and Node. Names of pictures as arguments make only these.
 """
 
 from __future__ import annotations
