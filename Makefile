@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page serve test test-postgres test-kill test-faults lint format types frontend-check bench bench-service docs examples stitches lock clean
+.PHONY: help install page serve test test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -67,6 +67,15 @@ lint: $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --st
 	$(BIN)/mypy
 	cd frontend && npm run --silent check
 
+.audit/.installed:
+	$(PYTHON) -m venv .audit
+	.audit/bin/pip install --quiet --disable-pip-version-check pip-audit bandit
+	touch $@
+
+audit: .audit/.installed ## Risky code (bandit) and known holes in pinned packages (pip-audit, asks PyPI)
+	.audit/bin/bandit --quiet -c pyproject.toml -r app knitcore
+	.audit/bin/pip-audit --strict --disable-pip --require-hashes -r requirements.lock
+
 format: $(VENV)/.installed-dev ## Format the code
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
@@ -95,4 +104,4 @@ lock: $(VENV)/.installed-dev ## Pin the dependencies again
 		--extra dev pyproject.toml -c requirements.lock -o requirements-dev.lock
 
 clean:           ## Remove what was installed and built
-	rm -rf $(VENV) frontend/node_modules frontend/dist build *.egg-info
+	rm -rf $(VENV) .audit frontend/node_modules frontend/dist build *.egg-info

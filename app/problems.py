@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import logging
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -67,6 +67,7 @@ class ServiceError(Exception):
     type = "internal"
     title = "Something went wrong in the service"
     default_remedy: str | None = None
+    headers: ClassVar[dict[str, str]] = {}
 
     def __init__(self, detail: str, *, field: str | None = None, remedy: str | None = None) -> None:
         super().__init__(detail)
@@ -92,12 +93,14 @@ class UnavailableError(ServiceError):
 
     status, type, title = 503, "busy", "Not now"
     default_remedy = "Try again in a moment, or ask for less."
+    headers: ClassVar[dict[str, str]] = {"Retry-After": "2"}
 
 
 class NoRoomError(UnavailableError):
     """The disk is full."""
 
     status, type, title = 507, "full", "No room left"
+    headers: ClassVar[dict[str, str]] = {}
     default_remedy = (
         "Make room on the disk of the service, then try again; nothing that was acknowledged is "
         "lost."

@@ -128,6 +128,7 @@ def test_a_database_that_is_away_loses_nothing(postgres_url: str, tmp_path: Path
             refused = painter.paint()
             assert refused.status_code == 503
             assert "nothing was changed" in refused.json()["detail"]
+            assert refused.headers["retry-after"]
             assert client.get("/healthz").status_code == 200
             assert client.get("/readyz").status_code == 503
             time.sleep(0.2)

@@ -322,3 +322,10 @@ def test_every_response_carries_the_headers(client: TestClient) -> None:
         assert headers["x-content-type-options"] == "nosniff"
     view = client.get("/view/abcdefgh/").headers["content-security-policy"]
     assert "connect-src 'self' data: blob:" in view  # ?websocket=ws://elsewhere is not obeyed
+
+
+def test_no_text_becomes_a_script_in_a_view(client: TestClient) -> None:
+    """viser can tell its page to run a text as a script; the policy refuses that."""
+    policy = client.get("/view/a-design-of-mine/").headers["content-security-policy"]
+    scripts = next(part for part in policy.split("; ") if part.startswith("script-src"))
+    assert "'unsafe-eval'" not in scripts.split()
