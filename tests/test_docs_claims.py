@@ -14,8 +14,8 @@ NAMED = sorted(set(re.findall(r"`(test_\w+\.py)::(test_\w+)`", PAGE)))
 
 @pytest.mark.parametrize(("file", "test"), NAMED)
 def test_a_named_test_exists(file: str, test: str) -> None:
-    (found,) = (ROOT / "tests" / "app").rglob(file)
-    assert re.search(rf"^def {test}\(", found.read_text(), re.MULTILINE)
+    named = [path.read_text() for path in (ROOT / "tests").rglob(file)]
+    assert any(re.search(rf"^def {test}\(", text, re.MULTILINE) for text in named)
 
 
 def test_every_threat_has_a_test() -> None:
