@@ -6,7 +6,7 @@
  */
 
 import { Clip, Floating } from "../core/floating.js";
-import { MAX_MOTIF } from "../core/design.js";
+import { MAX_ITEMS, MAX_MOTIF } from "../core/design.js";
 import { motifText } from "../core/motif.js";
 import { ownInk } from "../core/shelf.js";
 import { selectedCells, selectionOf } from "../core/selection.js";
@@ -155,6 +155,19 @@ function selectedMotif(studio) {
   return part;
 }
 
+/**
+ * Whether a list of the design can take one more.
+ *
+ * @param {Studio} studio
+ * @param {"regions" | "repeats" | "shelf"} list
+ * @param {string} what
+ */
+export function hasRoom(studio, list, what) {
+  const room = studio.document[list].length < MAX_ITEMS;
+  if (!room) studio.tell(`A design has at most ${MAX_ITEMS} ${what}; remove some first.`);
+  return room;
+}
+
 /** @type {Action} */
 const pattern = {
   id: "keep-pattern",
@@ -165,7 +178,7 @@ const pattern = {
   enabled: some,
   perform: ({ studio }) => {
     const part = selectedMotif(studio);
-    if (!part) return;
+    if (!part || !hasRoom(studio, "shelf", "own patterns")) return;
     const { document } = studio;
     const motif = motifText(part);
     const known = document.shelf.find((item) => item.motif === motif);
@@ -189,7 +202,7 @@ export const makeRepeat = {
   perform: ({ studio, open }) => {
     const box = studio.selection.value;
     const motif = selectedMotif(studio);
-    if (!box || !motif) return;
+    if (!box || !motif || !hasRoom(studio, "repeats", "linked repeats")) return;
     const { document, editing } = studio;
     const place = { row: box.row0, column: box.column0, rows: motif.rows, columns: motif.columns };
     const name = `Repeat ${document.repeats.length + 1}`;
@@ -211,7 +224,7 @@ export const makeRegion = {
   enabled: some,
   perform: ({ studio, open }) => {
     const { document, selection } = studio;
-    if (!selection.value) return;
+    if (!selection.value || !hasRoom(studio, "regions", "regions")) return;
     const look = { name: `Region ${document.regions.length + 1}`, colour: nextRegionColour(document.regions) };
     document.addRegion(look, selectedCells(selection.value, document.grid));
     selection.value = null;

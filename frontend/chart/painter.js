@@ -13,6 +13,7 @@ import { Floating } from "../core/floating.js";
 import { inked } from "../core/ink.js";
 import { combined, selects } from "../core/selection.js";
 import { Brush } from "../core/stroke.js";
+import { listenToPinches } from "./pinch.js";
 import { boxAt, placedAt, placedBox, shifted } from "./placing.js";
 
 /** @type {Cell} */
@@ -38,6 +39,7 @@ export class Painter {
     this.studio = studio;
     this.#ink = studio.ink.value;
     const { canvas } = view;
+    listenToPinches(view, () => this.#cancel());
     canvas.addEventListener("pointerdown", (event) => this.#down(event));
     canvas.addEventListener("pointermove", (event) => this.#move(event));
     canvas.addEventListener("pointerup", () => this.#up());

@@ -29,18 +29,18 @@ export function bestThreshold(values) {
     counts[value]++;
     sum += value;
   }
-  let [best, threshold, below, sumBelow] = [-1, 128, 0, 0];
+  // Between two clear peaks all thresholds part alike: the middle one is taken.
+  let [best, first, last, below, sumBelow] = [-1, 128, 128, 0, 0];
   for (let t = 1; t < 256; t++) {
     below += counts[t - 1];
     sumBelow += counts[t - 1] * (t - 1);
     const above = values.length - below;
     if (!below || !above) continue;
     const between = below * above * (sumBelow / below - (sum - sumBelow) / above) ** 2;
-    // Between two clear peaks all thresholds part alike: take the middle.
-    if (between > best * (1 + 1e-12)) [best, threshold] = [between, t];
-    else if (between > best * (1 - 1e-12)) threshold = Math.floor((threshold + t) / 2);
+    if (between > best * (1 + 1e-12)) [best, first, last] = [between, t, t];
+    else if (between > best * (1 - 1e-12)) last = t;
   }
-  return threshold;
+  return Math.round((first + last) / 2);
 }
 
 /**

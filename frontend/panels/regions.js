@@ -8,6 +8,7 @@
  */
 
 import { action } from "../actions/registry.js";
+import { hasRoom } from "../actions/selection.js";
 import { nextRegionColour } from "../chart/palette.js";
 import { KNIT, regionInk } from "../core/ink.js";
 import { motifGrid, motifText } from "../core/motif.js";
@@ -37,6 +38,7 @@ export function create(studio, context) {
       id: "region-new",
       title: "A new region, to be painted",
       onclick: () => {
+        if (!hasRoom(studio, "regions", "regions")) return;
         const name = `Region ${chart.regions.length + 1}`;
         const region = chart.region(chart.addRegion({ name, colour: nextRegionColour(chart.regions) }));
         if (region) paint(region);

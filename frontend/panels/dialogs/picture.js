@@ -137,7 +137,7 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
         found && size("picture-found", `Grid found: ${found.columns} × ${found.rows}`, found))),
     problem,
     h("div", { class: "picture-tone" }, h("label", { for: "picture-threshold" }, "Purl if darker than"), threshold, share,
-      h("label", { class: "check" }, inverted, "light is purl")),
+      h("label", { class: "check" }, inverted, "Light is purl")),
     h("div", { class: "dialog-buttons" },
       h("button", { class: "button", type: "button", onclick: () => element.close() }, "Cancel"),
       apply),
