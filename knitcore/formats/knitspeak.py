@@ -132,7 +132,7 @@ def read_knitspeak(text: str) -> StitchChart:
     Examples
     --------
     >>> print(read_knitspeak("Rows 1 and 2: [k1, p1] twice."))
-    KPKP
+    PKPK
     PKPK
     """
     rows: dict[int, _Row] = {}

@@ -9,10 +9,10 @@ and at the edges decreases, ``m1``, casting on and binding off.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
+from knitcore.chart import StitchChart, check_size
 from knitcore.errors import InputError
+from knitcore.formats.written_words import Line, Work, read_row
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows
 from knitcore.worked import Construction, Side, side_of_row
@@ -26,26 +26,8 @@ _ROW = re.compile(
 _REPEAT = re.compile(
     r"repeat (?:rows?|rnds?|rounds?) (\d{1,4})(?:\s*[-–]\s*(\d{1,4}))?", re.IGNORECASE
 )
-_COUNT = re.compile(r"\((\d{1,4}) sts?\)$", re.IGNORECASE)
-_STITCHES = re.compile(r"([kp])(\d{1,4})", re.IGNORECASE)
-_BRACKET = re.compile(r"\(([^()]*)\) (?:(twice)|(\d{1,4}) times)", re.IGNORECASE)
-_STAR = re.compile(
-    r"(.*?)\*([^*;]*); rep from \* (?:to (end)|to last (?:(\d{1,4}) sts|st))(?:, (.*))?",
-    re.IGNORECASE,
-)
 _END = re.compile(r"bind off.*", re.IGNORECASE)
 _YARN = re.compile(r"yarn ([A-Z]{1,2}): (.*) \((#[0-9a-f]{6})\)", re.IGNORECASE)
-_WITH = re.compile(r"(?:^|, )with ([A-Z]{1,2}) ", re.IGNORECASE)
-_SHAPED = re.compile(r"(ssk|ssp|k2tog|p2tog|k3tog|p3tog|m1p?)(?![\w])", re.IGNORECASE)
-_GAIN = re.compile(r"(cast on|bind off) (\d{1,4}) sts?, ", re.IGNORECASE)
-_GAIN_AT_END = re.compile(
-    r"with a separate strand cast on (\d{1,4}) sts? at the end, ", re.IGNORECASE
-)
-_LOSS_AT_END = re.compile(
-    r", bind off the last (\d{1,4}) sts? with a separate strand$", re.IGNORECASE
-)
-_USES = {"": 1, "m1": 0, "m1p": 0, "k3tog": 3, "p3tog": 3}
-"""Stitches of the row below that a stitch takes; all others are decreases of two."""
 
 
 def looks_written(text: str) -> bool:
@@ -64,7 +46,7 @@ def read_rows(text: str) -> StitchChart:
 
     Examples
     --------
-    >>> print(read_rows("Cast on 3 sts. Worked flat.\nRow 1: K1, p2.\\nRows 2-3: Knit."))
+    >>> print(read_rows("Cast on 3 sts. Worked flat.\\nRow 1: K1, p2.\\nRows 2-3: Knit."))
     KKK
     PPP
     PPK
@@ -84,7 +66,7 @@ def read_piece_rows(text: str) -> Piece:
         As :func:`read_rows`.
     """
     lines = [
-        _Line(number, " ".join(line.split()))
+        Line(number, " ".join(line.split()))
         for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
@@ -111,51 +93,13 @@ def read_piece_rows(text: str) -> Piece:
     return reader.piece()
 
 
-@dataclass(frozen=True)
-class _Line:
-    number: int
-    text: str
-
-    def wrong(self, problem: str, remedy: str) -> InputError:
-        return InputError("rows", f"line {self.number}: {problem}", remedy)
-
-
-@dataclass(frozen=True)
-class _Stitch:
-    """A stitch of a row: purled or knitted, how it is made ("" if just worked), of which yarn."""
-
-    purl: bool
-    form: str = ""
-    yarn: int = 0
-
-    @property
-    def uses(self) -> int:
-        return _USES.get(self.form, 2)
-
-
-@dataclass(frozen=True)
-class _Work:
-    """What a line says of a row, wherever it stands."""
-
-    first: int
-    last: int
-    stitches: tuple[_Stitch, ...]
-
-
-Stitches = tuple[_Stitch, ...]
-
-
-def _used(stitches: Stitches) -> int:
-    return sum(stitch.uses for stitch in stitches)
-
-
 class _Reader:
     def __init__(self, stitches: int, construction: Construction, first_side: Side) -> None:
         self._needle = stitches
         self._construction = construction
         self._first_side = first_side
         self._yarns: list[PieceYarn] = []
-        self._rows: list[_Work] = []
+        self._rows: list[Work] = []
 
     def piece(self) -> Piece:
         if not self._rows:
@@ -172,7 +116,7 @@ class _Reader:
         ]
         return piece_from_rows(rows, self._yarns or [MAIN_YARN])
 
-    def add_yarn(self, line: _Line, name: str, yarn: PieceYarn) -> None:
+    def add_yarn(self, line: Line, name: str, yarn: PieceYarn) -> None:
         if name != yarn_name(len(self._yarns)) or self._rows or yarn in self._yarns:
             raise line.wrong(
                 f"yarn {name} cannot be named here.",
@@ -181,7 +125,7 @@ class _Reader:
             )
         self._yarns.append(yarn)
 
-    def read(self, line: _Line) -> None:
+    def read(self, line: Line) -> None:
         match = _ROW.fullmatch(line.text)
         if match is None:
             raise line.wrong(
@@ -205,11 +149,11 @@ class _Reader:
         if repeat is not None:
             self._repeat(line, int(repeat[1]), int(repeat[2] or repeat[1]), stop - start + 1)
         else:
-            work = self._row(line, body)
+            work = read_row(line, body, self._needle, len(self._yarns))
             for _ in range(stop - start + 1):
                 self._add(line, work)
 
-    def _add(self, line: _Line, work: _Work) -> None:
+    def _add(self, line: Line, work: Work) -> None:
         if self._needle + work.first + work.last != len(work.stitches):
             raise line.wrong(
                 f"it needs other than the {self._needle} stitches that are on the needle.",
@@ -218,7 +162,7 @@ class _Reader:
         self._rows.append(work)
         self._needle = len(work.stitches)
 
-    def _check_name(self, line: _Line, name: str) -> None:
+    def _check_name(self, line: Line, name: str) -> None:
         is_round = name.lower().startswith(("rnd", "round"))
         if is_round != (self._construction is Construction.ROUND):
             raise line.wrong(
@@ -226,7 +170,7 @@ class _Reader:
                 'Write "Rnd" after "join in the round", and "Row" in flat knitting.',
             )
 
-    def _repeat(self, line: _Line, first: int, last: int, count: int) -> None:
+    def _repeat(self, line: Line, first: int, last: int, count: int) -> None:
         if not 1 <= first <= last <= len(self._rows):
             raise line.wrong(
                 f"rows {first}-{last} are not all written before it.", "Repeat earlier rows."
@@ -234,144 +178,6 @@ class _Reader:
         unit = self._rows[first - 1 : last]
         for index in range(count):
             self._add(line, unit[index % len(unit)])
-
-    def _row(self, line: _Line, body: str) -> _Work:
-        count = _COUNT.search(body)
-        words = (body[: count.start()] if count else body).strip().rstrip(".").strip()
-        first, last, words = self._edges(line, words)
-        worked = self._needle + first + last
-        if worked < 1:
-            raise line.wrong("it leaves no stitch.", "Bind off fewer.")
-        stitches = self._yarn_words(line, words, worked)
-        if _used(stitches) != worked:
-            raise line.wrong(
-                f"it works {_used(stitches)} stitches, {worked} are on the needle.",
-                "Correct the row, or cast on, bind off, increase or decrease at its edges.",
-            )
-        first, last = self._shaped(line, stitches, first, last)
-        if count is not None and int(count[1]) != len(stitches):
-            raise line.wrong(
-                f"it says {count[1]} sts, {len(stitches)} are on the needle.", "Correct the count."
-            )
-        return _Work(first, last, stitches)
-
-    def _edges(self, line: _Line, words: str) -> tuple[int, int, str]:
-        """Stitches cast on and bound off at both ends, and the rest of the words."""
-        first = last = 0
-        gain = _GAIN.match(words)
-        if gain is not None:
-            first = int(gain[2]) * (1 if gain[1].lower() == "cast on" else -1)
-            words = words[gain.end() :]
-        if (at_end := _GAIN_AT_END.match(words)) is not None:
-            last, words = int(at_end[1]), words[at_end.end() :]
-        if (loss := _LOSS_AT_END.search(words)) is not None:
-            last, words = last - int(loss[1]), words[: loss.start()]
-        check_size(1, max(self._needle + max(first, 0) + max(last, 0), 1))
-        return first, last, words
-
-    def _shaped(self, line: _Line, stitches: Stitches, first: int, last: int) -> tuple[int, int]:
-        """Gains and losses with the increases and decreases, which stand only at the edges."""
-        end = len(stitches) - 1
-        for index, form in ((i, s.form) for i, s in enumerate(stitches) if s.form):
-            if form in ("k3tog", "p3tog") and end == 0:
-                first, last = first - 1, last - 1
-            elif form in ("ssk", "ssp") and index == 0:
-                first -= 1
-            elif form in ("k2tog", "p2tog") and index == end:
-                last -= 1
-            elif form in ("m1", "m1p") and index == 1 and end > 2:
-                first += 1
-            elif form in ("m1", "m1p") and index == end - 1 and end > 2:
-                last += 1
-            else:
-                raise line.wrong(
-                    f"{form} is stitch {index + 1} of {end + 1}.",
-                    "Shape at the edges only: ssk first, k2tog last, m1 beside the edge stitch.",
-                )
-        return first, last
-
-    def _yarn_words(self, line: _Line, words: str, worked: int) -> Stitches:
-        if len(self._yarns) < 2:
-            return self._words(line, words, worked)
-        names = list(_WITH.finditer(words))
-        if not names or names[0].start() != 0:
-            raise line.wrong("it does not say with which yarn it begins.", 'Write "with A …".')
-        stitches: Stitches = ()
-        known = [yarn_name(index) for index in range(len(self._yarns))]
-        for place, name in enumerate(names):
-            if name[1].upper() not in known:
-                raise line.wrong(f"there is no yarn {name[1]}.", f"Use {', '.join(known)}.")
-            stop = names[place + 1].start() if place + 1 < len(names) else len(words)
-            part, room = words[name.end() : stop], worked - _used(stitches)
-            read = (
-                self._words(line, part, room) if len(names) == 1 else self._items(line, part, room)
-            )
-            yarn = known.index(name[1].upper())
-            stitches += tuple(_Stitch(s.purl, s.form, yarn) for s in read)
-        return stitches
-
-    def _words(self, line: _Line, words: str, worked: int) -> Stitches:
-        star = _STAR.fullmatch(words)
-        if star is None:
-            return self._items(line, words, worked)
-        before, unit, end, last, after = star.groups()
-        head = self._items(line, before.rstrip(", "), worked) if before.strip(", ") else ()
-        body = self._items(line, unit, worked)
-        tail = self._items(line, after, worked) if after else ()
-        wanted = 0 if end else int(last or 1)
-        if _used(tail) != wanted:
-            raise line.wrong(
-                f"{_used(tail)} stitches follow the repeat, it says {wanted}.",
-                'Make "to last N sts" agree with what follows.',
-            )
-        room = worked - _used(head) - _used(tail)
-        if any(stitch.form for stitch in body) or room < len(body) or room % len(body):
-            raise line.wrong(
-                f"the {len(body)} stitches after * do not fit {room} stitches exactly.",
-                f"Cast on a multiple of {len(body)} plus {_used(head) + _used(tail)} stitches.",
-            )
-        return head + body * (room // len(body)) + tail
-
-    def _items(self, line: _Line, words: str, worked: int) -> Stitches:
-        """Stitches and brackets, separated by commas."""
-        stitches: Stitches = ()
-        rest = words.strip()
-        while rest:
-            bracket, run, shaped = (p.match(rest) for p in (_BRACKET, _STITCHES, _SHAPED))
-            if rest.lower() in ("knit", "purl"):
-                found = (_Stitch(rest.lower() == "purl"),) * (worked - _used(stitches))
-                used = len(rest)
-            elif bracket is not None:
-                inside = self._items(line, bracket[1], worked)
-                times = 2 if bracket[2] else int(bracket[3])
-                # More than a row can hold is told below; it need not be written out for that.
-                found = inside * min(times, MAX_STITCHES_PER_SIDE + 1)
-                used = bracket.end()
-            elif shaped is not None:
-                form = shaped[1].lower()
-                purl = form in ("ssp", "p2tog", "p3tog", "m1p")
-                found, used = (_Stitch(purl, form),), shaped.end()
-            elif run is not None:
-                found, used = (_Stitch(run[1].lower() == "p"),) * int(run[2]), run.end()
-            else:
-                raise line.wrong(
-                    f"{rest[:30]!r} cannot be read.",
-                    'Write k3, p2, (k1, p1) 3 times, or "*…; rep from * to end".',
-                )
-            stitches += found
-            if len(stitches) > MAX_STITCHES_PER_SIDE:
-                raise line.wrong("it has too many stitches.", f"Use {worked}.")
-            rest = self._after_comma(line, rest[used:])
-        if not stitches:
-            raise line.wrong("a part of it is empty.", "Write stitches, such as k3.")
-        return stitches
-
-    def _after_comma(self, line: _Line, rest: str) -> str:
-        if rest and not re.match(r", ?\S", rest):
-            raise line.wrong(
-                f"{rest[:30]!r} follows a stitch without a comma.", "Separate stitches by commas."
-            )
-        return rest.lstrip(", ")
 
     def _side(self, index: int) -> Side:
         return side_of_row(index, self._construction, self._first_side)
