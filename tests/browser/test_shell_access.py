@@ -21,6 +21,8 @@ PANELS: dict[str, Callable[[Page], None]] = {
     "gallery-dialog": lambda page: page.keyboard.press("Shift+N"),
     "versions-dialog": lambda page: page.keyboard.press("Control+s"),
     "share-dialog": lambda page: page.click("#action-share"),
+    "planner-dialog": lambda page: page.keyboard.press("Control+Shift+G"),
+    "export-dialog": lambda page: page.keyboard.press("Control+e"),
 }
 
 

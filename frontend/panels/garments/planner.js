@@ -79,7 +79,7 @@ export function create(studio, { keeper }) {
   const gaugeRow = h("div", { class: "planner-gauge", hidden: true }, stitches, "sts ×", rows, "rows per", per, "of", of);
 
   // --- what comes of it -------------------------------------------------------------------------
-  const canvas = h("canvas", { role: "img", id: "planner-preview" });
+  const canvas = h("canvas", { role: "img", id: "planner-preview", "aria-label": "The garment, laid flat" });
   const result = h("div", { class: "planner-facts", id: "planner-facts", "aria-live": "polite" });
   const status = h("div", { class: "dialog-status", role: "status" });
   const make = h("button", {
