@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
+from knitcore.yarnlevel.held import foot_rows, plane_rows
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -35,7 +36,7 @@ class Terms:
     contact: float
     gauge: float
     excess_mm: Array
-    """Length of each course beyond the prescribed one."""
+    """Lengths beyond the prescribed ones, and what else is held over its value."""
 
     @property
     def energy(self) -> float:
@@ -50,7 +51,7 @@ class Slope:
     Attributes
     ----------
     gradient : (unknowns,) of the Lagrangian.
-    lengths : (rows, unknowns), of the length of each course.
+    lengths : (constraints, unknowns), of the prescribed lengths and of what else is held.
     hessian : (unknowns, unknowns) of the Lagrangian; empty where it was not wanted.
     """
 
@@ -67,14 +68,17 @@ class CellEnergy:
     ----------
     cell : shape space.
     yarn : the yarn.
-    loop_length_mm : (rows,) mean length of yarn per stitch of each course.
+    loop_length_mm : (rows,) mean length of yarn per stitch of each course, or (rows, wales), that
+        of each stitch from foot to foot.
     convention : factors of the terms.
+    flat : the middles of all stitches are held in one plane.
     """
 
     cell: YarnCell
     yarn: YarnModel
     loop_length_mm: Array
     convention: Convention
+    flat: bool = False
 
     @cached_property
     def mean_loop_mm(self) -> float:
@@ -92,9 +96,45 @@ class CellEnergy:
         limit = REGULARISATION_PER_BENDING * self.yarn.bending_modulus_n_mm2 * self.mean_loop_mm**2
         return min(REGULARISATION_N_MM4, limit)
 
+    @property
+    def per_stitch(self) -> bool:
+        """Whether every stitch has a length of its own."""
+        return self.loop_length_mm.ndim == 2
+
+    @cached_property
+    def prescribed_mm(self) -> Array:
+        """(m,) the lengths that are prescribed: of courses, or of stitches."""
+        if self.per_stitch:
+            return self.loop_length_mm.ravel()
+        return self.cell.wales * self.loop_length_mm
+
+    @cached_property
+    def stretch_of(self) -> Ints:
+        """Which of the prescribed lengths each sample belongs to."""
+        course: Ints = np.repeat(np.arange(self.cell.rows), len(self.cell.place))
+        if not self.per_stitch:
+            return course
+        stitch: Ints = np.tile(self.cell.place.astype(np.int64), self.cell.rows)
+        return np.asarray(course * self.cell.wales + stitch)
+
+    @cached_property
+    def held(self) -> Array:
+        """(k, unknowns): linear rules besides the lengths."""
+        rules = [np.zeros((0, self.cell.unknowns))]
+        if self.per_stitch:
+            rules.append(foot_rows(self.cell))
+        if self.flat:
+            rules.append(plane_rows(self.cell))
+        return np.concatenate(rules)
+
+    @property
+    def constraints(self) -> int:
+        """Number of prescribed lengths and linear rules."""
+        return len(self.prescribed_mm) + len(self.held)
+
     @cached_property
     def penalty(self) -> float:
-        """Stiffness of the length constraint of a course, N/mm."""
+        """Stiffness of the constraints, N/mm."""
         return PENALTY_PER_BENDING * self.unit / self.mean_loop_mm**2 / self.cell.wales
 
     @cached_property
@@ -119,7 +159,6 @@ class CellEnergy:
                 self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
                 self.convention.regularisation_factor * self.regularisation_n_mm4,
                 GAUGE_PER_BENDING * self.unit,
-                self.mean_loop_mm,
                 1.0 / self.cell.grid.samples,
             ]
         )
@@ -146,12 +185,18 @@ class CellEnergy:
         )
         return pairs, start
 
-    def excess(self, curve: Array) -> Array:
-        """Length of each course beyond what it should have, mm."""
-        cell = self.cell
+    @cached_property
+    def _speeds(self) -> Array:
+        """What |d1| should be at each sample: the length of its stitch."""
+        return np.repeat(
+            self.loop_length_mm.ravel(), len(self.stretch_of) // self.loop_length_mm.size
+        )
+
+    def excess(self, state: Array, curve: Array) -> Array:
+        """What is held over its value: lengths first, then the linear rules, mm."""
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
-        lengths = speed.reshape(cell.rows, -1).sum(axis=1) / cell.grid.samples
-        return np.asarray(lengths - cell.wales * self.loop_length_mm)
+        lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
+        return np.concatenate([lengths - self.prescribed_mm, self.held @ state])
 
     def value(self, state: Array, curve: Array, pairs: Ints) -> Terms:
         """Parts of the energy."""
@@ -162,13 +207,13 @@ class CellEnergy:
             self.contact_parameters, 0, *none,
         )  # fmt: skip
         rod, gauge = kernels.rod(
-            curve, len(cell.place), self._rod_parameters, np.zeros(cell.rows), np.zeros(0), 0,
+            curve, self._rod_parameters, self._speeds, np.zeros(0), np.zeros(0), 0,
             np.zeros((0, 3, 3)), np.zeros((0, 9, 9)),
         )  # fmt: skip
-        return Terms(rod, contact, gauge, self.excess(curve))
+        return Terms(rod, contact, gauge, self.excess(state, curve))
 
     def merit(self, terms: Terms, tension: Array) -> float:
-        """Augmented Lagrangian with the given tension of each course, N."""
+        """Augmented Lagrangian with the given tensions (multipliers of what is held), N."""
         excess = terms.excess_mm
         return float(
             terms.energy + terms.gauge + tension @ excess + 0.5 * self.penalty * excess @ excess
@@ -190,13 +235,14 @@ class CellEnergy:
         slopes = np.zeros((n, 3, 3))
         local = np.zeros((n if hessian else 0, 9, 9))
         kernels.rod(
-            curve, len(cell.place), self._rod_parameters, tension, weight_slope,
+            curve, self._rod_parameters, self._speeds, tension[self.stretch_of], weight_slope,
             2 if hessian else 1, slopes, local,
         )  # fmt: skip
         gradient = np.zeros(size)
         gradient[-2:] = force[n, :2]
         kernels.scatter_gradient(force, slopes, *self._layout, gradient)
-        lengths = self.length_gradients(curve)
+        gradient += tension[len(self.prescribed_mm) :] @ self.held
+        lengths = np.concatenate([self.length_gradients(curve), self.held])
         if not hessian:
             return Slope(gradient, lengths, np.zeros((0, 0)))
         matrix = np.zeros((size, size))
@@ -211,18 +257,26 @@ class CellEnergy:
         return Slope(gradient, lengths, matrix)
 
     def length_gradients(self, curve: Array) -> Array:
-        """(rows, unknowns): gradient of the length of each course."""
+        """(m, unknowns): gradient of each prescribed length."""
         cell = self.cell
-        tangent = curve[:, 1] / np.linalg.norm(curve[:, 1], axis=1)[:, None]
-        slopes = np.zeros((len(curve), 3, 3))
-        slopes[:, 0] = tangent / cell.grid.samples
+        tangent = curve[:, 1] / np.linalg.norm(curve[:, 1], axis=1)[:, None] / cell.grid.samples
+        rows = np.zeros((len(self.prescribed_mm), cell.unknowns))
+        if self.per_stitch:
+            for k, row in enumerate(rows):
+                self._scatter(np.where((self.stretch_of == k)[:, None], tangent, 0.0), row)
+            return rows
         every = np.zeros(cell.unknowns)
-        kernels.scatter_gradient(np.zeros((len(curve), 3)), slopes, *self._layout, every)
-        rows = np.zeros((cell.rows, cell.unknowns))
+        self._scatter(tangent, every)
         for row, own in zip(rows, cell.dof, strict=True):  # no unknown belongs to two courses
             row[own] = every[own]
-        rows[:, -2] = slopes[:, 0, 0].reshape(cell.rows, -1).sum(axis=1)
+        rows[:, -2] = tangent[:, 0].reshape(cell.rows, -1).sum(axis=1)
         return rows
+
+    def _scatter(self, by_speed: Array, out: Array) -> None:
+        """Gradient by the unknowns of what depends on d1 as given."""
+        slopes = np.zeros((len(by_speed), 3, 3))
+        slopes[:, 0] = by_speed
+        kernels.scatter_gradient(np.zeros((len(by_speed), 3)), slopes, *self._layout, out)
 
     @property
     def _layout(self) -> tuple[int, int, int, Array, Ints, Array]:

@@ -62,6 +62,7 @@ def grow(
     start: Start,
     *,
     options: Options,
+    flat: bool = False,
     cancel: Callable[[], bool] | None = None,
 ) -> Minimum:
     """Relax a cell from a start.
@@ -82,7 +83,7 @@ def grow(
         wale_per_loop=start.wale * WALE_PER_LOOP,
     )
     state = shaken(cell, state, start.noise * radius, start.seed)
-    energy = CellEnergy(cell, yarn, loop_length_mm, convention)
+    energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat)
     core = _core_that_fits(yarn, _min_distance(energy, state), _FIRST_OPENING)
     tension: Array | None = None
     steps = evaluations = 0

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from knitcore.chart import StitchChart
-from knitcore.errors import ConvergenceError, InputError, KnitcoreError, UnravelledError
-from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell
-from knitcore.yarnlevel.clasps import cell_is_knitted
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.growth import Start, grow, shaken
-from knitcore.yarnlevel.published.relax import check_loop
+from knitcore.yarnlevel.growth import Start, grow
+from knitcore.yarnlevel.published.relax import check_loop, check_size
 from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlevel.solver import Minimum, Options, minimise
+from knitcore.yarnlevel.search import (
+    RELAXED,
+    UNSETTLED,
+    Search,
+    StartReport,
+    outcome,
+)
+from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.tiling import centre_lines, refined_state, tiled_state
-from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.tiling import centre_lines
 from knitcore.yarnlevel.yarn import YarnModel
 
 Array = NDArray[np.float64]
@@ -38,17 +43,23 @@ ROUGH = SplineGrid(controls=10, per_span=5)
 ROUGH_FROM = 30
 FINE_UP_TO = 2
 """Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
-SAME_ENERGY = 1e-3
-"""Starts whose energies agree within this are the same minimum."""
-
-OVERLONG = 1e-4
-"""Error of the length, as a part of it, beyond which a state does not count."""
+SEVERAL_UP_TO = 9
+"""Cells of so many stitches get more than one start."""
+SECONDS_PER_START = 0.12
+"""CPU time of one start: this times the stitches to the power 1.5 (measured, on the high side)."""
+_STRIDE = 0.03
+"""Longest step to a prescribed size, as a part of the loop length."""
 
 MIRRORED_STARTS = (
     Start("usual"),
     Start("wide", course=1.15, wale=0.85),
 )
-FREE_STARTS = (Start("asymmetric", noise=0.01, seed=1),)
+FREE_STARTS = (
+    Start("asymmetric", noise=0.01, seed=1),
+    Start("asymmetric, narrow", course=0.85, wale=1.1, noise=0.02, seed=2),
+)
+_SHAKES = (7, 8)
+"""Seeds of the displacements with which the mirrored state is left."""
 
 
 class Branch(StrEnum):
@@ -59,24 +70,6 @@ class Branch(StrEnum):
     FREE = "free"
 
 
-@dataclass(frozen=True)
-class StartReport:
-    """What became of one start.
-
-    Attributes
-    ----------
-    name : of the start.
-    outcome : ``relaxed``, ``not converged``, or the reason of a failure.
-    energy_n_mm, cell_course_mm, cell_wale_mm : per stitch; nan where it failed.
-    """
-
-    name: str
-    outcome: str
-    energy_n_mm: float
-    cell_course_mm: float
-    cell_wale_mm: float
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RelaxedRepeat(RelaxedCell):
     """A relaxed repeat on splines (branches ``mirrored`` and ``free``).
@@ -85,12 +78,14 @@ class RelaxedRepeat(RelaxedCell):
     ----------
     chart : the repeat that the centre lines show.
     yarn : the yarn.
-    loop_lengths_mm : length of yarn per stitch of every course of the cell.
+    loop_lengths_mm : length of yarn per stitch of every course of the cell, (rows,), or of every
+        stitch, (rows, wales).
     cell : shape space; ``state`` are its unknowns.
-    tension_n : tension of every course of the cell.
+    tension_n : tension of every course (or stitch) of the cell, then what holds it flat.
     force_n : dE/d(size of a stitch) of one stitch, course-wise and wale-wise.
     min_distance_mm : smallest distance of centre lines.
     starts : all starts.
+    flat : the middles of all stitches were held in one plane.
     """
 
     chart: StitchChart
@@ -101,6 +96,7 @@ class RelaxedRepeat(RelaxedCell):
     force_n: tuple[float, float]
     min_distance_mm: float
     starts: tuple[StartReport, ...] = ()
+    flat: bool = False
 
     @property
     def control_points(self) -> Array:
@@ -114,39 +110,48 @@ class RelaxedRepeat(RelaxedCell):
     @property
     def energy(self) -> CellEnergy:
         """The energy whose minimum this is."""
-        return CellEnergy(self.cell, self.yarn, self.loop_lengths_mm, self.convention)
+        return CellEnergy(self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat)
 
 
 def relax(
     chart: StitchChart,
     yarn: YarnModel,
-    loop_length_mm: float | Sequence[float],
+    loop_length_mm: ArrayLike,
     *,
     branch: Branch | str = Branch.MIRRORED,
     convention: Convention = Convention.PUBLISHED,
+    cell_course_mm: float | None = None,
+    cell_wale_mm: float | None = None,
+    flat: bool = False,
     grid: SplineGrid | None = None,
     starts: Sequence[Start] | None = None,
+    time_limit_s: float | None = None,
     cancel: Cancel | None = None,
 ) -> RelaxedRepeat:
-    """Shape of least energy of a repeat, free of force.
+    """Shape of least energy of a repeat, free of force unless a size is prescribed.
 
     Parameters
     ----------
     chart : the repeat (or any number of it).
     yarn : the yarn.
-    loop_length_mm : mm of yarn per stitch: one number, or one for every course of the repeat
-        (bottom first).
+    loop_length_mm : mm of yarn per stitch: one number, one for every course of the repeat (bottom
+        first), or (rows, columns), one for every stitch, from the lowest point of the yarn before
+        it to that after it. Where they do not repeat with the chart, the whole chart is the cell.
     branch : ``mirrored`` imposes the symmetries of the chart, ``free`` none (it also continues the
         mirrored state, shaken, and keeps the lowest).
     convention : factors of the energy.
+    cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
+    flat : hold the middles of all stitches in one plane, as a fabric laid flat; folds are kept out.
     grid : resolution; by default finer for small cells.
-    starts : by default two.
+    starts : by default two, and four in the free branch (fewer for large cells).
+    time_limit_s : refuse a cell that will probably take more CPU time.
     cancel : asked before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If the loop is too short or too long for the yarn or the cell is too large.
+        If the loop is too short or too long for the yarn, a size is out of reach, or the cell is
+        too large.
     ConvergenceError
         If no start relaxed.
     UnravelledError
@@ -157,69 +162,65 @@ def relax(
         raise InputError(
             "branch", "the published ansatz is not a spline.", "Use relax_published for it."
         )
-    repeat = chart.repeat()
-    lengths = _loop_lengths(loop_length_mm, chart, repeat)
-    for length in lengths:
+    repeat, lengths = _loop_lengths(loop_length_mm, chart)
+    for length in lengths.ravel():
         check_loop(yarn, float(length))
     uniform = bool(np.ptp(lengths) == 0.0)
+    sizes = cell_course_mm, cell_wale_mm
+    for name, size in zip(("cell_course_mm", "cell_wale_mm"), sizes, strict=True):
+        check_size(name, size, float(lengths.mean()))
     draft = (mirrored_cell if kind is Branch.MIRRORED else free_cell)(repeat, COARSE)
     if not uniform:
-        draft = YarnCell(repeat.purl, False, False, None, COARSE)
-    if draft.stitches > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its cell has {draft.stitches} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
+        draft = plain_cell(repeat, COARSE)
     if grid is None:
         grid = FINE if draft.stitches <= FINE_UP_TO else COARSE
     first = ROUGH if draft.stitches >= ROUGH_FROM else COARSE
     explored = grid if grid.controls <= first.controls else first
-    cell = replace(draft, grid=explored)
-    per_course = np.resize(lengths, cell.rows)
-    options = Options(tolerance=1e-9 if cell.stitches <= FINE_UP_TO else 1e-6)
+    chosen = _starts(kind, draft, starts)
+    shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else 1]
+    shakes = shakes if kind is Branch.FREE and uniform else ()
+    _check_cell(draft, len(chosen) + len(shakes), time_limit_s)
+    if lengths.ndim == 1:
+        lengths = np.resize(lengths, draft.rows)
+    energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
+    options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
-    whole = _Search(cell, yarn, per_course, convention, options, cancel)
-    if kind is Branch.MIRRORED:
-        whole.try_starts(starts or MIRRORED_STARTS[: 2 if cell.stitches <= FINE_UP_TO else 1])
-    else:
-        if uniform:
-            whole.continue_mirrored(repeat, explored)
-        whole.try_starts(starts or FREE_STARTS)
-    best = whole.best()
+    search = Search(energy, options, cancel)
+    if shakes:
+        small = mirrored_cell(repeat, explored)
+        smaller = replace(energy, cell=small, loop_length_mm=np.resize(lengths, small.rows))
+        search.continue_from(smaller, MIRRORED_STARTS[0], shakes)
+    search.try_starts(chosen)
+    best = search.best()
     if explored != grid:
-        cell = replace(draft, grid=grid)
-        energy = CellEnergy(cell, yarn, per_course, convention)
-        best = minimise(
-            energy, refined_state(whole.cell, best.state, cell),
-            tension=best.tension, options=options, cancel=cancel,
-        )  # fmt: skip
-        whole.evaluations += best.evaluations
-    notes = whole.notes()
+        energy = replace(energy, cell=replace(draft, grid=grid))
+        best = search.refined(energy)
+    if any(size is not None for size in sizes):
+        best = _held_at(energy, best, sizes, options, cancel)
     return relaxed_repeat(
-        repeat, cell, yarn, per_course, convention, kind, best,
-        seconds=time.process_time() - clock, evaluations=whole.evaluations,
-        starts=tuple(whole.reports), notes=notes,
+        repeat, energy, kind, best, seconds=time.process_time() - clock,
+        evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
     )  # fmt: skip
 
 
 def relaxed_repeat(
-    chart: StitchChart, cell: YarnCell, yarn: YarnModel, lengths: Array, convention: Convention,
-    branch: Branch, found: Minimum, *, seconds: float, evaluations: int,
+    chart: StitchChart, energy: CellEnergy, branch: Branch, found: Minimum, *,
+    seconds: float, evaluations: int,
     starts: tuple[StartReport, ...] = (), notes: tuple[str, ...] = (),
 ) -> RelaxedRepeat:  # fmt: skip
     """A minimum as a result, per stitch."""
-    terms = found.terms
+    terms, cell = found.terms, energy.cell
+    excess = terms.excess_mm[: len(energy.prescribed_mm)].sum()
     return RelaxedRepeat(
         branch=branch.value,
-        convention=convention,
+        convention=energy.convention,
         cell_course_mm=float(found.state[-2]),
         cell_wale_mm=float(found.state[-1]),
         energy_n_mm=terms.energy / cell.stitches,
         bending_share=terms.rod / terms.energy,
         contact_share=terms.contact / terms.energy,
-        yarn_length_mm=float(np.mean(lengths) + terms.excess_mm.sum() / cell.stitches),
+        yarn_length_mm=energy.mean_loop_mm + float(excess) / cell.stitches,
         seconds=seconds,
         evaluations=evaluations,
         converged=found.converged,
@@ -227,170 +228,100 @@ def relaxed_repeat(
         state=found.state,
         notes=notes,
         chart=chart,
-        yarn=yarn,
-        loop_lengths_mm=lengths,
+        yarn=energy.yarn,
+        loop_lengths_mm=energy.loop_length_mm,
         cell=cell,
         tension_n=found.tension,
         force_n=(float(found.force[0] / cell.stitches), float(found.force[1] / cell.stitches)),
         min_distance_mm=found.min_distance_mm,
         starts=starts,
+        flat=energy.flat,
     )
 
 
-def overlong(energy: CellEnergy, found: Minimum) -> bool:
-    """Whether a course is longer than its yarn: jammed or locked, not a state of the fabric."""
-    excess = float(np.abs(found.terms.excess_mm).max()) / energy.cell.wales
-    return excess > OVERLONG * energy.mean_loop_mm
+def _starts(kind: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> Sequence[Start]:
+    if starts is not None:
+        return starts
+    if kind is Branch.FREE:
+        return FREE_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
+    return MIRRORED_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
 
 
-class _Search:
-    """Runs starts on one cell and remembers what became of them."""
+def _check_cell(cell: YarnCell, starts: int, time_limit_s: float | None) -> None:
+    if cell.stitches > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"its cell has {cell.stitches} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+        )
+    if time_limit_s is None:
+        return
+    seconds = starts * SECONDS_PER_START * cell.stitches**1.5
+    if seconds > time_limit_s:
+        most = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
+        raise InputError(
+            "chart",
+            f"its cell of {cell.stitches} stitches would take about {seconds:.0f} s, more than the "
+            f"limit of {time_limit_s:g} s.",
+            f"Use a repeat of at most {max(most, 1)} stitches, or allow more time.",
+        )
 
-    def __init__(
-        self, cell: YarnCell, yarn: YarnModel, lengths: Array, convention: Convention,
-        options: Options, cancel: Cancel | None,
-    ) -> None:  # fmt: skip
-        self.cell = cell
-        self.yarn = yarn
-        self.lengths = lengths
-        self.convention = convention
-        self.options = options
-        self.cancel = cancel
-        self.found: list[Minimum] = []
-        self.reports: list[StartReport] = []
-        self.errors: list[KnitcoreError] = []
-        self.evaluations = 0
-        self.mirrored: Minimum | None = None
-        self.mirrored_energy = float("nan")
 
-    def try_starts(self, starts: Sequence[Start]) -> None:
-        for start in starts:
-            self._run(start.name, partial(self._grow, start))
-
-    def _grow(self, start: Start) -> Minimum:
-        return grow(
-            self.cell, self.yarn, self.lengths, self.convention, start,
-            options=self.options, cancel=self.cancel,
+def _held_at(
+    energy: CellEnergy, found: Minimum, sizes: tuple[float | None, float | None],
+    options: Options, cancel: Cancel | None,
+) -> Minimum:  # fmt: skip
+    """Walk from the force-free state to prescribed sizes."""
+    places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
+    goal = np.array([0.0 if size is None else size for size in sizes])
+    begin = found.state[-2:].copy()
+    way = np.where([size is not None for size in sizes], goal - begin, 0.0)
+    count = max(1, math.ceil(float(np.abs(way).max()) / (_STRIDE * energy.mean_loop_mm)))
+    for k in range(1, count + 1):
+        found = minimise(
+            energy, found.state, tension=found.tension, fixed=tuple(places),
+            target=begin + way * k / count, options=options, cancel=cancel,
         )  # fmt: skip
-
-    def continue_mirrored(self, repeat: StitchChart, grid: SplineGrid) -> None:
-        """Go on from the mirrored state, laid out over the free cell and shaken a little."""
-        small = mirrored_cell(repeat, grid)
-        lengths = np.resize(self.lengths, small.rows)
-        options = replace(self.options, tolerance=1e-6)
-
-        def run() -> Minimum:
-            mirrored = grow(
-                small, self.yarn, lengths, self.convention, MIRRORED_STARTS[0],
-                options=options, cancel=self.cancel,
-            )  # fmt: skip
-            self.evaluations += mirrored.evaluations
-            self.mirrored = mirrored
-            self.mirrored_energy = mirrored.terms.energy / small.stitches
-            energy = CellEnergy(self.cell, self.yarn, self.lengths, self.convention)
-            state = tiled_state(small, mirrored.state, self.cell)
-            state = _shaken_safely(energy, state)
-            return minimise(energy, state, options=self.options, cancel=self.cancel)
-
-        self._run("mirrored, shaken", run)
-
-    def _run(self, name: str, solve: Callable[[], Minimum]) -> None:
-        nan = float("nan")
-        try:
-            found = solve()
-        except (UnravelledError, ConvergenceError) as error:
-            self.errors.append(error)
-            self.reports.append(StartReport(name, str(error), nan, nan, nan))
-            return
-        self.evaluations += found.evaluations
-        outcome = self._outcome(found)
-        self.reports.append(
-            StartReport(
-                name, outcome, found.terms.energy / self.cell.stitches,
-                float(found.state[-2]), float(found.state[-1]),
+        became = outcome(energy, found)
+        if became == "unravelled":
+            raise UnravelledError("The stitches come undone on the way to this size.")
+        if became not in (RELAXED, UNSETTLED):
+            raise ConvergenceError(
+                f"No equilibrium at this size: {became}. Give one nearer to the natural "
+                f"{begin[0]:.2f} x {begin[1]:.2f} mm."
             )
-        )  # fmt: skip
-        if outcome in ("relaxed", "not converged"):
-            self.found.append(found)
-
-    def _outcome(self, found: Minimum) -> str:
-        if not np.all(np.isfinite(found.state)) or not np.isfinite(found.terms.energy):
-            return "not finite"
-        if overlong(CellEnergy(self.cell, self.yarn, self.lengths, self.convention), found):
-            return "too little yarn"
-        if found.min_distance_mm <= 2.0 * self.yarn.core_radius_mm:
-            return "cores overlap"
-        if found.state[-2] > 0.9 * float(np.mean(self.lengths)):
-            return "pulled straight"
-        if not cell_is_knitted(self.cell, found.state):
-            return "unravelled"
-        return "relaxed" if found.converged else "not converged"
-
-    def best(self) -> Minimum:
-        if not self.found:
-            if self.errors:
-                raise self.errors[0]
-            reasons = ", ".join(sorted({r.outcome for r in self.reports}))
-            raise UnravelledError(f"No start kept the stitches of this repeat: {reasons}.")
-        settled = [m for m in self.found if m.converged] or self.found
-        return min(settled, key=lambda m: m.terms.energy)
-
-    def notes(self) -> tuple[str, ...]:
-        """What the user should know: higher minima, and how far the mirrored state is off."""
-        notes = []
-        best = self.best()
-        energies = [m.terms.energy for m in self.found]
-        others = sum(e > min(energies) * (1.0 + SAME_ENERGY) for e in energies)
-        if others:
-            notes.append(f"{others} of {len(self.reports)} starts ended in a higher minimum.")
-        failed = len(self.reports) - len(self.found)
-        if failed:
-            notes.append(f"{failed} of {len(self.reports)} starts failed.")
-        if not best.converged:
-            notes.append("The solver stopped before its tolerance.")
-        if self.mirrored is not None:
-            energy = best.terms.energy / self.cell.stitches
-            lower = 1.0 - energy / self.mirrored_energy
-            if lower > SAME_ENERGY:
-                wide, high = (float(v) for v in best.state[-2:] / self.mirrored.state[-2:])
-                notes.append(
-                    f"The free shape differs from the mirrored one: its energy is {lower:.1%} "
-                    f"lower, a stitch {wide:.2f} times as wide and {high:.2f} times as high."
-                )
-        return tuple(notes)
+    return found
 
 
-def _shaken_safely(energy: CellEnergy, state: Array) -> Array:
-    """The state displaced at random by 0.02 r or as much less as keeps the yarn apart."""
-    radius = energy.yarn.radius_mm
-    curve = energy.curve(state)
-    reach = 3.0 * radius
-    pairs, _ = energy.pairs(curve, state, reach)
-    guard = Guard(energy.cell, state, curve, pairs, reach, 2.0 * radius)
-    # half of the way to the hard cores at most
-    room = 0.25 * max(guard.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
-    moved = shaken(energy.cell, state, min(0.02 * radius, 0.3 * room), seed=7)
-    scale = guard.longest_step(moved, energy.curve(moved), radius)
-    return np.asarray(state + scale * (moved - state))
-
-
-def _loop_lengths(
-    loop_length_mm: float | Sequence[float], chart: StitchChart, repeat: StitchChart
-) -> Array:
-    lengths = np.atleast_1d(np.asarray(loop_length_mm, dtype=float))
-    if len(lengths) not in (1, chart.rows, repeat.rows):
+def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[StitchChart, Array]:
+    """Repeat and its loop lengths: (rows,), or (rows, columns) where stitches differ."""
+    try:
+        lengths = np.atleast_1d(np.asarray(loop_length_mm, dtype=float))
+    except ValueError as error:
+        raise InputError(
+            "loop_length_mm", "is not a table of numbers.", "Give mm for every stitch."
+        ) from error
+    repeat = chart.repeat()
+    if lengths.ndim == 2 and lengths.shape in (chart.purl.shape, repeat.purl.shape):
+        if np.all(lengths == lengths[:, :1]):
+            return _loop_lengths(lengths[:, 0], chart)
+        small = lengths[: repeat.rows, : repeat.columns]
+        tiles = (lengths.shape[0] // repeat.rows, lengths.shape[1] // repeat.columns)
+        if np.array_equal(np.tile(small, tiles), lengths):
+            return repeat, small
+        return chart, lengths
+    if lengths.ndim != 1 or len(lengths) not in (1, chart.rows, repeat.rows):
         raise InputError(
             "loop_length_mm",
-            f"{len(lengths)} lengths were given for {repeat.rows} courses.",
-            "Give one length, or one for every course of the repeat.",
+            f"{' x '.join(map(str, lengths.shape))} lengths were given for {repeat.rows} courses "
+            f"of {repeat.columns} stitches.",
+            "Give one length, one for every course, or one for every stitch of the repeat.",
         )
-    cycle = np.resize(lengths[: repeat.rows], len(lengths))
-    if len(lengths) == chart.rows and not np.array_equal(lengths, cycle):
-        raise InputError(
-            "loop_length_mm", "the lengths do not repeat with the chart.",
-            "Give one length for every course of the smallest repeat.",
-        )  # fmt: skip
-    return np.resize(lengths, repeat.rows)
+    if len(lengths) == chart.rows and not np.array_equal(
+        lengths, np.resize(lengths[: repeat.rows], len(lengths))
+    ):
+        return chart, lengths
+    return repeat, np.resize(lengths, repeat.rows)
 
 
 _COMPILED: list[bool] = []
@@ -400,8 +331,11 @@ def _compile() -> None:
     """Compile (or load) the kernels once, so that the time of a solve is the solve's."""
     if _COMPILED:
         return
-    yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.3)
+    yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1)
     cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(8, 4))
-    grow(cell, replace(yarn, core_radius_mm=0.1), np.array([12.0]), Convention.PUBLISHED,
-         MIRRORED_STARTS[0], options=Options(iterations=2))  # fmt: skip
+    found = grow(
+        cell, yarn, np.array([12.0]), Convention.PUBLISHED, MIRRORED_STARTS[0],
+        options=Options(iterations=2),
+    )  # fmt: skip
+    outcome(CellEnergy(cell, yarn, np.array([12.0]), Convention.PUBLISHED), found)
     _COMPILED.append(True)

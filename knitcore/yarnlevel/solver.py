@@ -66,7 +66,7 @@ class Minimum:
     Attributes
     ----------
     state : unknowns.
-    tension : (rows,) tension of each course, N.
+    tension : (constraints,) tension of each course or stitch, then forces of what else is held, N.
     terms : parts of the energy.
     force : (2,) dE/d(size of a stitch), N, course-wise and wale-wise, for the whole cell.
     min_distance_mm : smallest distance of centre lines.
@@ -100,7 +100,7 @@ def minimise(
     ----------
     energy : the energy of the cell.
     state : unknowns to begin with.
-    tension : (rows,) tension to begin with, N.
+    tension : (constraints,) tensions to begin with, N.
     fixed : COURSE and/or WALE: cell sizes that are prescribed.
     target : (2,) sizes of a stitch to move the fixed ones to, mm; by default where they are.
     cancel : asked before every step.
@@ -134,7 +134,7 @@ class _Descent:
         self.energy = energy
         self.options = options
         self.walker = Walker(energy, state, options.pair_cap)
-        self.tension = np.zeros(energy.cell.rows) if tension is None else tension.copy()
+        self.tension = np.zeros(energy.constraints) if tension is None else tension.copy()
         self.free = np.ones(energy.cell.unknowns, bool)
         self.free[held] = False
         self.held, self.goal = held, goal

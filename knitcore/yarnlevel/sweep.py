@@ -16,15 +16,13 @@ import numpy as np
 
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.relax import (
-    SAME_ENERGY,
     Branch,
     RelaxedRepeat,
-    overlong,
     relaxed_repeat,
 )
 from knitcore.yarnlevel.results import Sweep
+from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 
 Cancel = Callable[[], bool]
@@ -138,13 +136,15 @@ def _held(
         fixed=(COURSE if along is Direction.COURSE else WALE,), target=target,
         options=options, cancel=cancel,
     )  # fmt: skip
-    if overlong(cell.energy, found) or abs(found.state[along.axis - 2] - size_mm) > 1e-9:
+    became = outcome(cell.energy, found)
+    if became == "unravelled":
+        raise UnravelledError("the stitches come undone.")
+    if became not in (RELAXED, UNSETTLED, "pulled straight"):
+        raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
+    if abs(found.state[along.axis - 2] - size_mm) > 1e-9:
         raise ConvergenceError("the yarn locks before it gets there.")
-    if not cell_is_knitted(cell.cell, found.state):
-        raise UnravelledError("the stitches have come undone.")
     return relaxed_repeat(
-        cell.chart, cell.cell, cell.yarn, cell.loop_lengths_mm, cell.convention,
-        Branch(cell.branch), found,
+        cell.chart, cell.energy, Branch(cell.branch), found,
         seconds=time.process_time() - began, evaluations=found.evaluations,
     )  # fmt: skip
 

@@ -81,8 +81,8 @@ def rod_sample(
 @numba.njit(cache=True)
 def rod(
     curve: Array,
-    samples: int,
     parameters: Array,
+    lengths: Array,
     tension: Array,
     weight_slope: Array,
     order: int,
@@ -92,10 +92,11 @@ def rod(
     """Terms that one sample has by itself; returns (bending + regularisation, gauge).
 
     ``gradient`` (n, 3, 3) receives dE/d(d1, d2, d3), ``local`` (n, 9, 9) their Hessian; both
-    include the tension (per course) and the weights of the contact (``weight_slope``).
-    ``parameters``: bend, regular, gauge stiffness, loop length, dt.
+    include the tension and the weights of the contact (``weight_slope``).
+    ``parameters``: bend, regular, gauge stiffness, dt. ``lengths``: what |d1| should be at each
+    sample; ``tension``: at each sample.
     """
-    bend, regular, gauge, loop, dt = parameters
+    bend, regular, gauge, dt = parameters
     slope = np.zeros(6)
     curvature = np.zeros((6, 6))
     lift = np.zeros((6, 9))
@@ -105,11 +106,12 @@ def rod(
         d = curve[i]
         rod_energy += rod_sample(d, dt * bend, dt * regular, order, slope, curvature)
         speed = np.sqrt(d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2)
+        loop = lengths[i]
         stretch = speed / loop - 1.0
         gauge_energy += 0.5 * dt * gauge * stretch * stretch
         if order == 0:
             continue
-        pull = dt * (tension[i // samples] + gauge * stretch / loop) + weight_slope[i]
+        pull = dt * (tension[i] + gauge * stretch / loop) + weight_slope[i]
         slope[0] += 0.5 * pull / speed
         for m in range(3):
             gradient[i, 0, m] = 2.0 * slope[0] * d[1, m] + slope[1] * d[2, m] + slope[3] * d[3, m]

@@ -39,9 +39,9 @@ def test_a_circle_has_its_known_bending_and_regularisation(bend, regular, exact)
     points[0, :, 0] = grid.interpolate(radius * np.cos(2 * np.pi * t))
     points[0, :, 1] = grid.interpolate(radius * np.sin(2 * np.pi * t))
     curve = kernels.sample_curve(points, 0.0, 1, grid.basis).reshape(-1, 4, 3)
-    parameters = np.array([bend, regular, 0.0, 1.0, 1.0 / grid.samples])
+    parameters = np.array([bend, regular, 0.0, 1.0 / grid.samples])
     found, _ = kernels.rod(
-        curve, len(curve), parameters, np.zeros(1), np.zeros(0), 0,
+        curve, parameters, np.ones(len(curve)), np.zeros(0), np.zeros(0), 0,
         np.zeros((0, 3, 3)), np.zeros((0, 9, 9)),
     )  # fmt: skip
     assert found == pytest.approx(exact, rel=1e-6)
@@ -72,7 +72,7 @@ def _rod_of_ellipse(wobble):
         axis=1,
     )
     return kernels.rod(
-        curve, n, np.array([0.3, 0.1, 0.0, 1.0, 1 / n]), np.zeros(1), np.zeros(0), 0,
+        curve, np.array([0.3, 0.1, 0.0, 1 / n]), np.ones(n), np.zeros(0), np.zeros(0), 0,
         np.zeros((0, 3, 3)), np.zeros((0, 9, 9)),
     )[0]  # fmt: skip
 
@@ -93,7 +93,7 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
         return energy.derivatives(y, c, pairs, start, tension, hessian=False).gradient
 
     def excess(y):
-        return energy.excess(energy.curve(y))
+        return energy.excess(y, energy.curve(y))
 
     slope = energy.derivatives(state, curve, pairs, start, tension)
     gradient, hessian = slope.gradient, slope.hessian

@@ -1,0 +1,68 @@
+"""What a cell may hold besides the lengths of its yarn: linear rules for the unknowns.
+
+- The foot of every stitch: where stitches have lengths of their own, the yarn between two of them
+  is what lies between the lowest points of their feet, so these points are kept at whole t.
+- The plane: a fabric laid flat has the middle of every stitch at the same height.
+
+Rules that symmetry already keeps are left out.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.yarnlevel.cell import YarnCell
+from knitcore.yarnlevel.spline import SUPPORT, quintic_basis
+
+Array = NDArray[np.float64]
+
+_Y, _Z = 1, 2
+_SMALL = 1e-9
+
+
+def foot_rows(cell: YarnCell) -> Array:
+    """(k, unknowns): slope dy/dt at the foot between every two stitches, mm."""
+    weights = quintic_basis(np.array([0.0]), 1)[0] * cell.grid.controls
+    rows = []
+    for course in range(cell.rows):
+        for wale in range(cell.wales):
+            row = np.zeros(cell.unknowns)
+            for a in range(SUPPORT):
+                c = (wale * cell.grid.controls - 2 + a) % cell.controls_per_course
+                row[cell.dof[course, c, _Y]] += weights[a] * cell.sign[course, c, _Y]
+            rows.append(row)
+    return independent(np.array(rows))
+
+
+def plane_rows(cell: YarnCell) -> Array:
+    """(k, unknowns): mean height of every stitch over the middle plane, mm."""
+    per_stitch = cell.grid.controls
+    rows = []
+    for course in range(cell.rows):
+        for wale in range(cell.wales):
+            row = np.zeros(cell.unknowns)
+            for c in range(wale * per_stitch, (wale + 1) * per_stitch + 1):
+                # the control points at the two feet count half
+                end = c % per_stitch == 0
+                next_cell, own = divmod(c, cell.controls_per_course)
+                sign = cell.sign[course, own, _Z] * (cell.mirror[0] if next_cell else 1)
+                row[cell.dof[course, own, _Z]] += sign * (0.5 if end else 1.0) / per_stitch
+            rows.append(row)
+    heights = np.array(rows)
+    if cell.mirror == (1, 1):  # no symmetry says where the middle plane lies
+        heights = heights - heights.mean(axis=0)
+    return independent(heights)
+
+
+def independent(rows: Array) -> Array:
+    """Rows that span the same space without a spare one."""
+    kept: list[Array] = []
+    base = np.zeros((0, rows.shape[1]))
+    for row in rows:
+        rest = row - (row @ base.T) @ base
+        size = float(np.linalg.norm(rest))
+        if size > _SMALL * max(float(np.linalg.norm(row)), 1.0):
+            kept.append(row)
+            base = np.vstack([base, rest / size])
+    return np.array(kept).reshape(len(kept), rows.shape[1])

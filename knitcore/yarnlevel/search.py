@@ -1,0 +1,206 @@
+"""Several starts on one cell, and what became of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
+from knitcore.yarnlevel.clasps import cell_is_knitted
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.growth import Start, grow, shaken
+from knitcore.yarnlevel.solver import Minimum, Options, minimise
+from knitcore.yarnlevel.tiling import refined_state, tiled_state
+from knitcore.yarnlevel.topology import Guard
+
+Array = NDArray[np.float64]
+Cancel = Callable[[], bool]
+
+SAME_ENERGY = 1e-3
+"""Starts whose energies agree within this are the same minimum."""
+OVERLONG = 1e-4
+"""Error of the length, as a part of it, beyond which a state does not count."""
+_STRAIGHT = 0.9
+"""A stitch of this part of its loop length is pulled straight."""
+
+RELAXED = "relaxed"
+UNSETTLED = "not converged"
+
+
+@dataclass(frozen=True)
+class StartReport:
+    """What became of one start.
+
+    Attributes
+    ----------
+    name : of the start.
+    outcome : ``relaxed``, ``not converged``, or the reason of a failure.
+    energy_n_mm, cell_course_mm, cell_wale_mm : per stitch; nan where it failed.
+    """
+
+    name: str
+    outcome: str
+    energy_n_mm: float
+    cell_course_mm: float
+    cell_wale_mm: float
+
+
+def overlong(energy: CellEnergy, found: Minimum) -> bool:
+    """Whether a course is longer than its yarn: jammed or locked, not a state of the fabric."""
+    lengths = found.terms.excess_mm[: len(energy.prescribed_mm)]
+    return bool(np.any(np.abs(lengths) > OVERLONG * energy.prescribed_mm))
+
+
+def outcome(energy: CellEnergy, found: Minimum) -> str:
+    """``relaxed``, ``not converged``, or why a state is none of the fabric."""
+    if not np.all(np.isfinite(found.state)) or not np.isfinite(found.terms.energy):
+        return "not finite"
+    if overlong(energy, found):
+        return "too little yarn"
+    if found.min_distance_mm <= 2.0 * energy.yarn.core_radius_mm:
+        return "cores overlap"
+    if found.state[-2] > _STRAIGHT * energy.mean_loop_mm:
+        return "pulled straight"
+    if not cell_is_knitted(energy.cell, found.state):
+        return "unravelled"
+    return RELAXED if found.converged else UNSETTLED
+
+
+class Search:
+    """Runs starts on one cell and remembers what became of them."""
+
+    def __init__(self, energy: CellEnergy, options: Options, cancel: Cancel | None) -> None:
+        self.energy = energy
+        self.options = options
+        self.cancel = cancel
+        self.found: list[Minimum] = []
+        self.reports: list[StartReport] = []
+        self.evaluations = 0
+        self._errors: list[KnitcoreError] = []
+        self._other: tuple[float, Array] | None = None
+
+    def try_starts(self, starts: Sequence[Start]) -> None:
+        """Grow the yarn from each of the starts."""
+        for start in starts:
+            self.run(start.name, partial(self._grow, self.energy, start))
+
+    def continue_from(self, smaller: CellEnergy, start: Start, seeds: Sequence[int]) -> None:
+        """Go on from the state of a more symmetric cell, laid out and shaken a little."""
+        mirrored: list[Minimum] = []
+
+        def run(seed: int) -> Minimum:
+            if not mirrored:
+                mirrored.append(self._grow(smaller, start))
+                self.evaluations += mirrored[0].evaluations
+                per_stitch = mirrored[0].terms.energy / smaller.cell.stitches
+                self._other = per_stitch, mirrored[0].state[-2:]
+            state = tiled_state(smaller.cell, mirrored[0].state, self.energy.cell)
+            state = _shaken_safely(self.energy, state, seed)
+            return minimise(self.energy, state, options=self.options, cancel=self.cancel)
+
+        for seed in seeds:
+            name = "mirrored, shaken" + (f" again ({seed})" if seed != seeds[0] else "")
+            self.run(name, partial(run, seed))
+
+    def run(self, name: str, solve: Callable[[], Minimum]) -> None:
+        """Run one start and report it."""
+        nan = float("nan")
+        try:
+            found = solve()
+        except (UnravelledError, ConvergenceError) as error:
+            self._errors.append(error)
+            self.reports.append(StartReport(name, str(error), nan, nan, nan))
+            return
+        self.evaluations += found.evaluations
+        became = outcome(self.energy, found)
+        self.reports.append(
+            StartReport(
+                name, became, found.terms.energy / self.energy.cell.stitches,
+                float(found.state[-2]), float(found.state[-1]),
+            )
+        )  # fmt: skip
+        if became in (RELAXED, UNSETTLED):
+            self.found.append(found)
+
+    def best(self) -> Minimum:
+        """The lowest state that counts.
+
+        Raises
+        ------
+        ConvergenceError, UnravelledError
+            If there is none.
+        """
+        if not self.found:
+            if self._errors:
+                raise self._errors[0]
+            reasons = ", ".join(sorted({r.outcome for r in self.reports}))
+            raise UnravelledError(f"No start kept the stitches of this repeat: {reasons}.")
+        settled = [m for m in self.found if m.converged] or self.found
+        return min(settled, key=lambda m: m.terms.energy)
+
+    def refined(self, energy: CellEnergy) -> Minimum:
+        """The best state, on a finer grid.
+
+        Raises
+        ------
+        ConvergenceError
+            If it is no state of the fabric there.
+        """
+        best = self.best()
+        found = minimise(
+            energy, refined_state(self.energy.cell, best.state, energy.cell),
+            tension=None if energy.held.size else best.tension,
+            options=self.options, cancel=self.cancel,
+        )  # fmt: skip
+        self.evaluations += found.evaluations
+        became = outcome(energy, found)
+        if became not in (RELAXED, UNSETTLED):
+            raise ConvergenceError(f"The relaxed shape does not hold on a finer grid: {became}.")
+        return found
+
+    def notes(self, best: Minimum) -> tuple[str, ...]:
+        """What the user should know: higher minima, and how far the mirrored state is off."""
+        notes = []
+        energies = [m.terms.energy for m in self.found]
+        others = sum(e > min(energies) * (1.0 + SAME_ENERGY) for e in energies)
+        if others:
+            notes.append(f"{others} of {len(self.reports)} starts ended in a higher minimum.")
+        failed = len(self.reports) - len(self.found)
+        if failed:
+            notes.append(f"{failed} of {len(self.reports)} starts failed.")
+        if not best.converged:
+            notes.append("The solver stopped before its tolerance.")
+        if self._other is not None:
+            energy, size = self._other
+            lower = 1.0 - best.terms.energy / self.energy.cell.stitches / energy
+            if lower > SAME_ENERGY:
+                wide, high = (float(v) for v in best.state[-2:] / size)
+                notes.append(
+                    f"The free shape differs from the mirrored one: its energy is {lower:.1%} "
+                    f"lower, a stitch {wide:.2f} times as wide and {high:.2f} times as high."
+                )
+        return tuple(notes)
+
+    def _grow(self, energy: CellEnergy, start: Start) -> Minimum:
+        return grow(
+            energy.cell, energy.yarn, energy.loop_length_mm, energy.convention, start,
+            options=self.options, flat=energy.flat, cancel=self.cancel,
+        )  # fmt: skip
+
+
+def _shaken_safely(energy: CellEnergy, state: Array, seed: int) -> Array:
+    """The state displaced at random by 0.02 r or as much less as keeps the yarn apart."""
+    radius = energy.yarn.radius_mm
+    curve = energy.curve(state)
+    reach = 3.0 * radius
+    pairs, _ = energy.pairs(curve, state, reach)
+    guard = Guard(energy.cell, state, curve, pairs, reach, 2.0 * radius)
+    # half of the way to the hard cores at most
+    room = 0.25 * max(guard.min_distance_mm - 2.0 * energy.yarn.core_radius_mm, 0.0)
+    moved = shaken(energy.cell, state, min(0.02 * radius, 0.3 * room), seed=seed)
+    scale = guard.longest_step(moved, energy.curve(moved), radius)
+    return np.asarray(state + scale * (moved - state))
