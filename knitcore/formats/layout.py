@@ -251,7 +251,11 @@ def layout_notes(chart: StitchChart, layout: DesignLayout) -> tuple[str, ...]:
     stitch = np.ones(chart.purl.shape, dtype=bool)
     if layout.outline is not None:
         stitch = outline_marks(layout.outline)
-    return (*_outline_notes(stitch), *_region_notes(chart, stitch, layout.regions))
+    return (
+        *_outline_notes(stitch),
+        *_region_notes(chart, stitch, layout.regions),
+        *_yarn_notes(layout.regions),
+    )
 
 
 def _outline_notes(stitch: NDArray[np.bool_]) -> Iterator[str]:
@@ -259,6 +263,19 @@ def _outline_notes(stitch: NDArray[np.bool_]) -> Iterator[str]:
         check_outline(stitch)
     except InputError as error:
         yield f"Outline: {error.problem} {error.remedy}"
+
+
+def _yarn_notes(regions: Sequence[DesignRegion]) -> Iterator[str]:
+    colours: dict[str, str] = {}
+    for region in regions:
+        if region.yarn is None:
+            continue
+        first = colours.setdefault(region.yarn, region.colour.lower())
+        if first != region.colour.lower():
+            yield (
+                f"The yarn {region.yarn} has several colours: that of its first region, {first}, "
+                f"counts in {region.name}, too."
+            )
 
 
 def _region_notes(

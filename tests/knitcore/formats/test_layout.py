@@ -153,6 +153,15 @@ def test_what_is_wrong_is_named(change: dict[str, object], field: str, says: str
         ),
         ({"regions": [region("a", [(0, 0, 3)], fill="P")]}, "a contradicts the chart: 3 of its 3"),
         ({"outline": "x.x\nxxx"}, "row 2 is in two parts"),
+        (
+            {
+                "regions": [
+                    region("a", [(0, 0, 1)], yarn="navy"),
+                    region("b", [(0, 1, 1)], yarn="navy", colour="#000000"),
+                ]
+            },
+            "navy has several colours: that of its first region, #3b6fb6",
+        ),
         ({"outline": "xx.\nxx.", "regions": [region("a", [(0, 2, 1)])]}, "outside the outline"),
     ],
 )

@@ -9,6 +9,7 @@ from knitcore import Fabric, InputError, StitchChart
 from knitcore.fabric import Direction
 from knitcore.formats.design import design_from_mapping
 from knitcore.formats.garment_design import design_of_plan
+from knitcore.formats.knitout_reader import verified
 from knitcore.formats.layout import layout_notes
 from knitcore.formats.written import write_rows
 from knitcore.formats.written_reader import read_piece_rows
@@ -157,6 +158,18 @@ def test_every_plan_is_a_design_with_its_regions() -> None:
 def test_a_glove_is_written_and_read_back() -> None:
     piece = design_of_plan(PLANS[0], "glove-wool", intarsia=True).to_piece()
     assert read_piece_rows(write_rows(piece)) == piece
+
+
+def test_a_glove_is_knitted_by_the_machine_in_four_yarns() -> None:
+    """In a coarse gauge, so that it has few stitches."""
+    own = GaugeSet.of_material(WOOL)[Fabric.STOCKINETTE]
+    coarse = Gauge(3 * own.stitch_course_mm, 3 * own.stitch_wale_mm)
+    plan = glove(Hand(), WOOL, gauges=GaugeSet.of_material(WOOL, coarse))
+    piece = design_of_plan(plan, "glove-wool", intarsia=True).to_piece()
+    program = verified(piece)
+    assert program.carriers <= 6
+    assert program.shaping_transfers > 0
+    assert len(piece.yarns) == 4
 
 
 def test_a_longer_finger_is_longer() -> None:
