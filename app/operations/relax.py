@@ -173,7 +173,7 @@ def _relaxed(
 
 def chart_yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None) -> ChartYarn:
     """The material's yarn for a repeat, with another loop length if one is given."""
-    used = yarn_for(material, repeat)
+    used = yarn_for(material, repeat, loop_length_mm)
     if loop_length_mm is None:
         return used
     return ChartYarn(used.yarn, loop_length_mm, used.provenance, used.estimated)

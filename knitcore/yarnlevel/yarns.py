@@ -39,8 +39,13 @@ class ChartYarn:
     estimated: bool
 
 
-def yarn_for(of: Material, chart: StitchChart) -> ChartYarn:
+def yarn_for(of: Material, chart: StitchChart, loop_length_mm: float | None = None) -> ChartYarn:
     """Parameters of a material's yarn in a chart.
+
+    Parameters
+    ----------
+    of, chart : the material and the repeat.
+    loop_length_mm : yarn per stitch where the material has no loop length of its own.
 
     Raises
     ------
@@ -56,7 +61,7 @@ def yarn_for(of: Material, chart: StitchChart) -> ChartYarn:
         if len(parts) > 1:
             words += ", mean over the quarter cells"
         return ChartYarn(*_mean(parts), provenance=words, estimated=False)
-    parts = [(share, *_estimate(of, fabric)) for fabric, share in shares.items()]
+    parts = [(share, *_estimate(of, fabric, loop_length_mm)) for fabric, share in shares.items()]
     words = (
         "estimated: radius and core from loop length and stitch area, contact stiffness from "
         "bending modulus and radius, in the proportions of acrylic and cotton"
@@ -86,14 +91,23 @@ def _mean(parts: list[tuple[float, YarnModel, float]]) -> tuple[YarnModel, float
     return model, sum(share * length for share, _, length in parts)
 
 
-def _estimate(of: Material, fabric: Fabric) -> tuple[YarnModel, float]:
+def _estimate(
+    of: Material, fabric: Fabric, loop_length_mm: float | None
+) -> tuple[YarnModel, float]:
     """Scale the paper's two yarns in the same fabric to this one."""
     record = of.fabrics.get(fabric)
-    if record is None or record.loop_length_mm is None:
+    if record is None:
         raise InputError(
             "material",
+            f"{of.identifier} has no data of {fabric}.",
+            "Add the fabric to the material, or use a material that has it.",
+        )
+    loop = record.loop_length_mm if record.loop_length_mm is not None else loop_length_mm
+    if loop is None:
+        raise InputError(
+            "loop_length_mm",
             f"{of.identifier} has no loop length for {fabric}.",
-            "Give a loop length, or use a material that has one.",
+            "Give the yarn per stitch (--loop-length-mm), or use a material that has one.",
         )
     bending = of.yarn.bending_modulus_n_mm2
     if bending is None:
@@ -102,7 +116,6 @@ def _estimate(of: Material, fabric: Fabric) -> tuple[YarnModel, float]:
             f"the bending modulus of {of.identifier} is not known.",
             "Measure it (`knitcore measure bending`) and put it into the material.",
         )
-    loop = record.loop_length_mm
     side = math.sqrt(record.stitch_course_mm * record.stitch_wale_mm)
     models = [s for s in load_samples() if s.fabric is fabric]
     # loose fabrics have much yarn on much area: both lengths tell of the radius, neither alone

@@ -1,8 +1,11 @@
 """Yarn parameters of materials in charts."""
 
+from dataclasses import replace
+
 import pytest
 
 from knitcore.chart import StitchChart
+from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import material
 from knitcore.yarnlevel.samples import sample
@@ -39,3 +42,15 @@ def test_other_yarns_are_estimated_and_labelled():
     # proportions of worsted yarn: radius between 5 and 7 % of the loop
     assert 0.04 < used.yarn.radius_mm / used.loop_length_mm < 0.08
     assert 0.3 < used.yarn.core_radius_mm / used.yarn.radius_mm < 0.6
+
+
+def test_a_loop_length_may_stand_in_for_a_missing_one():
+    lace = material("lace-cashmere")
+    record = replace(lace.record(Fabric.STOCKINETTE), loop_length_mm=None)
+    unknown = replace(lace, fabrics={**lace.fabrics, Fabric.STOCKINETTE: record})
+    stitch = StitchChart.parse("K")
+    with pytest.raises(InputError, match="--loop-length-mm") as refusal:
+        yarn_for(unknown, stitch)
+    assert refusal.value.field == "loop_length_mm"
+    known = yarn_for(lace, stitch)
+    assert yarn_for(unknown, stitch, known.loop_length_mm) == known
