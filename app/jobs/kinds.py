@@ -39,6 +39,7 @@ from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
+from knitcore.yarnlevel.fingerprint import solver_version
 
 Kind = TypeVar("Kind", bound=str)
 Request = TypeVar("Request", bound=BaseModel)
@@ -171,5 +172,5 @@ KINDS: dict[str, JobKind] = {
 
 
 def content_key(kind: str, request: str) -> str:
-    """A name made of everything that decides a result."""
-    return hashlib.sha256(f"{kind}\0{request}".encode()).hexdigest()
+    """A name made of everything that decides a result, the solver of the yarn level included."""
+    return hashlib.sha256(f"{kind}\0{solver_version()}\0{request}".encode()).hexdigest()

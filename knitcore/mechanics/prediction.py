@@ -275,8 +275,7 @@ def _corrected(
     opened = min(moduli[along.axis] / sheet.modulus_n_per_mm(along), 1.0)
     poisson = [sheet.poisson_yx, sheet.poisson_xy]
     poisson[along.axis] *= opened
-    model = MODEL_LOG_SD[folded.layout]
-    log_sd = tuple(math.hypot(model, folded_log_sd(folded, d, material)) for d in Direction)
+    log_sd = tuple(folded_log_sd(folded, d, material) for d in Direction)
     return _composite(
         sheet,
         moduli=moduli,
