@@ -156,7 +156,8 @@ export class Keeper {
     if (this.#following || this.state.value.kind === "shared") return;
     this.#change++;
     document.documentElement.dataset.unsaved = "";
-    this.#saveTimer ??= setTimeout(() => this.save(), SAVE_MS);
+    // Writing a large chart takes as long as a stroke may: it waits for a pause in the painting.
+    this.#saveTimer ??= setTimeout(() => requestIdleCallback(() => this.save(), { timeout: SAVE_MS }), SAVE_MS);
     if (this.state.value.kind === "conflict") return; // the choice comes first
     if (this.state.value.kind !== "offline") this.state.value = { kind: "waiting" };
     this.#sendLater(SEND_MS);
@@ -229,6 +230,8 @@ export class Keeper {
     this.state.value = { kind: "sending" };
     try {
       const outcome = await deliver(parcel, designs);
+      // What others did comes between two strokes, not into one.
+      while (this.studio.document.painting) await new Promise((done) => setTimeout(done, 50));
       if (this.#parcel.id !== parcel.id) return; // another design was opened meanwhile
       if (outcome.kind === "conflict") this.#clash(outcome);
       else this.#delivered(outcome, change, sent);
@@ -329,7 +332,8 @@ export class Keeper {
     if (!remote || this.#sending || this.studio.document.painting) return;
     try {
       const theirs = await designs.newer(remote.id, remote.revision);
-      if (this.#parcel.id !== id || this.#change !== this.#sentChange) return;
+      const { painting } = this.studio.document;
+      if (this.#parcel.id !== id || this.#change !== this.#sentChange || painting) return;
       if (theirs) this.takeOver(theirs);
       else this.state.value = { kind: "kept" };
     } catch (error) {
