@@ -64,7 +64,8 @@ export class Painter {
   #down(event) {
     const { studio, view } = this;
     if (event.button > 2) return;
-    view.canvas.focus({ preventScroll: true });
+    // Only if need be: it makes the browser lay out the page.
+    if (document.activeElement !== view.canvas) view.canvas.focus({ preventScroll: true });
     view.canvas.setPointerCapture(event.pointerId);
     const cell = view.cellAt(event);
     const { mode } = studio.tool.value;

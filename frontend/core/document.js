@@ -4,7 +4,7 @@
  * to draw anew, and when a whole step is done.
  *
  * @import {Box} from "./grid.js"
- * @import {Content, PlacementItem, ShelfItem} from "./design.js"
+ * @import {Content, PlacementItem, RegionItem, ShelfItem} from "./design.js"
  * @import {Entry, ListPatch, Patch, Snapshot} from "./history.js"
  * @import {RegionLook} from "./regions.js"
  * @import {RepeatLook} from "./repeats.js"
@@ -35,6 +35,7 @@ export class ChartDocument {
   /** @type {Set<(names: string[]) => void>} */ #refused = new Set();
   /** @type {{target: Target, layers: Map<string, Layer>, refused: boolean} | null} */ #stroke = null;
   /** @type {Links | null} */ #links = null;
+  /** @type {WeakMap<Region, {edition: number, item: RegionItem}>} */ #items = new WeakMap();
   /** How often each bitmap was changed. @type {WeakMap<Uint8Array, number>} */ #editions = new WeakMap();
 
   /**
@@ -226,10 +227,21 @@ export class ChartDocument {
     return {
       chart: this.grid.text,
       outline: this.shaped ? outlineText(this.outline, rows, columns) : null,
-      regions: this.regions.map((region) => region.written(columns)),
+      regions: this.regions.map((region) => this.#item(region)),
       repeats: this.repeats.map((repeat) => repeat.written()),
       shelf: [...this.shelf],
     };
+  }
+
+  /** A region as it is written, found anew only when it has changed. @param {Region} region */
+  #item(region) {
+    const edition = this.edition(region.cells);
+    let known = this.#items.get(region);
+    if (known?.edition !== edition) {
+      known = { edition, item: region.written(this.grid.columns) };
+      this.#items.set(region, known);
+    }
+    return known.item;
   }
 
   /**
