@@ -107,7 +107,7 @@ def _write_sizes(file: Path, entries: dict[str, Any]) -> None:
             chart = StitchChart.parse(text.replace("/", "\n"))
             pure = StitchChart.of_fabric(reference_fabric(chart), 2, 2)
             like = entries[f"{material_id}/{key_of(canonical(pure))}"]
-            if chart == canonical(pure) or not entry.get("converged", False):
+            if chart == canonical(pure) or not (_settled(entry) and _settled(like)):
                 continue
             shorter = like["loop_length_mm"] / entry["loop_length_mm"]
             ratios = [
@@ -115,6 +115,10 @@ def _write_sizes(file: Path, entries: dict[str, Any]) -> None:
                 for size in ("cell_course_mm", "cell_wale_mm")
             ]
             writer.writerow([text, material_id, *ratios])
+
+
+def _settled(entry: dict[str, Any]) -> bool:
+    return bool(entry.get("converged", False))
 
 
 def _tasks(most_stitches: int) -> dict[str, RepeatTask]:

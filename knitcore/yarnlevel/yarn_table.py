@@ -21,6 +21,7 @@ from knitcore.materials import Material
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.characterise import Document, RepeatTask, characterise_repeat, law_of
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.lawfit import MAX_STRESS_N_PER_MM
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlevel.yarns import yarn_for
@@ -65,7 +66,7 @@ class YarnPlan:
     estimated: bool
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
-    max_stress_n_per_mm: float = 0.3
+    max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM
 
     def tasks(self) -> Iterator[tuple[str, Fabric, StitchSetting, RepeatTask]]:
         """Every fabric at every setting, with a key for the batch."""
@@ -88,7 +89,7 @@ def plan_for_material(
     tensions: Sequence[float] = TENSIONS,
     branch: Branch = Branch.MIRRORED,
     convention: Convention = Convention.PUBLISHED,
-    max_stress_n_per_mm: float = 0.3,
+    max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM,
 ) -> YarnPlan:
     """The plan for a material's yarn, at its own loop lengths or at given ones.
 
@@ -136,7 +137,7 @@ def plan_for_yarn(
     fabrics: Sequence[Fabric] = tuple(Fabric),
     branch: Branch = Branch.MIRRORED,
     convention: Convention = Convention.PUBLISHED,
-    max_stress_n_per_mm: float = 0.3,
+    max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM,
 ) -> YarnPlan:
     """The plan for a yarn given by its parameters; the material is made at the middle length.
 
