@@ -1,12 +1,16 @@
-"""CPU times of the yarn level: relaxations, sweeps and cells of several sizes.
+"""What the yarn level must reach, and what it takes: CPU seconds, energies, the authors' figures.
+
+    python benchmarks/yarnlevel.py [--sides 2 4 8] [--skip-published]
 
 Run with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1: idle threads of the linear algebra would count
 as CPU time. The authors' public code, unmodified, needs about 250 CPU seconds for one point of one
-fabric.
+fabric. Moduli of the published branch are in ``published_simulation.py``, those against the
+experiments in ``yarnlevel_experiments.py``, random starts in ``yarnlevel_stress.py``.
 """
 
 from __future__ import annotations
 
+import argparse
 import time
 from dataclasses import replace
 
@@ -14,12 +18,14 @@ import numpy as np
 
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
-from knitcore.yarnlevel.cell import plain_cell
+from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.relax import COARSE, relax
-from knitcore.yarnlevel.samples import load_samples
+from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.samples import load_samples, sample
 from knitcore.yarnlevel.solver import Options
+from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -31,40 +37,119 @@ FAR = {
     Fabric.SEED: (1.2, 1.4),
 }
 YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
+LOOP_MM = 11.28
+LIMITS_S = {2: 1.0, 4: 5.0, 8: 60.0}
+STITCH_LIMIT_S, SWEEP_LIMIT_S, SWEEPS_LIMIT_S = 0.15, 4.0, 90.0
+AUTHORS_COURSE_MM, AUTHORS_SPLINE_N_MM = 2.80, 0.3957
 
 
-def main() -> None:
-    """Print the table."""
-    relax(StitchChart.parse("K"), YARN, 11.28)
+def told(value: float, limit: float, unit: str = "s") -> str:
+    """A value, its limit and whether it is kept."""
+    return f"{value:.4g} {unit} (limit {limit:g}: {'kept' if value <= limit else 'MISSED'})"
+
+
+def stitches() -> None:
+    """One stitch and its stretches for each of the eight samples."""
     print("one stitch, two starts, polished on the fine grid; 25-point sweeps there and back")
-    print(f"{'sample':24}{'relax s':>9}{'x authors':>11}{'course s':>10}{'wale s':>8}")
-    total = 0.0
-    for sample in load_samples():
-        chart = StitchChart.of_fabric(sample.fabric, 2, 2)
-        zero = relax(chart, sample.yarn, sample.loop_length_mm)
+    print(f"{'sample':24}{'relax s':>9}{'x authors':>11}{'course s':>10}{'wale s':>8}{'N·mm':>9}")
+    total = slowest = longest = 0.0
+    for entry in load_samples():
+        zero = relax(StitchChart.of_fabric(entry.fabric, 2, 2), entry.yarn, entry.loop_length_mm)
         times = []
-        for direction, far in zip(Direction, FAR[sample.fabric], strict=True):
+        for direction, far in zip(Direction, FAR[entry.fabric], strict=True):
             began = time.process_time()
             sweep(zero, direction, far, points=25)
             times.append(time.process_time() - began)
-        total += sum(times)
-        name = f"{sample.fabric} {sample.yarn_id}"
-        ratio = AUTHORS_POINT_S / zero.seconds
-        print(f"{name:24}{zero.seconds:9.3f}{ratio:11.0f}{times[0]:10.2f}{times[1]:8.2f}")
-    print(f"all 16 sweeps: {total:.1f} s")
-    print(f"{'random cell, one start':24}{'s':>9}{'steps':>8}{'N·mm a stitch':>16}")
+        total, slowest = total + sum(times), max(slowest, zero.seconds)
+        longest = max(longest, *times)
+        name, ratio = f"{entry.fabric} {entry.yarn_id}", AUTHORS_POINT_S / zero.seconds
+        print(
+            f"{name:24}{zero.seconds:9.3f}{ratio:11.0f}{times[0]:10.2f}{times[1]:8.2f}"
+            f"{zero.energy_n_mm:9.4f}"
+        )
+    print("slowest stitch:", told(slowest, STITCH_LIMIT_S))
+    print("longest sweep:", told(longest, SWEEP_LIMIT_S))
+    print("all 16 sweeps:", told(total, SWEEPS_LIMIT_S))
+
+
+def cells(sides: list[int]) -> None:
+    """Cells of random knits and purls."""
+    print("cells of random K and P, from the first shape to the tolerance")
     rng = np.random.default_rng(1)
-    for side in (2, 4, 8):
-        cell = plain_cell(StitchChart.from_rows(rng.random((side, side)) < 0.5), COARSE)
-        began = time.process_time()
-        found = grow(
-            cell, YARN, np.full(side, 11.28), Convention.AUTHORS_CODE, Start("usual"),
-            options=replace(Options(), tolerance=1e-6),
-        )  # fmt: skip
-        seconds = time.process_time() - began
-        energy = found.terms.energy / cell.stitches
+    for side in sorted(LIMITS_S):
+        purl = rng.random((side, side)) < 0.5
+        if side not in sides:
+            continue
+        chart = StitchChart(purl)
+        found = relax(
+            chart, YARN, LOOP_MM, convention=Convention.AUTHORS_CODE, starts=[Start("usual")]
+        )
         state = "" if found.converged else "  not converged"
-        print(f"{f'{side} x {side}':24}{seconds:9.2f}{found.steps:8d}{energy:16.4f}{state}")
+        print(
+            f"{side} x {side}: {told(found.seconds, LIMITS_S[side])}, {found.evaluations} "
+            f"evaluations, {found.energy_n_mm:.4f} N·mm a stitch{state}"
+        )
+
+
+def authors_sample() -> None:
+    """The authors' stockinette sample on splines, by grid; and single against general solver."""
+    configured, loop_mm = sample("acrylic", "stockinette").as_configured()
+    yarn = replace(configured, core_radius_mm=0.30)
+    stitch = StitchChart.parse("K")
+    print(f"authors' stockinette sample, l_x {AUTHORS_COURSE_MM} mm, splines by control points")
+    found = []
+    for grid in (SplineGrid(16, 3), SplineGrid(20, 4), SplineGrid(24, 5), SplineGrid(32, 5)):
+        held = relax(
+            stitch, yarn, loop_mm, convention=Convention.AUTHORS_CODE, grid=grid,
+            cell_course_mm=AUTHORS_COURSE_MM,
+        )  # fmt: skip
+        found.append(held.energy_n_mm)
+        print(f"  {grid.controls}: {held.energy_n_mm:.6f} N·mm")
+    print("  relaxed energy:", told(found[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
+    print("  grid (20 to 32):", told(abs(found[1] / found[-1] - 1.0), 1e-4, "relative"))
+    energies = []
+    for cell in (
+        mirrored_cell(stitch, SplineGrid(16, 3)),
+        plain_cell(stitch.tile(2, 2), SplineGrid(16, 3)),
+    ):
+        state = grow(
+            cell, yarn, np.full(cell.rows, loop_mm), Convention.AUTHORS_CODE, Start("usual"),
+            options=Options(tolerance=1e-9),
+        )  # fmt: skip
+        energies.append(state.terms.energy / cell.stitches)
+    print("  single and general solver:", told(abs(energies[1] / energies[0] - 1.0), 1e-5, "apart"))
+
+
+def published() -> None:
+    """Zero-force energies of the published branch."""
+    print("published branch: energies and contact shares of Supplementary Table 8")
+    energy = share = 0.0
+    for entry in load_samples():
+        cell = relax_published(entry.fabric, entry.yarn, entry.loop_length_mm)
+        energy = max(energy, abs(cell.energy_n_mm / entry.energy_n_mm - 1.0))
+        share = max(share, abs(cell.contact_share - entry.contact_share))
+    print("  energies off by at most", told(energy, 0.03, "relative"))
+    print("  contact shares off by at most", told(share, 0.015, "absolute"))
+    configured, loop_mm = sample("acrylic", "stockinette").as_configured()
+    cell = relax_published(
+        "stockinette", replace(configured, core_radius_mm=0.30), loop_mm,
+        cell_course_mm=AUTHORS_COURSE_MM, convention=Convention.AUTHORS_CODE,
+    )  # fmt: skip
+    print(f"  authors' sample: {cell.energy_n_mm:.5f} N·mm (.4045 within 1e-3)")
+
+
+def main() -> None:
+    """Print everything."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sides", type=int, nargs="*", default=sorted(LIMITS_S))
+    parser.add_argument("--skip-published", action="store_true")
+    asked = parser.parse_args()
+    relax(StitchChart.parse("K"), YARN, LOOP_MM)  # compiles
+    stitches()
+    cells(asked.sides)
+    authors_sample()
+    if not asked.skip_published:
+        published()
 
 
 if __name__ == "__main__":

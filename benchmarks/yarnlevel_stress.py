@@ -109,9 +109,9 @@ def run(trials: int, seconds: float, first: int = 0) -> Counter[str]:
 def main() -> None:
     """Entry of the script."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--trials", type=int, default=1000)
+    parser.add_argument("--trials", type=int, default=60)
     parser.add_argument("--first", type=int, default=0, help="seed of the first trial")
-    parser.add_argument("--minutes", type=float, default=30.0, help="stop after this time")
+    parser.add_argument("--minutes", type=float, default=5.0, help="stop after this time")
     asked = parser.parse_args()
     began = time.process_time()
     outcomes = run(asked.trials, 60.0 * asked.minutes, asked.first)

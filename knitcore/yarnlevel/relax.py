@@ -41,6 +41,8 @@ COARSE = SplineGrid(controls=16, per_span=3)
 ROUGH = SplineGrid(controls=10, per_span=5)
 """Large cells find their shape on this grid (energy within 2e-3) before they are refined."""
 ROUGH_FROM = 30
+_EXPLORED = 1e-5
+"""Tolerance of a shape that will be refined."""
 FINE_UP_TO = 2
 """Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
 SEVERAL_UP_TO = 9
@@ -186,7 +188,8 @@ def relax(
     options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
-    search = Search(energy, options, cancel)
+    enough = options if explored == grid else replace(options, tolerance=_EXPLORED)
+    search = Search(energy, enough, cancel)
     if shakes:
         small = mirrored_cell(repeat, explored)
         smaller = replace(energy, cell=small, loop_length_mm=np.resize(lengths, small.rows))
@@ -195,7 +198,7 @@ def relax(
     best = search.best()
     if explored != grid:
         energy = replace(energy, cell=replace(draft, grid=grid))
-        best = search.refined(energy)
+        best = search.refined(energy, options)
     if any(size is not None for size in sizes):
         best = _held_at(energy, best, sizes, options, cancel)
     return relaxed_repeat(

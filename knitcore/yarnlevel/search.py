@@ -142,7 +142,7 @@ class Search:
         settled = [m for m in self.found if m.converged] or self.found
         return min(settled, key=lambda m: m.terms.energy)
 
-    def refined(self, energy: CellEnergy) -> Minimum:
+    def refined(self, energy: CellEnergy, options: Options) -> Minimum:
         """The best state, on a finer grid.
 
         Raises
@@ -154,7 +154,7 @@ class Search:
         found = minimise(
             energy, refined_state(self.energy.cell, best.state, energy.cell),
             tension=None if energy.held.size else best.tension,
-            options=self.options, cancel=self.cancel,
+            options=options, cancel=self.cancel,
         )  # fmt: skip
         self.evaluations += found.evaluations
         became = outcome(energy, found)
