@@ -7,7 +7,6 @@ stitch" is grey.
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,50 +14,28 @@ from itertools import pairwise
 import numpy as np
 
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.formats.chart_key import (
+    GRID,
+    HEAVY,
+    INK,
+    MARGIN_MM,
+    NO_STITCH,
+    ChartStyle,
+    is_coloured,
+    key_height,
+    key_shapes,
+    tinted,
+)
 from knitcore.formats.drawing import Box, Dots, Label, Page, Shape, Strokes, to_pdf, to_svg
-from knitcore.garment.piece import Piece, yarn_name
+from knitcore.garment.piece import Piece
 from knitcore.worked import Construction, Side, side_of_row
 
 CELL_MM = 5.0
 SMALLEST_CELL_MM = 3.0
-MARGIN_MM = 12.0
 HEADER_MM = 14.0
-KEY_MM = 24.0
-KEY_LINE_MM = 5.0
-NOTE_CHARACTERS, NOTE_LINES = 110, 14
-TINT = 0.55
-"""Share of a yarn's colour in its stitches; the rest is white."""
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
 """Longer rows get every fifth number."""
-_INK, _GRID, _HEAVY, _NO_STITCH = "#222222", "#b5b0a8", "#b3322b", "#d9d5ce"
-
-
-@dataclass(frozen=True)
-class ChartStyle:
-    """How a chart is drawn.
-
-    Attributes
-    ----------
-    construction : flat (numbers on both sides) or round (numbers at the right).
-    first_side : the side of row 1 in flat knitting.
-    aspect : height over width of a stitch, from the gauge.
-    yarn_facts : of each yarn, what the key says beside its name, such as its length.
-    note : printed below the key.
-    """
-
-    construction: Construction = Construction.FLAT
-    first_side: Side = Side.RS
-    aspect: float = 0.75
-    yarn_facts: tuple[str, ...] = ()
-    note: str = ""
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
-            raise InputError(
-                "aspect", f"{self.aspect:g} is no shape of a stitch.", "Give 0.2 to 5."
-            )
 
 
 def chart_svg(chart: StitchChart | Piece, style: ChartStyle | None = None) -> str:
@@ -82,7 +59,7 @@ def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> 
     style, piece = style or ChartStyle(), _piece(chart)
     chart = piece.chart
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
-    room_y = A4_MM[1] - HEADER_MM - _key_height(piece, style) - 2 * MARGIN_MM
+    room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
     cell = min(CELL_MM, room_x / chart.columns, room_y / (chart.rows * style.aspect))
     cell = max(cell, SMALLEST_CELL_MM)
     across, up = int(room_x / cell), int(room_y / (cell * style.aspect))
@@ -96,29 +73,6 @@ def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> 
 
 def _piece(chart: StitchChart | Piece) -> Piece:
     return chart if isinstance(chart, Piece) else Piece.plain(chart)
-
-
-def _coloured(piece: Piece) -> bool:
-    return len(piece.yarns) > 1
-
-
-def _key_height(piece: Piece, style: ChartStyle) -> float:
-    yarns = len(piece.yarns) if _coloured(piece) else 0
-    return KEY_MM + KEY_LINE_MM * (yarns + len(_note_lines(style)))
-
-
-def _note_lines(style: ChartStyle) -> list[str]:
-    wrapped = [
-        line for part in style.note.splitlines() for line in textwrap.wrap(part, NOTE_CHARACTERS)
-    ]
-    return wrapped[:NOTE_LINES]
-
-
-def tinted(colour: str) -> str:
-    """A yarn's colour as its stitches are printed."""
-    channels = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
-    mixed = (round(255 - (255 - channel) * TINT) for channel in channels)
-    return "#{:02x}{:02x}{:02x}".format(*mixed)
 
 
 def _pieces(count: int, most: int) -> list[range]:
@@ -143,7 +97,7 @@ class _Part:
 
     def page(self, paper: tuple[float, float] | None = None) -> Page:
         width = 2 * MARGIN_MM + 12.0 + self._width
-        height = HEADER_MM + 2 * MARGIN_MM + _key_height(self.piece, self.style) + self._height
+        height = HEADER_MM + 2 * MARGIN_MM + key_height(self.piece, self.style) + self._height
         if paper is not None:
             width, height = paper
         else:
@@ -192,11 +146,13 @@ class _Part:
         yield self._grid()
         yield self._purls()
         yield from self._no_stitches()
-        if not self._is_shaped:
+        if self.style.repeats:
+            yield from self._placements()
+        elif not self._is_shaped:
             yield from self._repeat()
         yield from self._row_numbers()
         yield from self._stitch_numbers()
-        yield from self._key()
+        yield from key_shapes(self.piece, self.style, self._top + self._height + 10.0)
 
     def _header(self) -> Iterator[Shape]:
         part = ""
@@ -214,7 +170,7 @@ class _Part:
         yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
 
     def _colours(self) -> Iterator[Shape]:
-        if not _coloured(self.piece):
+        if not is_coloured(self.piece):
             return
         for row in self.rows:
             for stretch in self.piece.stretches(row):
@@ -235,7 +191,7 @@ class _Part:
             (self._left, self._y(r), right, self._y(r))
             for r in range(self.rows.start - 1, self.rows.stop)
         ]
-        return Strokes(tuple(upright + level), _GRID, 0.15)
+        return Strokes(tuple(upright + level), GRID, 0.15)
 
     def _purls(self) -> Dots:
         window = (self.chart.purl & self.piece.shaped.stitch)[
@@ -245,7 +201,7 @@ class _Part:
         x = self._left + self.cell * (columns + 0.5)
         y = self._top + self._row_height * (len(self.rows) - 0.5 - rows)
         radius = round(0.22 * min(self.cell, self._row_height), 3)
-        return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, _INK)
+        return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, INK)
 
     def _no_stitches(self) -> Iterator[Shape]:
         """Grey boxes before and after the stitches of each row."""
@@ -256,7 +212,7 @@ class _Part:
                 if first < last:
                     width = self.cell * (last - first)
                     x, y = self._x(first), self._y(row)
-                    yield Box(x, y, width, self._row_height, fill=_NO_STITCH)
+                    yield Box(x, y, width, self._row_height, fill=NO_STITCH)
 
     def _repeat(self) -> Iterator[Shape]:
         """A heavy border around the repeat at the bottom right, where row 1 begins."""
@@ -272,9 +228,23 @@ class _Part:
             self._y(top),
             self.cell * (self.columns.stop - start),
             self._row_height * (top + 1 - self.rows.start),
-            stroke=_HEAVY,
+            stroke=HEAVY,
             line_width=0.7,
         )
+
+    def _placements(self) -> Iterator[Shape]:
+        """A heavy border around every copy of a linked repeat, as far as it is on this page."""
+        for mark in self.style.repeats:
+            for row, column, rows, columns in mark.places:
+                left, right = (
+                    max(column, self.columns.start),
+                    min(column + columns, self.columns.stop),
+                )
+                low, high = max(row, self.rows.start), min(row + rows, self.rows.stop)
+                if left < right and low < high:
+                    width, height = self.cell * (right - left), self._row_height * (high - low)
+                    x, y = self._x(left), self._y(high - 1)
+                    yield Box(x, y, width, height, stroke=HEAVY, line_width=0.7)
 
     def _row_numbers(self) -> Iterator[Shape]:
         size = min(2.6, 0.85 * self._row_height)
@@ -298,44 +268,6 @@ class _Part:
             number = self.chart.columns - column
             if number % every == 0 or number == 1:
                 yield Label(self._x(column) + self.cell / 2, y, str(number), 2.4, "middle")
-
-    def _key(self) -> Iterator[Shape]:
-        y = self._top + self._height + 10.0
-        flat = self.style.construction is Construction.FLAT
-        knit = "knit on RS, purl on WS" if flat else "knit"
-        purl = "purl on RS, knit on WS" if flat else "purl"
-        for index, (dot, words) in enumerate(((False, knit), (True, purl))):
-            top = y + 5.5 * index
-            yield Box(MARGIN_MM, top - 3.0, 4.0, 4.0, fill="#ffffff", stroke=_GRID)
-            if dot:
-                yield Dots(((MARGIN_MM + 2.0, top - 1.0),), 0.9, _INK)
-            yield Label(MARGIN_MM + 6.0, top, words)
-        x = MARGIN_MM + 50.0
-        if self._is_shaped:
-            yield Box(x, y - 3.0, 4.0, 4.0, fill=_NO_STITCH)
-            yield Label(x + 6.0, y, "no stitch")
-        elif self.chart.repeat_cut() != self.chart:
-            yield Box(x, y - 3.0, 4.0, 4.0, stroke=_HEAVY, line_width=0.7)
-            yield Label(x + 6.0, y, "repeat")
-        reading = (
-            "odd rows from right to left, even rows from left to right"
-            if flat and self.style.first_side is Side.RS
-            else "even rows from right to left, odd rows from left to right"
-            if flat
-            else "every round from right to left"
-        )
-        yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", 2.6)
-        y += 17.0
-        if _coloured(self.piece):
-            for index, yarn in enumerate(self.piece.yarns):
-                yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=_GRID)
-                facts = self.style.yarn_facts[index : index + 1]
-                said = f"{yarn_name(index)}: {yarn.name} ({yarn.colour})"
-                yield Label(MARGIN_MM + 6.0, y, ", ".join([said, *facts]))
-                y += KEY_LINE_MM
-        for line in _note_lines(self.style):
-            yield Label(MARGIN_MM, y, line, 2.8)
-            y += KEY_LINE_MM
 
 
 def _stitch_number(chart: StitchChart, columns: range) -> tuple[int, int]:

@@ -19,8 +19,16 @@ from knitcore.formats import (
     written,
     yarn_mesh,
 )
+from knitcore.formats.chart_key import ChartStyle, RepeatMark
 from knitcore.formats.knitout import Finish
-from knitcore.formats.layout import DesignLayout, layout_fields, piece_of
+from knitcore.formats.layout import (
+    DesignLayout,
+    DesignRepeat,
+    Placement,
+    layout_fields,
+    motif_chart,
+    piece_of,
+)
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
 from knitcore.geometry.lattice import flat_lattice
@@ -245,13 +253,31 @@ def _csv(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
     return ExportedFile(ExportKind.CSV, stitch_values.write_csv(piece, material).encode(), _LOCAL)
 
 
-def _style(piece: Piece, material: Material, options: ExportOptions) -> chart_drawing.ChartStyle:
+def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
     sizes = flat_lattice(piece.chart, material).sizes_mm.mean(axis=(0, 1))
     aspect = min(max(float(sizes[1] / sizes[0]), 0.2), 5.0)
     facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
-    return chart_drawing.ChartStyle(
-        options.construction, options.first_side, aspect, facts, options.note
+    marks = tuple(
+        RepeatMark(_repeat_words(repeat), tuple(_place(place) for place in repeat.placements))
+        for repeat in options.layout.repeats
+        if repeat.placements
     )
+    return ChartStyle(options.construction, options.first_side, aspect, facts, marks, options.note)
+
+
+def _place(place: Placement) -> tuple[int, int, int, int]:
+    return place.row, place.column, place.rows, place.columns
+
+
+def _repeat_words(repeat: DesignRepeat) -> str:
+    motif = motif_chart(repeat.motif)
+    stitches = f"multiple of {motif.columns}" + _plus(repeat.edge_columns)
+    rows = f"multiple of {motif.rows}" + _plus(repeat.edge_rows)
+    return f"{repeat.name}: {stitches} sts, {rows} rows"
+
+
+def _plus(edge: int) -> str:
+    return f" + {edge}" if edge else ""
 
 
 def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:

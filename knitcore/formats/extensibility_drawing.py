@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
-from knitcore.formats.chart_drawing import tinted
+from knitcore.formats.chart_key import tinted
 from knitcore.formats.drawing import Box, Label, Shape
 from knitcore.formats.layout import DesignRegion, region_cells
 from knitcore.garment.piece import Piece

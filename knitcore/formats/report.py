@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.formats.chart_drawing import A4_MM, MARGIN_MM, ChartStyle, chart_pages, tinted
+from knitcore.formats.chart_drawing import A4_MM, chart_pages
+from knitcore.formats.chart_key import MARGIN_MM, ChartStyle, tinted
 from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
 from knitcore.formats.extensibility_drawing import field_shapes, region_fields
 from knitcore.formats.layout import DesignRegion

@@ -17,8 +17,9 @@ from hypothesis import strategies as st
 from knitcore import InputError, StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats import report
-from knitcore.formats.chart_drawing import ChartStyle, chart_pdf, chart_svg, tinted
+from knitcore.formats.chart_drawing import chart_pdf, chart_svg
 from knitcore.formats.chart_files import read_chart, read_piece
+from knitcore.formats.chart_key import HEAVY, ChartStyle, tinted
 from knitcore.formats.drawing import Box, Label, Page
 from knitcore.formats.export import (
     COLOURLESS_KINDS,
@@ -30,7 +31,7 @@ from knitcore.formats.export import (
 )
 from knitcore.formats.extensibility_drawing import region_fields
 from knitcore.formats.garment_design import design_of_plan
-from knitcore.formats.layout import DesignLayout, DesignRegion, layout_of
+from knitcore.formats.layout import DesignLayout, DesignRegion, DesignRepeat, Placement, layout_of
 from knitcore.formats.yarn_mesh import MAXIMUM_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
@@ -131,6 +132,21 @@ def test_a_coloured_chart_has_its_yarns_in_the_key_with_length_and_mass() -> Non
     assert "A: main yarn" in drawing
     assert "Mind the edge." in drawing
     assert drawing.count(f'fill="{tinted("#1f3b70")}"') == 4 + 1  # a stretch a row, and the key
+
+
+def test_linked_repeats_are_bordered_and_named() -> None:
+    chart = StitchChart.of_fabric("seed", rows=6, columns=9)
+    repeat = DesignRepeat(
+        id="m",
+        name="Moss",
+        motif="KP/PK",
+        edge_columns=1,
+        placements=[Placement(row=0, column=0, rows=4, columns=5)] * 2,
+    )
+    options = ExportOptions(layout=DesignLayout(repeats=[repeat]))
+    drawing = export_chart(chart, ExportKind.SVG, ACRYLIC, options).content.decode()
+    assert "Moss: multiple of 2 + 1 sts, multiple of 2 rows" in drawing
+    assert drawing.count(f'stroke="{HEAVY}"') == 2 + 1  # the copies, and the key
 
 
 def test_values_are_those_of_the_stitches_inside() -> None:

@@ -1,0 +1,124 @@
+"""The key of a drawn chart: symbols, yarns, repeats and a note; and how a chart is drawn."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from knitcore.errors import InputError
+from knitcore.formats.drawing import Box, Dots, Label, Shape
+from knitcore.garment.piece import Piece, yarn_name
+from knitcore.worked import Construction, Side
+
+MARGIN_MM = 12.0
+KEY_MM = 24.0
+KEY_LINE_MM = 5.0
+NOTE_CHARACTERS, NOTE_LINES = 110, 14
+TINT = 0.55
+"""Share of a yarn's colour in its stitches; the rest is white."""
+INK, GRID, HEAVY, NO_STITCH = "#222222", "#b5b0a8", "#b3322b", "#d9d5ce"
+
+
+@dataclass(frozen=True)
+class RepeatMark:
+    """A linked repeat: what the key says of it, and its copies as (row, column, rows, columns)."""
+
+    words: str
+    places: tuple[tuple[int, int, int, int], ...]
+
+
+@dataclass(frozen=True)
+class ChartStyle:
+    """How a chart is drawn.
+
+    Attributes
+    ----------
+    construction : flat (numbers on both sides) or round (numbers at the right).
+    first_side : the side of row 1 in flat knitting.
+    aspect : height over width of a stitch, from the gauge.
+    yarn_facts : of each yarn, what the key says beside its name, such as its length.
+    repeats : linked repeats of the chart; without them the chart's own smallest repeat is marked.
+    note : printed below the key.
+    """
+
+    construction: Construction = Construction.FLAT
+    first_side: Side = Side.RS
+    aspect: float = 0.75
+    yarn_facts: tuple[str, ...] = ()
+    repeats: tuple[RepeatMark, ...] = ()
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
+            raise InputError(
+                "aspect", f"{self.aspect:g} is no shape of a stitch.", "Give 0.2 to 5."
+            )
+
+
+def is_coloured(piece: Piece) -> bool:
+    """Whether its yarns are told apart by colour."""
+    return len(piece.yarns) > 1
+
+
+def key_height(piece: Piece, style: ChartStyle) -> float:
+    """Room that the key takes below a chart."""
+    yarns = len(piece.yarns) if is_coloured(piece) else 0
+    return KEY_MM + KEY_LINE_MM * (yarns + len(style.repeats) + len(_note_lines(style)))
+
+
+def _note_lines(style: ChartStyle) -> list[str]:
+    wrapped = [
+        line for part in style.note.splitlines() for line in textwrap.wrap(part, NOTE_CHARACTERS)
+    ]
+    return wrapped[:NOTE_LINES]
+
+
+def tinted(colour: str) -> str:
+    """A yarn's colour as its stitches are printed."""
+    channels = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    mixed = (round(255 - (255 - channel) * TINT) for channel in channels)
+    return "#{:02x}{:02x}{:02x}".format(*mixed)
+
+
+def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
+    """The key, its first line at a height ``y`` on the page."""
+    flat = style.construction is Construction.FLAT
+    knit = "knit on RS, purl on WS" if flat else "knit"
+    purl = "purl on RS, knit on WS" if flat else "purl"
+    for index, (dot, words) in enumerate(((False, knit), (True, purl))):
+        top = y + 5.5 * index
+        yield Box(MARGIN_MM, top - 3.0, 4.0, 4.0, fill="#ffffff", stroke=GRID)
+        if dot:
+            yield Dots(((MARGIN_MM + 2.0, top - 1.0),), 0.9, INK)
+        yield Label(MARGIN_MM + 6.0, top, words)
+    x = MARGIN_MM + 50.0
+    if not piece.is_rectangle:
+        yield Box(x, y - 3.0, 4.0, 4.0, fill=NO_STITCH)
+        yield Label(x + 6.0, y, "no stitch")
+    elif not style.repeats and piece.chart.repeat_cut() != piece.chart:
+        yield Box(x, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
+        yield Label(x + 6.0, y, "repeat")
+    reading = (
+        "odd rows from right to left, even rows from left to right"
+        if flat and style.first_side is Side.RS
+        else "even rows from right to left, odd rows from left to right"
+        if flat
+        else "every round from right to left"
+    )
+    yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", 2.6)
+    y += 17.0
+    for index, yarn in enumerate(piece.yarns if is_coloured(piece) else ()):
+        yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=GRID)
+        facts = style.yarn_facts[index : index + 1]
+        said = f"{yarn_name(index)}: {yarn.name} ({yarn.colour})"
+        yield Label(MARGIN_MM + 6.0, y, ", ".join([said, *facts]))
+        y += KEY_LINE_MM
+    for mark in style.repeats:
+        yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
+        yield Label(MARGIN_MM + 6.0, y, mark.words)
+        y += KEY_LINE_MM
+    for line in _note_lines(style):
+        yield Label(MARGIN_MM, y, line, 2.8)
+        y += KEY_LINE_MM
