@@ -3,49 +3,36 @@
  * patterns, and the history of changes. All changes go through here; listeners hear which stitches
  * to draw anew, and when a whole step is done.
  *
- * @import {Box} from "./grid.js"
- * @import {Content, PlacementItem, RegionItem, ShelfItem} from "./design.js"
- * @import {Entry, ListPatch, Patch, Snapshot} from "./history.js"
+ * @import {Content, ShelfItem} from "./design.js"
+ * @import {Patch} from "./history.js"
  * @import {RegionLook} from "./regions.js"
  * @import {RepeatLook} from "./repeats.js"
  *
- * @typedef {{box: Box, resized: boolean}} Change `box` holds all stitches whose look may differ
  * @typedef {"stitches" | "outline" | `region:${string}`} Target what a stroke paints
  */
 
-import { boxOfRuns, flip, pack, toRuns, unpack } from "./bits.js";
+import { flip, toRuns } from "./bits.js";
 import { contentOf } from "./design.js";
 import { Grid } from "./grid.js";
 import { History } from "./history.js";
-import { Region } from "./regions.js";
-import { Links, Repeat } from "./repeats.js";
-import { surroundings, updateSurroundings } from "./segments.js";
+import { Region, filling } from "./regions.js";
+import { Repeat, laying, matching } from "./repeats.js";
+import { reshaped } from "./reshape.js";
+import { snapshotFrom, snapshotOf } from "./snapshot.js";
+import { ChartState } from "./state.js";
 import { Brush, Layer } from "./stroke.js";
 
-export class ChartDocument {
-  /** 1 where there is a stitch. @type {Uint8Array} */ outline;
-  /** Whether any stitch is absent. */
-  shaped = false;
-  /** @type {readonly Region[]} */ regions = [];
-  /** @type {readonly Repeat[]} */ repeats = [];
-  /** Patterns of one's own that travel with the design. @type {readonly ShelfItem[]} */ shelf = [];
-
-  /** @type {Set<(change: Change) => void>} */ #changed = new Set();
+export class ChartDocument extends ChartState {
   /** @type {Set<() => void>} */ #settled = new Set();
   /** @type {Set<(names: string[]) => void>} */ #refused = new Set();
-  /** @type {{target: Target, layers: Map<string, Layer>, refused: boolean} | null} */ #stroke = null;
-  /** @type {Links | null} */ #links = null;
-  /** @type {WeakMap<Region, {edition: number, item: RegionItem}>} */ #items = new WeakMap();
-  /** How often each bitmap was changed. @type {WeakMap<Uint8Array, number>} */ #editions = new WeakMap();
+  /** @type {{target: Target, layers: Map<string, Layer>, refused: number} | null} */ #stroke = null;
 
   /**
    * @param {Grid} grid
    * @param {History} [history]
    */
   constructor(grid, history = new History()) {
-    this.grid = grid;
-    this.outline = new Uint8Array(grid.purl.length).fill(1);
-    this.codes = surroundings(grid);
+    super(grid);
     this.history = history;
   }
 
@@ -55,20 +42,11 @@ export class ChartDocument {
    */
   static read(content, history = new History()) {
     const chart = new ChartDocument(new Grid(1, 1), history);
-    chart.#become(snapshot(content));
+    chart.become(snapshotFrom(content));
     return chart;
   }
 
   // --- listening ------------------------------------------------------------------------------
-
-  /**
-   * Every visible change, also within a stroke.
-   *
-   * @param {(change: Change) => void} listener
-   */
-  onChange(listener) {
-    this.#changed.add(listener);
-  }
 
   /**
    * After a whole step: a stroke ended, a region was renamed, an undo, a new chart.
@@ -88,11 +66,6 @@ export class ChartDocument {
     this.#refused.add(listener);
   }
 
-  /** Grows whenever a bitmap (a region's cells, the outline) changes. @param {Uint8Array} bitmap */
-  edition(bitmap) {
-    return this.#editions.get(bitmap) ?? 0;
-  }
-
   // --- strokes --------------------------------------------------------------------------------
 
   get painting() {
@@ -102,7 +75,7 @@ export class ChartDocument {
   /** @param {Target} [target] */
   begin(target = "stitches") {
     this.cancel();
-    this.#stroke = { target, layers: new Map(), refused: false };
+    this.#stroke = { target, layers: new Map(), refused: -1 };
   }
 
   /**
@@ -119,16 +92,16 @@ export class ChartDocument {
       this.#lay("stitches", this.#linked(brush), fresh);
       return;
     }
-    const { locked } = this.#lock();
+    const { locked } = this.links;
     const own = target === "outline" ? null : this.region(target.slice(7));
     const wanted = new Brush(this.grid.purl.length);
     for (const i of brush.touched) {
-      if (own ? own.locked : locked[i]) stroke.refused = true;
+      if (own ? own.locked : locked[i]) stroke.refused = i;
       else if (!own || this.outline[i]) wanted.set(i, brush.values[i]);
     }
     this.#lay(target, wanted, fresh);
     if (own?.fill) {
-      this.#lay("stitches", this.#linked(this.#filling(own, stroke.layers.get(target))), true);
+      this.#lay("stitches", this.#linked(filling(own, this, stroke.layers.get(target))), true);
     }
   }
 
@@ -154,7 +127,7 @@ export class ChartDocument {
   cancel() {
     const stroke = this.#stroke;
     this.#stroke = null;
-    for (const [on, layer] of stroke?.layers ?? []) this.#refresh(on, layer.revert());
+    for (const [on, layer] of stroke?.layers ?? []) this.refresh(on, layer.revert());
   }
 
   /**
@@ -188,9 +161,9 @@ export class ChartDocument {
       return;
     }
     const differs = next.purl.map((p, i) => p ^ this.grid.purl[i]);
-    const patches = this.#lists("repeats", this.#matching(this.repeats, next));
+    const patches = this.exchange("repeats", matching(this.repeats, next));
     patches.push({ on: "stitches", runs: toRuns(differs) });
-    this.#flip("stitches", toRuns(differs));
+    this.flipRuns("stitches", toRuns(differs));
     this.#keep(label, patches);
   }
 
@@ -202,9 +175,9 @@ export class ChartDocument {
    */
   load(content, label) {
     this.cancel();
-    const before = { ...this.#snapshot(), shelf: [...this.shelf] };
-    const after = { ...snapshot(content), shelf: content.shelf };
-    this.#become(after);
+    const before = { ...snapshotOf(this), shelf: [...this.shelf] };
+    const after = snapshotFrom(content);
+    this.become(after);
     this.#keep(label, [{ before, after }]);
   }
 
@@ -217,31 +190,8 @@ export class ChartDocument {
   open(content, history = new History()) {
     this.cancel();
     this.history = history;
-    this.#become(snapshot(content));
+    this.become(snapshotFrom(content));
     this.#settle();
-  }
-
-  /** @returns {Content} */
-  get content() {
-    const { rows, columns } = this.grid;
-    return {
-      chart: this.grid.text,
-      outline: this.shaped ? outlineText(this.outline, rows, columns) : null,
-      regions: this.regions.map((region) => this.#item(region)),
-      repeats: this.repeats.map((repeat) => repeat.written()),
-      shelf: [...this.shelf],
-    };
-  }
-
-  /** A region as it is written, found anew only when it has changed. @param {Region} region */
-  #item(region) {
-    const edition = this.edition(region.cells);
-    let known = this.#items.get(region);
-    if (known?.edition !== edition) {
-      known = { edition, item: region.written(this.grid.columns) };
-      this.#items.set(region, known);
-    }
-    return known.item;
   }
 
   /**
@@ -251,62 +201,11 @@ export class ChartDocument {
    * @param {string} label
    * @param {import("./reshape.js").Reshape} how
    */
-  reshape(label, { rows, columns, source, like = source, motif, grow }) {
+  reshape(label, how) {
     this.cancel();
-    const before = this.#snapshot();
-    const old = this.grid;
-    /** @param {Uint8Array} bitmap @param {Int32Array} from @param {number} other */
-    const moved = (bitmap, from, other) => Uint8Array.from(from, (i) => (i < 0 ? other : bitmap[i]));
-    const stitches = moved(old.purl, source, 0);
-    const grid = new Grid(rows, columns, motif?.swapped ? stitches.map((p) => 1 - p) : stitches);
-    const target = new Int32Array(old.purl.length).fill(-1);
-    source.forEach((i, k) => {
-      if (i >= 0) target[i] = k;
-    });
-    /** @param {PlacementItem} place @returns {PlacementItem[]} */
-    const carried = ({ row, column, rows: high, columns: wide }) => {
-      const ends = [
-        target[old.index(row, column)],
-        target[old.index(row + high - 1, column + wide - 1)],
-      ];
-      if (Math.min(...ends) < 0) return [];
-      const [a, b] = ends.map((k) => [Math.floor(k / columns), k % columns]);
-      const size = { rows: Math.abs(a[0] - b[0]) + 1, columns: Math.abs(a[1] - b[1]) + 1 };
-      return [{ row: Math.min(a[0], b[0]), column: Math.min(a[1], b[1]), ...size }];
-    };
-    /** @param {Repeat} repeat @param {PlacementItem} place @returns {PlacementItem[]} */
-    const grown = (repeat, place) => {
-      const high = place.rows === old.rows ? rows : place.rows;
-      const wide = place.columns === old.columns ? columns : place.columns;
-      const fits = repeat.snapped(high, wide);
-      if (!grow || fits.rows !== high || fits.columns !== wide) return carried(place);
-      const [corner] = carried({ ...place, rows: 1, columns: 1 });
-      const next = {
-        row: high === rows ? 0 : corner?.row,
-        column: wide === columns ? 0 : corner?.column,
-        rows: high,
-        columns: wide,
-      };
-      if (next.row === undefined || next.column === undefined) return [];
-      if (next.row + high > rows || next.column + wide > columns) return [];
-      grid.put(repeat.laid(next), next.row, next.column);
-      return [next];
-    };
-    const repeats = this.repeats.map((repeat) => {
-      const size = { rows: repeat.motif.rows + repeat.edgeRows, columns: repeat.motif.columns + repeat.edgeColumns };
-      const turned = motif ? motif.change(repeat.laid(size)) : repeat.motif;
-      return repeat.with({
-        motif: turned.resized(repeat.motif.rows, repeat.motif.columns),
-        placements: repeat.placements.flatMap((place) => grown(repeat, place)),
-      });
-    });
-    const regions = this.regions.map((region) => region.withCells(moved(region.cells, like, 0)));
-    const outline = moved(this.outline, like, 1);
-    const after = {
-      ...snapshotOf(grid, outline, regions),
-      repeats: this.#matching(repeats, grid).map((repeat) => repeat.written()),
-    };
-    this.#become(after);
+    const before = snapshotOf(this);
+    const after = reshaped(this, how);
+    this.become(after);
     this.#keep(label, [{ before, after }]);
   }
 
@@ -315,7 +214,7 @@ export class ChartDocument {
     this.cancel();
     const step = this.history.undo();
     if (!step) return undefined;
-    for (const patch of step.patches.toReversed()) this.#apply(patch, "before");
+    for (const patch of step.patches.toReversed()) this.apply(patch, "before");
     this.#settle();
     return step.label;
   }
@@ -325,22 +224,12 @@ export class ChartDocument {
     this.cancel();
     const step = this.history.redo();
     if (!step) return undefined;
-    for (const patch of step.patches) this.#apply(patch, "after");
+    for (const patch of step.patches) this.apply(patch, "after");
     this.#settle();
     return step.label;
   }
 
   // --- regions --------------------------------------------------------------------------------
-
-  /** @param {string} id */
-  region(id) {
-    return this.regions.find((region) => region.id === id) ?? null;
-  }
-
-  /** The uppermost region that a stitch belongs to. @param {number} i */
-  regionAt(i) {
-    return this.regions.findLast((region) => region.cells[i]) ?? null;
-  }
 
   /**
    * @param {Partial<RegionLook> & {name: string, colour: string}} look
@@ -394,11 +283,6 @@ export class ChartDocument {
 
   // --- repeats --------------------------------------------------------------------------------
 
-  /** @param {string} id */
-  repeat(id) {
-    return this.repeats.find((repeat) => repeat.id === id) ?? null;
-  }
-
   /**
    * @param {Partial<RepeatLook> & {name: string, motif: Grid}} look its placements are laid at once
    * @returns {string} its id
@@ -446,19 +330,19 @@ export class ChartDocument {
    */
   #arrange(label, list, next, laid = null) {
     this.cancel();
-    const patches = this.#lists(list, next);
+    const patches = this.exchange(list, next);
     if (laid) {
       this.begin();
-      if (laid instanceof Repeat) this.#lay("stitches", this.#linked(this.#laying(laid), true), false);
-      else if (laid.fill) this.paint(this.#filling(laid), false);
+      if (laid instanceof Repeat) this.#lay("stitches", this.#linked(laying(laid, this.grid), true), false);
+      else if (laid.fill) this.paint(filling(laid, this), false);
       const stroke = this.#stroke;
       this.#stroke = null;
       const { runs } = stroke?.layers.get("stitches") ?? { runs: [] };
       if (runs.length) patches.push({ on: "stitches", runs });
       patches.push(...this.#followMotifs());
-      this.#tellRefused(stroke?.refused ?? false);
+      this.#tellRefused(stroke?.refused ?? -1);
     }
-    this.#tell({ box: this.grid.box, resized: false });
+    this.tell({ box: this.grid.box, resized: false });
     this.#keep(label, patches);
   }
 
@@ -469,14 +353,14 @@ export class ChartDocument {
    * @param {boolean} [everywhere] also where there is no stitch
    */
   #linked(brush, everywhere = false) {
-    const links = this.#lock();
+    const links = this.links;
     const wanted = new Brush(this.grid.purl.length);
     const motifs = new Brush(links.groups);
     for (const i of brush.touched) {
       if (!this.outline[i] && !everywhere) continue;
       const group = links.group[i];
       if (links.locked[i]) {
-        if (this.#stroke && brush.values[i] !== this.grid.purl[i]) this.#stroke.refused = true;
+        if (this.#stroke && brush.values[i] !== this.grid.purl[i]) this.#stroke.refused = i;
       } else if (group) motifs.set(group, brush.values[i]);
       else wanted.set(i, brush.values[i]);
     }
@@ -486,46 +370,9 @@ export class ChartDocument {
     return wanted;
   }
 
-  /**
-   * The stitches of a region's fill; under a stroke, only where it has added to the region.
-   *
-   * @param {Region} region
-   * @param {Layer} [added]
-   */
-  #filling(region, added) {
-    const { columns } = this.grid;
-    const at = this.regions.findIndex(({ id }) => id === region.id);
-    const above = this.regions.slice(at + 1).filter(({ fill }) => fill);
-    const brush = new Brush(region.cells.length);
-    const { row0, row1, column0, column1 } = (added ? added.reach : null) ?? this.grid.box;
-    for (let row = row0; row < row1; row++) {
-      for (let column = column0; column < column1; column++) {
-        const i = row * columns + column;
-        if (!region.cells[i] || (added && !added.has(i)) || above.some(({ cells }) => cells[i])) continue;
-        brush.set(i, region.filling(row, column));
-      }
-    }
-    return brush;
-  }
-
-  /** @param {Repeat} repeat */
-  #laying(repeat) {
-    const { grid } = this;
-    const brush = new Brush(grid.purl.length);
-    for (const place of repeat.placements) {
-      const part = repeat.laid(place);
-      part.purl.forEach((p, k) => {
-        const row = place.row + Math.floor(k / part.columns);
-        const column = place.column + (k % part.columns);
-        if (grid.has(row, column)) brush.set(grid.index(row, column), p);
-      });
-    }
-    return brush;
-  }
-
   /** Motifs become what their copies show. @returns {Patch[]} */
   #followMotifs() {
-    const links = this.#lock();
+    const links = this.links;
     return this.repeats.flatMap((repeat, at) => {
       const differs = repeat.motif.purl.map((p, cell) => {
         const i = links.example(at, cell);
@@ -537,23 +384,6 @@ export class ChartDocument {
     });
   }
 
-  /** Repeats with only those copies that a chart shows. @param {readonly Repeat[]} repeats @param {Grid} grid */
-  #matching(repeats, grid) {
-    return repeats.map((repeat) => {
-      const placements = repeat.placements.filter((place) => {
-        const box = { row0: place.row, column0: place.column, row1: place.row + place.rows, column1: place.column + place.columns };
-        const inside = box.row1 <= grid.rows && box.column1 <= grid.columns;
-        return inside && grid.region(box).equals(repeat.laid(place));
-      });
-      return placements.length === repeat.placements.length ? repeat : repeat.with({ placements });
-    });
-  }
-
-  #lock() {
-    this.#links ??= new Links(this.grid, this.repeats, this.regions);
-    return this.#links;
-  }
-
   /**
    * @param {string} on
    * @param {Brush} wanted
@@ -561,130 +391,20 @@ export class ChartDocument {
    */
   #lay(on, wanted, fresh) {
     const stroke = this.#stroke;
-    const bitmap = this.#bitmap(on);
+    const bitmap = this.bitmap(on);
     if (!stroke || !bitmap) return;
     let layer = stroke.layers.get(on);
     if (!layer) stroke.layers.set(on, (layer = new Layer(bitmap, this.grid.columns)));
-    this.#refresh(on, layer.apply(wanted, fresh));
+    this.refresh(on, layer.apply(wanted, fresh));
   }
 
-  /** @param {string} on @returns {Uint8Array | undefined} */
-  #bitmap(on) {
-    if (on === "stitches") return this.grid.purl;
-    if (on === "outline") return this.outline;
-    const id = on.slice(on.indexOf(":") + 1);
-    return on.startsWith("region:") ? this.region(id)?.cells : this.repeat(id)?.motif.purl;
-  }
-
-  /** @param {string} on @param {number[]} runs */
-  #flip(on, runs) {
-    const bitmap = this.#bitmap(on);
-    if (!bitmap || !runs.length) return;
-    flip(bitmap, runs);
-    if (!on.startsWith("motif:")) this.#refresh(on, boxOfRuns(runs, this.grid.columns));
-  }
-
-  /**
-   * Bitmaps changed in a box: bring what is derived from them up to date, and tell.
-   *
-   * @param {string} on
-   * @param {Box | null} box
-   */
-  #refresh(on, box) {
-    if (!box) return;
-    const { rows, columns } = this.grid;
-    const bitmap = this.#bitmap(on);
-    if (bitmap) this.#editions.set(bitmap, this.edition(bitmap) + 1);
-    if (on === "outline") this.shaped = this.outline.includes(0);
-    // A flip changes its own segments and so the kinds of its four neighbours.
-    const wider = {
-      row0: Math.max(0, box.row0 - 1),
-      column0: Math.max(0, box.column0 - 1),
-      row1: Math.min(rows, box.row1 + 1),
-      column1: Math.min(columns, box.column1 + 1),
-    };
-    if (!on.startsWith("region:")) {
-      updateSurroundings(this.grid, this.codes, wider, this.shaped ? this.outline : null);
-    }
-    this.#tell({ box: wider, resized: false });
-  }
-
-  /**
-   * Exchange a list.
-   *
-   * @template {"regions" | "repeats" | "shelf"} L
-   * @param {L} list
-   * @param {ChartDocument[L]} next
-   * @returns {Patch[]}
-   */
-  #lists(list, next) {
-    const old = this[list];
-    if (next === old || (next.length === old.length && next.every((item, k) => item === old[k]))) return [];
-    const { columns } = this.grid;
-    /** @param {Region | Repeat | ShelfItem} item @param {readonly unknown[]} others @returns {Entry} */
-    const entry = (item, others) => {
-      if (!("id" in item)) return item;
-      if (others.includes(item)) return item.id;
-      return item instanceof Region ? item.written(columns) : item.written();
-    };
-    /** @type {ListPatch} */
-    const patch = {
-      list,
-      before: old.map((item) => entry(item, next)),
-      after: next.map((item) => entry(item, old)),
-    };
-    Object.assign(this, { [list]: next });
-    this.#links = null;
-    return [patch];
-  }
-
-  /**
-   * @param {Patch} patch
-   * @param {"before" | "after"} side
-   */
-  #apply(patch, side) {
-    if ("on" in patch) this.#flip(patch.on, patch.runs);
-    else if (!("list" in patch)) this.#become(patch[side]);
-    else {
-      const { rows, columns } = this.grid;
-      const entries = /** @type {any[]} */ (patch[side]);
-      /** @type {(items: readonly any[], read: (item: any) => any) => any[]} */
-      const listed = (items, read) =>
-        entries.map((entry) => (typeof entry === "string" ? items.find(({ id }) => id === entry) : read(entry)));
-      if (patch.list === "regions") {
-        this.regions = listed(this.regions, (item) => Region.read(item, rows, columns));
-      } else if (patch.list === "repeats") this.repeats = listed(this.repeats, Repeat.read);
-      else this.shelf = entries;
-      this.#links = null;
-      this.#tell({ box: this.grid.box, resized: false });
-    }
-  }
-
-  /** @returns {Snapshot} */
-  #snapshot() {
-    return {
-      ...snapshotOf(this.grid, this.outline, this.regions),
-      repeats: this.repeats.map((repeat) => repeat.written()),
-    };
-  }
-
-  /** @param {Snapshot} state */
-  #become({ rows, columns, stitches, outline, regions, repeats, shelf }) {
-    this.grid = new Grid(rows, columns, unpack(stitches, rows * columns));
-    this.outline = outline ? unpack(outline, rows * columns) : new Uint8Array(rows * columns).fill(1);
-    this.shaped = outline !== null;
-    this.regions = regions.map((item) => Region.read(item, rows, columns));
-    this.repeats = repeats.map(Repeat.read);
-    if (shelf) this.shelf = shelf;
-    this.#links = null;
-    this.codes = surroundings(this.grid, this.shaped ? this.outline : null);
-    this.#tell({ box: this.grid.box, resized: true });
-  }
-
-  /** @param {boolean} refused */
+  /** @param {number} refused a stitch that was locked, or -1 */
   #tellRefused(refused) {
-    if (!refused) return;
-    const names = this.regions.filter(({ locked }) => locked).map(({ name }) => name);
+    if (refused < 0) return;
+    const locked = this.regions.filter((region) => region.locked);
+    const here = locked.filter(({ cells }) => cells[refused]);
+    // A stitch may be kept by one that it is linked to.
+    const names = (here.length ? here : locked).map(({ name }) => name);
     for (const listener of this.#refused) listener(names);
   }
 
@@ -699,50 +419,9 @@ export class ChartDocument {
     return true;
   }
 
-  /** @param {Change} change */
-  #tell(change) {
-    for (const listener of this.#changed) listener(change);
-  }
-
   #settle() {
     for (const listener of this.#settled) listener();
   }
-}
-
-/**
- * @param {Grid} grid
- * @param {Uint8Array} outline
- * @param {readonly Region[]} regions
- */
-function snapshotOf({ rows, columns, purl }, outline, regions) {
-  return {
-    rows,
-    columns,
-    stitches: pack(purl),
-    outline: outline.includes(0) ? pack(outline) : null,
-    regions: regions.map((region) => region.written(columns)),
-  };
-}
-
-/** @param {Content} content @returns {Snapshot} */
-function snapshot({ chart, outline, regions, repeats, shelf }) {
-  const grid = Grid.fromText(chart);
-  const marks = outline?.split("\n").toReversed().join("");
-  const cells = marks && Uint8Array.from(marks, (mark) => (mark === "x" ? 1 : 0));
-  return { ...snapshotOf(grid, cells || grid.purl.map(() => 1), []), regions, repeats, shelf };
-}
-
-/**
- * @param {Uint8Array} outline
- * @param {number} rows
- * @param {number} columns
- */
-function outlineText(outline, rows, columns) {
-  const lines = [];
-  for (let row = rows - 1; row >= 0; row--) {
-    lines.push(Array.from(outline.subarray(row * columns, (row + 1) * columns), (s) => (s ? "x" : ".")).join(""));
-  }
-  return lines.join("\n");
 }
 
 /**

@@ -4,13 +4,12 @@
  * keeps both charts.
  *
  * @import {RegionItem, RepeatItem, ShelfItem} from "./design.js"
+ * @import {Snapshot} from "./snapshot.js"
  *
  * @typedef {{on: string, runs: number[]}} FlipPatch on "stitches", "outline", "region:ID", "motif:ID";
  *   [start, length, start, length, …]
  * @typedef {RegionItem | RepeatItem | ShelfItem | string} Entry a string is the id of what stays
  * @typedef {{list: "regions" | "repeats" | "shelf", before: Entry[], after: Entry[]}} ListPatch
- * @typedef {{rows: number, columns: number, stitches: string, outline: string | null,
- *   regions: RegionItem[], repeats: RepeatItem[], shelf?: ShelfItem[]}} Snapshot bitmaps are packed
  * @typedef {{before: Snapshot, after: Snapshot}} WholePatch
  * @typedef {FlipPatch | ListPatch | WholePatch} Patch
  * @typedef {{label: string, patches: Patch[]}} Step

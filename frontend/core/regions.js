@@ -2,11 +2,13 @@
  * Named parts of the chart. Later regions lie on top of earlier ones.
  *
  * @import {RegionItem} from "./design.js"
+ * @import {Grid} from "./grid.js"
+ * @import {Layer} from "./stroke.js"
  */
 
 import { rowRuns } from "./bits.js";
 import { motifGrid, motifText } from "./motif.js";
-import { Grid } from "./grid.js";
+import { Brush } from "./stroke.js";
 
 /**
  * @typedef {object} RegionLook
@@ -85,4 +87,27 @@ export class Region {
     const runs = rowRuns(this.cells, columns);
     return { id, name, colour, yarn, fill: fill && motifText(fill), runs, locked, hidden };
   }
+}
+
+/**
+ * The stitches of a region's fill, without those of filled regions above it; under a stroke, only
+ * where it has added to the region.
+ *
+ * @param {Region} region
+ * @param {{grid: Grid, regions: readonly Region[]}} chart
+ * @param {Layer} [added]
+ */
+export function filling(region, { grid, regions }, added) {
+  const at = regions.findIndex(({ id }) => id === region.id);
+  const above = regions.slice(at + 1).filter(({ fill }) => fill);
+  const brush = new Brush(region.cells.length);
+  const { row0, row1, column0, column1 } = (added ? added.reach : null) ?? grid.box;
+  for (let row = row0; row < row1; row++) {
+    for (let column = column0; column < column1; column++) {
+      const i = grid.index(row, column);
+      if (!region.cells[i] || (added && !added.has(i)) || above.some(({ cells }) => cells[i])) continue;
+      brush.set(i, region.filling(row, column));
+    }
+  }
+  return brush;
 }

@@ -7,6 +7,7 @@
  */
 
 import { motifGrid, motifText } from "./motif.js";
+import { Brush } from "./stroke.js";
 
 /**
  * @typedef {object} RepeatLook
@@ -86,6 +87,38 @@ export class Repeat {
       placements: this.placements.map((place) => ({ ...place })),
     };
   }
+}
+
+/** The stitches of a repeat's placements. @param {Repeat} repeat @param {Grid} grid */
+export function laying(repeat, grid) {
+  const brush = new Brush(grid.purl.length);
+  for (const place of repeat.placements) {
+    const part = repeat.laid(place);
+    part.purl.forEach((p, k) => {
+      const row = place.row + Math.floor(k / part.columns);
+      const column = place.column + (k % part.columns);
+      if (grid.has(row, column)) brush.set(grid.index(row, column), p);
+    });
+  }
+  return brush;
+}
+
+/**
+ * Repeats with only those placements that a chart shows.
+ *
+ * @param {readonly Repeat[]} repeats
+ * @param {Grid} grid
+ */
+export function matching(repeats, grid) {
+  return repeats.map((repeat) => {
+    const placements = repeat.placements.filter((place) => {
+      const { row: row0, column: column0 } = place;
+      const box = { row0, column0, row1: row0 + place.rows, column1: column0 + place.columns };
+      const inside = box.row1 <= grid.rows && box.column1 <= grid.columns;
+      return inside && grid.region(box).equals(repeat.laid(place));
+    });
+    return placements.length === repeat.placements.length ? repeat : repeat.with({ placements });
+  });
 }
 
 /** Which stitches stand for the same stitch of a motif, and which must not be painted. */
