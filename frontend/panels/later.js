@@ -11,6 +11,12 @@
 
 const PANELS = {
   /** @returns {Promise<PanelModule>} */
+  atlas: async () => ({ create: (await import("./inverse/inverse.js")).opening("atlas") }),
+  /** @returns {Promise<PanelModule>} */
+  fill: async () => ({ create: (await import("./inverse/inverse.js")).opening("fill") }),
+  /** @returns {Promise<PanelModule>} */
+  find: async () => ({ create: (await import("./inverse/inverse.js")).opening("find") }),
+  /** @returns {Promise<PanelModule>} */
   conflict: () => import("./designs/conflict.js"),
   /** @returns {Promise<PanelModule>} */
   designs: () => import("./designs/list.js"),

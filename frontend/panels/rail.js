@@ -105,5 +105,6 @@ export function rail(host, studio, context) {
     h("hr"),
     panel("regions", "Regions"),
     panel("repeats", "Linked repeats"),
+    small("open-atlas"),
   );
 }

@@ -1,0 +1,186 @@
+/**
+ * The atlas browser: the scatter, and what a chosen repeat will do and ask.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ * @import {AtlasTable, Point} from "./types.js"
+ */
+
+import { figure, percent, range } from "../../core/format.js";
+import { Ink } from "../../core/ink.js";
+import { motifGrid } from "../../core/motif.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { pencil } from "../../tools/pencil.js";
+import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
+import { Run } from "./run.js";
+import { inWords, scatter } from "./scatter.js";
+
+const EXTENTS = [
+  { id: "small", label: "Up to 3 × 3" },
+  { id: "all", label: "Up to 4 × 4" },
+];
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function atlasTab(studio, context) {
+  const run = new Run();
+  /** @type {Map<string, AtlasTable>} */
+  const loaded = new Map();
+  /** @type {AtlasTable | null} */ let table = null;
+  let extent = "small";
+
+  const tip = h("div", { class: "inverse-tip", hidden: true, "aria-hidden": "true" });
+  const detail = h("div", { class: "inverse-detail", id: "inverse-detail", "aria-live": "polite" });
+  const plot = scatter({
+    onHover: (point) => hint(point),
+    onPress: (point, event) => carry(event, studio, context.view, point.key, () => choose(point)),
+    onChoose: (point) => choose(point),
+    onApply: () => apply(),
+  });
+  const frame = h("div", { class: "inverse-plot" }, plot.canvas, tip);
+  const count = h("span", { class: "muted figures" });
+  const extents = h(
+    "div",
+    { class: "segmented", role: "radiogroup", "aria-label": "Which repeats" },
+    ...EXTENTS.map(({ id, label }) =>
+      h("button", { class: "segment", type: "button", role: "radio", id: `atlas-${id}`, "aria-checked": String(id === extent), onclick: () => {
+        extent = id;
+        for (const other of extents.children) other.setAttribute("aria-checked", String(other.id === `atlas-${id}`));
+        void load();
+      } }, label)),
+  );
+  /** @type {Point | null} */ let chosen = null;
+
+  /** @param {Point | null} point */
+  const hint = (point) => {
+    tip.hidden = !point;
+    if (!point || !table) return;
+    tip.replaceChildren(
+      repeatPicture(point.key, 64),
+      h("div", {}, h("strong", {}, nameOf(point.key)), h("div", { class: "figures" }, inWords(point, table))),
+    );
+    const right = point.x > frame.clientWidth / 2;
+    tip.style.left = right ? "" : `${point.x + 14}px`;
+    tip.style.right = right ? `${frame.clientWidth - point.x + 14}px` : "";
+    tip.style.top = `${Math.min(frame.clientHeight - 84, Math.max(4, point.y - 30))}px`;
+  };
+  /** @param {Point} point */
+  const choose = (point) => {
+    chosen = point;
+    plot.choose(point.index);
+    describe();
+  };
+  const apply = () => chosen && fillWith(studio, chosen.key, chosenPlace(studio));
+
+  const describe = () => {
+    if (!chosen || !table) {
+      detail.replaceChildren(
+        h("p", { class: "muted" }, "Every dot is a repeat. Point at one to see it, press it for its numbers, or drag it onto the chart, a region or the selection."),
+        h("p", { class: "inverse-legend" },
+          h("span", {}, h("i", { class: "mark pure" }), "four fabrics"),
+          h("span", {}, h("i", { class: "mark square" }), "yarn level"),
+          h("span", {}, h("i", { class: "mark ring" }), "corrected for folding"),
+          h("span", {}, h("i", { class: "mark" }), "flat composite")),
+      );
+      return;
+    }
+    const { key, index: k } = chosen;
+    /** @param {string} name @param {string} value @param {string} [spread] */
+    const row = (name, value, spread = "") =>
+      h("tr", {}, h("th", { scope: "row" }, name), h("td", { class: "value" }, value), h("td", { class: "interval muted" }, spread));
+    const size = table.relaxed_course_mm[k];
+    const picture = repeatPicture(key, 92);
+    const handle = h("div", { class: "inverse-handle", title: "Drag it onto the chart" }, picture);
+    handle.addEventListener("pointerdown", (event) => carry(event, studio, context.view, key));
+    detail.replaceChildren(
+      h("div", { class: "inverse-chosen" },
+        handle,
+        h("div", { class: "inverse-title" },
+          h("strong", { id: "inverse-name" }, nameOf(key)),
+          h("span", { class: "muted" }, sourceInWords(table.provenance[k])),
+          h("div", { class: "inverse-buttons" },
+            h("button", { class: "button primary", type: "button", id: "atlas-apply", onclick: apply }, icon("fill"), studio.selection.value ? "Fill the selection" : "Fill the chart"),
+            h("button", { class: "button", type: "button", onclick: () => paintWith(studio, key) }, icon("pencil"), "Paint with it")))),
+      h("table", { class: "inverse-numbers" },
+        h("tbody", {},
+          row("Along rows", `${figure(table.modulus_course_n_per_mm[k])} N/mm`, range([table.modulus_course_low[k], table.modulus_course_high[k]])),
+          row("Along columns", `${figure(table.modulus_wale_n_per_mm[k])} N/mm`, range([table.modulus_wale_low[k], table.modulus_wale_high[k]])),
+          row("Stretch at 0.1 N/mm", `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`))),
+      h("table", { class: "inverse-numbers" },
+        h("tbody", {},
+          row("Poisson’s ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`),
+          row("Stitch at rest", size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`),
+          row("To knit, a stitch", `${figure(table.transfers_per_stitch[k], 2)} transfers, ${figure(table.crossings_per_stitch[k], 2)} crossings; ${curlInWords(table.curl[k])}`))),
+    );
+  };
+
+  const load = async () => {
+    const material = studio.materialId.value;
+    const id = `${material} ${extent}`;
+    if (!loaded.has(id)) {
+      /** @type {AtlasTable | null} */
+      const found = await run.run("atlas", { material, repeats: extent }, "Predicting all repeats");
+      if (found) loaded.set(id, found);
+      if (`${studio.materialId.value} ${extent}` !== id) return;
+    }
+    table = loaded.get(id) ?? null;
+    chosen = null;
+    count.textContent = table ? `${table.repeats.length} repeats` : "";
+    frame.dataset.count = String(table?.repeats.length ?? 0);
+    plot.show(table);
+    describe();
+  };
+  const own = () => {
+    const { value } = studio.prediction.value;
+    plot.mark(value && { x: value.modulus_course_n_per_mm, y: value.modulus_wale_n_per_mm });
+  };
+  studio.prediction.listen(({ busy }) => !busy && own());
+  studio.selection.listen(() => chosen && describe());
+  describe();
+
+  const element = h("div", { class: "inverse-tab" },
+    h("div", { class: "inverse-bar" }, extents, count, h("span", { class: "spacer" })),
+    run.element,
+    frame,
+    detail);
+  return {
+    element,
+    open: () => {
+      own();
+      void load();
+    },
+    retheme: () => {
+      plot.draw();
+      describe();
+    },
+  };
+}
+
+/** @param {Studio} studio @param {string} key */
+export function paintWith(studio, key) {
+  studio.ink.value = new Ink(`atlas-${key}`, nameOf(key), motifGrid(key), "From the atlas");
+  if (!["stroke", "shape", "once"].includes(studio.tool.value.mode)) studio.tool.value = pencil;
+  studio.tell(`You are painting with ${nameOf(key)}.`);
+}
+
+/** @param {string} source */
+export function sourceInWords(source) {
+  /** @type {Record<string, string>} */
+  const words = {
+    measured: "Measured fabric",
+    estimated: "Estimated fabric",
+    "yarn level": "From the yarn level, carried to the measured yarn",
+    "composite, corrected": "Composite of the four fabrics, corrected for folding",
+    "composite, stretched state only": "Flat composite: right when stretched, not certified at rest",
+  };
+  return words[source] ?? source;
+}
+
+/** @param {number} curl */
+export function curlInWords(curl) {
+  if (Math.abs(curl) < 0.15) return "balanced, lies flat";
+  return `${percent(Math.abs(curl))} more ${curl > 0 ? "knits" : "purls"}: ${Math.abs(curl) > 0.5 ? "curls" : "may curl"}`;
+}

@@ -1,0 +1,230 @@
+/**
+ * Find a fabric: wishes with tolerances, in this yarn or in all, and what comes nearest.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ * @import {Candidate, Found, Wanted} from "./types.js"
+ */
+
+import { figure } from "../../core/format.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
+import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
+import { Run } from "./run.js";
+
+/**
+ * @typedef {{id: string, label: string, short: string, unit: string, start: number, percent?: boolean,
+ *   needs?: "load" | "limb", difference?: boolean}} Quantity `difference`: its tolerance is no share
+ */
+
+/** @type {Quantity[]} */
+const QUANTITIES = [
+  { id: "modulus_course_n_per_mm", label: "Stiffness along rows", short: "rows", unit: "N/mm", start: 0.1 },
+  { id: "modulus_wale_n_per_mm", label: "Stiffness along columns", short: "columns", unit: "N/mm", start: 0.1 },
+  { id: "stretch_course", label: "Stretch along rows", short: "stretch, rows", unit: "%", start: 60, percent: true, needs: "load" },
+  { id: "stretch_wale", label: "Stretch along columns", short: "stretch, columns", unit: "%", start: 40, percent: true, needs: "load" },
+  { id: "pressure_course_mmhg", label: "Pressure, rows around a limb", short: "pressure", unit: "mmHg", start: 20, needs: "limb" },
+  { id: "pressure_wale_mmhg", label: "Pressure, columns around a limb", short: "pressure", unit: "mmHg", start: 20, needs: "limb" },
+  { id: "anisotropy", label: "Anisotropy (rows over columns)", short: "anisotropy", unit: "", start: 1 },
+  { id: "poisson_yx", label: "Poisson’s ratio, pulled along rows", short: "Poisson, rows", unit: "", start: 0.2, difference: true },
+  { id: "poisson_xy", label: "Poisson’s ratio, pulled along columns", short: "Poisson, columns", unit: "", start: 0.4, difference: true },
+  { id: "extensibility_course_mm_per_n", label: "Extensibility along rows", short: "ext., rows", unit: "mm/N", start: 10 },
+  { id: "extensibility_wale_mm_per_n", label: "Extensibility along columns", short: "ext., columns", unit: "mm/N", start: 10 },
+];
+const COUNT = 12;
+
+/** @param {string} label of a value, such as stretch_wale@0.1 */
+const quantityOf = (label) => QUANTITIES.find(({ id }) => id === label.split("@")[0]) ?? QUANTITIES[0];
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function findTab(studio, context) {
+  const run = new Run();
+  const rows = h("div", { class: "wish-list", id: "wishes" });
+  const answer = h("div", { class: "inverse-answer", id: "find-answer" });
+  /** @type {(() => Wanted | null)[]} */
+  const readers = [];
+
+  /** @param {Quantity} first @param {number} [value] */
+  const addRow = (first, value = first.start) => {
+    const select = h("select", { class: "text", "aria-label": "Quantity" },
+      ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)));
+    const number = field("Value", value, { step: "any", class: "number figures wish-value" });
+    const unit = h("span", { class: "muted wish-unit" });
+    const tolerance = field("Tolerance", 10, { min: "0.1", step: "any" });
+    const toleranceUnit = h("span", { class: "muted" }, "%");
+    const weight = h("select", { class: "text", "aria-label": "Weight" },
+      ...[["0.25", "minor"], ["1", "normal"], ["4", "major"]].map(([v, text]) => h("option", { value: v, selected: v === "1" }, text)));
+    const load = field("Load in N/mm", 0.1, { min: "0.001", max: "0.5", step: "any" });
+    const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
+    const worn = field("Limb in mm", 220, { min: "1", step: "any" });
+    const extra = h("div", { class: "wish-extra" });
+    const remove = h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Remove this wish", onclick: () => {
+      readers.splice(readers.indexOf(read), 1);
+      row.remove();
+    } }, icon("close"));
+    const show = () => {
+      const q = quantityOf(select.value);
+      unit.textContent = q.unit;
+      toleranceUnit.textContent = q.difference ? "" : "%";
+      extra.replaceChildren(
+        ...(q.needs === "load" ? [h("label", {}, "at", load), h("span", { class: "muted" }, "N/mm of width")] : []),
+        ...(q.needs === "limb" ? [h("label", {}, "tube", rest), h("label", {}, "on a limb of", worn), h("span", { class: "muted" }, "mm around")] : []),
+      );
+      extra.hidden = !q.needs;
+    };
+    select.onchange = () => {
+      const q = quantityOf(select.value);
+      number.value = String(q.start);
+      tolerance.value = q.difference ? "0.05" : "10";
+      show();
+    };
+    const read = () => {
+      const q = quantityOf(select.value);
+      const numbers = [number, tolerance, load, rest, worn].map(({ valueAsNumber }) => valueAsNumber);
+      if (!Number.isFinite(numbers[0]) || !(numbers[1] > 0)) return null;
+      /** @type {Wanted} */
+      const wanted = {
+        quantity: q.id,
+        value: q.percent ? numbers[0] / 100 : numbers[0],
+        tolerance: q.difference ? numbers[1] : numbers[1] / 100,
+        weight: Number(weight.value),
+      };
+      if (q.needs === "load") wanted.load_n_per_mm = numbers[2];
+      if (q.needs === "limb") wanted.limb = { rest_mm: numbers[3], worn_mm: numbers[4] };
+      return wanted;
+    };
+    show();
+    readers.push(read);
+    const row = h("div", { class: "wish" },
+      h("div", { class: "wish-line" }, select, number, unit, h("label", { class: "wish-tolerance" }, "±", tolerance, toleranceUnit), weight, remove),
+      extra);
+    rows.append(row);
+  };
+
+  const across = h("input", { type: "checkbox", id: "find-all-yarns" });
+  const large = h("input", { type: "checkbox", id: "find-large" });
+  const transfers = limit("Transfers", [["", "any"], ["0", "none"], ["0.25", "≤ ¼ a stitch"], ["0.5", "≤ ½ a stitch"]]);
+  const curl = limit("Curl", [["", "any"], ["0.15", "lies flat"], ["0.5", "little"]]);
+
+  const search = async () => {
+    const targets = readers.map((read) => read()).filter((wanted) => wanted !== null);
+    if (targets.length < readers.length || !targets.length) {
+      run.say({ title: "A wish is incomplete", detail: "Every wish needs a value and a tolerance.", remedy: "Fill it in, or remove it." });
+      return;
+    }
+    const all = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4).map(({ id }) => id);
+    const materials = across.checked ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)] : [studio.materialId.value];
+    const request = {
+      materials,
+      targets,
+      repeats: large.checked ? "all" : "small",
+      limits: { transfers_per_stitch: numberOr(transfers.select.value), curl: numberOr(curl.select.value) },
+      count: COUNT,
+      elsewhere: false,
+    };
+    /** @type {Found | null} */
+    const found = await run.run("find", request, "Searching");
+    if (!found) return;
+    show(found, targets);
+    if (found.reached || materials.length === all.length) return;
+    /** @type {Found | null} */
+    const more = await run.run("find", { ...request, repeats: "small", elsewhere: true }, "Looking into the other yarns");
+    if (more) show({ ...found, elsewhere: more.elsewhere }, targets);
+  };
+
+  /** @param {Found} found @param {Wanted[]} targets */
+  const show = (found, targets) => {
+    answer.replaceChildren(
+      h("p", { class: found.reached ? "inverse-verdict good" : "inverse-verdict" },
+        icon(found.reached ? "check" : "info"),
+        h("span", {}, verdict(found, targets))),
+      h("ol", { class: "candidates" }, ...found.candidates.map(item)),
+      ...(found.elsewhere.length ? [h("h3", {}, "In other yarns"), h("ol", { class: "candidates" }, ...found.elsewhere.map(item))] : []),
+    );
+  };
+
+  /** @param {Candidate} candidate */
+  const item = (candidate) => {
+    const key = candidate.chart.replaceAll("\n", "/");
+    const name = studio.materials.value.find(({ id }) => id === candidate.material)?.name ?? candidate.material;
+    const picture = h("div", { class: "inverse-handle", title: "Drag it onto the chart" }, repeatPicture(key, 60));
+    picture.addEventListener("pointerdown", (event) => carry(event, studio, context.view, key, undefined, candidate.material));
+    return h("li", { class: candidate.reached ? "candidate reached" : "candidate" },
+      picture,
+      h("div", { class: "candidate-body" },
+        h("div", { class: "candidate-title" }, h("strong", {}, nameOf(key)), h("span", { class: "muted ellipsis" }, name),
+          candidate.reached && h("span", { class: "reached-mark" }, icon("check"), "within tolerance")),
+        h("div", { class: "candidate-values figures" }, ...Object.keys(candidate.values).map((label) => valueOf(candidate, label))),
+        h("div", { class: "muted candidate-cost" }, `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`)),
+      h("div", { class: "candidate-buttons" },
+        h("button", { class: "button icon-only", type: "button", title: "Fill the selection or the chart", "aria-label": `Fill with ${nameOf(key)}`, onclick: () => fillWith(studio, key, chosenPlace(studio), candidate.material) }, icon("fill")),
+        h("button", { class: "button icon-only", type: "button", title: "Paint with it", "aria-label": `Paint with ${nameOf(key)}`, onclick: () => paintWith(studio, key) }, icon("pencil"))));
+  };
+
+  addRow(QUANTITIES[0]);
+  addRow(QUANTITIES[1]);
+  const form = h("form", { class: "inverse-form", onsubmit: (/** @type {Event} */ event) => {
+    event.preventDefault();
+    void search();
+  } },
+    rows,
+    h("div", { class: "inverse-bar" },
+      h("button", { class: "button", type: "button", id: "wish-add", onclick: () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]) }, icon("plus"), "Wish"),
+      transfers.label, curl.label,
+      h("label", { class: "check" }, across, "All yarns"),
+      h("label", { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" }, large, "4 × 4"),
+      h("span", { class: "spacer" }),
+      h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find")));
+  const element = h("div", { class: "inverse-tab scrolls" }, form, run.element, answer);
+  return { element, open: () => {}, retheme: () => {} };
+}
+
+/** @param {Found} found @param {Wanted[]} targets */
+function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) {
+  const within = candidates.filter((candidate) => candidate.reached).length;
+  if (reached) return `${within === candidates.length ? `The nearest ${within}` : within} of ${searched} repeats are within all tolerances.`;
+  const beyond = Object.entries(ranges).flatMap(([label, [low, high]]) => {
+    const q = quantityOf(label);
+    const wanted = targets.find(({ quantity }) => quantity === q.id)?.value ?? low;
+    const scale = q.percent ? 100 : 1;
+    return wanted < low || wanted > high ? [`${q.label}: all span ${figure(scale * low)} to ${figure(scale * high)} ${q.unit}.`] : [];
+  });
+  return [
+    `None of ${searched} repeats reaches all of it; the nearest stand first.`,
+    ...(beyond.length ? beyond : targets.length > 1 ? ["Each wish can be had, but not together."] : []),
+    elsewhere[0]?.reached ? "Another yarn does, see below." : "Widen a tolerance, or search more yarns.",
+  ].join(" ");
+}
+
+/** @param {Candidate} candidate @param {string} label */
+function valueOf(candidate, label) {
+  const q = quantityOf(label);
+  const value = candidate.values[label];
+  const off = candidate.deviations[label];
+  const scale = q.percent ? 100 : 1;
+  if (value === null || off === null) return h("span", {}, `${q.short}: beyond the lock-up`);
+  const [low, high] = candidate.intervals[label].map((end) => (end === null ? "…" : figure(scale * end, 2)));
+  const away = q.difference ? `${off < 0 ? "−" : "+"}${figure(Math.abs(off), 2)}` : `${off < 0 ? "−" : "+"}${Math.abs(100 * off).toFixed(0)} %`;
+  return h("span", { title: `90 % interval ${low} to ${high} ${q.unit}` },
+    h("span", { class: "muted" }, `${q.short} `), `${figure(scale * value)} ${q.unit} `, h("span", { class: "away" }, away), h("span", { class: "muted" }, ` (${low}–${high})`));
+}
+
+/** @param {string} label @param {number} value @param {Record<string, unknown>} more */
+export function field(label, value, more = {}) {
+  return h("input", { type: "number", class: "number figures", "aria-label": label, value: String(value), required: true, ...more });
+}
+
+/** @param {string} label @param {string[][]} options */
+function limit(label, options) {
+  const select = h("select", { class: "text" }, ...options.map(([value, text]) => h("option", { value }, text)));
+  return { select, label: h("label", { class: "check" }, label, select) };
+}
+
+/** @param {string} text */
+function numberOr(text) {
+  return text === "" ? null : Number(text);
+}

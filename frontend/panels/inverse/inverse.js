@@ -1,0 +1,127 @@
+/**
+ * Inverse design beside the chart: the atlas of all repeats, the search for a fabric, and filling
+ * from a wish. It lies over the fabric and the inspector, so that the chart stays in sight.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { byId, h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { atlasTab } from "./atlas.js";
+import { fillTab } from "./fill.js";
+import { findTab } from "./find.js";
+import { outlineTab } from "./outline.js";
+
+const TABS = [
+  { id: "atlas", label: "Atlas" },
+  { id: "find", label: "Find a fabric" },
+  { id: "fill", label: "Fill from a wish" },
+];
+
+/** @typedef {"atlas" | "find" | "fill"} TabName */
+
+/** One panel for all three. @type {WeakMap<Studio, (tab: TabName) => void>} */
+const panels = new WeakMap();
+
+/**
+ * @param {TabName} tab
+ * @returns {(studio: Studio, context: ActionContext) => () => void}
+ */
+export const opening = (tab) => (studio, context) => {
+  let show = panels.get(studio);
+  if (!show) {
+    show = panel(studio, context);
+    panels.set(studio, show);
+  }
+  const open = show;
+  return () => open(tab);
+};
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+function panel(studio, context) {
+  const atlas = atlasTab(studio, context);
+  const find = findTab(studio, context);
+  const ways = [
+    { id: "stiffness", label: "Stiffness of parts", ...fillTab(studio) },
+    { id: "outline", label: "Outline under a stretch", ...outlineTab(studio) },
+  ];
+  const way = h("div", { class: "segmented", role: "radiogroup", "aria-label": "What is wished for" },
+    ...ways.map(({ id, label }) => h("button", { class: "segment", type: "button", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label)));
+  const showWay = (/** @type {string} */ chosen) => {
+    ways.forEach(({ id, element }, i) => {
+      element.hidden = id !== chosen;
+      way.children[i].setAttribute("aria-checked", String(id === chosen));
+    });
+  };
+  showWay("stiffness");
+  const fill = h("div", { class: "inverse-tab scrolls" }, h("div", { class: "inverse-bar" }, way), ...ways.map(({ element }) => element));
+  /** @type {Record<TabName, HTMLElement>} */
+  const contents = { atlas: atlas.element, find: find.element, fill };
+
+  const close = () => {
+    section.hidden = true;
+    byId("chart").focus({ preventScroll: true });
+  };
+  const tabs = h("div", { class: "inverse-tabs", role: "tablist", "aria-label": "Inverse design" },
+    ...TABS.map(({ id, label }) => h("button", {
+      class: "inverse-tab-button", type: "button", role: "tab", id: `inverse-${id}`, "aria-controls": `inverse-${id}-content`,
+      onclick: () => show(/** @type {TabName} */ (id)),
+      onkeydown: (/** @type {KeyboardEvent} */ event) => {
+        const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+        if (!step) return;
+        event.preventDefault();
+        event.stopPropagation();
+        const next = TABS[(TABS.findIndex((tab) => tab.id === id) + step + TABS.length) % TABS.length];
+        show(/** @type {TabName} */ (next.id));
+        byId(`inverse-${next.id}`).focus();
+      },
+    }, label)));
+  const yarn = h("span", { class: "muted ellipsis inverse-yarn" });
+  const section = h("section", {
+    class: "inverse", id: "inverse", "aria-label": "Inverse design",
+    onkeydown: (/** @type {KeyboardEvent} */ event) => {
+      if (event.key !== "Escape") return;
+      event.preventDefault();
+      event.stopPropagation();
+      close();
+    },
+  },
+    h("header", {}, tabs, yarn, h("button", { class: "button quiet icon-only", type: "button", id: "inverse-close", "aria-label": "Close inverse design", onclick: close }, icon("close"))),
+    ...TABS.map(({ id }) => {
+      const content = contents[/** @type {TabName} */ (id)];
+      content.id = `inverse-${id}-content`;
+      content.setAttribute("role", "tabpanel");
+      content.setAttribute("aria-labelledby", `inverse-${id}`);
+      return content;
+    }));
+  byId("inspector").parentElement?.append(section);
+
+  const nameYarn = () => {
+    yarn.textContent = studio.materials.value.find(({ id }) => id === studio.materialId.value)?.name ?? studio.materialId.value;
+  };
+  /** @type {TabName} */ let current = "atlas";
+  studio.materials.watch(nameYarn);
+  studio.materialId.listen(() => {
+    nameYarn();
+    if (!section.hidden && current === "atlas") atlas.open();
+  });
+  new MutationObserver(atlas.retheme).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+
+  const show = (/** @type {TabName} */ tab) => {
+    current = tab;
+    section.hidden = false;
+    for (const { id } of TABS) {
+      contents[/** @type {TabName} */ (id)].hidden = id !== tab;
+      const button = byId(`inverse-${id}`);
+      button.setAttribute("aria-selected", String(id === tab));
+      button.tabIndex = id === tab ? 0 : -1;
+    }
+    if (tab === "atlas") atlas.open();
+    byId(`inverse-${tab}`).focus({ preventScroll: true });
+  };
+  return show;
+}

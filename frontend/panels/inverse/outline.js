@@ -1,0 +1,195 @@
+/**
+ * Fill from a wanted outline: how wide the stretched swatch shall be, line by line.
+ *
+ * @import {Studio} from "../../studio.js"
+ * @import {Direction} from "../../types.js"
+ * @import {Shaped} from "./types.js"
+ */
+
+import { figure, percent } from "../../core/format.js";
+import { Grid } from "../../core/grid.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { thumbnail } from "../thumbnail.js";
+import { nameOf } from "./apply.js";
+import { field } from "./find.js";
+import { Run } from "./run.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const WIDTH = 480;
+const HEIGHT = 190;
+const PAD = { left: 44, right: 12, top: 10, bottom: 34 };
+const LOW = 0.7;
+const HIGH = 1.05;
+const MOST_STITCHES = 10_000;
+/** Where the handles stand, as shares of the length; the clamps hold the ends. */
+const PLACES = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
+
+/** @param {Studio} studio */
+export function outlineTab(studio) {
+  const run = new Run();
+  const answer = h("div", { class: "inverse-answer", id: "outline-answer" });
+  /** @type {Direction} */ let direction = "wale";
+  const widths = [0.98, 0.95, 0.92, 0.91, 0.92, 0.95, 0.98];
+  /** @type {number[] | null} */ let reached = null;
+  const strain = field("Stretch in percent", 30, { min: "1", max: "200", step: "any", id: "outline-strain" });
+  const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
+  const seed = field("Seed", 0, { min: "0", step: "1" });
+
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
+  svg.setAttribute("class", "outline-plot");
+  svg.setAttribute("role", "group");
+  svg.setAttribute("aria-label", "Wanted width of the stretched swatch over its width at rest");
+  const x = (/** @type {number} */ share) => PAD.left + share * (WIDTH - PAD.left - PAD.right);
+  const y = (/** @type {number} */ width) => PAD.top + ((HIGH - width) / (HIGH - LOW)) * (HEIGHT - PAD.top - PAD.bottom);
+
+  /** The wanted width at a share of the length. @param {number} share */
+  const wanted = (share) => {
+    const at = [0, ...PLACES, 1];
+    const values = [1, ...widths, 1];
+    const k = Math.max(0, at.findLastIndex((place) => place <= share));
+    if (k >= at.length - 1) return 1;
+    const t = (share - at[k]) / (at[k + 1] - at[k]);
+    return values[k] + (values[k + 1] - values[k]) * t * t * (3 - 2 * t);
+  };
+  /** @param {string} tag @param {Record<string, string | number>} attributes @param {string} [text] */
+  const add = (tag, attributes, text) => {
+    const element = /** @type {SVGElement} */ (document.createElementNS(SVG, tag));
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+    if (text) element.textContent = text;
+    svg.append(element);
+    return element;
+  };
+  const draw = () => {
+    const focused = svg.contains(document.activeElement) ? document.activeElement?.id : "";
+    svg.replaceChildren();
+    for (const tick of [0.7, 0.8, 0.9, 1]) {
+      add("line", { x1: PAD.left, x2: WIDTH - PAD.right, y1: y(tick), y2: y(tick), class: "grid-line" });
+      add("text", { x: PAD.left - 6, y: y(tick) + 4, class: "tick end" }, tick.toFixed(1));
+    }
+    const [first, last] = direction === "wale" ? ["bottom row", "top row"] : ["first column", "last column"];
+    add("text", { x: PAD.left, y: HEIGHT - 10, class: "tick" }, first);
+    add("text", { x: WIDTH - PAD.right, y: HEIGHT - 10, class: "tick end" }, last);
+    add("text", { x: (PAD.left + WIDTH - PAD.right) / 2, y: HEIGHT - 10, class: "tick middle" }, "stretched width over width at rest");
+    const shares = Array.from({ length: 81 }, (_, i) => i / 80);
+    add("path", { d: path(shares.map((s) => [x(s), y(wanted(s))])), class: "outline-wanted" });
+    if (reached) {
+      const { length } = reached;
+      add("path", { d: path(reached.map((w, i) => [x((i + 0.5) / length), y(w)])), class: "outline-reached" });
+    }
+    PLACES.forEach((place, k) => {
+      const handle = add("circle", {
+        id: `outline-${k}`, cx: x(place), cy: y(widths[k]), r: 7, class: "outline-handle", tabindex: 0, role: "slider",
+        "aria-label": `Wanted width at ${percent(place)} of the length`, "aria-valuemin": LOW, "aria-valuemax": HIGH, "aria-valuenow": widths[k],
+        "aria-valuetext": figure(widths[k], 2),
+      });
+      handle.addEventListener("pointerdown", (event) => drag(/** @type {PointerEvent} */ (event), k));
+      handle.addEventListener("keydown", (event) => {
+        const step = { ArrowUp: 0.01, ArrowDown: -0.01 }[/** @type {KeyboardEvent} */ (event).key];
+        if (!step) return;
+        event.preventDefault();
+        event.stopPropagation();
+        set(k, widths[k] + step);
+      });
+    });
+    if (focused) document.getElementById(focused)?.focus({ preventScroll: true });
+  };
+  /** @param {number} k @param {number} width */
+  const set = (k, width) => {
+    widths[k] = Math.round(100 * Math.min(HIGH, Math.max(LOW, width))) / 100;
+    reached = null;
+    draw();
+  };
+  /** @param {PointerEvent} down @param {number} k */
+  const drag = (down, k) => {
+    down.preventDefault();
+    const done = new AbortController();
+    window.addEventListener("pointermove", ({ clientY }) => {
+      const box = svg.getBoundingClientRect();
+      const at = ((clientY - box.top) / box.height) * HEIGHT;
+      set(k, HIGH - ((at - PAD.top) / (HEIGHT - PAD.top - PAD.bottom)) * (HIGH - LOW));
+    }, { signal: done.signal });
+    for (const name of ["pointerup", "pointercancel"]) window.addEventListener(name, () => done.abort(), { signal: done.signal });
+  };
+
+  const fill = async () => {
+    const { rows, columns } = studio.document.grid;
+    if (rows * columns > MOST_STITCHES) {
+      run.say({ title: "The chart is too large for this", detail: `It is pulled about a hundred times; ${rows * columns} stitches would take too long.`, remedy: `Use at most ${MOST_STITCHES} stitches, such as 100 × 100.` });
+      return;
+    }
+    const lines = direction === "wale" ? rows : columns;
+    answer.replaceChildren();
+    reached = null;
+    draw();
+    /** @type {Shaped | null} */
+    const found = await run.run("shape", {
+      material: studio.materialId.value,
+      direction,
+      strain: strain.valueAsNumber / 100,
+      width: Array.from({ length: lines }, (_, i) => Number(wanted((i + 0.5) / lines).toFixed(4))),
+      across: direction === "wale" ? columns : rows,
+      smallest_band: Math.min(band.valueAsNumber || 4, lines),
+      seed: seed.valueAsNumber || 0,
+    }, "Pulling swatches");
+    if (found) show(found);
+  };
+  /** @param {Shaped} found */
+  const show = (found) => {
+    reached = found.width;
+    draw();
+    const filled = Grid.fromText(found.chart);
+    const good = found.largest <= 0.03;
+    answer.replaceChildren(
+      h("p", { class: good ? "inverse-verdict good" : "inverse-verdict" }, icon(good ? "check" : "info"),
+        h("span", {}, `Stretched, the widths are ${percent(found.rms, 1)} off in the mean and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`)),
+      h("div", { class: "inverse-preview" },
+        thumbnail({ chart: found.chart }, { side: 150, label: "The filled chart" }),
+        h("div", { class: "preview-words" },
+          h("p", {}, `From the ${direction === "wale" ? "bottom" : "left"}: ${found.bands.map(({ repeat, lines }) => `${lines} of ${nameOf(repeat)}`).join(", ")}.`),
+          ...found.messages.map((message) => h("p", {}, message)),
+          h("div", { class: "inverse-buttons" },
+            h("button", { class: "button primary", type: "button", id: "outline-apply", onclick: () => {
+              studio.document.replace(filled, "Fill from an outline");
+              studio.tell("The chart is filled. Stretch it below to see the outline.");
+            } }, icon("check"), "Apply"),
+            h("button", { class: "button", type: "button", onclick: () => {
+              reached = null;
+              draw();
+              answer.replaceChildren();
+            } }, "Discard")))),
+    );
+  };
+
+  const pulls = h("div", { class: "segmented", role: "radiogroup", "aria-label": "Pulled along" },
+    ...[["wale", "Columns"], ["course", "Rows"]].map(([id, label]) => h("button", { class: "segment", type: "button", role: "radio", "aria-checked": String(id === direction), onclick: (/** @type {Event} */ { currentTarget }) => {
+      direction = /** @type {Direction} */ (id);
+      for (const other of pulls.children) other.setAttribute("aria-checked", String(other === currentTarget));
+      reached = null;
+      draw();
+    } }, label)));
+  draw();
+  const element = h("div", { class: "inverse-section" },
+    h("form", { class: "inverse-form", onsubmit: (/** @type {Event} */ event) => {
+      event.preventDefault();
+      void fill();
+    } },
+      h("p", { class: "muted inverse-hint" }, "Drag the points: how wide the swatch shall be when it is stretched between clamps. The whole chart is filled with bands."),
+      svg,
+      h("div", { class: "inverse-bar" },
+        h("span", { class: "muted" }, "Pulled along"), pulls,
+        h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
+        h("label", { class: "check" }, "bands ≥", band),
+        h("label", { class: "check", title: "The same seed gives the same chart" }, "seed", seed),
+        h("span", { class: "spacer" }),
+        h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"))),
+    run.element,
+    answer);
+  return { element };
+}
+
+/** @param {number[][]} points */
+function path(points) {
+  return points.map(([px, py], i) => `${i ? "L" : "M"}${px.toFixed(1)} ${py.toFixed(1)}`).join("");
+}

@@ -1,0 +1,86 @@
+/**
+ * A long computation of the panel: progress, cancel, and problems in words.
+ *
+ * @import {Problem} from "../../types.js"
+ */
+
+import { ApiError, isAbort } from "../../api.js";
+import { h } from "../../dom.js";
+import { icon } from "../../icons.js";
+import { runJob } from "../../services/jobs.js";
+
+export class Run {
+  /** @type {AbortController | null} */ #running = null;
+  #bar = h("progress", { max: 1, "aria-label": "Progress" });
+  #text = h("span", { class: "figures" });
+  #busy = h(
+    "div",
+    { class: "inverse-run", hidden: true },
+    this.#bar,
+    this.#text,
+    h("button", { class: "button", type: "button", onclick: () => this.cancel() }, icon("stop"), "Cancel"),
+  );
+  #problem = h("div", { class: "problem", role: "alert", hidden: true });
+  element = h("div", { class: "inverse-status", "aria-live": "polite" }, this.#busy, this.#problem);
+
+  get busy() {
+    return this.#running !== null;
+  }
+
+  /**
+   * @template T
+   * @param {string} kind
+   * @param {unknown} request
+   * @param {string} doing in words
+   * @returns {Promise<T | null>} null if it was given up or failed, which is then on show
+   */
+  async run(kind, request, doing) {
+    this.cancel();
+    const controller = new AbortController();
+    this.#running = controller;
+    this.#problem.hidden = true;
+    this.#busy.hidden = false;
+    this.#bar.removeAttribute("value");
+    this.#text.textContent = doing;
+    try {
+      /** @type {T} */
+      const result = await runJob(kind, request, {
+        signal: controller.signal,
+        onProgress: ({ state, progress }) => {
+          if (state === "waiting") this.#text.textContent = "Waiting for its turn …";
+          else {
+            if (progress > 0) this.#bar.value = progress;
+            this.#text.textContent = progress > 0 ? `${doing} ${Math.round(100 * progress)} %` : doing;
+          }
+        },
+      });
+      return controller.signal.aborted ? null : result;
+    } catch (error) {
+      if (isAbort(error) || controller.signal.aborted) return null;
+      if (!(error instanceof ApiError)) throw error;
+      this.say(error.problem);
+      return null;
+    } finally {
+      if (this.#running === controller) {
+        this.#running = null;
+        this.#busy.hidden = true;
+      }
+    }
+  }
+
+  /** @param {Pick<Problem, "title" | "detail" | "remedy">} problem */
+  say({ title, detail, remedy }) {
+    this.#problem.hidden = false;
+    this.#problem.replaceChildren(
+      icon("warning"),
+      h("div", {}, h("strong", {}, title), h("p", {}, detail === title ? "" : detail), h("p", {}, remedy ?? "")),
+    );
+  }
+
+  /** Give it up; the service stops it too. */
+  cancel() {
+    this.#running?.abort();
+    this.#running = null;
+    this.#busy.hidden = true;
+  }
+}
