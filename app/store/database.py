@@ -22,6 +22,7 @@ Action = Callable[[Connection], Any]
 
 FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
 """The database itself failed; everything else is an answer of it or a mistake of ours."""
+FULL = ("disk is full", "No space left on device")
 BUSY_TIMEOUT_MS = 10_000
 LARGEST_BATCH = 64
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
@@ -165,9 +166,6 @@ def _told() -> Iterator[None]:
         log.error("the database failed: %s", reason)
         kind = StoreFullError if any(words in reason for words in FULL) else StoreError
         raise kind(UNREACHABLE.format(reason=_public(reason))) from error
-
-
-FULL = ("disk is full", "No space left on device")
 
 
 def _public(reason: str) -> str:

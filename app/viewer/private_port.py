@@ -13,6 +13,7 @@ import secrets
 from types import SimpleNamespace
 from typing import Any
 
+import rich
 import viser
 import viser.infra._infra as viser_infra
 import websockets.asyncio.server
@@ -20,6 +21,8 @@ import websockets.asyncio.server
 HEADER = "X-Knitcore-Relay"
 RELAY_HEADERS = {HEADER: secrets.token_urlsafe(32)}
 """What the relay sends along; new in every process."""
+
+rich.get_console().quiet = True  # viser's notices; stdout is for the service's address
 
 _guarded_calls = 0
 

@@ -8,6 +8,7 @@ import threading
 import time
 from pathlib import Path
 
+import pytest
 import viser
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
@@ -15,6 +16,7 @@ from fastapi.testclient import TestClient
 from app import memory
 from app.main import create_app
 from app.settings import Settings
+from app.viewer.views import Views
 
 ROUNDS, VIEWS = 3, 3
 CHART = {"fabric": "rib", "columns": 6, "rows": 6}
@@ -60,3 +62,10 @@ def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None
             _dropped(app, start)
     memory.give_back()
     assert _servers() == 0
+
+
+def test_nothing_is_printed_where_the_address_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    views = Views(most=1, idle_s=1.0)
+    views.open("a-quiet-one")
+    views.close()
+    assert capsys.readouterr().out == ""
