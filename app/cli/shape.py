@@ -73,11 +73,13 @@ def command(
 def _read(file: Path) -> NDArray[np.float64]:
     try:
         with file.open(newline="", encoding="utf-8") as stream:
-            rows = list(csv.DictReader(stream))
-        return np.array([float(row["width"]) if row["width"] else np.nan for row in rows])
+            names, *rows = csv.reader(stream)
+        column = [name.strip() for name in names].index("width")
+        values = [row[column].strip() if row else "" for row in rows]  # an empty line is no wish
+        return np.array([float(value) if value else np.nan for value in values])
     except FileNotFoundError:
         raise InputError("profile", f"there is no file {file}.", "Check its name.") from None
-    except (KeyError, TypeError, ValueError):
+    except (IndexError, ValueError):
         raise InputError(
             "profile", f"{file.name} is no profile.", "Give a column `width` of numbers."
         ) from None

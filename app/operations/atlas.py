@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import os
 from collections.abc import Callable
 from functools import lru_cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
@@ -16,7 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint
-from knitcore.design.repeats import known_larger_repeats, repeats_up_to
+from knitcore.design.repeats import known_larger_repeats, repeats_up_to, striped_repeats
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -40,7 +42,9 @@ class AtlasRequest(BaseModel):
 
     material: str = Field(max_length=80, examples=["acrylic"])
     repeats: Extent = Field(
-        "small", description="small: up to 3x3 and a choice of larger ones; all: also up to 4x4."
+        "small",
+        description="small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of "
+        "two fabrics.",
     )
 
 
@@ -69,8 +73,10 @@ class AtlasResult(BaseModel):
 
 def repeats_of(extent: Extent) -> tuple[StitchChart, ...]:
     """The repeats of an atlas."""
-    sides = SMALL if extent == "small" else (4, 4)
-    return tuple(dict.fromkeys((*repeats_up_to(*sides), *known_larger_repeats())))
+    if extent == "small":
+        return tuple(dict.fromkeys((*repeats_up_to(*SMALL), *known_larger_repeats())))
+    larger = (*known_larger_repeats(), *striped_repeats())
+    return tuple(dict.fromkeys((*repeats_up_to(4, 4), *larger)))
 
 
 def run_atlas(
@@ -109,7 +115,8 @@ def cached_atlas(
     built = _built()
     if (name, extent) not in built:
         material = find_material(name)
-        file = cache_folder() / f"{name}-{extent}-{material_fingerprint(material)}.npz"
+        version = f"{material_fingerprint(material)}-{_code_version()}"
+        file = cache_folder() / f"{name}-{extent}-{version}.npz"
         repeats = repeats_of(extent)
         found = _load(file, len(repeats))
         if found is None:
@@ -123,6 +130,18 @@ def cache_folder() -> Path:
     """Where atlases of the library are kept between runs; it may be emptied at any time."""
     home = os.environ.get("XDG_CACHE_HOME")
     return (Path(home) if home else Path.home() / ".cache") / "knitcore" / "atlas"
+
+
+@lru_cache(maxsize=1)
+def _code_version() -> str:
+    """Changes with whatever could change a prediction of the same laws."""
+    digest = hashlib.sha256()
+    for part in ("mechanics", "design"):
+        sources = files("knitcore").joinpath(part).iterdir()
+        for file in sorted(sources, key=lambda found: found.name):
+            if file.name.endswith(".py"):
+                digest.update(file.read_bytes())
+    return digest.hexdigest()[:8]
 
 
 @lru_cache(maxsize=1)

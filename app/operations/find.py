@@ -80,7 +80,9 @@ class FindRequest(BaseModel):
     targets: list[TargetInput] = Field(min_length=1, max_length=MAX_TARGETS)
     limits: LimitsInput | None = None
     repeats: Extent = Field(
-        "small", description="small: up to 3x3 and a choice of larger ones; all: also up to 4x4."
+        "small",
+        description="small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of "
+        "two fabrics.",
     )
     count: int = Field(10, ge=1, le=100)
     elsewhere: bool = Field(

@@ -135,9 +135,11 @@ class Atlas:
 
     def stress_at(self, direction: Direction, strain: float) -> Array:
         """Stress (N/mm) of every repeat at a strain, free across; NaN beyond the table."""
+        # A curve at its lock-up hardly grows any more; an inverse needs it to grow.
+        rising = np.maximum.accumulate(self.strains[:, direction.axis], axis=1)
+        rising = rising + 1e-9 * np.arange(len(STRESS_N_PER_MM))
         stresses = [
-            PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain)
-            for curve in self.strains[:, direction.axis]
+            PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain) for curve in rising
         ]
         return np.array(stresses, dtype=float)
 

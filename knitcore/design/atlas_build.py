@@ -12,18 +12,25 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
 from knitcore.design.curves import CurveMaker
 from knitcore.design.repeats import repeat_key, repeat_of_key
 from knitcore.errors import InputError, KnitcoreError
+from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
-from knitcore.mechanics.prediction import Prediction, predict
+from knitcore.mechanics.prediction import Prediction, Provenance, predict
 from knitcore.yarnlevel.known import STORED_MATERIALS, KnownRepeat, known_repeat
 
 AT_ONCE = 16
 """Repeats in one task of a batch: half a second of work."""
+
+UNBELIEVABLE = 20.0
+"""A yarn-level modulus that is so many times smaller or larger than the flat composite's is not
+taken: without friction a folded repeat may open at almost no force."""
 
 Progress = Callable[[int, int], None]
 
@@ -131,8 +138,10 @@ def predict_entry(
         _or_nan(prediction.relaxed_course_mm),
         _or_nan(prediction.relaxed_wale_mm),
     )
-    strains = curves.strains(repeat, prediction, None if known is None else known.law)
-    return Entry(values, tuple(strains.ravel().tolist()), prediction.provenance.value)
+    own = known is not None and prediction.provenance is Provenance.YARN_LEVEL
+    strains = curves.strains(repeat, prediction, known.law if known and own else None)
+    kept = strains.astype(np.float32).ravel().tolist()  # as a file keeps them
+    return Entry(values, tuple(kept), prediction.provenance.value)
 
 
 def material_fingerprint(material: Material) -> str:
@@ -193,9 +202,13 @@ def _entry(document: dict[str, Any]) -> Entry:
 
 def _prediction(repeat: StitchChart, material: Material, known: KnownRepeat | None) -> Prediction:
     cloth = repeat.tile(2, 2)  # twice, so that nobody takes its edges for those of a swatch
+    flat = predict(cloth, material)
     if known is None:
-        return predict(cloth, material)
-    return predict(cloth, material, relaxed=known.relaxed, repeat_law=known.law)
+        return flat
+    found = predict(cloth, material, relaxed=known.relaxed, repeat_law=known.law)
+    ratios = [found.modulus_n_per_mm(d) / flat.modulus_n_per_mm(d) for d in Direction]
+    believed = all(1 / UNBELIEVABLE <= ratio <= UNBELIEVABLE for ratio in ratios)
+    return found if believed else flat
 
 
 def _three(value: float, interval: Interval) -> tuple[float, float, float]:

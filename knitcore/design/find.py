@@ -18,6 +18,9 @@ __all__ = ["Candidate", "FoundFabrics", "Limb", "Quantity", "Target", "find_fabr
 
 Array = NDArray[np.float64]
 
+_LONG = 24
+"""Keys longer than this are not spelt out in sentences."""
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -175,16 +178,23 @@ def _candidate(
 
 def _message(best: Candidate, targets: Sequence[Target], ranges: dict[str, Interval]) -> str:
     if best.reached:
-        return f"{best.repeat} in {best.material} is within all tolerances."
+        return f"{_short(best)} in {best.material} is within all tolerances."
     parts = [
         f"{_departure(best, target)} ({_reach(target, ranges.get(target.label), len(targets) > 1)})"
         for target in targets
         if float(target.off(np.array(best.values[target.label]))) > 1
     ]
     return (
-        f"Nothing reaches this. Nearest is {best.repeat} in {best.material}: {'; '.join(parts)}. "
+        f"Nothing reaches this. Nearest is {_short(best)} in {best.material}: {'; '.join(parts)}. "
         "Widen a tolerance, or search more yarns and needles."
     )
+
+
+def _short(candidate: Candidate) -> str:
+    rows = candidate.repeat.split("/")
+    if len(candidate.repeat) <= _LONG:
+        return candidate.repeat
+    return f"a repeat of {len(rows[0])} x {len(rows)} stitches"
 
 
 def _departure(best: Candidate, target: Target) -> str:

@@ -73,17 +73,20 @@ def repeats_up_to(rows: int, columns: int, *, stitches: int = LARGEST) -> tuple[
 
 
 def known_larger_repeats() -> tuple[StitchChart, ...]:
-    """A choice beyond 4x4, up to 8x8: ribs, welts, baskets, stripes of two fabrics, known names.
-
-    The stripes (upright and level, of the four fabrics) lie between the fabrics in stiffness, each
-    a step from the next.
-    """
+    """A choice beyond 4x4: ribs, welts and baskets up to 8 stitches a side, and named patterns."""
     sides = [(a, b) for a in range(1, 8) for b in range(1, a + 1) if 4 < a + b <= 8]
     charts = [*(rib(a, b) for a, b in sides), *(welt(a, b) for a, b in sides)]
     charts += [_basket(a, b) for a in range(1, 5) for b in range(1, 5) if max(a, b) > 2]
     charts += [p.chart for p in PATTERNS if max(p.chart.purl.shape) > 4]
-    charts += list(_stripes())
-    found = dict.fromkeys(canonical(chart) for chart in charts)
+    return tuple(dict.fromkeys(canonical(chart) for chart in charts))
+
+
+def striped_repeats() -> tuple[StitchChart, ...]:
+    """Two of the four fabrics side by side or on each other, in repeats up to 8 stitches long.
+
+    In stiffness they lie between their fabrics, each a step from the next.
+    """
+    found = dict.fromkeys(canonical(chart) for chart in _stripes())
     return tuple(chart for chart in found if max(chart.purl.shape) > 4)
 
 
@@ -143,7 +146,6 @@ def _symmetries(
 
 
 def _stripes() -> Iterator[StitchChart]:
-    """Two of the four fabrics side by side or on each other, of 6 or 8 stitches together."""
     for first, second in combinations(Fabric, 2):
         for total in (6, 8):
             for width in range(2, total - 1):

@@ -54,6 +54,104 @@ def test_rest_and_command_line_find_the_same(
     assert len(atlas[1]["repeats"]) == len(repeats_of("small"))
 
 
+def test_other_yarns_are_offered_where_the_wanted_one_reaches_nothing(client: TestClient) -> None:
+    """No acrylic is so stiff; the answer names the nearest and looks elsewhere."""
+    wish = WISH | {"value": 0.6, "tolerance": 0.2}
+    asked = client.post("/api/v1/find", json={"materials": ["acrylic"], "targets": [wish]}).json()
+    assert not asked["reached"]
+    assert {c["material"] for c in asked["elsewhere"]}.isdisjoint({"acrylic"})
+    alone = {"materials": ["acrylic"], "targets": [wish], "elsewhere": False}
+    assert client.post("/api/v1/find", json=alone).json()["elsewhere"] == []
+
+
+def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]]
+) -> None:
+    targets = [
+        {"quantity": "stretch_wale", "value": 0.4, "load_n_per_mm": 0.05, "tolerance": 0.2},
+        {
+            "quantity": "pressure_course_mmhg",
+            "value": 20,
+            "limb": {"rest_mm": 180, "worn_mm": 240},
+            "weight": 2,
+        },
+        {"quantity": "poisson_xy", "value": 0.3, "tolerance": 0.2},
+    ]
+    request = {
+        "materials": ["acrylic"],
+        "targets": targets,
+        "limits": {"transfers_per_stitch": 0.5, "curl": 0.4},
+        "count": 4,
+        "elsewhere": False,
+    }
+    asked = client.post("/api/v1/find", json=request)
+    assert asked.status_code == 200, asked.text
+    found = asked.json()
+    assert set(found["candidates"][0]["values"]) == {
+        "stretch_wale@0.05",
+        "pressure_course_mmhg@180/240",
+        "poisson_xy",
+    }
+    assert all(c["transfers_per_stitch"] <= 0.5 for c in found["candidates"])
+    told = CliRunner().invoke(
+        main,
+        [
+            "find",
+            f"--atlas={atlas[0]}",
+            "--target=stretch_wale@0.05=0.4~20%",
+            "--target=pressure_course@180/240=20*2",
+            "--target=poisson_xy=0.3~0.2",
+            "--most-transfers=0.5",
+            "--most-curl=0.4",
+            "--count=4",
+            "--json",
+        ],
+    )
+    assert told.exit_code == 0, told.output
+    assert json.loads(told.stdout) == found
+
+
+def test_wishes_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
+    box = [[row, 0, 8] for row in range(8)]
+    wishes = [
+        {"name": "palm", "runs": box, "modulus_course_n_per_mm": 0.223},
+        {"name": "back", "runs": [[row, 8, 8] for row in range(8)], "modulus_wale_n_per_mm": 0.75},
+    ]
+    request = {"material": "acrylic", "rows": 8, "columns": 16, "wishes": wishes}
+    filled = client.post("/api/v1/fill", json=request)
+    assert filled.status_code == 200, filled.text
+    assert (filled.json()["rows"], filled.json()["columns"]) == (8, 16)
+    assert filled.json()["off_share"] <= 0.3
+
+    wishes[1] = {"name": "thumb", "runs": box, "modulus_course_n_per_mm": 0.1}
+    refused = client.post("/api/v1/fill", json=request)
+    assert refused.status_code == 422
+    assert "contradict" in refused.json()["detail"]
+    for wrong in ({"rows": None}, {"modulus_course_n_per_mm": [[0.1]]}):
+        assert client.post("/api/v1/fill", json=request | wrong).status_code == 422
+
+
+def test_an_outline_over_rest_and_on_the_command_line(
+    client: TestClient, atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path
+) -> None:
+    width = [None, 0.97, 0.95, 0.94, 0.94, 0.95, 0.97, None]
+    request = {"material": "acrylic", "strain": 0.3, "width": width, "across": 8}
+    asked = client.post("/api/v1/shape", json=request | {"smallest_band": 2})
+    assert asked.status_code == 200, asked.text
+    assert asked.json()["largest"] < 0.05
+    profile, design = tmp_path / "p.csv", tmp_path / "d.json"
+    profile.write_text("width\n" + "\n".join("" if w is None else str(w) for w in width) + "\n")
+    shape = ["shape", str(profile), "--material=acrylic", "--across=8", "--strain=0.3"]
+    told = CliRunner().invoke(
+        main, [*shape, "--smallest-band=2", f"--atlas={atlas[0]}", f"-o{design}", "--json"]
+    )
+    assert told.exit_code == 0, told.output
+    assert json.loads(told.stdout) == asked.json()
+    assert json.loads(design.read_text())["chart"] == asked.json()["chart"]
+    profile.write_text("height\n1\n")
+    assert CliRunner().invoke(main, shape).exit_code == 2
+
+
 @pytest.mark.parametrize("target", ["course", "course=x", "colour=1", "course=0.1~%"])
 def test_targets_that_cannot_be_read(target: str, tmp_path: Path) -> None:
     refused = CliRunner().invoke(main, ["find", "--atlas", "none.npz", "--target", target])

@@ -1,0 +1,71 @@
+"""From a wish to a fabric, in the page."""
+
+from __future__ import annotations
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import CHART
+from tests.browser.page import kept_chart, middle
+
+
+def open_atlas(page: Page) -> None:
+    """Show the atlas and wait for its repeats."""
+    page.keyboard.press("a")
+    page.wait_for_function("() => +document.querySelector('.inverse-plot')?.dataset.count > 50")
+
+
+def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
+    flat_studio: Page,
+) -> None:
+    open_atlas(flat_studio)
+    scatter = flat_studio.locator("#inverse-scatter")
+    scatter.focus()
+    for _ in range(3):
+        flat_studio.keyboard.press("ArrowRight")
+    expect(flat_studio.locator("#inverse-detail")).to_contain_text("Along rows")
+    expect(flat_studio.locator("#inverse-detail")).to_contain_text("transfers")
+    flat_studio.click("#atlas-apply")
+    filled = kept_chart(flat_studio)
+    assert filled != CHART
+    flat_studio.keyboard.press("Control+z")
+    assert kept_chart(flat_studio) == CHART
+
+    handle = flat_studio.locator(".inverse-chosen .inverse-handle").bounding_box()
+    assert handle
+    flat_studio.mouse.move(handle["x"] + 20, handle["y"] + 20)
+    flat_studio.mouse.down()
+    flat_studio.mouse.move(*middle(flat_studio), steps=5)
+    expect(flat_studio.locator(".inverse-ghost")).to_contain_text("the whole chart")
+    flat_studio.mouse.up()
+    assert kept_chart(flat_studio) == filled
+    flat_studio.keyboard.press("Escape")
+
+
+def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
+    flat_studio.keyboard.press("Shift+F")
+    values = flat_studio.locator(".wish-value")
+    values.nth(0).fill("0.223")
+    values.nth(1).fill("0.056")
+    flat_studio.click("#find-run")
+    first = flat_studio.locator(".candidate").first
+    expect(first).to_contain_text("garter")
+    expect(first).to_contain_text("within tolerance")
+    first.get_by_role("button", name="Fill with garter").click()
+    assert len(set(kept_chart(flat_studio).split("\n"))) == 2
+
+
+def test_a_wish_fills_the_chart_as_one_step(flat_studio: Page) -> None:
+    flat_studio.keyboard.press("Shift+W")
+    flat_studio.click("#fill-run")
+    expect(flat_studio.locator("#inverse-fill-content")).to_contain_text("Nothing is wished for")
+    flat_studio.click("#part-add")
+    flat_studio.fill("#part-0-course", "0.0100")
+    flat_studio.fill("#part-0-wale", "0.119")
+    flat_studio.click("#fill-run")
+    expect(flat_studio.locator("#fill-answer")).to_contain_text("within 10 %")
+    assert kept_chart(flat_studio) == CHART
+    flat_studio.click("#fill-apply")
+    assert {line[:2] for line in kept_chart(flat_studio).split("\n")} <= {"KP", "PK"}
+    flat_studio.keyboard.press("Escape")
+    flat_studio.keyboard.press("Control+z")
+    assert kept_chart(flat_studio) == CHART
