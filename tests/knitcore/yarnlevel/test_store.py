@@ -1,13 +1,19 @@
 """The packaged relaxed repeats."""
 
+import json
+from importlib.resources import files
+
 import numpy as np
 import pytest
 
 from knitcore.chart import StitchChart
+from knitcore.yarnlevel import store_build
 from knitcore.yarnlevel.catalogue import COMMON
+from knitcore.yarnlevel.clasps import is_knitted
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlevel.store import stored_charts, stored_stitch
+from knitcore.yarnlevel.store import stored_charts, stored_failure, stored_stitch
+from knitcore.yarnlevel.store_build import charts_of_the_store
 
 
 @pytest.mark.parametrize("material", ["acrylic", "cotton"])
@@ -52,6 +58,77 @@ def test_unknown_repeats_and_yarns_are_not_in_the_store():
     assert stored_stitch(StitchChart.parse("K"), "lace-bamboo") is None
 
 
-def test_all_small_repeats_are_packaged_for_both_yarns():
-    assert len(stored_charts("acrylic")) >= 53
-    assert len(stored_charts("acrylic")) == len(stored_charts("cotton"))
+@pytest.mark.parametrize("name", ["acrylic", "cotton"])
+def test_all_small_repeats_are_packaged(name):
+    """Up to eight stitches and 3x3, with a law, or else with the reason."""
+    wanted = charts_of_the_store()
+    assert len(wanted) == 116 + 19 + 1
+    stored = [stored_stitch(chart, name) for chart in wanted]
+    missing = [chart for chart, found in zip(wanted, stored, strict=True) if found is None]
+    assert all(stored_failure(chart, name) for chart in missing)
+    found = [entry for entry in stored if entry is not None]
+    assert len(found) == len(stored_charts(name)) >= 130
+    assert all(bool(entry.law_failure) == (entry.law is None) for entry in found)
+    assert sum(entry.law is not None and entry.converged for entry in found) >= 120
+    assert stored_failure(StitchChart.parse("K"), name) is None
+
+
+def test_the_packaged_files_are_small():
+    folder = files("knitcore.yarnlevel") / "data"
+    sizes = [len((folder / file).read_bytes()) for file in ("stitches.json", "stitches.npz")]
+    assert sum(sizes) < 3_000_000
+
+
+def test_a_welt_upside_down_is_the_same_cloth():
+    one = stored_stitch(StitchChart.parse("P\nK\nP\nP\nK\nK\nK"), "cotton")
+    other = stored_stitch(StitchChart.parse("K\nK\nK\nP\nP\nK\nP"), "cotton")
+    assert one is not None
+    assert other is not None
+    assert one.energy_n_mm == pytest.approx(other.energy_n_mm, rel=1e-3)
+    assert one.cell_wale_mm == pytest.approx(other.cell_wale_mm, rel=5e-3)
+
+
+def test_a_build_makes_the_same_files_again_and_goes_on_where_it_was(tmp_path, monkeypatch):
+    """With a stand-in for the solver, which gives no shape to garter."""
+    calls = []
+
+    def solve(task):
+        calls.append(task.chart)
+        if task.chart == "P/K":
+            return {"failure": "no room"}
+        size = {"cell_course_mm": 2.0 + len(task.chart), "cell_wale_mm": 2.0, "energy_n_mm": 0.1}
+        shares = {"bending_share": 0.9, "contact_share": 0.1, "converged": True}
+        empty = {"course": {"stress_n_per_mm": [0.0, 0.4], "jumps": [1]}}
+        law = {"law": None, "law_failure": "too soft", "curves": empty}
+        columns = task.chart.index("/") if "/" in task.chart else len(task.chart)
+        rows = task.chart.count("/") + 1
+        points = np.zeros((rows, columns * 16, 3)).tolist()
+        return {**size, **shares, **law, "controls": points}
+
+    monkeypatch.setattr(store_build, "characterise_repeat", solve)
+    made = []
+    for folder in (tmp_path / "a", tmp_path / "b"):
+        folder.mkdir()
+        store_build.build(
+            folder, keep=tmp_path / "keep", sizes_file=folder / "sizes.csv", most_stitches=1,
+            workers=1,
+        )  # fmt: skip
+        made.append({file.name: file.read_bytes() for file in folder.iterdir()})
+    assert made[0] == made[1]
+    assert len(calls) == 2 * 2 * len(COMMON)  # yarns, branches; nothing was done twice
+    entries = json.loads(made[0]["stitches.json"])["stitches"]
+    assert entries["acrylic/P/K"]["failure"] == "no room"
+    assert entries["cotton/KKP"]["law_failure"] == "too soft"
+    assert entries["cotton/KKP"]["law_jumps"] == [0, 0]
+    sizes = [row.split(",")[0] for row in made[0]["sizes.csv"].decode().splitlines()]
+    assert "KKP" in sizes
+    assert "P/K/K" not in sizes  # it would be compared with garter
+
+
+@pytest.mark.parametrize("name", ["acrylic", "cotton"])
+def test_every_stored_shape_is_knitted_as_its_chart_says(name):
+    for chart in stored_charts(name):
+        stored = stored_stitch(chart, name)
+        assert stored is not None
+        lines = stored.centre_lines()
+        assert is_knitted(stored.chart, lines, stored.cell_course_mm, stored.cell_wale_mm)
