@@ -40,7 +40,7 @@ FINE = SplineGrid(controls=20, per_span=4)
 COARSE = SplineGrid(controls=16, per_span=3)
 ROUGH = SplineGrid(controls=10, per_span=5)
 """Large cells find their shape on this grid (energy within 2e-3) before they are refined."""
-ROUGH_FROM = 30
+ROUGH_FROM = 12
 _EXPLORED = 1e-5
 """Tolerance of a shape that will be refined."""
 FINE_UP_TO = 2
