@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
+from knitcore.fabric import Direction
 from knitcore.formats.design import DesignFile
 from knitcore.formats.layout import DesignRegion, motif_text, runs_of
 from knitcore.garment.plan import FABRIC_COLOURS, GarmentPlan
@@ -32,16 +34,27 @@ def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) 
         )
         for region in plan.regions
     ]
-    direction = (
-        "The rows run around the limb."
-        if plan.around == "course"
-        else ("The rows run along the limb, the columns (wales) around it.")
-    )
     return DesignFile(
         name=plan.name[:1].upper() + plan.name[1:],
         material=material,
         chart=plan.shaped.chart.text,
-        note="\n".join((direction, f"To close: {plan.closing}.", *plan.notes)),
+        note="\n".join(_notes(plan)),
         outline=None if plan.shaped.stitch.all() else plan.shaped.outline,
         regions=regions,
     )
+
+
+def _notes(plan: GarmentPlan) -> Iterator[str]:
+    """What a knitter needs beside the chart."""
+    if plan.around is Direction.COURSE:
+        yield "Knit from the bottom row up; the rows run around the limb."
+    else:
+        yield "Knit from the bottom row up; the rows run along the limb, the columns around it."
+    gauges = []
+    for fabric in dict.fromkeys(plan.fabrics):
+        stitches, rows = plan.gauges[fabric].counts()
+        gauges.append(f"{fabric} {stitches:.1f} sts x {rows:.1f} rows")
+    yield f"Gauge per 10 cm: {', '.join(gauges)}."
+    yield f"Yarn: {plan.yarn.length_m:.0f} m, without cast-on, tails and swatch."
+    yield f"To close: {plan.closing}."
+    yield from plan.notes

@@ -90,10 +90,8 @@ class ShapedChart:
             purl[row] = purl[row, mirrored.clip(start, stop - 1)]
         for step in (1, -1):  # cells just above a stitch, then those just below one
             inside, grid = self.stitch[::step], purl[::step]
-            edge = inside[:-1] & ~inside[1:]
-            before = np.concatenate([grid[:1], grid[:-2]])
-            known = np.concatenate([inside[:1], inside[:-2]])
-            grid[1:][edge] = np.where(known, before, grid[:-1])[edge]
+            edge = inside[:-2] & inside[1:-1] & ~inside[2:]
+            grid[2:][edge] = grid[:-2][edge]
         return StitchChart(purl)
 
     def __eq__(self, other: object) -> bool:

@@ -6,8 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
+from knitcore.fabric import Fabric
 from knitcore.formats.design import DesignFile, design_from_mapping
 from knitcore.garment.shaped import ShapedChart
+from knitcore.phases import LEFT, RIGHT, surroundings
 from tests.knitcore.charts import stitch_charts
 
 
@@ -33,6 +35,23 @@ def test_text_and_project_file_keep_chart_and_outline(shaped: ShapedChart) -> No
 @given(shaped=shaped_charts())
 def test_spans_are_the_stitches(shaped: ShapedChart) -> None:
     assert sum(stop - start for start, stop in shaped.spans) == shaped.stitches
+
+
+@given(shaped=shaped_charts())
+def test_continued_charts_are_the_same_inside(shaped: ShapedChart) -> None:
+    assert ShapedChart(shaped.continued(), shaped.stitch) == shaped
+
+
+@given(shaped=shaped_charts(), fabric=st.sampled_from(Fabric))
+def test_a_pure_fabric_is_pure_up_to_its_outline(shaped: ShapedChart, fabric: Fabric) -> None:
+    """In rows and columns of several stitches; a lone one has no neighbour to go by."""
+    pure = StitchChart.of_fabric(fabric, rows=shaped.chart.rows, columns=shaped.chart.columns)
+    purl = np.where(shaped.stitch, pure.purl, shaped.chart.purl)
+    codes = surroundings(ShapedChart(StitchChart(purl), shaped.stitch).continued())
+    inside = shaped.stitch
+    wide = inside.sum(axis=1) > 1
+    odd_across = (codes & (LEFT | RIGHT))[inside & wide[:, None]]
+    assert set(odd_across.tolist()) <= {(LEFT | RIGHT) * int(fabric.course_odd)}
 
 
 def test_what_stands_outside_means_nothing() -> None:
