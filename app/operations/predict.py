@@ -117,7 +117,7 @@ def predict_chart(
         relaxed_source=found.relaxed_source,
         provenance=found.provenance,
         method=found.method,
-        notes=list(found.notes),
+        notes=[*found.notes, *(known.notes if known else ())],
     )
 
 

@@ -22,6 +22,10 @@ from knitcore.phases import quarter_phases
 from knitcore.yarnlevel.store import StoredStitch, stored_stitch
 
 STORED_MATERIALS = ("acrylic", "cotton")
+_JUMPS = (
+    "Stretched on the yarn level, the folds of this repeat open abruptly; its law is a smooth "
+    "curve through that."
+)
 MOST_STITCHES = 16
 """Larger repeats are not in the store, and not looked for."""
 
@@ -34,10 +38,12 @@ class KnownRepeat:
     ----------
     law : of the repeat in the measured material.
     relaxed : size of its mean stitch at rest.
+    notes : what a user should know about the law.
     """
 
     law: ConstitutiveLaw
     relaxed: RelaxedSize
+    notes: tuple[str, ...] = ()
 
 
 def known_repeat(chart: StitchChart, material: Material) -> KnownRepeat | None:
@@ -82,6 +88,7 @@ def known_repeat(chart: StitchChart, material: Material) -> KnownRepeat | None:
             stored.cell_wale_mm / like.cell_wale_mm * record.stitch_wale_mm,
             SizeSource.YARN_LEVEL,
         ),
+        notes=(_JUMPS,) if any(stored.law_jumps) else (),
     )
 
 

@@ -6,6 +6,7 @@ from knitcore import Direction, Fabric, StitchChart
 from knitcore.materials import material
 from knitcore.mechanics.homogenisation import homogenise
 from knitcore.yarnlevel.known import known_repeat
+from knitcore.yarnlevel.store import stored_charts, stored_stitch
 
 BASKET = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
 MOSS = StitchChart.parse("PK\nPK\nKP\nKP")
@@ -41,3 +42,15 @@ def test_pure_fabrics_ribs_and_welts_have_better_sources(text: str) -> None:
 def test_other_yarns_and_other_charts_are_unknown() -> None:
     assert known_repeat(BASKET, material("glove-wool")) is None
     assert known_repeat(StitchChart.parse("KKKKKPKPKKPPKPPKKK"), material("acrylic")) is None
+
+
+@pytest.mark.parametrize("name", ["acrylic", "cotton"])
+def test_a_law_through_a_jump_says_so(name: str) -> None:
+    told = set()
+    for chart in stored_charts(name):
+        known = known_repeat(chart, material(name))
+        stored = stored_stitch(chart, name)
+        if known is not None and stored is not None:
+            assert bool(known.notes) == any(stored.law_jumps)
+            told.add(bool(known.notes))
+    assert told == {True, False}
