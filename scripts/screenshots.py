@@ -96,6 +96,33 @@ def opened(action: str, panel: str, settled: str | None = None) -> Scene:
     return scene
 
 
+def regions(page: Page) -> str | None:
+    page.keyboard.press("Shift+N")
+    page.click("#gallery-glove")
+    page.keyboard.press("Shift+A")
+    page.locator("#panel-regions").wait_for()
+    page.click("#overlay-fabrics")
+    page.wait_for_timeout(1000)
+    return ".chart-pane"
+
+
+def repeats(page: Page) -> str | None:
+    page.keyboard.press("Shift+N")
+    page.click("#gallery-diamonds")
+    page.keyboard.press("m")
+    box = page.locator("#chart").bounding_box()
+    assert box
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 130, y + 90, steps=5)
+    page.mouse.up()
+    page.keyboard.press("Shift+L")
+    page.click("#repeat-from-selection")
+    page.wait_for_timeout(1000)
+    return ".chart-pane"
+
+
 def commands(page: Page) -> str | None:
     page.keyboard.press("Control+k")
     page.wait_for_timeout(400)
@@ -169,10 +196,10 @@ SCENES: dict[str, Scene] = {
     "inspector": inspector,
     "curve": curve,
     "stretch": stretch,
-    "regions": opened("Regions", "#dock"),
-    "repeats": opened("Linked repeats", "#dock"),
+    "regions": regions,
+    "repeats": repeats,
     "garments": opened("Plan a garment", "#planner-dialog"),
-    "atlas": opened("Atlas of all repeats", "#inverse-dialog"),
+    "atlas": opened("Atlas of all repeats", "#inverse"),
     "exports": opened("Export, all formats", "#export-dialog"),
     "gallery": opened("New design", "#gallery-dialog", "#gallery-glove canvas"),
     "resize": opened("Size and new chart", "#resize-dialog"),

@@ -202,7 +202,9 @@ function designsMenu(context) {
   /** @param {string} id */
   const one = (id) => item(action(id), context);
   setItems([
-    ...["gallery", "garments", "designs", "duplicate"].map(one),
+    ...["gallery", "garments", "open-find", "open-atlas"].map(one),
+    null,
+    ...["designs", "duplicate"].map(one),
     null,
     ...["versions", "share"].map(one),
     null,
