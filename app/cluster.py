@@ -122,22 +122,20 @@ class ClusterPlace:
         self._cluster.listeners[self._key] = self
         self._future = await asyncio.to_thread(self._cluster.begin, self._key, job)
         done: Future[T] = Future()
-        self._future.add_done_callback(lambda future: _settle(future, done))
+        self._future.add_done_callback(lambda future: self._settle(future, done))
         return asyncio.wrap_future(done)
 
     def cancel(self) -> None:
         """Ask the job to stop; one that no worker has begun is taken back."""
+        key = self._key
+        self._cluster.later(lambda client: client.run(_cancel, key, on_error="ignore"))
         if self.worker is None:
-            self.replace()
-        else:
-            key = self._key
-            self._cluster.later(lambda client: client.run(_cancel, key, on_error="ignore"))
+            self._take_back()
 
     def replace(self) -> None:
         """Take the job back and, if it runs, have the nanny of its worker start a new process."""
-        worker, future, self._future = self.worker, self._future, None
-        self._cluster.later(lambda client: client.cancel([future]))
-        if worker is not None:
+        self._take_back()
+        if (worker := self.worker) is not None:
             self._cluster.later(
                 lambda client: client.restart_workers([worker], raise_for_error=False)
             )
@@ -146,17 +144,23 @@ class ClusterPlace:
         """Let go of the cluster."""
         self._cluster.close()
 
+    def _take_back(self) -> None:
+        if (future := self._future) is not None:
+            self._cluster.later(lambda client: client.cancel([future]))
 
-def _settle(future: ClusterFuture[Any], done: Future[T]) -> None:
-    if not done.set_running_or_notify_cancel():
-        return
-    try:
-        done.set_result(future.result())
-    except (KilledWorker, CancelledError, OSError, TimeoutError) as error:
-        log.warning("a job was lost on the cluster: %s", error)
-        done.set_exception(WorkerDiedError("The machine of this computation was lost."))
-    except Exception as error:
-        done.set_exception(error)
+    def _settle(self, future: ClusterFuture[Any], done: Future[T]) -> None:
+        """Hand on what came of a job, and let the cluster forget it."""
+        if self._future is future:
+            self._future = None
+        if not done.set_running_or_notify_cancel():
+            return
+        try:
+            done.set_result(future.result())
+        except (KilledWorker, CancelledError, OSError, TimeoutError) as error:
+            log.warning("a job was lost on the cluster: %s", error)
+            done.set_exception(WorkerDiedError("The machine of this computation was lost."))
+        except Exception as error:
+            done.set_exception(error)
 
 
 _running: dict[str, bool] = {}

@@ -18,8 +18,16 @@ import yaml
 from app import compute as compute_module
 from app.cluster import Cluster, ClusterError, ClusterPlace
 from app.compute import Compute
+from app.jobs.document import JobState
+from app.jobs.runner import JobRunner
+from app.jobs.store import JobStore
+from app.operations.curve import CurveRequest, CurveResult, run_curve
+from app.recent import RecentResults
+from app.store.database import Database
+from app.store.schema import migrate
 from app.work import AbandonedError, TimeLimitError, WorkerDiedError
 from knitcore import InputError
+from knitcore.fabric import Direction
 from tests.app import jobs
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -86,6 +94,25 @@ def test_results_errors_and_progress_come_back(compute: Compute) -> None:
     assert shares == sorted(shares)
     assert len(set(shares)) >= 3
     assert 0 <= shares[0] < shares[-1] <= 1
+
+
+def test_a_job_of_the_service_is_done_there(compute: Compute, tmp_path: Path) -> None:
+    request = CurveRequest(chart="K\nP", material="acrylic", direction=Direction.WALE)
+    database = Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")
+    migrate(database)
+
+    async def scenario() -> bytes | None:
+        runner = JobRunner(JobStore(database, "main"), compute, RecentResults(), 150.0)
+        job = (await runner.submit("ada", "curve", request.model_dump_json())).id
+        while not (status := await runner.status("ada", job)).state.is_final:
+            await asyncio.sleep(0.05)
+        assert status.state is JobState.DONE, status.problem
+        return runner.store.result("ada", job)
+
+    answer = asyncio.run(scenario())
+    database.close()
+    assert answer is not None
+    assert CurveResult.model_validate_json(answer) == run_curve(request)
 
 
 def test_an_abandoned_job_and_one_beyond_its_time_are_stopped(
