@@ -24,6 +24,12 @@ export class Seeing {
     this.groups = new Signal(settings.groups);
     /** Stitches on a side of a block. */
     this.block = new Signal(settings.block);
+    /** Id of the region that the inspector describes; null for the whole chart. */
+    this.region = new Signal(/** @type {string | null} */ (null));
+    /** Of the curves in the inspector; follows the stretch test. */
+    this.pull = new Signal(/** @type {import("../types.js").Direction} */ ("wale"));
+    /** Id of a stretch test that the service has forgotten. */
+    this.forgotten = new Signal(/** @type {string | null} */ (null));
     /** The stitch that was clicked in the 3D view last. */
     this.found = new Signal(/** @type {Cell | null} */ (null));
     this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));

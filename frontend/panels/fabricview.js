@@ -103,7 +103,8 @@ export function fabricview(host, studio, view) {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
-      const { title, detail, remedy } = error.problem;
+      const { title, detail, remedy, field } = error.problem;
+      if (field === "stretch.id") studio.seeing.forgotten.value = studio.currentStretch()?.id ?? null;
       status.replaceChildren(
         icon("warning"),
         h("div", {}, h("strong", {}, title), h("p", {}, detail === title ? "" : detail), h("p", {}, remedy ?? "")),

@@ -7,6 +7,7 @@
 
 import { figure, percent, range } from "../core/format.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../core/segments.js";
+import { scopeOf } from "../services/scope.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { curvePlot } from "../plots/curve.js";
@@ -19,6 +20,16 @@ import { rigidityPlot } from "../plots/rigidity.js";
  */
 export function inspector(host, studio) {
   const title = h("h2", {});
+  const scopes = h("select", {
+    class: "chip-select",
+    id: "inspector-scope",
+    title: "Whose numbers these are",
+    "aria-label": "Whose numbers these are",
+    onchange: () => {
+      studio.selection.value = null;
+      studio.seeing.region.value = scopes.value || null;
+    },
+  });
   const source = h("details", { class: "source" });
   const problem = h("div", { class: "problem", hidden: true });
   const table = h("table", { class: "numbers" });
@@ -43,8 +54,16 @@ export function inspector(host, studio) {
       label,
     );
   const tabs = { rigidity: tab("rigidity", "Stiffness map"), curve: tab("curve", "Stress–strain") };
+  const pulls = h("div", { class: "segmented small curve-pulls", role: "radiogroup", "aria-label": "Direction of the curves" });
+  const ways = (/** @type {Direction[]} */ (["course", "wale"])).map((way) => {
+    const button = h("button", { class: "segment", type: "button", role: "radio", id: `curve-${way}`, title: `Pulled ${way}-wise`, "aria-label": way, onclick: () => (studio.seeing.pull.value = way) }, icon(way));
+    studio.seeing.pull.watch((chosen) => button.setAttribute("aria-checked", String(chosen === way)));
+    return button;
+  });
+  pulls.append(...ways);
   /** @param {"rigidity" | "curve"} id */
   const choose = (id) => {
+    pulls.hidden = id !== "curve";
     rigidity.hidden = id !== "rigidity";
     curve.hidden = id !== "curve";
     tabs.rigidity.setAttribute("aria-selected", String(id === "rigidity"));
@@ -55,12 +74,13 @@ export function inspector(host, studio) {
 
   host.append(
     h("div", { class: "inspector-numbers" },
-      h("div", { class: "inspector-head" }, title, source),
+      h("div", { class: "inspector-head" }, h("div", { class: "inspector-title" }, title, scopes), source),
       problem,
       table,
       shares),
     h("div", { class: "inspector-plots" },
       h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, tabs.rigidity, tabs.curve),
+      pulls,
       rigidity,
       curve),
   );
@@ -73,30 +93,30 @@ export function inspector(host, studio) {
     host.classList.toggle("busy", busy);
     if (busy && shown === value) return; // asked anew: the old numbers stay, greyed, until the answer
     shown = value;
-    const box = studio.selection.value;
-    const { grid } = studio.document;
-    const [rows, columns] = box ? [box.row1 - box.row0, box.column1 - box.column0] : [grid.rows, grid.columns];
-    title.replaceChildren(box ? "Selection" : "Whole chart", h("span", { class: "muted figures" }, ` ${columns} × ${rows}`));
+    const part = scopeOf(studio);
+    const { rows, columns } = part.grid;
+    title.replaceChildren(part.title, h("span", { class: "muted figures" }, ` ${columns} × ${rows}`));
+    title.title = part.note;
     problem.hidden = !wrong;
     if (wrong) {
       problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
     }
     // Numbers of another scope would be mistaken for this one's.
-    fill(table, scope === (box ? "selection" : "chart") ? value : null);
+    fill(table, scope === part.kind ? value : null);
     source.hidden = !value;
     if (value) {
       const open = source.open;
+      const notes = [part.note, ...(value.notes?.length ? value.notes : ["Interval: 90 %."])].filter(Boolean);
       source.replaceChildren(
         h("summary", { id: "provenance", title: "Where these numbers come from" }, value.provenance),
-        h("ul", { class: "notes" }, ...(value.notes?.length ? value.notes : ["Interval: 90 %."]).map((note) => h("li", {}, note))),
+        h("ul", { class: "notes" }, ...notes.map((note) => h("li", {}, note))),
       );
       source.open = open;
     }
   };
   const count = () => {
-    const box = studio.selection.value;
-    const part = box ? studio.document.grid.region(box) : studio.document.grid;
-    const codes = box ? surroundings(part) : studio.document.codes;
+    const { kind, grid: part } = scopeOf(studio);
+    const codes = kind === "chart" ? studio.document.codes : surroundings(part);
     const segments = countSegments(part);
     const mix = fabricShares(codes);
     shares.replaceChildren(
@@ -131,10 +151,31 @@ export function inspector(host, studio) {
     show();
     countSoon();
   });
+  const offer = () => {
+    const { regions } = studio.document;
+    const { region } = studio.seeing;
+    if (region.value !== null && !studio.document.region(region.value)) region.value = null;
+    scopes.hidden = !regions.length;
+    scopes.replaceChildren(
+      h("option", { value: "" }, "Whole chart"),
+      ...regions.map(({ id, name }) => h("option", { value: id }, name)),
+    );
+    scopes.value = region.value ?? "";
+  };
+  studio.document.onSettle(offer);
+  studio.seeing.region.listen(() => {
+    shown = undefined;
+    offer();
+    show();
+    countSoon();
+  });
+  offer();
   studio.document.onChange(countSoon);
   count();
-  studio.stretch.listen(({ value, stale }) => {
-    if (value && !stale) choose("curve");
+  studio.stretch.listen(({ value, stale, direction }) => {
+    if (!value || stale) return;
+    studio.seeing.pull.value = direction;
+    choose("curve");
   });
   return () => {
     drawRigidity();

@@ -1,12 +1,22 @@
 /**
- * Stress against strain: the four fabrics of the material, and the stretch test with the step on show.
+ * Stress against strain: the four fabrics of the material, the chart (or its part) with the interval
+ * that the service knows, and the stretch test with the step on show.
  *
  * @import {Studio} from "../studio.js"
+ * @import {ChartCurve, Stretch} from "../types.js"
  * @import {Plotly, Trace} from "./plotly.js"
  */
 
+import { ApiError, api, isAbort } from "../api.js";
+import { Latest } from "../core/latest.js";
 import { FABRICS } from "../core/segments.js";
+import { repeatSize, scopeOf } from "../services/scope.js";
 import { loadPlotly } from "./plotly.js";
+
+/** Curves of larger repeats take the service minutes; the stretch test is quicker then. */
+const LARGEST_REPEAT = 9;
+/** The service is asked this long after a change. */
+const DELAY_MS = 300;
 
 /**
  * @param {HTMLElement} host
@@ -19,6 +29,9 @@ export function curvePlot(host, studio) {
   let drawn = false;
   let width = 0;
   let height = 0;
+  /** @type {{key: string, curve: ChartCurve} | null} */
+  let answer = null;
+  const latest = new Latest(DELAY_MS);
 
   const draw = async () => {
     try {
@@ -35,64 +48,132 @@ export function curvePlot(host, studio) {
     delete host.dataset.problem;
     if (host.hidden || !host.clientWidth) return;
     ({ clientWidth: width, clientHeight: height } = host);
-    await plotly.react(host, traces(studio), layout(width, height), {
+    await plotly.react(host, traces(studio, answer?.curve ?? null), layout(width, height), {
       displayModeBar: false,
       responsive: false,
     });
     drawn = true;
   };
+  const ask = () => {
+    if (host.hidden) return;
+    latest.run(async (signal) => {
+      const { grid } = scopeOf(studio);
+      if (repeatSize(grid) > LARGEST_REPEAT) {
+        const had = answer !== null;
+        answer = null;
+        if (had) void draw();
+        return;
+      }
+      const direction = studio.seeing.pull.value;
+      const body = { chart: grid.text, material: studio.materialId.value, direction };
+      const key = JSON.stringify(body);
+      if (answer?.key === key) return;
+      try {
+        answer = { key, curve: await api.curve(body, signal) };
+        void draw();
+      } catch (error) {
+        if (isAbort(error)) return;
+        if (!(error instanceof ApiError)) throw error;
+        answer = null; // the inspector's numbers say why
+      }
+    });
+  };
   const redraw = () => {
-    if (!host.hidden) void draw();
+    if (host.hidden) return;
+    void draw();
+    ask();
   };
   studio.stretch.listen(redraw);
   studio.material.listen(redraw);
+  studio.seeing.pull.listen(redraw);
+  studio.prediction.listen(({ busy }) => !busy && redraw());
   studio.step.listen(() => {
-    const stretch = studio.stretch.value.value;
+    const stretch = shownStretch(studio);
     if (host.hidden || !drawn || !plotly || !stretch) return;
     const { step } = studio;
     void plotly.restyle(
       host,
       { x: [[100 * stretch.strain[step.value]]], y: [[stretch.stress_n_per_mm[step.value]]] },
-      [FABRICS.length + 1],
+      [FABRICS.length + 3],
     );
   });
   new ResizeObserver(() => {
-    if (drawn && (host.clientWidth !== width || host.clientHeight !== height)) redraw();
+    if (drawn && (host.clientWidth !== width || host.clientHeight !== height)) void draw();
   }).observe(host);
   return redraw;
 }
 
+/** The stretch test, if it is in the direction of the curves. @param {Studio} studio */
+function shownStretch(studio) {
+  const { value, direction } = studio.stretch.value;
+  return direction === studio.seeing.pull.value ? value : null;
+}
+
 /**
  * @param {Studio} studio
+ * @param {ChartCurve | null} own
  * @returns {Trace[]}
  */
-function traces(studio) {
+function traces(studio, own) {
   const style = getComputedStyle(document.documentElement);
-  const { value: stretch, direction, stale } = studio.stretch.value;
-  const accent = style.getPropertyValue("--accent").trim();
-  const end = stretch ? 1.35 * Math.max(...stretch.strain) : 0.6;
+  /** @param {string} name */
+  const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+  const stretch = shownStretch(studio);
+  const { stale } = studio.stretch.value;
+  const { kind } = scopeOf(studio);
+  const band = stressBand(studio, stretch);
+  const farthest = Math.max(...(stretch?.strain ?? [0]), own ? 0.6 * Math.max(...own.strain) : 0);
+  const end = farthest ? 1.35 * farthest : 0.6;
+  /**
+   * @param {number[]} strain
+   * @param {number[]} stress
+   */
+  const upTo = (strain, stress) => {
+    const kept = strain.filter((value) => value <= end).length;
+    return { x: strain.slice(0, kept).map((value) => 100 * value), y: stress.slice(0, kept) };
+  };
   /** @type {Trace[]} */
   const result = FABRICS.map((fabric) => {
-    const curve = studio.material.value?.curves[fabric]?.[direction];
-    const kept = (curve?.strain ?? []).filter((strain) => strain <= end).length;
+    const curve = studio.material.value?.curves[fabric]?.[studio.seeing.pull.value];
     return {
       name: fabric,
-      x: (curve?.strain ?? []).slice(0, kept).map((strain) => 100 * strain),
-      y: (curve?.stress_n_per_mm ?? []).slice(0, kept),
+      ...upTo(curve?.strain ?? [], curve?.stress_n_per_mm ?? []),
       mode: "lines",
-      line: { color: style.getPropertyValue(`--${fabric}`).trim(), width: 1.6 },
+      line: { color: colour(fabric), width: 1.6 },
       hovertemplate: `%{x:.0f} %, %{y:.3g} N/mm<extra>${fabric}</extra>`,
     };
   });
+  const stress = own?.stress_n_per_mm ?? [];
+  const low = upTo(own?.strain_low ?? [], stress);
+  const high = upTo(own?.strain_high ?? [], stress);
+  result.push(
+    {
+      name: "90 % interval",
+      x: own ? [...low.x, ...high.x.toReversed()] : band.x,
+      y: own ? [...low.y, ...high.y.toReversed()] : band.y,
+      mode: "lines",
+      fill: "toself",
+      fillcolor: `${colour("accent")}2e`, // #rrggbbaa
+      line: { width: 0 },
+      hoverinfo: "skip",
+    },
+    {
+      name: `this ${kind}`,
+      ...upTo(own?.strain ?? [], stress),
+      mode: "lines",
+      line: { color: colour("accent"), width: 2, dash: "dash" },
+      hovertemplate: `%{x:.0f} %, %{y:.3g} N/mm<extra>this ${kind}, sides free</extra>`,
+    },
+  );
   const step = studio.step.value;
   result.push(
     {
-      name: stale ? "before the change" : "this chart",
+      name: stale ? "before the change" : "stretch test",
       x: stretch?.strain.map((strain) => 100 * strain) ?? [],
       y: stretch?.stress_n_per_mm ?? [],
       mode: "lines",
-      line: { color: accent, width: 3, dash: stale ? "dot" : "solid" },
-      hovertemplate: "%{x:.0f} %, %{y:.3g} N/mm<extra>this chart</extra>",
+      line: { color: colour("accent"), width: 3, dash: stale ? "dot" : "solid" },
+      hovertemplate: "%{x:.0f} %, %{y:.3g} N/mm<extra>stretch test</extra>",
     },
     {
       name: "step",
@@ -102,13 +183,33 @@ function traces(studio) {
       showlegend: false,
       hoverinfo: "skip",
       marker: {
-        color: style.getPropertyValue("--panel").trim(),
+        color: colour("panel"),
         size: 11,
-        line: { color: accent, width: 3 },
+        line: { color: colour("accent"), width: 3 },
       },
     },
   );
   return result;
+}
+
+/**
+ * The interval of the stretch test: the modulus' uncertainty as one of the whole scale of stress.
+ *
+ * @param {Studio} studio
+ * @param {Stretch | null} stretch
+ */
+function stressBand(studio, stretch) {
+  const { value, scope } = studio.prediction.value;
+  const direction = studio.seeing.pull.value;
+  const interval = value?.[`modulus_${direction}_interval_n_per_mm`];
+  if (!stretch || !value || !interval || scope !== "chart") return { x: [], y: [] };
+  const [low, high] = interval.map((end) => end / value[`modulus_${direction}_n_per_mm`]);
+  const strain = stretch.strain.map((one) => 100 * one);
+  const stress = stretch.stress_n_per_mm;
+  return {
+    x: [0, ...strain, ...strain.toReversed()],
+    y: [0, ...stress.map((one) => low * one), ...stress.map((one) => high * one).toReversed()],
+  };
 }
 
 /**

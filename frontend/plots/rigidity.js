@@ -91,7 +91,7 @@ export function rigidityPlot(host, studio) {
       }
       add("path", { d: "M0-8L8 0 0 8-8 0z", transform: `translate(${x.at(own.x)} ${y.at(own.y)})`, class: "own-dot" });
       const right = x.at(own.x) + 118 > width;
-      add("text", { x: x.at(own.x) + (right ? -13 : 13), y: y.at(own.y) - 9, class: `own-label ${right ? "end" : ""}` }, scope === "selection" ? "this selection" : "this chart");
+      add("text", { x: x.at(own.x) + (right ? -13 : 13), y: y.at(own.y) - 9, class: `own-label ${right ? "end" : ""}` }, `this ${scope}`);
     }
     svg.setAttribute(
       "aria-label",

@@ -6,6 +6,7 @@
 
 import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
+import { scopeOf } from "./scope.js";
 
 const DELAY_MS = 80;
 
@@ -19,12 +20,9 @@ export function startPredictor(studio) {
     const { prediction } = studio;
     if (!prediction.value.busy) prediction.value = { ...prediction.value, busy: true };
     latest.run(async (signal) => {
-      const box = studio.selection.value;
-      const { grid } = studio.document;
-      const part = box ? grid.region(box) : grid;
-      const scope = box ? "selection" : "chart";
+      const { kind: scope, grid } = scopeOf(studio);
       try {
-        const body = { chart: part.text, material: studio.materialId.value };
+        const body = { chart: grid.text, material: studio.materialId.value };
         const value = await api.predict(body, signal);
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, scope };
@@ -39,6 +37,7 @@ export function startPredictor(studio) {
   };
   studio.document.onChange(ask);
   studio.selection.listen(ask);
+  studio.seeing.region.listen(ask);
   studio.materialId.watch(ask);
   return ask;
 }

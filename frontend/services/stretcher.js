@@ -7,7 +7,7 @@
  * @typedef {Partial<Pick<StretchRequest, "clamps" | "model" | "shear_modulus_n_per_mm">>} StretchOptions
  */
 
-import { ApiError, isAbort } from "../api.js";
+import { ApiError, api, isAbort } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
 import { Signal } from "../core/signal.js";
 import { runJob } from "./jobs.js";
@@ -18,6 +18,7 @@ const FRAME_MS = 140;
 export class Stretcher {
   /** @type {AbortController | null} */ #running = null;
   /** @type {ReturnType<typeof setInterval> | undefined} */ #timer;
+  /** @type {StretchRequest | null} */ #request = null;
   /** @type {Set<() => void>} */ #played = new Set();
   /** Share of the test that is done; null while it waits for its turn. */
   progress = new Signal(/** @type {number | null} */ (null));
@@ -35,6 +36,7 @@ export class Stretcher {
     };
     studio.document.onSettle(outdate);
     studio.materialId.listen(outdate);
+    studio.seeing.forgotten.listen((id) => void this.#again(id));
   }
 
   get playing() {
@@ -58,12 +60,13 @@ export class Stretcher {
     const controller = new AbortController();
     this.#running = controller;
     this.progress.value = null;
+    const request = { ...studio.request, direction, strain, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
       /** @type {Stretch} */
       const value = await runJob(
         "stretch",
-        { ...studio.request, direction, strain, steps: STEPS, ...options },
+        request,
         {
           signal: controller.signal,
           onProgress: ({ state, progress }) => {
@@ -72,6 +75,7 @@ export class Stretcher {
         },
       );
       if (controller.signal.aborted) return;
+      this.#request = request;
       studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };
       studio.online.value = true;
       studio.step.value = value.strain.length - 1;
@@ -84,6 +88,24 @@ export class Stretcher {
       if (error.offline) studio.online.value = false;
     } finally {
       if (this.#running === controller) this.#running = null;
+    }
+  }
+
+  /**
+   * The numbers of a test outlive a restart of the service, what the 3D view needs of it does not:
+   * have it run once more.
+   *
+   * @param {string | null} id
+   */
+  async #again(id) {
+    const { studio } = this;
+    if (!this.#request || id === null || studio.currentStretch()?.id !== id) return;
+    try {
+      await api.stretch(this.#request);
+      const { stretch } = studio;
+      if (stretch.value.value?.id === id) stretch.value = { ...stretch.value };
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error; // the view says what is wrong
     }
   }
 
