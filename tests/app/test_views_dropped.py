@@ -51,6 +51,8 @@ def _dropped(app: FastAPI, most: tuple[int, int] | None = None) -> None:
 
 
 def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None:
+    memory.give_back()
+    others = _servers()  # of services that other tests use
     app = create_app(Settings(workers=1, data_dir=tmp_path))
     with TestClient(app, base_url="http://127.0.0.1") as client:
         _look(client)  # what is loaded for the first views stays
@@ -61,7 +63,7 @@ def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None
             _look(client)
             _dropped(app, start)
     memory.give_back()
-    assert _servers() == 0
+    assert _servers() <= others
 
 
 def test_nothing_is_printed_where_the_address_is_told(capsys: pytest.CaptureFixture[str]) -> None:
