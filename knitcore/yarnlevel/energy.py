@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
+from knitcore.yarnlevel.grip import Grip
 from knitcore.yarnlevel.held import foot_rows, plane_rows
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs
 from knitcore.yarnlevel.yarn import YarnModel
@@ -72,6 +73,7 @@ class CellEnergy:
         of each stitch from foot to foot.
     convention : factors of the terms.
     flat : the middles of all stitches are held in one plane.
+    grips : where the yarn may not slide.
     """
 
     cell: YarnCell
@@ -79,6 +81,7 @@ class CellEnergy:
     loop_length_mm: Array
     convention: Convention
     flat: bool = False
+    grips: tuple[Grip, ...] = ()
 
     @cached_property
     def mean_loop_mm(self) -> float:
@@ -129,8 +132,8 @@ class CellEnergy:
 
     @property
     def constraints(self) -> int:
-        """Number of prescribed lengths and linear rules."""
-        return len(self.prescribed_mm) + len(self.held)
+        """Number of prescribed lengths, linear rules and grips."""
+        return len(self.prescribed_mm) + len(self.held) + len(self.grips)
 
     @cached_property
     def penalty(self) -> float:
@@ -193,10 +196,11 @@ class CellEnergy:
         )
 
     def excess(self, state: Array, curve: Array) -> Array:
-        """What is held over its value: lengths first, then the linear rules, mm."""
+        """What is held over its value: lengths, linear rules, grips, mm."""
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
         lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
-        return np.concatenate([lengths - self.prescribed_mm, self.held @ state])
+        slid = np.array([grip.value(state) for grip in self.grips])
+        return np.concatenate([lengths - self.prescribed_mm, self.held @ state, slid])
 
     def value(self, state: Array, curve: Array, pairs: Ints) -> Terms:
         """Parts of the energy."""
@@ -241,8 +245,10 @@ class CellEnergy:
         gradient = np.zeros(size)
         gradient[-2:] = force[n, :2]
         kernels.scatter_gradient(force, slopes, *self._layout, gradient)
-        gradient += tension[len(self.prescribed_mm) :] @ self.held
-        lengths = np.concatenate([self.length_gradients(curve), self.held])
+        slides = np.array([grip.gradient(state) for grip in self.grips]).reshape(-1, size)
+        lengths = np.concatenate([self.length_gradients(curve), self.held, slides])
+        beside = len(self.prescribed_mm)
+        gradient += tension[beside:] @ lengths[beside:]
         if not hessian:
             return Slope(gradient, lengths, np.zeros((0, 0)))
         matrix = np.zeros((size, size))
@@ -254,6 +260,8 @@ class CellEnergy:
             position, position_speed, matrix,
         )  # fmt: skip
         kernels.scatter_local(local, position, position_speed, *self._layout, matrix)
+        for force_of_grip, grip in zip(tension[beside + len(self.held) :], self.grips, strict=True):
+            matrix += force_of_grip * grip.hessian()
         return Slope(gradient, lengths, matrix)
 
     def length_gradients(self, curve: Array) -> Array:

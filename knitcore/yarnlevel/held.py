@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 _Y, _Z = 1, 2
 _SMALL = 1e-9
+_INDEPENDENT = 1e-6
 
 
 def foot_rows(cell: YarnCell) -> Array:
@@ -58,11 +59,19 @@ def plane_rows(cell: YarnCell) -> Array:
 def independent(rows: Array) -> Array:
     """Rows that span the same space without a spare one."""
     kept: list[Array] = []
-    base = np.zeros((0, rows.shape[1]))
     for row in rows:
-        rest = row - (row @ base.T) @ base
-        size = float(np.linalg.norm(rest))
-        if size > _SMALL * max(float(np.linalg.norm(row)), 1.0):
+        if is_independent(kept, row):
             kept.append(row)
-            base = np.vstack([base, rest / size])
     return np.array(kept).reshape(len(kept), rows.shape[1])
+
+
+def is_independent(rows: list[Array], row: Array) -> bool:
+    """Whether a row is no combination of others."""
+    size = float(np.linalg.norm(row))
+    if size < _SMALL:
+        return False
+    if not rows:
+        return True
+    base = np.array(rows)
+    combined = np.linalg.lstsq(base.T, row, rcond=None)[0] @ base
+    return float(np.linalg.norm(row - combined)) > _INDEPENDENT * size

@@ -16,6 +16,7 @@ from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.grip import Grip
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.published.relax import check_loop, check_size
 from knitcore.yarnlevel.results import RelaxedCell
@@ -88,6 +89,7 @@ class RelaxedRepeat(RelaxedCell):
     min_distance_mm : smallest distance of centre lines.
     starts : all starts.
     flat : the middles of all stitches were held in one plane.
+    grips : where the yarn was kept from sliding.
     """
 
     chart: StitchChart
@@ -99,6 +101,7 @@ class RelaxedRepeat(RelaxedCell):
     min_distance_mm: float
     starts: tuple[StartReport, ...] = ()
     flat: bool = False
+    grips: tuple[Grip, ...] = ()
 
     @property
     def control_points(self) -> Array:
@@ -112,7 +115,9 @@ class RelaxedRepeat(RelaxedCell):
     @property
     def energy(self) -> CellEnergy:
         """The energy whose minimum this is."""
-        return CellEnergy(self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat)
+        return CellEnergy(
+            self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat, self.grips
+        )
 
 
 def relax(
@@ -239,6 +244,7 @@ def relaxed_repeat(
         min_distance_mm=found.min_distance_mm,
         starts=starts,
         flat=energy.flat,
+        grips=energy.grips,
     )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
+from knitcore.yarnlevel.grip import grips_at
 from knitcore.yarnlevel.relax import (
     Branch,
     RelaxedRepeat,
@@ -24,6 +25,7 @@ from knitcore.yarnlevel.relax import (
 from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.topology import Guard
 
 Cancel = Callable[[], bool]
 
@@ -42,6 +44,7 @@ def sweep(
     points: int = DEFAULT_POINTS,
     max_stress_n_per_mm: float | None = None,
     back: bool = True,
+    slide_quenching: bool = False,
     cancel: Cancel | None = None,
 ) -> Sweep:
     """Stretch in one direction, the other free of force.
@@ -54,6 +57,8 @@ def sweep(
     points : number of strains, the first of them 0.
     max_stress_n_per_mm : stop the way out beyond this nominal stress.
     back : also go back from the end and keep the lower state of each strain.
+    slide_quenching : keep the yarn from sliding where it touches at rest (the paper does so for
+        seed along the course); see :mod:`knitcore.yarnlevel.grip`.
 
     Raises
     ------
@@ -70,6 +75,9 @@ def sweep(
     rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
     strain = np.linspace(0.0, max_strain, points)
     notes = list(zero.notes)
+    if slide_quenching:
+        zero = gripped(zero)
+        notes.append(f"Slide quenching: {len(zero.grips)} slides are held.")
     outward: list[RelaxedRepeat] = []
     last = _held(zero, along, rest, cancel)
     for target in rest * (1.0 + strain):
@@ -163,6 +171,19 @@ def _off_work(cells: list[RelaxedRepeat], along: Direction) -> set[int]:
         if missed > _OFF_WORK * abs(work) and missed > SAME_ENERGY * scale:
             jumps.add(i)
     return jumps
+
+
+def gripped(cell: RelaxedRepeat) -> RelaxedRepeat:
+    """The same state with its yarn kept from sliding where it touches."""
+    energy = replace(cell.energy, grips=())
+    curve = energy.curve(cell.state)
+    touch = 2.0 * cell.yarn.radius_mm
+    pairs, _ = energy.pairs(curve, cell.state, touch)
+    guard = Guard(cell.cell, cell.state, curve, pairs, touch, touch)
+    distances, _ = guard.changes(cell.state, curve)
+    grips = grips_at(cell.cell, cell.state, pairs, distances, touch, energy.mean_loop_mm)
+    tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(grips))])
+    return replace(cell, grips=grips, tension_n=tension)
 
 
 def without_jumps(curve: Sweep) -> Sweep:

@@ -1,0 +1,49 @@
+"""Yarn that is kept from sliding where it touches."""
+
+import numpy as np
+import pytest
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction, Fabric
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.samples import sample
+from knitcore.yarnlevel.sweep import gripped, sweep
+
+
+@pytest.fixture(scope="module")
+def seed():
+    entry = sample("acrylic", Fabric.SEED)
+    return relax(StitchChart.of_fabric(Fabric.SEED, 2, 2), entry.yarn, entry.loop_length_mm)
+
+
+def test_a_stitch_has_the_two_slides_of_the_paper(seed):
+    held = gripped(seed)
+    assert len(held.grips) == 2  # two crossovers that mirror each other, along either strand
+    assert [grip.value(seed.state) for grip in held.grips] == pytest.approx([0.0, 0.0])
+    apart = [np.linalg.norm(grip.apart @ seed.state) for grip in held.grips]
+    np.testing.assert_allclose(apart, seed.min_distance_mm, rtol=1e-9)
+
+
+def test_derivatives_of_a_slide_agree_with_differences(seed):
+    grip = gripped(seed).grips[0]
+    rng = np.random.default_rng(0)
+    for direction in rng.standard_normal((4, len(seed.state))):
+        h = 1e-6
+        ahead, behind = seed.state + h * direction, seed.state - h * direction
+        slope = (grip.value(ahead) - grip.value(behind)) / (2 * h)
+        assert grip.gradient(seed.state) @ direction == pytest.approx(slope, rel=1e-6)
+        bend = (grip.gradient(ahead) - grip.gradient(behind)) / (2 * h)
+        np.testing.assert_allclose(grip.hessian() @ direction, bend, atol=1e-6)
+
+
+def test_quenched_slides_are_held_and_stiffen_seed(seed):
+    free, held = (
+        sweep(seed, Direction.COURSE, 0.3, points=4, back=False, slide_quenching=quenched)
+        for quenched in (False, True)
+    )
+    assert any("Slide quenching" in note for note in held.notes)
+    for cell in held.cells:
+        assert cell.converged
+        assert [grip.value(cell.state) for grip in cell.grips] == pytest.approx([0, 0], abs=1e-6)
+    assert np.all(held.energy_n_mm[1:] > free.energy_n_mm[1:])
+    assert held.stress_n_per_mm[1] > 1.05 * free.stress_n_per_mm[1]
