@@ -130,7 +130,7 @@ def commands(page: Page) -> str | None:
 
 
 def designs(page: Page) -> str | None:
-    for name in ("seed", "diamonds", "basket", "glove", "wrist-brace"):
+    for name in ("seed", "diamonds", "basket", "wrist-brace"):
         page.keyboard.press("Shift+N")
         page.click(f"#gallery-{name}")
         page.wait_for_timeout(600)
@@ -187,44 +187,61 @@ def glove(page: Page) -> str | None:
     return None
 
 
-SCENES: dict[str, Scene] = {
-    "page": page,
+WHOLE: dict[str, Scene] = {"page": page, "glove": glove, "fabric": fabric}
+"""Pictures with the cloth in 3D, each of a visit of its own."""
+
+PARTS: dict[str, Scene] = {
+    "stretch": stretch,
+    "curve": curve,
+    "inspector": inspector,
     "fabrics": fabrics,
     "segments": segments,
     "stiffness": stiffness,
-    "fabric": fabric,
-    "inspector": inspector,
-    "curve": curve,
-    "stretch": stretch,
-    "regions": regions,
-    "repeats": repeats,
-    "garments": opened("Plan a garment", "#planner-dialog"),
-    "atlas": opened("Atlas of all repeats", "#inverse"),
-    "exports": opened("Export, all formats", "#export-dialog"),
     "gallery": opened("New design", "#gallery-dialog", "#gallery-glove canvas"),
-    "resize": opened("Size and new chart", "#resize-dialog"),
-    "import": opened("Import a chart", "#import-dialog"),
-    "help": opened("Keys and tools", "#help-dialog"),
-    "commands": commands,
-    "designs": designs,
     "versions": versions,
     "share": share,
+    "help": opened("Keys and tools", "#help-dialog"),
+    "commands": commands,
+    "resize": opened("Size and new chart", "#resize-dialog"),
+    "import": opened("Import a chart", "#import-dialog"),
+    "exports": opened("Export, all formats", "#export-dialog"),
+    "garments": opened("Plan a garment", "#planner-dialog", "#planner-facts:not(.busy) table"),
+    "atlas": opened("Atlas of all repeats", "#inverse"),
+    "designs": designs,
+    "regions": regions,
+    "repeats": repeats,
     "tour": tour,
-    "glove": glove,
     "offline": offline,
 }
+"""Pictures of one visit, without the cloth in 3D, which takes most of the time."""
 
 
-def visit(browser: Browser, url: str, theme: Literal["light", "dark"]) -> Page:
+def visit(browser: Browser, url: str, theme: Literal["light", "dark"], *, flat: bool) -> Page:
     """A first visit, with the example stretched and the offer of a tour declined."""
     context = browser.new_context(viewport=SCREEN, color_scheme=theme, reduced_motion="reduce")
     context.set_default_timeout(60_000)
     page = context.new_page()
+    if flat:
+        page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
     page.goto(url)
     page.click(".message-close")
     page.wait_for_function("() => !document.querySelector('#stretch-slider').disabled")
     page.wait_for_timeout(1500)
     return page
+
+
+def picture(page: Page, scene: Scene, name: str) -> None:
+    """Bring the page into the state of a scene and keep a picture of its part."""
+    part = scene(page)
+    keep(name, page.locator(part).first.screenshot() if part else page.screenshot())
+
+
+def leave(page: Page) -> None:
+    """Close what a scene has opened."""
+    page.keyboard.press("Escape")
+    for close in page.locator(".dock-panel:not([hidden]) header button, #inverse-close").all():
+        if close.is_visible():
+            close.click()
 
 
 def keep(name: str, picture: bytes) -> None:
@@ -250,16 +267,19 @@ def main(wanted: list[str]) -> None:
             service.folder.mkdir()
             service.start().close()
             try:
-                for name in wanted or SCENES:
-                    page = visit(browser, service.url, theme)
-                    part = SCENES[name](page)
-                    picture = page.locator(part).screenshot() if part else page.screenshot()
-                    keep(f"{name}-{theme}", picture)
+                for name in [name for name in WHOLE if name in wanted]:
+                    page = visit(browser, service.url, theme, flat=False)
+                    picture(page, WHOLE[name], f"{name}-{theme}")
                     page.context.close()
+                page = visit(browser, service.url, theme, flat=True)
+                for name in [name for name in PARTS if name in wanted]:
+                    picture(page, PARTS[name], f"{name}-{theme}")
+                    leave(page)
+                page.context.close()
             finally:
                 service.stop()
         browser.close()
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(sys.argv[1:] or [*WHOLE, *PARTS])
