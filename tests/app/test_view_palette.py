@@ -1,0 +1,35 @@
+"""The page and the 3D view paint with the same colours."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from app.operations.view_colours import Palette
+from app.viewer.colours import BATLOW, FABRIC_COLOURS, VIK
+
+FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
+
+
+def test_the_default_palette_is_the_page_s_light_theme() -> None:
+    styles = (FRONTEND / "styles" / "tokens.css").read_text(encoding="utf-8")
+    light = styles[: styles.index("}")]
+    for fabric, colour in FABRIC_COLOURS.items():
+        assert f"--{fabric.value}: #{colour};" in light
+
+
+def test_the_page_sends_the_colours_of_its_theme() -> None:
+    """So a dark page has a 3D view in its own colours, and nobody keeps a second list of them."""
+    script = (FRONTEND / "panels" / "fabricview.js").read_text(encoding="utf-8")
+    sent = set(re.findall(r'(\w+): colour\("\1"\)', script))
+    assert sent == set(Palette.model_fields) - {"yarn"}
+
+
+@pytest.mark.parametrize(("name", "stops"), [("BATLOW", BATLOW), ("VIK", VIK)])
+def test_maps_have_the_same_stops(name: str, stops: str) -> None:
+    script = (FRONTEND / "chart" / "colormaps.js").read_text(encoding="utf-8")
+    declared = script[script.index(f"const {name} =") :]
+    declared = declared[: declared.index(";")]
+    assert re.findall(r"\b[0-9a-f]{6}\b", declared) == stops.split()

@@ -1,0 +1,163 @@
+"""The fabric in 3D: linked with the chart, stretched, private, and back after a lost connection."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.conftest import COLUMNS, ROWS, TIMEOUT_MS, wait_for_numbers
+from tests.browser.page import pixels, wait_for_colour
+
+YARN = 900
+"""Coloured pixels of the small fabric at least."""
+
+
+def _click_fabric(page: Page, x: float, y: float) -> None:
+    """A click in the view, at shares of its width and height."""
+    box = page.locator(".fabric-frame").bounding_box()
+    assert box
+    page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+
+
+def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> None:
+    wait_for_colour(studio, "#fabric", YARN)
+    before = pixels(studio, "#chart-host")
+    readout = studio.locator("#readout")
+    with studio.expect_response(lambda r: r.url.endswith("/mark") and r.ok):
+        _click_fabric(studio, 0.5, 0.5)
+    expect(readout).to_contain_text("Row ")
+    row = int(readout.inner_text().split()[1])
+    assert 1 < row < ROWS
+    assert (
+        np.abs(
+            pixels(studio, "#chart-host") - before[: pixels(studio, "#chart-host").shape[0]]
+        ).max()
+        > 40
+    )
+
+
+def test_what_is_selected_in_the_chart_is_outlined_on_the_fabric(studio: Page) -> None:
+    wait_for_colour(studio, "#fabric", YARN)
+    with studio.expect_request(
+        lambda r: r.url.endswith("/mark") and '"row0":0' in (r.post_data or "")
+    ) as sent:
+        studio.keyboard.press("Control+a")
+    assert json.loads(sent.value.post_data or "")["box"] == {
+        "row0": 0,
+        "column0": 0,
+        "row1": ROWS,
+        "column1": COLUMNS,
+    }
+
+
+def test_sides_and_yarn_colours_change_the_picture(studio: Page) -> None:
+    face = wait_for_colour(studio, "#fabric", YARN)
+    with studio.expect_response(lambda r: r.url.endswith("/camera") and r.ok):
+        studio.click("#look-edge")
+    studio.wait_for_timeout(2_000)
+    edge = wait_for_colour(studio, "#fabric", 300)
+    assert np.abs(edge - face).max() > 60
+    with studio.expect_response(
+        lambda r: "/views/" in r.url and r.request.method == "PUT" and r.ok
+    ):
+        studio.click("#fabric-colours-button")
+        studio.click("#yarn-yarn")
+
+
+def test_a_stretch_is_scrubbed_by_keyboard_in_chart_curve_and_3d(studio: Page) -> None:
+    studio.click("#stretch-course")
+    studio.fill("#stretch-amount", "30")
+    studio.focus("#chart")
+    studio.keyboard.press("j")
+    expect(studio.locator("#stretch-slider")).to_be_enabled()
+    caption = studio.locator(".fabric-caption")
+    expect(caption).to_have_text("Stretched course-wise by 30 %")
+    with studio.expect_response(lambda r: r.url.endswith("views/" + _design(studio)) and r.ok):
+        for _ in range(5):
+            studio.keyboard.press(",")
+    expect(caption).not_to_have_text("Stretched course-wise by 30 %")
+    expect(studio.locator("#curve-course")).to_have_attribute("aria-checked", "true")
+    names = studio.evaluate("document.querySelector('#plot-curve').data.map(t => t.name)")
+    assert {"stockinette", "garter", "rib", "seed", "90 % interval", "stretch test"} <= set(names)
+
+
+def test_a_test_can_be_cancelled(flat_studio: Page) -> None:
+    flat_studio.route("**/api/v1/jobs/*/events", lambda route: None)  # its end is never heard
+    flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-run")).to_contain_text("Cancel")
+    with flat_studio.expect_request(lambda r: "/jobs/" in r.url and r.method == "DELETE"):
+        flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-run")).to_contain_text("Stretch")
+
+
+def test_two_designs_never_show_each_other(browser: Browser, service: str) -> None:
+    pictures = []
+    contexts = []
+    for chart in ("K" * 8, "KP" * 4):
+        context = browser.new_context(
+            viewport={"width": 1280, "height": 720}, reduced_motion="reduce"
+        )
+        context.set_default_timeout(TIMEOUT_MS)
+        page = context.new_page()
+        design = {
+            "id": os.urandom(16).hex(),
+            "name": "Test",
+            "material": "acrylic",
+            "chart": "\n".join([chart] * 8),
+        }
+        page.add_init_script(
+            f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}"
+        )
+        page.goto(service)
+        wait_for_numbers(page)
+        contexts.append((context, page))
+    for _, page in contexts:
+        pictures.append(wait_for_colour(page, "#fabric", YARN))
+    for context, _ in contexts:
+        context.close()
+    stockinette, rib = (picture.reshape(-1, 3) for picture in pictures)
+
+    def blue(picture: np.ndarray) -> int:
+        return int((picture[:, 2] > picture[:, 1] + 25).sum())
+
+    def green(picture: np.ndarray) -> int:
+        return int((picture[:, 1] > picture[:, 2] + 25).sum())
+
+    assert blue(stockinette) > 5 * green(stockinette)
+    assert green(rib) > 5 * blue(rib)
+
+
+def test_a_lost_view_comes_back_by_itself(studio: Page) -> None:
+    wait_for_colour(studio, "#fabric", YARN)
+    with studio.expect_response(
+        lambda r: r.url.endswith("views/" + _design(studio)) and r.request.method == "PUT" and r.ok
+    ):
+        studio.context.set_offline(True)
+        studio.wait_for_timeout(500)
+        studio.context.set_offline(False)
+    wait_for_colour(studio, "#fabric", YARN)
+
+
+def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> None:
+    wait_for_colour(studio, "#fabric", YARN)
+    studio.click("#fabric-share-button")
+    with studio.expect_download() as download:
+        studio.click("#share-page")
+    file = tmp_path / "fabric.html"
+    download.value.save_as(file)
+    text = file.read_text(encoding="utf-8")
+    assert "<html" in text
+    assert service_address(studio) not in text
+
+
+def service_address(page: Page) -> str:
+    """Host and port of the service."""
+    return str(page.evaluate("location.host"))
+
+
+def _design(page: Page) -> str:
+    return str(page.evaluate("JSON.parse(localStorage['knitcore.design']).id"))
