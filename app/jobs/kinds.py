@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -39,7 +41,9 @@ from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
-from knitcore.yarnlevel.fingerprint import solver_version
+
+DECIDING = frozenset({".py", ".csv", ".json", ".npz"})
+"""Endings of program and data files."""
 
 Kind = TypeVar("Kind", bound=str)
 Request = TypeVar("Request", bound=BaseModel)
@@ -172,5 +176,16 @@ KINDS: dict[str, JobKind] = {
 
 
 def content_key(kind: str, request: str) -> str:
-    """A name made of everything that decides a result, the solver of the yarn level included."""
-    return hashlib.sha256(f"{kind}\0{solver_version()}\0{request}".encode()).hexdigest()
+    """A name made of everything that decides a result: kind, request, and this program."""
+    return hashlib.sha256(f"{program_version()}\0{kind}\0{request}".encode()).hexdigest()
+
+
+@cache
+def program_version() -> str:
+    """Digest of what computes: after an update, no older result is taken for a new one."""
+    root = Path(__file__).resolve().parents[2]
+    digest = hashlib.sha256()
+    for file in sorted((*root.glob("knitcore/**/*"), *root.glob("app/operations/*"))):
+        if file.suffix in DECIDING:
+            digest.update(str(file.relative_to(root)).encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()

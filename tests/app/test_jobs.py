@@ -14,6 +14,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from app.compute import Compute
+from app.jobs import kinds as kinds_module
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, JobKind
@@ -125,6 +126,21 @@ def test_jobs_are_private_and_results_are_shared_by_content(
         second = await runner.submit("bob", "work", _wish("answer"))
         assert second.state is JobState.DONE
         assert runner.store.result("bob", second.id) == b'{"value":42}'
+
+    asyncio.run(scenario())
+
+
+def test_results_of_another_program_are_not_taken_for_ones_own(
+    database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> None:
+        runner = _runner(database, compute)
+        first = await runner.submit("ada", "work", _wish("answer"))
+        assert (await _ended(runner, first.id)).state is JobState.DONE
+        monkeypatch.setattr(kinds_module, "program_version", lambda: "the next one")
+        again = await runner.again("ada", first.id)
+        assert again.state is JobState.WAITING
+        assert (await _ended(runner, again.id)).state is JobState.DONE
 
     asyncio.run(scenario())
 
