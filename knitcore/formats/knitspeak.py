@@ -26,6 +26,7 @@ import numpy as np
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
 from knitcore.errors import InputError
 from knitcore.formats.written import in_brackets, row_words
+from knitcore.formats.written_words import MAX_CHARACTERS
 from knitcore.worked import (
     Construction,
     Side,
@@ -176,6 +177,8 @@ def read_knitspeak(text: str) -> StitchChart:
 def _sentences(text: str) -> Iterator[tuple[int, str]]:
     for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
         words = " ".join(line.split())
+        if len(words) > MAX_CHARACTERS:
+            raise _wrong(number, f"it has {len(words)} characters.", "Write it with repeats.")
         if words and not words.startswith("#"):
             yield number, words
 

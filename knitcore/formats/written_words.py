@@ -9,6 +9,8 @@ from knitcore.chart import MAX_STITCHES_PER_SIDE, check_size
 from knitcore.errors import InputError
 from knitcore.garment.piece import yarn_name
 
+MAX_CHARACTERS = 20_000
+"""Of a row's words; the widest row without any repeat takes a quarter of it."""
 _COUNT = re.compile(r"\((\d{1,4}) sts?\)$", re.IGNORECASE)
 _STITCHES = re.compile(r"([kp])(\d{1,4})", re.IGNORECASE)
 _BRACKET = re.compile(r"\(([^()]*)\) (?:(twice)|(\d{1,4}) times)", re.IGNORECASE)
@@ -80,6 +82,8 @@ def read_row(line: Line, body: str, needle: int, yarns: int) -> Work:
     InputError
         Naming the line and what is wrong with it.
     """
+    if len(body) > MAX_CHARACTERS:
+        raise line.wrong(f"it has {len(body)} characters.", "Split it, or write it with repeats.")
     count = _COUNT.search(body)
     words = (body[: count.start()] if count else body).strip().rstrip(".").strip()
     first, last, words = _edges(line, words, needle)

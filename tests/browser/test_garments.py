@@ -52,9 +52,14 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
 def test_a_brace_for_a_pressure_says_what_it_presses(flat_studio: Page) -> None:
     page = flat_studio
     _plan(page, "wrist-brace")
+    support = page.locator("#planner-pressure tbody tr")
+    expect(support).to_contain_text("mmHg")
+    expect(support).to_contain_text("170 mm")
+    by_pressure = support.inner_text()
     with page.expect_response("**/garment"):
-        page.locator("input[name=planner-fit][value=pressure]").check(force=True)
-    expect(page.locator("#planner-pressure")).to_contain_text("mmHg")
+        page.locator("input[name=planner-fit][value=ease]").check(force=True)
+    expect(support).to_contain_text("−14 %")
+    assert support.inner_text() != by_pressure
     page.get_by_label("Around the wrist").fill("-3")
     expect(page.locator("#planner-dialog .problem")).to_contain_text("wrist_mm")
     expect(page.locator("#planner-make")).to_be_disabled()

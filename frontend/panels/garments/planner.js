@@ -29,6 +29,8 @@ import { facts } from "./facts.js";
 import { DIGITS, TEMPLATES } from "./templates.js";
 
 const TYPING_MS = 250;
+/** In the middle of what the study wanted for its glove, 20 to 30. */
+const TARGET_MMHG = 25;
 
 /**
  * @param {Studio} studio
@@ -50,11 +52,11 @@ export function create(studio, { keeper }) {
   const measures = h("div", { class: "planner-measures" });
   const about = h("p", { class: "muted" });
   const ease = h("input", { type: "number", class: "number figures", id: "planner-ease", min: "-60", max: "100", step: "1", "aria-label": "Ease in percent", oninput: changed });
-  const target = h("input", { type: "number", class: "number figures", id: "planner-target", min: "1", max: "300", step: "1", value: "20", "aria-label": "Wanted pressure in mmHg", oninput: changed });
-  let byPressure = false;
+  const target = h("input", { type: "number", class: "number figures", id: "planner-target", min: "1", max: "300", step: "1", value: String(TARGET_MMHG), "aria-label": "Wanted pressure in mmHg", oninput: changed });
+  let byPressure = true;
   const easeRow = labelled("Ease, %", ease, "negative is tighter");
   const targetRow = labelled("Wanted pressure, mmHg", target);
-  const fit = choice("planner-fit", "How tight", [["ease", "by ease"], ["pressure", "by pressure"]], "ease", (value) => {
+  const fit = choice("planner-fit", "How tight", [["ease", "by ease"], ["pressure", "by pressure"]], "pressure", (value) => {
     byPressure = value === "pressure";
     showFit();
     changed();

@@ -99,6 +99,7 @@ def test_brackets_and_words_of_other_hands() -> None:
         ("Rows 1-5000: Knit.", "too large"),
         ("knit on", "is no row"),
         ("Row 1: .", "empty"),
+        ("Row 1: " + "k1, " * 100_000, "characters"),
         ("Bind off.", "there is no row"),
     ],
 )
