@@ -225,7 +225,7 @@ def visit(browser: Browser, url: str, theme: Literal["light", "dark"], *, flat: 
         page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
     page.goto(url)
     page.click(".message-close")
-    page.wait_for_function("() => !document.querySelector('#stretch-slider').disabled")
+    page.locator("#stretch-slider:enabled").wait_for(timeout=300_000)
     page.wait_for_timeout(1500)
     return page
 
@@ -262,22 +262,21 @@ def main(wanted: list[str]) -> None:
     IMAGES.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        for theme in THEMES:
-            service = Service(Path(folder) / theme)
-            service.folder.mkdir()
-            service.start().close()
-            try:
-                for name in [name for name in WHOLE if name in wanted]:
-                    page = visit(browser, service.url, theme, flat=False)
-                    picture(page, WHOLE[name], f"{name}-{theme}")
-                    page.context.close()
+        service = Service(Path(folder))
+        service.start().close()
+        try:
+            for theme in THEMES:
                 page = visit(browser, service.url, theme, flat=True)
                 for name in [name for name in PARTS if name in wanted]:
                     picture(page, PARTS[name], f"{name}-{theme}")
                     leave(page)
                 page.context.close()
-            finally:
-                service.stop()
+                for name in [name for name in WHOLE if name in wanted]:
+                    page = visit(browser, service.url, theme, flat=False)
+                    picture(page, WHOLE[name], f"{name}-{theme}")
+                    page.context.close()
+        finally:
+            service.stop()
         browser.close()
 
 
