@@ -53,6 +53,23 @@ def test_two_designs_are_two_scenes(client: TestClient) -> None:
     assert views.open("local/first-design").port != views.open("local/second-design").port
 
 
+def test_the_same_design_twice_is_one_scene(client: TestClient) -> None:
+    body = {"chart": "KP\nPK", "material": "cotton", "colour": "wale"}
+    assert client.put("/api/v1/views/shared-design", json=body).status_code == 200
+    first, second = (_messages(client, "shared-design", b"batched_colors") for _ in range(2))
+    assert b"/fabric/0" in first
+    assert b"/fabric/0" in second
+
+
+def test_a_closed_view_is_drawn_again_by_the_next_request(client: TestClient) -> None:
+    body = {"chart": "KP\nPK", "material": "cotton"}
+    client.put("/api/v1/views/design-that-slept", json=body)
+    views = client.app.state.views  # type: ignore[attr-defined]
+    views._views.pop("local/design-that-slept").server.stop()
+    assert client.put("/api/v1/views/design-that-slept", json=body).json()["stitches"] == 4
+    assert b"/fabric/" in _messages(client, "design-that-slept", b"/fabric/")
+
+
 def test_a_stretched_state_can_be_shown(client: TestClient) -> None:
     run = client.post("/api/v1/stretch", json=ASKED).json()
     body = {
