@@ -138,7 +138,6 @@ def _relaxed(
     cancelled: Cancelled | None,
 ) -> RelaxResult:
     cell = relaxed_cell(repeat, used, options, cancelled)
-    starts = cell.starts if isinstance(cell, RelaxedRepeat) else ()
     lines = [[(x, y, z) for x, y, z in line.tolist()] for line in cell.centre_lines]
     return RelaxResult(
         branch=Branch(cell.branch),
@@ -164,7 +163,7 @@ def _relaxed(
                 cell_course_mm=_or_none(s.cell_course_mm),
                 cell_wale_mm=_or_none(s.cell_wale_mm),
             )
-            for s in starts
+            for s in cell.starts
         ],
         notes=list(cell.notes),
         centre_lines_mm=lines if with_lines else None,

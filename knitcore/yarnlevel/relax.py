@@ -19,12 +19,11 @@ from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.grip import Grip
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.published.relax import check_loop, check_size
-from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.results import RelaxedCell, StartReport
 from knitcore.yarnlevel.search import (
     RELAXED,
     UNSETTLED,
     Search,
-    StartReport,
     outcome,
 )
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
@@ -87,7 +86,6 @@ class RelaxedRepeat(RelaxedCell):
     tension_n : tension of every course (or stitch) of the cell, then what holds it flat.
     force_n : dE/d(size of a stitch) of one stitch, course-wise and wale-wise.
     min_distance_mm : smallest distance of centre lines.
-    starts : all starts.
     flat : the middles of all stitches were held in one plane.
     grips : where the yarn was kept from sliding.
     """
@@ -99,7 +97,6 @@ class RelaxedRepeat(RelaxedCell):
     tension_n: Array
     force_n: tuple[float, float]
     min_distance_mm: float
-    starts: tuple[StartReport, ...] = ()
     flat: bool = False
     grips: tuple[Grip, ...] = ()
 

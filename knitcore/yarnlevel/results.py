@@ -13,6 +13,24 @@ from knitcore.yarnlevel.conventions import Convention
 FloatArray = npt.NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class StartReport:
+    """What became of one start.
+
+    Attributes
+    ----------
+    name : of the start.
+    outcome : ``relaxed``, ``not converged``, or the reason of a failure.
+    energy_n_mm, cell_course_mm, cell_wale_mm : per stitch; nan where it failed.
+    """
+
+    name: str
+    outcome: str
+    energy_n_mm: float
+    cell_course_mm: float
+    cell_wale_mm: float
+
+
 @dataclass(frozen=True, eq=False)
 class RelaxedCell:
     """A cell of yarn at the lowest energy that was found.
@@ -33,6 +51,7 @@ class RelaxedCell:
         once across the repeat.
     state : unknowns of the branch, from which it can go on.
     notes : what a user should know about this result.
+    starts : all starts and what became of them.
     """
 
     branch: str
@@ -49,6 +68,7 @@ class RelaxedCell:
     centre_lines: FloatArray
     state: FloatArray
     notes: tuple[str, ...] = ()
+    starts: tuple[StartReport, ...] = ()
 
     def cell_mm(self, direction: Direction) -> float:
         """Size of one stitch along a direction, mm."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -13,6 +12,7 @@ from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.growth import Start, grow, shaken
+from knitcore.yarnlevel.results import StartReport
 from knitcore.yarnlevel.solver import Minimum, Options, minimise
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Guard
@@ -29,24 +29,6 @@ _STRAIGHT = 0.9
 
 RELAXED = "relaxed"
 UNSETTLED = "not converged"
-
-
-@dataclass(frozen=True)
-class StartReport:
-    """What became of one start.
-
-    Attributes
-    ----------
-    name : of the start.
-    outcome : ``relaxed``, ``not converged``, or the reason of a failure.
-    energy_n_mm, cell_course_mm, cell_wale_mm : per stitch; nan where it failed.
-    """
-
-    name: str
-    outcome: str
-    energy_n_mm: float
-    cell_course_mm: float
-    cell_wale_mm: float
 
 
 def overlong(energy: CellEnergy, found: Minimum) -> bool:

@@ -20,7 +20,7 @@ from knitcore.yarnlevel.published.walk import (
     has_room,
     is_knitted,
 )
-from knitcore.yarnlevel.results import FloatArray, RelaxedCell
+from knitcore.yarnlevel.results import FloatArray, RelaxedCell, StartReport
 from knitcore.yarnlevel.yarn import YarnModel
 
 BRANCH = "published"
@@ -101,7 +101,8 @@ def relax_published(
         m.converged and m.energy_n_mm > least * 1.001 and is_knitted(stitch, m) for m in found
     )
     notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
-    return relaxed_cell(stitch, best, seconds, evaluations, notes)
+    cell = relaxed_cell(stitch, best, seconds, evaluations, notes)
+    return replace(cell, starts=tuple(_report(stitch, n, m) for n, m in enumerate(found, start=1)))
 
 
 def check_cancelled(cancel: Callable[[], bool] | None) -> None:
@@ -205,6 +206,19 @@ def check_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
             f"{size_mm:g} mm cannot be reached with {loop_length_mm:g} mm of yarn.",
             f"Give a size from {low:.2f} to {high:.2f} mm.",
         )
+
+
+def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:
+    """What became of a start."""
+    if not minimum.converged:
+        outcome = "not converged"
+    elif not (minimum.certified and is_clasped(stitch, minimum.unknowns)):
+        outcome = "unravelled"
+    else:
+        outcome = "relaxed" if has_room(stitch, minimum) else "jammed"
+    sizes = float(minimum.unknowns[-2]), float(minimum.unknowns[-1])
+    energy = minimum.energy_n_mm if math.isfinite(minimum.energy_n_mm) else math.nan
+    return StartReport(f"start {number}", outcome, energy, *sizes)
 
 
 def _settle(

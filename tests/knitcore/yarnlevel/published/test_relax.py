@@ -164,3 +164,11 @@ def test_strands_that_passed_through_each_other_are_noticed(fabric):
     assert is_clasped(stitch, swapped) == (fabric is not Fabric.STOCKINETTE)
     assert is_certified(stitch, start, minimum.unknowns)
     assert not is_certified(stitch, minimum.unknowns, swapped)
+
+
+def test_all_starts_are_reported():
+    known = sample("cotton", "stockinette")
+    cell = relax_published("stockinette", known.yarn, known.loop_length_mm, starts=3)
+    assert [start.name for start in cell.starts] == ["start 1", "start 2", "start 3"]
+    relaxed = [start.energy_n_mm for start in cell.starts if start.outcome == "relaxed"]
+    assert min(relaxed) == cell.energy_n_mm
