@@ -123,7 +123,8 @@ def uniform(atlas: Atlas, count: int) -> None:
         wish = np.array([hidden.modulus_n_per_mm(d) for d in Direction])
         in_atlas += bool((np.abs(have / wish[:, None] - 1).max(axis=0) <= 0.05).any())
         begun = time.process_time()
-        field = fill_field(*(np.full((24, 24), w) for w in wish), ACRYLIC, atlas, check=False)
+        course, wale = (np.full((24, 24), w) for w in wish)
+        field = fill_field(course, wale, ACRYLIC, atlas, check=False)
         cpu += time.process_time() - begun
         if field.regions:
             off = max(abs(field.regions[0].deviation_course), abs(field.regions[0].deviation_wale))
@@ -143,13 +144,16 @@ def uniform(atlas: Atlas, count: int) -> None:
 def outlines(atlas: Atlas, count: int) -> None:
     """Outlines of hidden bands of the four fabrics under a stretch."""
     rng = np.random.default_rng(7)
-    rms, largest, cpu = [], [], []
+    rms: list[float] = []
+    largest: list[float] = []
+    cpu: list[float] = []
     while len(rms) < count:
         direction, strain = (Direction.WALE, 0.3) if rng.random() < 0.5 else (Direction.COURSE, 0.4)
         course = direction is Direction.COURSE
-        size = (24, 8) if course else (8, 24)
+        rows, columns = (24, 8) if course else (8, 24)
         bands = [
-            StitchChart.of_fabric(list(Fabric)[k], *size).purl for k in rng.integers(4, size=5)
+            StitchChart.of_fabric(list(Fabric)[k], rows, columns).purl
+            for k in rng.integers(4, size=5)
         ]
         chart = StitchChart(np.concatenate(bands, axis=1 if course else 0))
         test = strip_test(chart, ACRYLIC, direction, strain, steps=4)

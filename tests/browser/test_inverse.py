@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import Page, expect
 
+from tests.browser.axe import violations
 from tests.browser.conftest import CHART
 from tests.browser.page import kept_chart, middle
 
@@ -50,6 +51,7 @@ def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
     first = flat_studio.locator(".candidate").first
     expect(first).to_contain_text("garter")
     expect(first).to_contain_text("within tolerance")
+    assert not violations(flat_studio, "#inverse")
     first.get_by_role("button", name="Fill with garter").click()
     assert len(set(kept_chart(flat_studio).split("\n"))) == 2
 
@@ -64,8 +66,11 @@ def test_a_wish_fills_the_chart_as_one_step(flat_studio: Page) -> None:
     flat_studio.click("#fill-run")
     expect(flat_studio.locator("#fill-answer")).to_contain_text("within 10 %")
     assert kept_chart(flat_studio) == CHART
+    assert not violations(flat_studio, "#inverse")
     flat_studio.click("#fill-apply")
     assert {line[:2] for line in kept_chart(flat_studio).split("\n")} <= {"KP", "PK"}
+    flat_studio.click("#fill-outline")
+    assert not violations(flat_studio, "#inverse")
     flat_studio.keyboard.press("Escape")
     flat_studio.keyboard.press("Control+z")
     assert kept_chart(flat_studio) == CHART
