@@ -70,7 +70,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
                 _tidy_store(app.state.database, job_store, chosen.results_max_bytes)
             ),
         ]
-        await asyncio.to_thread(memory.settle)
         yield
         for janitor in janitors:
             janitor.cancel()

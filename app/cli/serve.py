@@ -26,6 +26,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     settings = Settings.model_validate(Settings().model_dump() | given).check()
     import uvicorn
 
+    from app import memory
     from app.main import create_app
     from app.observing import configure_logging
 
@@ -40,6 +41,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     app = create_app(settings)
 
     class Server(uvicorn.Server):
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            await super().startup(sockets)
+            memory.settle()
+
         def handle_exit(self, sig: int, frame: FrameType | None) -> None:
             app.state.stopping = True  # so that open streams end instead of holding it up
             super().handle_exit(sig, frame)
