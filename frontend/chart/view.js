@@ -9,6 +9,7 @@
  */
 
 import { Signal } from "../core/signal.js";
+import { h } from "../dom.js";
 import { ColourLayer } from "./layer.js";
 import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
 import { OVERLAYS } from "./overlays.js";
@@ -37,6 +38,7 @@ export class ChartView {
   /** Stitches to draw anew: all, some, none. @type {Box | "all" | null} */ #dirty = "all";
   #topDirty = true;
   #frame = 0;
+  /** @type {HTMLElement} */ #cursor;
 
   /**
    * @param {HTMLElement} host
@@ -75,8 +77,14 @@ export class ChartView {
       this.viewport.mirrored = turned;
       this.recolour();
     });
-    for (const signal of [studio.selection, studio.symmetry, studio.size, studio.tool, this.hover, this.preview]) {
+    for (const signal of [studio.selection, studio.symmetry, this.preview]) {
       signal.listen(() => this.#schedule(true));
+    }
+    // The cursor is an element of its own: moving it paints nothing.
+    this.#cursor = h("div", { class: "chart-cursor", hidden: true });
+    top.after(h("div", { class: "chart-cursors", "aria-hidden": "true" }, this.#cursor));
+    for (const signal of [studio.size, studio.tool, studio.ink, this.hover]) {
+      signal.listen(() => this.#placeCursor());
     }
     studio.material.listen((material) => {
       const gauge = material?.fabrics.stockinette ?? Object.values(material?.fabrics ?? {})[0];
@@ -163,8 +171,32 @@ export class ChartView {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
     this.#draw();
-    if (this.#topDirty) this.#drawTop();
+    if (this.#topDirty) {
+      this.#drawTop();
+      this.#placeCursor();
+    }
     this.#topDirty = false;
+  }
+
+  /** Around the stitches that a click would paint. */
+  #placeCursor() {
+    const { studio, viewport } = this;
+    const { grid } = studio.document;
+    const cell = this.hover.value;
+    const tool = studio.tool.value;
+    const shown = cell && grid.has(...cell) && tool.mode !== "pan" && tool.mode !== "move";
+    this.#cursor.hidden = !shown;
+    if (!shown) return;
+    const size = tool.sized ? studio.size.value : 1;
+    const before = Math.floor((size - 1) / 2);
+    const stamp = tool.id === "stamp" ? studio.ink.value.repeat : null;
+    const [row0, column0] = [cell[0] - before, cell[1] - before];
+    const box = { row0, column0, row1: row0 + (stamp?.rows ?? size), column1: column0 + (stamp?.columns ?? size) };
+    const { x, y, width, height } = viewport.place(box, grid);
+    const { style } = this.#cursor;
+    style.width = `${width}px`;
+    style.height = `${height}px`;
+    style.transform = `translate(${x - MARGIN.left}px, ${y - MARGIN.top}px)`;
   }
 
   /** @param {HTMLElement} host */
@@ -295,22 +327,6 @@ export class ChartView {
       context.restore();
     } else if (selection) this.#outline(selection, 2.5);
     if (this.preview.value) this.#outline(this.preview.value, 3);
-    const cell = this.hover.value;
-    const tool = studio.tool.value;
-    if (cell && grid.has(...cell) && tool.mode !== "pan" && tool.mode !== "move") {
-      const size = tool.sized ? studio.size.value : 1;
-      const before = Math.floor((size - 1) / 2);
-      const stamp = tool.id === "stamp" ? studio.ink.value.repeat : null;
-      this.#outline(
-        {
-          row0: cell[0] - before,
-          column0: cell[1] - before,
-          row1: cell[0] - before + (stamp?.rows ?? size),
-          column1: cell[1] - before + (stamp?.columns ?? size),
-        },
-        2,
-      );
-    }
     context.restore();
   }
 

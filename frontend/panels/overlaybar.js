@@ -148,7 +148,7 @@ function describe(studio, cell) {
   if (!cell || !grid.has(...cell)) return IDLE;
   const [row, column] = cell;
   const i = grid.index(row, column);
-  const side = row % 2 === 0 ? "RS" : "WS";
+  const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
   const parts = [
     `Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`,
   ];

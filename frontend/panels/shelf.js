@@ -95,7 +95,8 @@ export function shelf(host, studio, context) {
       );
     }
     for (const element of list.children) {
-      element.setAttribute("aria-checked", String(element.id === `ink-${chosen.id}`));
+      const checked = String(element.id === `ink-${chosen.id}`);
+      if (element.ariaChecked !== checked) element.ariaChecked = checked;
     }
     fillButton.disabled = chosen.repeat === null;
     removeButton.hidden = !chosen.id.startsWith("own-");
