@@ -44,6 +44,7 @@ def test_an_abandoned_job_is_stopped_and_the_next_one_runs(
     compute: Compute, tmp_path: Path
 ) -> None:
     mark = tmp_path / "mark"
+    asyncio.run(compute.run(never, jobs.add, 1, 1))  # its process takes a while to start
     with pytest.raises(AbandonedError):
         asyncio.run(compute.run(at_once, jobs.until_cancelled, str(mark)))
     assert mark.read_text() == "stopped"
