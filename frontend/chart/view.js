@@ -297,6 +297,9 @@ export class ChartView {
   #drawTop() {
     const { topContext: context, viewport, palette, studio } = this;
     const { grid } = studio.document;
+    const nothing = !studio.selection.value && !this.preview.value && studio.symmetry.value === "none";
+    this.top.hidden = nothing; // an empty layer is mixed in with every frame, too
+    if (nothing) return;
     const { x, y, cellWidth: w, cellHeight: h } = viewport;
     context.setTransform(viewport.dpr, 0, 0, viewport.dpr, 0, 0);
     context.clearRect(0, 0, viewport.width, viewport.height);
