@@ -55,6 +55,8 @@ export function byId(id) {
 /** Whether keys are for a text field and not for the page. */
 export function isTyping() {
   const active = document.activeElement;
+  // The field of a dialog that was just closed keeps the focus until the next frame.
+  if (active?.closest("dialog:not([open])")) return false;
   return (
     active instanceof HTMLTextAreaElement ||
     active instanceof HTMLSelectElement ||

@@ -125,7 +125,7 @@ def repeats(page: Page) -> str | None:
 
 def commands(page: Page) -> str | None:
     page.keyboard.press("Control+k")
-    page.wait_for_timeout(400)
+    page.locator("#palette-dialog").wait_for()
     return "#palette-dialog"
 
 
@@ -239,6 +239,7 @@ def picture(page: Page, scene: Scene, name: str) -> None:
 def leave(page: Page) -> None:
     """Close what a scene has opened."""
     page.keyboard.press("Escape")
+    page.wait_for_function("() => !document.querySelector('dialog[open]')")
     for close in page.locator(".dock-panel:not([hidden]) header button, #inverse-close").all():
         if close.is_visible():
             close.click()
