@@ -19,13 +19,15 @@ from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
+from knitcore.design.explain import OFF, Patch, unreached
 from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import patches_of, smooth, unevenness, wanted_labels
 from knitcore.design.placing import placed
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.design.repeats import repeat_key
-from knitcore.errors import CancelledError, InputError
+from knitcore.design.telling import Telling
+from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
@@ -33,8 +35,6 @@ from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
 Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
 
-OFF = 0.10
-"""Relative deviation above which a stitch counts as off."""
 CLOSE = 0.03
 """A repeat of the atlas that is nearer (in logarithms) is not improved."""
 MOST_MIXED = 8
@@ -49,31 +49,6 @@ _NEARLY = 0.25
 _AS_GOOD = 1.25
 """A chart read back stitch by stitch may depart so much more from the map than patches do: it needs
 no choice of repeats that fit a rough map by chance."""
-
-
-@dataclass(frozen=True)
-class Patch:
-    """A region of one repeat.
-
-    Attributes
-    ----------
-    repeat : its key.
-    stitches : how many.
-    row, column : of its first stitch, from 1 at the bottom left.
-    deviation_course, deviation_wale : the repeat's effective modulus over the median of the
-        wanted ones, minus one; NaN without a wish.
-    swatch_course, swatch_wale : the same for the patch in the finite swatch, where its size and its
-        neighbours count; NaN without a wish, or if it was not pulled.
-    """
-
-    repeat: str
-    stitches: int
-    row: int
-    column: int
-    deviation_course: float
-    deviation_wale: float
-    swatch_course: float = float("nan")
-    swatch_wale: float = float("nan")
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +114,7 @@ def fill_field(
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    return _Fill(wanted, material, atlas, seed, _Telling(progress, cancelled)).run(
+    return _Fill(wanted, material, atlas, seed, Telling(progress, cancelled)).run(
         smallest_patch, check=check and wanted[0].size <= MOST_CHECKED
     )
 
@@ -166,7 +141,7 @@ class _Fill:
     """One run."""
 
     def __init__(
-        self, wanted: Array, material: Material, atlas: Atlas, seed: int, telling: _Telling
+        self, wanted: Array, material: Material, atlas: Atlas, seed: int, telling: Telling
     ) -> None:
         self._wanted, self._material, self._atlas = wanted, material, atlas
         self._seed, self._telling = seed, telling
@@ -318,66 +293,8 @@ class _Fill:
             tuple(regions),
             local_moduli(trial.chart, self._material),
             _off_share(judged[patches].transpose(2, 0, 1) - self._wanted),
-            tuple(self._messages(regions, wishes, np.expm1(judged - wishes))),
+            tuple(unreached(regions, wishes, np.expm1(judged - wishes), self._have)),
         )
-
-    def _messages(self, regions: list[Patch], wishes: Array, off: Array) -> list[str]:
-        said = []
-        for region, wish, away in zip(regions, wishes, off, strict=True):
-            for axis, direction in enumerate(Direction):
-                if abs(away[axis]) > OFF:
-                    said.append(
-                        f"The patch of {region.stitches} stitches from row {region.row}, column "
-                        f"{region.column} is {away[axis]:+.0%} off {direction}-wise: "
-                        f"{region.repeat} is the nearest. {self._reach(wish, direction)}"
-                    )
-        if len(regions) == 1:
-            only = regions[0]
-            there = np.array([only.swatch_course, only.swatch_wale])
-            if (np.abs(there) > OFF).any():
-                said.append(
-                    "A swatch of just this size with free edges departs from a large cloth: "
-                    f"{_percent(there[0])} course-wise and {_percent(there[1])} wale-wise."
-                )
-        return said
-
-    def _reach(self, wish: Array, direction: Direction) -> str:
-        """What would work."""
-        own, other = direction.axis, direction.other.axis
-        whole = np.exp(self._have[:, own])
-        text = f"This yarn reaches {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"
-        if not np.isnan(wish[other]):
-            near = np.abs(self._have[:, other] - wish[other]) < OFF
-            if near.any():
-                part = np.exp(self._have[near, own])
-                text += (
-                    f", beside the wanted {np.exp(wish[other]):.3g} {direction.other}-wise "
-                    f"{part.min():.3g} to {part.max():.3g}"
-                )
-            else:
-                text += f", but not the wanted {np.exp(wish[other]):.3g} {direction.other}-wise"
-        return text + "; search other yarns and needles for more."
-
-
-@dataclass
-class _Telling:
-    """Progress that never falls back, and the wish to stop."""
-
-    progress: Callable[[float], None] | None
-    cancelled: Callable[[], bool] | None
-    done: float = 0.0
-
-    def look(self, done: float) -> None:
-        """Tell the progress, and stop if asked to."""
-        self.stop_if_asked()
-        self.done = max(self.done, min(done, 1.0))
-        if self.progress is not None:
-            self.progress(self.done)
-
-    def stop_if_asked(self) -> None:
-        """Stop if asked to."""
-        if self.cancelled is not None and self.cancelled():
-            raise CancelledError(f"stopped after {self.done:.0%}")
 
 
 def _off_share(off: Array) -> float:
@@ -389,10 +306,6 @@ def _judged(choices: Sequence[_Choice], factors: Array) -> Array:
     """(patches, 2) logarithms of moduli: in the swatch, but of a single patch in a large cloth."""
     moduli = np.stack([choice.log_moduli for choice in choices])
     return moduli + factors if len(choices) > 1 else moduli
-
-
-def _percent(value: float) -> str:
-    return "no wish" if np.isnan(value) else f"{value:+.0%}"
 
 
 def _extent(cells: NDArray[np.bool_]) -> tuple[int, int]:

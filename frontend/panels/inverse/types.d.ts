@@ -1,7 +1,5 @@
 /** What the service says about inverse design, as far as the page uses it. */
 
-import type { Direction } from "../../types.js";
-
 export interface AtlasTable {
   material: string;
   repeats: string[];
@@ -93,5 +91,3 @@ export interface Wanted {
   load_n_per_mm?: number;
   limb?: { rest_mm: number; worn_mm: number };
 }
-
-export type Pull = Direction;

@@ -1,0 +1,93 @@
+"""What a filled chart reaches, patch by patch, and what would work where it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.fabric import Direction
+
+Array = NDArray[np.float64]
+
+OFF = 0.10
+"""Relative deviation above which a stitch counts as off."""
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A region of one repeat.
+
+    Attributes
+    ----------
+    repeat : its key.
+    stitches : how many.
+    row, column : of its first stitch, from 1 at the bottom left.
+    deviation_course, deviation_wale : the repeat's effective modulus over the median of the
+        wanted ones, minus one; NaN without a wish.
+    swatch_course, swatch_wale : the same for the patch in the finite swatch, where its size and its
+        neighbours count; NaN without a wish, or if it was not pulled.
+    """
+
+    repeat: str
+    stitches: int
+    row: int
+    column: int
+    deviation_course: float
+    deviation_wale: float
+    swatch_course: float = float("nan")
+    swatch_wale: float = float("nan")
+
+
+def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) -> list[str]:
+    """What was not reached, and what would work.
+
+    Parameters
+    ----------
+    regions : the patches.
+    wishes : (patches, 2) logarithms of the wanted moduli, NaN is no wish.
+    off : (patches, 2) relative deviations.
+    have : (repeats, 2) logarithms of the moduli of all repeats.
+    """
+    said = []
+    for region, wish, away in zip(regions, wishes, off, strict=True):
+        for axis, direction in enumerate(Direction):
+            if abs(away[axis]) > OFF:
+                said.append(
+                    f"The patch of {region.stitches} stitches from row {region.row}, column "
+                    f"{region.column} is {away[axis]:+.0%} off {direction}-wise: "
+                    f"{region.repeat} is the nearest. {_reach(wish, direction, have)}"
+                )
+    if len(regions) == 1:
+        only = regions[0]
+        there = np.array([only.swatch_course, only.swatch_wale])
+        if (np.abs(there) > OFF).any():
+            said.append(
+                "A swatch of just this size with free edges departs from a large cloth: "
+                f"{_percent(there[0])} course-wise and {_percent(there[1])} wale-wise."
+            )
+    return said
+
+
+def _reach(wish: Array, direction: Direction, have: Array) -> str:
+    """What would work."""
+    own, other = direction.axis, direction.other.axis
+    whole = np.exp(have[:, own])
+    text = f"This yarn reaches {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"
+    if not np.isnan(wish[other]):
+        near = np.abs(have[:, other] - wish[other]) < OFF
+        if near.any():
+            part = np.exp(have[near, own])
+            text += (
+                f", beside the wanted {np.exp(wish[other]):.3g} {direction.other}-wise "
+                f"{part.min():.3g} to {part.max():.3g}"
+            )
+        else:
+            text += f", but not the wanted {np.exp(wish[other]):.3g} {direction.other}-wise"
+    return text + "; search other yarns and needles for more."
+
+
+def _percent(value: float) -> str:
+    return "no wish" if np.isnan(value) else f"{value:+.0%}"
