@@ -251,7 +251,8 @@ def keep(name: str, picture: bytes) -> None:
     file = IMAGES / f"{name}.png"
     for colours in (256, 160, 96, 64, 32):
         packed = io.BytesIO()
-        image.quantize(colours, dither=Image.Dither.NONE).save(packed, "PNG", optimize=True)
+        few = image.quantize(colours, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+        few.save(packed, "PNG", optimize=True)  # colours that are rare have a meaning, too
         if packed.tell() <= MOST_BYTES:
             break
     file.write_bytes(packed.getvalue())
