@@ -15,13 +15,17 @@ from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.store import stored_charts, stored_failure, stored_stitch
 from knitcore.yarnlevel.store_build import charts_of_the_store
 
+FREE = set(COMMON) - {"basket 2x2", "3x3 welt"}
+
 
 @pytest.mark.parametrize("material", ["acrylic", "cotton"])
 @pytest.mark.parametrize("name", COMMON)
 def test_common_repeats_are_packaged(material, name):
     stored = stored_stitch(StitchChart.parse(COMMON[name]), material)
     assert stored is not None
-    assert stored.free is not None
+    if name in FREE:
+        assert stored.free is not None
+        assert stored.free.energy_n_mm <= stored.energy_n_mm * (1 + 1e-3)  # fewer symmetries
     lines = stored.centre_lines()
     assert lines.shape[0] == stored.chart.rows
     step = np.linalg.norm(np.diff(lines, axis=1), axis=2).sum(axis=1)
