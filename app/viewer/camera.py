@@ -14,7 +14,10 @@ FIELD_OF_VIEW = 0.5
 """Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""
 ASPECT = 1.25
 """Width over height of the view that a fabric must fit in; panels are rarely narrower."""
-MARGIN = 1.14
+MARGIN = 1.22
+"""Room around the fabric, over its size."""
+LIFT = 0.1
+"""So much of the view's half height lies the fabric below its middle: tools lie over its top."""
 
 
 class Side(StrEnum):
@@ -42,15 +45,16 @@ def place_camera(server: viser.ViserServer, side: Side, extent_mm: Array) -> Non
     if side is Side.EDGE:
         height = 0.3 * width
     needed = MARGIN * max(height, width / ASPECT) / 2
-    position = direction / np.linalg.norm(direction) * needed / np.tan(FIELD_OF_VIEW / 2)
+    aim = LIFT * needed * up
+    position = aim + direction / np.linalg.norm(direction) * needed / np.tan(FIELD_OF_VIEW / 2)
     start = server.initial_camera
     start.fov = FIELD_OF_VIEW
     start.up = up
-    start.look_at = (0.0, 0.0, 0.0)
+    start.look_at = aim
     start.position = position
     for client in server.get_clients().values():
         with client.atomic():
             client.camera.fov = FIELD_OF_VIEW
             client.camera.up_direction = up
             client.camera.position = position
-            client.camera.look_at = (0.0, 0.0, 0.0)
+            client.camera.look_at = aim

@@ -90,6 +90,7 @@ export function fabricview(host, studio, view) {
     try {
       const answer = await api.view(studio.designId, wish());
       status.replaceChildren();
+      studio.seeing.forgotten.value = null;
       source = answer.source;
       describe();
       governor.wake(DRAW_MS);
@@ -104,7 +105,12 @@ export function fabricview(host, studio, view) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
       const { title, detail, remedy, field } = error.problem;
-      if (field === "stretch.id") studio.seeing.forgotten.value = studio.currentStretch()?.id ?? null;
+      const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
+      if (id !== null && id !== studio.seeing.forgotten.value) {
+        status.replaceChildren(h("span", { class: "spinner" }), "Pulling the cloth once more …");
+        studio.seeing.forgotten.value = id; // it is run again, and then sent again
+        return;
+      }
       status.replaceChildren(
         icon("warning"),
         h("div", {}, h("strong", {}, title), h("p", {}, detail === title ? "" : detail), h("p", {}, remedy ?? "")),

@@ -102,11 +102,11 @@ export class Stretcher {
     if (!this.#request || id === null || studio.currentStretch()?.id !== id) return;
     try {
       await api.stretch(this.#request);
-      const { stretch } = studio;
-      if (stretch.value.value?.id === id) stretch.value = { ...stretch.value };
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the view says what is wrong
+      if (!(error instanceof ApiError)) throw error; // the view, asked again, says what is wrong
     }
+    const { stretch } = studio;
+    if (stretch.value.value?.id === id) stretch.value = { ...stretch.value };
   }
 
   /** Give up the test under way; the service stops it too. */
