@@ -76,7 +76,9 @@ def test_a_stretch_is_scrubbed_by_keyboard_in_chart_curve_and_3d(studio: Page) -
             studio.keyboard.press(",")
     expect(caption).not_to_have_text("Stretched course-wise by 30 %")
     expect(studio.locator("#curve-course")).to_have_attribute("aria-checked", "true")
-    names = studio.evaluate("document.querySelector('#plot-curve').data.map(t => t.name)")
+    curves = studio.locator("#plot-curve")
+    expect(curves.locator(".main-svg").first).to_be_visible()
+    names = curves.evaluate("plot => plot.data.map(({ name }) => name)")
     assert {"stockinette", "garter", "rib", "seed", "90 % interval", "stretch test"} <= set(names)
 
 
