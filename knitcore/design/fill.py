@@ -48,7 +48,8 @@ _NEARLY = 0.25
 """Largest rms deviation (in logarithms) of a map that is nearly a chart's own."""
 _AS_GOOD = 1.25
 """A chart read back stitch by stitch may depart so much more from the map than patches do: it needs
-no choice of repeats that fit a rough map by chance."""
+no choice of repeats that fit a rough map by chance. But no more than the map departs from an even
+one inside the patches: what is even there is a wish for one stiffness, not a rough chart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,11 +160,17 @@ class _Fill:
         chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
         labels = smooth(cost, smallest_patch)
         effective = self._have[chosen[labels]].transpose(2, 0, 1)
-        rough = self._rms(deviation(own, self._wanted, self._table))
-        if rough <= min(_NEARLY, _AS_GOOD * self._rms(effective - self._wanted)):
-            return self._read_back(own, "The map is nearly that of a chart, which was read back.")
         patches = patches_of(labels)
         first = np.unique(patches, return_index=True)[1]
+        medians = self._wishes(patches, len(first))[patches].transpose(2, 0, 1)
+        rough = self._rms(deviation(own, self._wanted, self._table))
+        uneven_map = self._rms(medians - self._wanted)
+        if rough <= min(
+            _NEARLY,
+            _AS_GOOD * self._rms(effective - self._wanted),
+            _AS_GOOD * uneven_map + EXACT,
+        ):
+            return self._read_back(own, "The map is nearly that of a chart, which was read back.")
         choices = [self._of_atlas(int(entry)) for entry in chosen[labels.ravel()[first]]]
         choices = self._mixed(patches, choices)
         best = self._trial(patches, choices, 0.45, check=check)
