@@ -36,6 +36,8 @@ _POINTS = {Direction.COURSE: 90, Direction.WALE: 70}
 def as_measured(sample: Sample) -> Sample:
     """The sample with its radius half the diameter measured in the fabric."""
     diameter = material(sample.yarn_id).yarn_diameter_mm(sample.fabric)
+    if diameter is None:
+        return sample
     return replace(sample, yarn=replace(sample.yarn, radius_mm=0.5 * diameter))
 
 
