@@ -139,7 +139,7 @@ def designs(page: Page) -> str | None:
         page.locator("#versions-list .row").wait_for()
         page.keyboard.press("Escape")
     page.keyboard.press("Control+o")
-    page.locator("#designs-list .card canvas").nth(4).wait_for()
+    page.locator("#designs-list .card canvas").nth(3).wait_for()
     page.wait_for_timeout(600)
     return "#designs-dialog"
 
@@ -251,12 +251,23 @@ def keep(name: str, picture: bytes) -> None:
     file = IMAGES / f"{name}.png"
     for colours in (256, 160, 96, 64, 32):
         packed = io.BytesIO()
-        few = image.quantize(colours, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-        few.save(packed, "PNG", optimize=True)  # colours that are rare have a meaning, too
+        image.quantize(palette=palette(image, colours), dither=Image.Dither.NONE).save(
+            packed, "PNG", optimize=True
+        )
         if packed.tell() <= MOST_BYTES:
             break
     file.write_bytes(packed.getvalue())
     print(f"{file.relative_to(ROOT)}  {packed.tell() / 1000:.0f} kB", flush=True)
+
+
+def palette(image: Image.Image, colours: int) -> Image.Image:
+    """The colours that large areas have, exactly, and for the rest what covers them best."""
+    counted = sorted(image.getcolors(image.width * image.height) or [], reverse=True)
+    common = [value for _, colour in counted[: colours // 2] for value in colour]
+    others = image.quantize(colours - len(common) // 3).getpalette() or []
+    chosen = Image.new("P", (1, 1))
+    chosen.putpalette(common + others)
+    return chosen
 
 
 def main(wanted: list[str]) -> None:
