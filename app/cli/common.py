@@ -37,6 +37,33 @@ direction_option = click.option(
 )
 
 
+flat_option = click.option(
+    "--flat", is_flag=True, help="Hold the stitches in one plane, as a fabric laid flat."
+)
+
+
+def _loop_lengths(_: click.Context, option: click.Parameter, text: str | None) -> Any:
+    """Rows from the bottom, separated by /; in each one length, or one a stitch."""
+    if text is None:
+        return None
+    try:
+        return [[float(length) for length in row.split(",")] for row in text.split("/")]
+    except ValueError:
+        raise click.BadParameter(
+            f"{text!r} is no list of lengths. Write one for every row from the bottom, such as "
+            "14/12, or one for every stitch, such as 14,13/12,12.",
+            param=option,
+        ) from None
+
+
+loop_lengths_option = click.option(
+    "--loop-lengths-mm",
+    callback=_loop_lengths,
+    metavar="ROW/ROW…",
+    help="Instead of one length: rows from the bottom, each one length or one for every stitch.",
+)
+
+
 def gauge_options(function: Decorated) -> Decorated:
     """--stitches-per-10-cm and --rows-per-10-cm."""
     help_text = "Counted on your own relaxed swatch; corrects the draw-in of ribs and welts."
@@ -111,6 +138,21 @@ def resolve_repeat(chart: str, size: str | None) -> StitchChart:
         if size is not None:
             resolve_chart(chart, size)  # a malformed size is told all the same
         return fabric_repeat(Fabric.parse(chart))
+    return resolve_chart(chart, size)
+
+
+def given_chart(
+    chart: str, size: str | None, loop_lengths_mm: list[list[float]] | None
+) -> StitchChart:
+    """The repeat that CHART means, or all of it where its rows have loop lengths of their own.
+
+    Raises
+    ------
+    InputError
+        As :func:`resolve_chart`.
+    """
+    if loop_lengths_mm is None or size is None:
+        return resolve_repeat(chart, size)
     return resolve_chart(chart, size)
 
 

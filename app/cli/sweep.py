@@ -9,9 +9,11 @@ from app.cli.common import (
     choice,
     direction_option,
     emit,
+    flat_option,
+    given_chart,
     json_option,
+    loop_lengths_option,
     material_option,
-    resolve_repeat,
 )
 from app.cli.materials import resolve_material
 from app.operations.sweep import SweepOptions, SweepResult, sweep_chart
@@ -27,6 +29,9 @@ from knitcore.yarnlevel.relax import Branch
 @click.option("--max-strain", required=True, type=float, help="Largest strain: 0.5 is 50 %.")
 @click.option("--points", type=click.IntRange(2, 400), default=25, show_default=True)
 @click.option("--loop-length-mm", type=float, help="Yarn per stitch; the material's otherwise.")
+@loop_lengths_option
+@flat_option
+@click.option("--slide-quenching", is_flag=True, help="No sliding where the yarn touches at rest.")
 @click.option("--branch", type=choice(Branch), default=Branch.MIRRORED.value, show_default=True)
 @click.option("--convention", type=choice(Convention), default=Convention.PUBLISHED.value)
 @click.option("--fresh", is_flag=True, help="Compute it even if the result is known.")
@@ -39,6 +44,9 @@ def command(
     max_strain: float,
     points: int,
     loop_length_mm: float | None,
+    loop_lengths_mm: list[list[float]] | None,
+    flat: bool,
+    slide_quenching: bool,
     branch: str,
     convention: str,
     fresh: bool,
@@ -50,11 +58,16 @@ def command(
         max_strain=max_strain,
         points=points,
         loop_length_mm=loop_length_mm,
+        loop_lengths_mm=loop_lengths_mm,
+        flat=flat,
+        slide_quenching=slide_quenching,
         branch=Branch(branch),
         convention=Convention(convention),
         fresh=fresh,
     )
-    result = sweep_chart(resolve_repeat(chart, size), resolve_material(material), options)
+    result = sweep_chart(
+        given_chart(chart, size, loop_lengths_mm), resolve_material(material), options
+    )
     emit(result, _text(result), as_json=as_json)
 
 

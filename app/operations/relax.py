@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from typing import Annotated
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.kept import KeptResults
-from app.operations.charts import ChartInput, to_repeat
-from knitcore.chart import StitchChart
+from app.operations.charts import ChartInput, to_chart, to_repeat
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
@@ -22,6 +25,10 @@ from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.yarns import ChartYarn, yarn_for
 
 Cancelled = Callable[[], bool]
+LoopLength = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+LoopLengths = list[
+    Annotated[list[LoopLength], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]
+]
 
 
 class YarnLevelOptions(BaseModel):
@@ -32,12 +39,33 @@ class YarnLevelOptions(BaseModel):
     loop_length_mm: float | None = Field(
         None, gt=0, le=1000, allow_inf_nan=False, description="Yarn per stitch; the material's."
     )
+    loop_lengths_mm: LoopLengths | None = Field(
+        None,
+        max_length=MAX_STITCHES_PER_SIDE,
+        description="Instead of one length: a list for every row of the chart, the bottom row "
+        "first, of one length for all its stitches or one for each.",
+        examples=[[[14.0], [12.0]]],
+    )
+    flat: bool = Field(
+        False, description="Hold the stitches in one plane, as a fabric laid flat; not published."
+    )
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
     fresh: bool = Field(False, description="Compute it even if the result is known.")
 
 
-class RelaxRequest(YarnLevelOptions):
+class RelaxOptions(YarnLevelOptions):
+    """What may be held while a repeat relaxes."""
+
+    cell_course_mm: float | None = Field(
+        None, gt=0, le=1000, allow_inf_nan=False, description="Hold a stitch at this width."
+    )
+    cell_wale_mm: float | None = Field(
+        None, gt=0, le=1000, allow_inf_nan=False, description="Hold a stitch at this height."
+    )
+
+
+class RelaxRequest(RelaxOptions):
     """A repeat and its yarn."""
 
     chart: ChartInput
@@ -68,7 +96,7 @@ class YarnResult(BaseModel):
 
 
 class RelaxResult(BaseModel):
-    """The shape of least energy, free of force; sizes and energies of one stitch."""
+    """The shape of least energy, free of force or held; sizes and energies of one stitch."""
 
     branch: Branch
     convention: Convention
@@ -80,6 +108,10 @@ class RelaxResult(BaseModel):
     bending_share: float
     contact_share: float
     yarn_length_mm: float
+    force_course_n: float | None = Field(
+        description="What holds a prescribed width, per stitch; null in the published branch."
+    )
+    force_wale_n: float | None
     min_distance_mm: float | None
     seconds: float = Field(description="CPU time of the solve, whenever it was.")
     known: bool = Field(False, description="Whether it had been computed before.")
@@ -95,7 +127,7 @@ class RelaxResult(BaseModel):
 
 def run_relax(request: RelaxRequest, *, cancelled: Cancelled) -> RelaxResult:
     """Relax for the service."""
-    chart, material = to_repeat(request.chart), find_material(request.material)
+    chart, material = asked_chart(request.chart, request), find_material(request.material)
     return relax_chart(
         chart, material, request, with_lines=request.centre_lines, cancelled=cancelled
     )
@@ -104,14 +136,14 @@ def run_relax(request: RelaxRequest, *, cancelled: Cancelled) -> RelaxResult:
 def relax_chart(
     chart: StitchChart,
     material: Material,
-    options: YarnLevelOptions,
+    options: RelaxOptions,
     *,
     with_lines: bool = False,
     cancelled: Cancelled | None = None,
 ) -> RelaxResult:
     """Relax a chart's repeat, or say what is known of it."""
-    repeat = chart.repeat()
-    used = chart_yarn(material, repeat, options.loop_length_mm)
+    repeat = cell_chart(chart, options)
+    used = chart_yarn(material, repeat, options)
     inputs = {**what_decides(repeat, used, options), "centre_lines": with_lines}
     result, known = KeptResults.of_user().get_or_make(
         RelaxResult,
@@ -133,11 +165,13 @@ def what_decides(
 def _relaxed(
     repeat: StitchChart,
     used: ChartYarn,
-    options: YarnLevelOptions,
+    options: RelaxOptions,
     with_lines: bool,
     cancelled: Cancelled | None,
 ) -> RelaxResult:
-    cell = relaxed_cell(repeat, used, options, cancelled)
+    sizes = options.cell_course_mm, options.cell_wale_mm
+    cell = relaxed_cell(repeat, used, options, cancelled, sizes)
+    force = cell.force_n if isinstance(cell, RelaxedRepeat) else (None, None)
     lines = [[(x, y, z) for x, y, z in line.tolist()] for line in cell.centre_lines]
     return RelaxResult(
         branch=Branch(cell.branch),
@@ -150,6 +184,8 @@ def _relaxed(
         bending_share=cell.bending_share,
         contact_share=cell.contact_share,
         yarn_length_mm=cell.yarn_length_mm,
+        force_course_n=force[0],
+        force_wale_n=force[1],
         min_distance_mm=cell.min_distance_mm if isinstance(cell, RelaxedRepeat) else None,
         seconds=cell.seconds,
         evaluations=cell.evaluations,
@@ -170,12 +206,50 @@ def _relaxed(
     )
 
 
-def chart_yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None) -> ChartYarn:
-    """The material's yarn for a repeat, with another loop length if one is given."""
-    used = yarn_for(material, repeat, loop_length_mm)
-    if loop_length_mm is None:
-        return used
-    return ChartYarn(used.yarn, loop_length_mm, used.provenance, used.estimated)
+def asked_chart(chart: ChartInput, options: YarnLevelOptions) -> StitchChart:
+    """A pure fabric's own repeat, or all of it where its rows have loop lengths of their own."""
+    return to_repeat(chart) if options.loop_lengths_mm is None else to_chart(chart)
+
+
+def cell_chart(chart: StitchChart, options: YarnLevelOptions) -> StitchChart:
+    """The repeat of a chart, or all of it where its rows have loop lengths of their own."""
+    return chart.repeat() if options.loop_lengths_mm is None else chart
+
+
+def chart_yarn(material: Material, repeat: StitchChart, options: YarnLevelOptions) -> ChartYarn:
+    """The material's yarn for a repeat, with the mean of the loop lengths if they are given.
+
+    Raises
+    ------
+    InputError
+        If lengths are given twice.
+    """
+    lengths = options.loop_lengths_mm
+    if lengths is not None and options.loop_length_mm is not None:
+        raise InputError(
+            "loop_lengths_mm", "loop_length_mm is given as well.", "Leave one of them out."
+        )
+    given = options.loop_length_mm
+    if lengths is not None:
+        given = float(np.mean([np.mean(row) for row in lengths]))
+    used = yarn_for(material, repeat, given)
+    return used if given is None else replace(used, loop_length_mm=given)
+
+
+def _lengths(options: YarnLevelOptions, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
+    """One loop length, one for every course, or one for every stitch."""
+    table = options.loop_lengths_mm
+    if table is None:
+        return used.loop_length_mm
+    if len(table) != rows or any(len(row) not in (1, columns) for row in table):
+        raise InputError(
+            "loop_lengths_mm",
+            f"they do not fit a chart of {rows} rows and {columns} columns.",
+            f"Give {rows} rows of one length or of {columns} lengths, the bottom row first.",
+        )
+    if all(len(row) == 1 for row in table):
+        return [row[0] for row in table]
+    return [row * (columns // len(row)) for row in table]
 
 
 def yarn_result(used: ChartYarn) -> YarnResult:
@@ -193,10 +267,28 @@ def yarn_result(used: ChartYarn) -> YarnResult:
 
 
 def relaxed_cell(
-    repeat: StitchChart, used: ChartYarn, options: YarnLevelOptions, cancelled: Cancelled | None
+    repeat: StitchChart,
+    used: ChartYarn,
+    options: YarnLevelOptions,
+    cancelled: Cancelled | None,
+    sizes_mm: tuple[float | None, float | None] = (None, None),
 ) -> RelaxedCell:
-    """Relax in the branch that is asked for."""
+    """Relax in the branch that is asked for, at held sizes of a stitch if they are given.
+
+    Raises
+    ------
+    InputError
+        If the published branch is asked for what it has not.
+    """
+    lengths = _lengths(options, used, repeat.rows, repeat.columns)
     if options.branch is Branch.PUBLISHED:
+        held = options.flat or sizes_mm != (None, None) or options.loop_lengths_mm is not None
+        if held:
+            raise InputError(
+                "branch",
+                "the published branch knows one loop length and no held sizes or planes.",
+                "Use mirrored or free.",
+            )
         return relax_published(
             pure_fabric(repeat),
             used.yarn,
@@ -207,9 +299,12 @@ def relaxed_cell(
     return relax(
         repeat,
         used.yarn,
-        used.loop_length_mm,
+        lengths,
         branch=options.branch,
         convention=options.convention,
+        cell_course_mm=sizes_mm[0],
+        cell_wale_mm=sizes_mm[1],
+        flat=options.flat,
         cancel=cancelled,
     )
 

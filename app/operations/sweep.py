@@ -8,11 +8,13 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.kept import KeptResults
-from app.operations.charts import ChartInput, to_repeat
+from app.operations.charts import ChartInput
 from app.operations.relax import (
     Cancelled,
     YarnLevelOptions,
     YarnResult,
+    asked_chart,
+    cell_chart,
     chart_yarn,
     pure_fabric,
     relaxed_cell,
@@ -20,7 +22,7 @@ from app.operations.relax import (
     yarn_result,
 )
 from knitcore.chart import StitchChart
-from knitcore.errors import KnitcoreError
+from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
@@ -42,6 +44,11 @@ class SweepOptions(YarnLevelOptions):
     direction: Direction
     max_strain: float = Field(gt=0, le=20, allow_inf_nan=False)
     points: int = Field(25, ge=2, le=400)
+    slide_quenching: bool = Field(
+        False,
+        description="Keep the yarn from sliding where it touches at rest. The published branch "
+        "does so for seed along the course, as the paper did, and takes no other wish.",
+    )
 
 
 class SweepRequest(SweepOptions):
@@ -99,7 +106,7 @@ class SweepResult(BaseModel):
 
 def run_sweep(request: SweepRequest, *, cancelled: Cancelled) -> SweepResult:
     """Stretch for the service."""
-    chart, material = to_repeat(request.chart), find_material(request.material)
+    chart, material = asked_chart(request.chart, request), find_material(request.material)
     return sweep_chart(chart, material, request, cancelled=cancelled)
 
 
@@ -114,8 +121,8 @@ def sweep_chart(
 
     The law also needs the stretch across.
     """
-    repeat = chart.repeat()
-    used = chart_yarn(material, repeat, options.loop_length_mm)
+    repeat = cell_chart(chart, options)
+    used = chart_yarn(material, repeat, options)
     result, known = KeptResults.of_user().get_or_make(
         SweepResult,
         what_decides(repeat, used, options),
@@ -176,8 +183,14 @@ def _sweep(
     if isinstance(zero, RelaxedRepeat):
         return sweep(
             zero, direction, max_strain, points=points, max_stress_n_per_mm=max_stress,
-            cancel=cancelled,
+            slide_quenching=options.slide_quenching, cancel=cancelled,
         )  # fmt: skip
+    if options.slide_quenching:
+        raise InputError(
+            "slide_quenching",
+            "the published branch decides it as the paper did.",
+            "Leave it out, or use mirrored or free.",
+        )
     return sweep_published(
         pure_fabric(repeat), used.yarn, used.loop_length_mm, direction, max_strain, points,
         options.convention, zero=zero,

@@ -59,6 +59,46 @@ def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
     assert "at least" in result.stderr
 
 
+def test_what_is_held_is_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
+    told = _json(
+        "relax", "stockinette", "--size", "1x2", "--material", "cotton",
+        "--loop-lengths-mm", "14.5/15.5",
+    )  # fmt: skip
+    assert told["repeat_rows"] == 2
+    assert told["yarn_length_mm"] == pytest.approx(15.0, abs=0.01)
+    assert told["force_course_n"] == pytest.approx(0.0, abs=1e-5)
+    body = {
+        "chart": {"fabric": "stockinette", "columns": 1, "rows": 2},
+        "material": "cotton",
+        "loop_lengths_mm": [[14.5], [15.5]],
+    }
+    assert client.post("/api/v1/relax", json=body).json()["energy_n_mm"] == told["energy_n_mm"]
+    wide = client.post(
+        "/api/v1/relax", json={"chart": "K", "material": "cotton", "cell_course_mm": 3.5}
+    )
+    assert wide.json()["cell_course_mm"] == pytest.approx(3.5)
+    assert wide.json()["force_course_n"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("asked", "field"),
+    [
+        ({"loop_lengths_mm": [[15.0]] * 3}, "loop_lengths_mm"),
+        ({"loop_lengths_mm": [[15.0, 15.0], [15.0]]}, "loop_lengths_mm"),
+        ({"loop_lengths_mm": [[15.0], [15.0]], "loop_length_mm": 15.0}, "loop_lengths_mm"),
+        ({"branch": "published", "flat": True}, "branch"),
+        ({"cell_wale_mm": 90.0}, "cell_wale_mm"),
+    ],
+)
+def test_what_cannot_be_held_is_refused(
+    client: TestClient, asked: dict[str, Any], field: str
+) -> None:
+    chart = {"fabric": "stockinette", "columns": 1, "rows": 2}
+    answer = client.post("/api/v1/relax", json={"chart": chart, "material": "cotton"} | asked)
+    assert answer.status_code == 422
+    assert answer.json()["field"] == field
+
+
 def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
     told = _json(
         "sweep", "stockinette", "--size", "2x2", "--material", "cotton", "--direction", "course",
@@ -72,3 +112,6 @@ def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> No
     }  # fmt: skip
     answer = client.post("/api/v1/sweep", json=body).json()
     assert answer["stress_n_per_mm"] == pytest.approx(told["stress_n_per_mm"], rel=1e-6, abs=1e-6)
+    held = client.post("/api/v1/sweep", json=body | {"slide_quenching": True}).json()
+    assert held["stress_n_per_mm"][-1] >= answer["stress_n_per_mm"][-1]
+    assert any("Slide quenching" in note for note in held["notes"])
