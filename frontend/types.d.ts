@@ -133,6 +133,8 @@ export interface Stretch {
 export interface ViewRequest {
   chart: string;
   material: string;
+  /** Lines of x and dots, the top row first; null for a whole rectangle. */
+  outline?: string | null;
   colour: string;
   palette?: Partial<Record<FabricName | "yarn", string>>;
   regions?: DesignRegion[];

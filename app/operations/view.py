@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart
+from app.operations.charts import MAX_TEXT, ChartInput, to_chart
 from app.operations.stretch import StretchRun
 from app.operations.view_colours import (
     Colour,
@@ -21,6 +21,7 @@ from app.viewer.fabric import FabricScene
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.layout import DesignRegion
+from knitcore.garment.shaped import outline_marks
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.placing import Placement, at_rest, carried
 from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
@@ -64,6 +65,12 @@ class ViewRequest(BaseModel):
 
     chart: ChartInput
     material: str
+    outline: str | None = Field(
+        None,
+        max_length=MAX_TEXT,
+        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
+        "left out.",
+    )
     colour: Colour = Colour.FABRIC
     field: FieldColours | None = Field(None, description="Values for the colour `field`.")
     regions: list[DesignRegion] = Field(
@@ -96,6 +103,7 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
         If the test is not known any more, or belongs to another chart.
     """
     chart, material = to_chart(request.chart), find_material(request.material)
+    drawn = _drawn(request, chart)
     shapes = stitch_shapes(chart, material)
     placement, room = at_rest(shapes), None
     step = _checked_step(request, stretch, chart)
@@ -117,7 +125,8 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
         shapes=shapes,
         placement=placement,
         colours=colours,
-        rectangles_mm=_rectangles(request, chart, material, placement),
+        drawn=drawn,
+        rectangles_mm=_rectangles(request, chart, material, placement, drawn),
         focus=(request.focus.row, request.focus.column) if request.focus else None,
         room_mm=room,
     )
@@ -136,8 +145,26 @@ def _checked_step(request: ViewRequest, stretch: StretchRun | None, chart: Stitc
     return request.stretch.step
 
 
+def _drawn(request: ViewRequest, chart: StitchChart) -> NDArray[np.bool_] | None:
+    """Where there are stitches; an outline that falls apart while it is drawn is shown as it is."""
+    if request.outline is None:
+        return None
+    drawn = outline_marks(request.outline)
+    if drawn.shape != chart.purl.shape or not drawn.any():
+        raise InputError(
+            "outline",
+            "it does not fit the chart.",
+            f"Give {chart.rows} lines of {chart.columns} x or dots, one x at least.",
+        )
+    return drawn
+
+
 def _rectangles(
-    request: ViewRequest, chart: StitchChart, material: Material, placement: Placement
+    request: ViewRequest,
+    chart: StitchChart,
+    material: Material,
+    placement: Placement,
+    drawn: NDArray[np.bool_] | None,
 ) -> NDArray[np.float64] | None:
     if not request.rectangles:
         return None
@@ -147,4 +174,6 @@ def _rectangles(
         block = request.rectangle_block
         single = request.rectangle_groups is RectangleGroups.STITCH
         labels = stitch_labels(chart.rows, chart.columns, 1 if single else block)
+    if drawn is not None:
+        labels = np.where(drawn, labels, -1)
     return extensibility_rectangles(chart, material, placement, labels)

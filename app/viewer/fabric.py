@@ -38,6 +38,7 @@ class FabricScene:
     ----------
     shapes, placement : the yarn and where it lies.
     colours : (rows, columns, 3) uint8.
+    drawn : bool (rows, columns), False where the fabric has no stitch; None if it has all.
     rectangles_mm : (rectangles, 4, 2) corners of the layer of rectangles, or None.
     focus : (row, column) around which a chart that is too large is drawn as yarn; its middle if
         None.
@@ -47,6 +48,7 @@ class FabricScene:
     shapes: StitchShapes
     placement: Placement
     colours: Colours
+    drawn: NDArray[np.bool_] | None = None
     rectangles_mm: Array | None = None
     focus: tuple[int, int] | None = None
     room_mm: Array | None = None
@@ -87,6 +89,7 @@ class FabricScene:
                 places.centres_mm[part], places.sizes_mm[part], places.angles[part], places.depth
             ),
             colours=self.colours[part],
+            drawn=None if self.drawn is None else self.drawn[part],
         )
 
     def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
@@ -94,6 +97,8 @@ class FabricScene:
         places = self.placement
         away = np.abs(places.centres_mm - self.middle_mm - (x_mm, y_mm)) / places.sizes_mm
         distance = away.max(axis=2)
+        if self.drawn is not None:
+            distance = np.where(self.drawn, distance, np.inf)
         row, column = np.unravel_index(distance.argmin(), distance.shape)
         return (int(row), int(column)) if distance[row, column] < BESIDE else None
 

@@ -38,6 +38,7 @@ class SceneWriter:
         self._lock = threading.RLock()
         self._scene: FabricScene | None = None
         self._shapes: StitchShapes | None = None
+        self._drawn: NDArray[np.bool_] | None = None
         self._meshes: StitchMeshes | None = None
         self._level = (0, 0)
         self._handles: dict[int, Any] = {}
@@ -54,10 +55,10 @@ class SceneWriter:
     def write(self, scene: FabricScene) -> int:
         """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn."""
         part = scene.window()
-        stitches = int(part.shapes.index.size)
+        stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
         with self._lock:
             self._scene = scene
-            if self._is_drawn(part.shapes, level_of(stitches)):
+            if self._is_drawn(part, level_of(stitches)):
                 self._move(part, scene.middle_mm)
             else:
                 self._level = level_of(stitches)
@@ -105,19 +106,22 @@ class SceneWriter:
 
     # -- yarn ---------------------------------------------------------------------------------
 
-    def _is_drawn(self, shapes: StitchShapes, level: tuple[int, int]) -> bool:
-        before = self._shapes
+    def _is_drawn(self, scene: FabricScene, level: tuple[int, int]) -> bool:
+        before, shapes = self._shapes, scene.shapes
         return (
             before is not None
             and level == self._level
             and before.yarn_radius_mm == shapes.yarn_radius_mm
+            and _same(self._drawn, scene.drawn)
             and np.array_equal(before.index, shapes.index)
             and np.array_equal(before.lines, shapes.lines)
         )
 
     def _build(self, scene: FabricScene, middle: Array) -> None:
         index = scene.shapes.index.ravel()
-        members = {int(shape): np.flatnonzero(index == shape) for shape in np.unique(index)}
+        if scene.drawn is not None:
+            index = np.where(scene.drawn.ravel(), index, -1)
+        members = {int(s): np.flatnonzero(index == s) for s in np.unique(index[index >= 0])}
         meshes = stitch_meshes(scene.shapes, scene.placement, *self._level)
         instances = _instances(scene, middle, meshes)
         with self._server.atomic():
@@ -133,7 +137,8 @@ class SceneWriter:
                     receive_shadow=False,
                     **_of(instances, stitches),
                 )
-        self._members, self._meshes, self._shapes = members, meshes, scene.shapes
+        self._members, self._meshes = members, meshes
+        self._shapes, self._drawn = scene.shapes, scene.drawn
 
     def _move(self, scene: FabricScene, middle: Array) -> None:
         assert self._meshes is not None  # noqa: S101 - it is drawn
@@ -189,11 +194,14 @@ class SceneWriter:
             return
         width, height = scene.extent_mm
         depth = np.abs(scene.shapes.lines[..., 2]).max() + scene.shapes.yarn_radius_mm
+        picture = scene.colours
+        if scene.drawn is not None:
+            picture = np.dstack([picture, 255 * scene.drawn.astype(np.uint8)])
         self._put(
             "sheet",
             self._server.scene.add_image(
                 "/sheet",
-                scene.colours[::-1],
+                picture[::-1],
                 render_width=float(width),
                 render_height=float(height),
                 format="png",
@@ -210,6 +218,10 @@ class SceneWriter:
             self._layers[name] = handle
         elif old is not None:
             old.remove()
+
+
+def _same(a: NDArray[np.bool_] | None, b: NDArray[np.bool_] | None) -> bool:
+    return a is b or (a is not None and b is not None and np.array_equal(a, b))
 
 
 def _room(scene: FabricScene) -> tuple[float, ...]:

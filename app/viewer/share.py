@@ -87,16 +87,19 @@ def solid_glb(scene: FabricScene) -> bytes:
     """The yarn as it lies, with its colours: binary glTF 2.0 in metres."""
     import trimesh
 
-    stitches = scene.shapes.index.size
+    drawn = np.ones(scene.shapes.index.size, dtype=bool)
+    if scene.drawn is not None:
+        drawn = scene.drawn.ravel()
+    stitches = int(drawn.sum())
     points, sides = next((p, s) for most, p, s in SOLID_LEVELS if stitches <= most)
-    placed = placed_lines(scene.shapes, scene.placement).reshape(stitches, -1, 3)
+    placed = placed_lines(scene.shapes, scene.placement).reshape(len(drawn), -1, 3)[drawn]
     vertices = tube_vertices(resampled(placed, points), scene.shapes.yarn_radius_mm, sides)
     count = vertices.shape[1]
     faces = tube_faces(points, sides).astype(np.int64)
     solid: Any = trimesh.Trimesh(
         vertices.reshape(-1, 3) * 0.001,
         (faces[None] + count * np.arange(stitches)[:, None, None]).reshape(-1, 3),
-        vertex_colors=np.repeat(scene.colours.reshape(-1, 3), count, axis=0),
+        vertex_colors=np.repeat(scene.colours.reshape(-1, 3)[drawn], count, axis=0),
         process=False,
     )
     content = solid.export(file_type="glb")

@@ -9,6 +9,7 @@
 
 import { ApiError, api } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
+import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { FrameGovernor } from "./framegovernor.js";
@@ -181,6 +182,7 @@ function wanted(studio, view) {
   const seen = view.viewport.visible(chart.grid);
   return {
     ...studio.request,
+    outline: chart.shaped ? outlineText(chart.outline, columns) : null,
     colour,
     palette: palette(),
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],

@@ -26,7 +26,10 @@ export function scopeOf(studio) {
     return { kind: "selection", title: "Selection", grid: grid.region(box), note };
   }
   const region = seeing.region.value === null ? null : chart.region(seeing.region.value);
-  if (!region?.count) return { kind: "chart", title: "Whole chart", grid, note: "" };
+  if (!region?.count) {
+    const note = chart.shaped ? "Of the rectangle around the fabric: its parts are regions." : "";
+    return { kind: "chart", title: "Whole chart", grid, note };
+  }
   const title = region.name;
   if (region.fill) return { kind: "region", title, grid: region.fill, note: "Of the repeat that fills it." };
   const around = /** @type {import("../core/selection.js").Selection} */ (selectionOf(region.cells, grid));

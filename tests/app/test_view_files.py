@@ -76,6 +76,24 @@ def test_a_solid_is_the_yarn_in_metres_with_its_colours(client: TestClient) -> N
     )
 
 
+def test_no_stitch_is_neither_drawn_nor_clicked_nor_given_away(client: TestClient) -> None:
+    shaped = SMALL | {"outline": "xx..\nxxxx\nxxxx", "rectangles": True}
+    answer = client.put(f"/api/v1/views/{DESIGN}", json=shaped).json()
+    assert answer["stitches"] == 10
+    view = client.app.state.views.get(f"local/{DESIGN}")  # type: ignore[attr-defined]
+    scene = view.writer.scene
+    assert len(scene.rectangles_mm) == 10
+    x, y = scene.placement.centres_mm[2, 3] - scene.middle_mm
+    assert scene.stitch_at(x, y) is None
+    assert scene.stitch_at(*(scene.placement.centres_mm[2, 1] - scene.middle_mm)) == (2, 1)
+    whole = client.put(f"/api/v1/views/{DESIGN}", json=SMALL).json()
+    assert whole["stitches"] == 12
+    sizes = [len(client.post("/api/v1/views/solid", json=body).content) for body in (shaped, SMALL)]
+    assert sizes[0] == pytest.approx(sizes[1] * 10 / 12, rel=0.02)
+    problem = client.put(f"/api/v1/views/{DESIGN}", json=SMALL | {"outline": "xx"}).json()
+    assert problem["field"] == "outline"
+
+
 def test_what_is_too_large_to_give_away_is_refused(client: TestClient) -> None:
     large = {"chart": {"fabric": "rib", "columns": 120, "rows": 100}, "material": "acrylic"}
     problem = client.post("/api/v1/views/solid", json=large).json()
