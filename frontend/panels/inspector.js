@@ -95,7 +95,7 @@ export function inspector(host, studio) {
     shown = value;
     const part = scopeOf(studio);
     const { rows, columns } = part.grid;
-    title.replaceChildren(part.title, h("span", { class: "muted figures" }, ` ${columns} × ${rows}`));
+    title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, `${columns} × ${rows}`));
     title.title = part.note;
     problem.hidden = !wrong;
     if (wrong) {
