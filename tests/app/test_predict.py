@@ -93,7 +93,7 @@ def test_a_small_mixed_repeat_is_labelled_with_care(client: TestClient) -> None:
         (["garter", "--size", "5000x5000", "--material", "acrylic"], "too large"),
         (["garter", "--size", "big", "--material", "acrylic"], "COLUMNSxROWS"),
         (["velvet", "--size", "5x5", "--material", "acrylic"], "size"),
-        (["nothing.txt", "--material", "acrylic"], "no file"),
+        (["nothing.txt", "--material", "acrylic"], "does not exist"),
         (["garter", "--size", "5x5", "--material", "steel"], "not in the library"),
         (["garter", "--size", "5x5", "--material", "none.yaml"], "material"),
         (["garter", "--size", "5x5"], "--material"),
