@@ -134,7 +134,7 @@ async def stretching(client: httpx.AsyncClient) -> AsyncIterator[list[str]]:
 
     async def stretch() -> None:
         for number in range(1000):  # each a little further, so that no answer is known
-            wish = {"chart": {"fabric": "garter", "columns": 150, "rows": 150}, "steps": 60}
+            wish = {"chart": {"fabric": "garter", "columns": SIDE, "rows": SIDE}, "steps": 20}
             wish |= {"material": "acrylic", "direction": "wale", "strain": 0.5 + number / 1e4}
             job = await client.post(JOBS, json={"kind": "stretch", "request": wish})
             address = job.headers["location"]
@@ -204,7 +204,8 @@ async def look(client: httpx.AsyncClient, service: Service, number: int) -> None
 
 
 async def looking(client: httpx.AsyncClient, service: Service, figures: Figures) -> None:
-    await look(client, service, 0)  # what is loaded for the first view stays
+    for number in (-1, 0):  # what is loaded for the first views stays
+        await look(client, service, number)
     threads, handles = held(service.pid)
     memory = resident_mb(service.pid)
     for number in range(1, ROUNDS + 1):
