@@ -6,9 +6,9 @@
  * @import {Signal} from "../core/signal.js"
  */
 
-import { action, shown } from "../actions/registry.js";
+import { action } from "../actions/registry.js";
 import { h } from "../dom.js";
-import { icon } from "../icons.js";
+import { actionButton } from "./actionbutton.js";
 
 /** @type {[Look, string][]} */
 const LOOKS = [
@@ -65,21 +65,7 @@ export function chartstrip(host, context) {
   });
 
   /** @param {"fit" | "zoom-in" | "zoom-out"} id */
-  const small = (id) => {
-    const { label, icon: picture, keys, perform } = action(id);
-    return h(
-      "button",
-      {
-        class: "strip-button",
-        type: "button",
-        id: `action-${id}`,
-        title: `${label} (${shown(keys[0])})`,
-        "aria-label": label,
-        onclick: () => perform(context),
-      },
-      picture && icon(picture),
-    );
-  };
+  const small = (id) => actionButton(action(id), context, "strip-button");
 
   host.append(
     h("div", { class: "chart-strip" },

@@ -10,6 +10,7 @@ import { action, shown } from "../actions/registry.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { TOOLS } from "../tools/registry.js";
+import { actionButton } from "./actionbutton.js";
 
 const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
 
@@ -56,21 +57,7 @@ export function rail(host, studio, context) {
   studio.tool.watch(({ sized }) => (size.disabled = !sized));
 
   /** @param {string} id */
-  const small = (id) => {
-    const { label, icon: picture, keys, perform } = action(id);
-    return h(
-      "button",
-      {
-        class: "tool",
-        type: "button",
-        id: `action-${id}`,
-        title: `${label} (${shown(keys[0])})`,
-        "aria-label": label,
-        onclick: () => perform(context),
-      },
-      picture && icon(picture),
-    );
-  };
+  const small = (id) => actionButton(action(id), context, "tool");
   const symmetry = small("symmetry");
   studio.symmetry.watch((value) => {
     symmetry.setAttribute("aria-pressed", String(value !== "none"));

@@ -8,7 +8,6 @@ checker) makes a large chart into a small grid of stiffnesses in milliseconds.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,7 +115,11 @@ def coarsened(grid: SheetGrid, most_cells: int) -> SheetGrid:
 
 def _mean(one: SheetGrid, other: SheetGrid) -> SheetGrid:
     """Halfway between two estimates: the geometric mean of the moduli keeps ratios unbiased."""
-    mean: Callable[[Array, Array], Array] = lambda a, b: np.sqrt(a * b)  # noqa: E731
+
+    def mean(a: Array, b: Array) -> Array:
+        root: Array = np.sqrt(a * b)
+        return root
+
     return SheetGrid(
         mean(one.xxxx, other.xxxx),
         mean(one.yyyy, other.yyyy),
