@@ -79,6 +79,7 @@ export interface Prediction {
 export interface StretchRequest {
   chart: string;
   material: string;
+  outline?: string | null;
   direction: Direction;
   strain: number;
   steps: number;

@@ -18,7 +18,9 @@ LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
 """Bits of a surroundings code: that segment of the stitch is odd."""
 
 
-def surroundings(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.uint8]:
+def surroundings(
+    chart: StitchChart, *, periodic: bool = False, stitch: NDArray[np.bool_] | None = None
+) -> NDArray[np.uint8]:
     """The 4-bit code of odd segments around every stitch, shape (rows, columns).
 
     Parameters
@@ -27,6 +29,8 @@ def surroundings(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.ui
     periodic : treat the chart as a repeat. Otherwise a segment that would cross an edge takes the
         parity of the same stitch's segment on the other side (a lone row or column counts as
         even), so that a swatch of a pure fabric is pure up to its edge.
+    stitch : bool (rows, columns), where a chart with an outline (not periodic) has stitches; its
+        outline is an edge like that of a rectangle. Codes elsewhere mean nothing.
 
     Examples
     --------
@@ -34,14 +38,22 @@ def surroundings(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.ui
     array([[0, 2, 3]], dtype=uint8)
     """
     segments = segment_map(chart, periodic=periodic)
-    left, right = _before_and_after(segments.course_odd.T, chart.columns, periodic)
-    below, above = _before_and_after(segments.wale_odd, chart.rows, periodic)
-    code: NDArray[np.uint8] = left.T * LEFT | right.T * RIGHT | below * BELOW | above * ABOVE
-    return code
+    course, wale = segments.course_odd.T, segments.wale_odd
+    if periodic:
+        left, right = np.roll(course, 1, axis=0), course
+        below, above = np.roll(wale, 1, axis=0), wale
+    else:
+        inside = np.ones_like(chart.purl) if stitch is None else stitch
+        left, right = _before_and_after(course, inside[:, 1:].T & inside[:, :-1].T)
+        below, above = _before_and_after(wale, inside[1:] & inside[:-1])
+    code = left.T * LEFT | right.T * RIGHT | below * BELOW | above * ABOVE
+    return code.astype(np.uint8)
 
 
-def quarter_phases(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.uint8]:
-    """Phase of every quarter cell, with edges as in :func:`surroundings`.
+def quarter_phases(
+    chart: StitchChart, *, periodic: bool = False, stitch: NDArray[np.bool_] | None = None
+) -> NDArray[np.uint8]:
+    """Phase of every quarter cell, with edges and outline as in :func:`surroundings`.
 
     Returns
     -------
@@ -54,21 +66,22 @@ def quarter_phases(chart: StitchChart, *, periodic: bool = False) -> NDArray[np.
     array([[0, 0, 0, 2, 2, 2],
            [0, 0, 0, 2, 2, 2]], dtype=uint8)
     """
-    phases = QUARTERS_OF_CODE[surroundings(chart, periodic=periodic)]  # (rows, columns, 2, 2)
+    codes = surroundings(chart, periodic=periodic, stitch=stitch)
+    phases = QUARTERS_OF_CODE[codes]  # (rows, columns, 2, 2)
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 
 
 def _before_and_after(
-    odd: NDArray[np.bool_], stitches: int, periodic: bool
-) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Parity of the segments before and after each stitch along axis 0."""
-    if periodic:
-        return np.roll(odd, 1, axis=0).astype(np.uint8), odd.astype(np.uint8)
-    if stitches == 1:
-        even = np.zeros((1, odd.shape[1]), dtype=np.uint8)
-        return even, even
-    padded = np.concatenate([odd[:1], odd, odd[-1:]]).astype(np.uint8)
-    return padded[:-1], padded[1:]
+    odd: NDArray[np.bool_], there: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Parity of the segments before and after each stitch along axis 0; one that is not there
+    takes the other's.
+    """
+    framed = np.zeros((2, len(odd) + 2, odd.shape[1]), dtype=bool)
+    framed[:, 1:-1] = odd & there, there
+    odd, there = framed
+    before, after = odd[:-1], odd[1:]
+    return np.where(there[:-1], before, after), np.where(there[1:], after, before)
 
 
 def _quarters_of_codes() -> NDArray[np.uint8]:

@@ -17,7 +17,8 @@ from app.operations.predict import GaugeInput
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.formats.chart_files import read_chart
+from knitcore.formats.chart_files import read_chart, read_piece
+from knitcore.garment.piece import Piece
 
 Decorated = Callable[..., Any]
 
@@ -124,6 +125,12 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
             f"Name a .txt, .png or .json file, or one of {names} with --size.",
         )
     return read_chart(chart)
+
+
+def resolve_piece(chart: str, size: str | None) -> Piece:
+    """As :func:`resolve_chart`, with the outline of a file that has one."""
+    stitches = resolve_chart(chart, size)
+    return read_piece(chart) if Path(chart).suffix else Piece.plain(stitches)
 
 
 def resolve_repeat(chart: str, size: str | None) -> StitchChart:

@@ -14,7 +14,7 @@ from app.cli.common import (
     emit,
     json_option,
     material_option,
-    resolve_chart,
+    resolve_piece,
 )
 from app.cli.materials import resolve_material
 from app.operations.stretch import StretchCurve, StretchOptions, stretch_chart, stretch_curve
@@ -53,7 +53,7 @@ def command(
     if out is not None and out.suffix.lower() not in (".npz", ".vtu"):
         raise InputError("out", f"{out.name} is of no known kind.", "Use .npz or .vtu.")
     check_writable(out, "out")
-    stitches = resolve_chart(chart, size)
+    piece = resolve_piece(chart, size)
     options = StretchOptions(
         direction=Direction(direction),
         strain=strain,
@@ -63,12 +63,14 @@ def command(
         width_mm=width_mm,
         length_mm=length_mm,
     )
-    test = stretch_chart(stitches, resolve_material(material), options)
+    test = stretch_chart(
+        piece.chart, resolve_material(material), options, stitch=piece.shaped.stitch
+    )
     if out is not None:
         from knitcore.swatch.files import write_fields
 
         write_fields(test, out)
-    curve = stretch_curve(stitches, options, test)
+    curve = stretch_curve(piece.chart, options, test)
     emit(curve, _text(curve), as_json=as_json)
 
 

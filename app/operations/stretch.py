@@ -10,11 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
+from scipy.ndimage import distance_transform_edt
 
-from app.operations.charts import ChartInput, PureFabricChart, to_chart
+from app.operations.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
 from knitcore.materials import material as find_material
 from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
@@ -54,10 +56,18 @@ class StretchRequest(StretchOptions):
 
     chart: ChartInput
     material: str
+    outline: str | None = Field(
+        None,
+        max_length=MAX_TEXT,
+        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
+        "left out. The clamps hold the outermost stitches.",
+    )
 
 
 class StitchFields(BaseModel):
-    """Values at the stitches: [step][row * columns + column], bottom row first."""
+    """Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is
+    no stitch.
+    """
 
     strain_course: list[list[float]]
     strain_wale: list[list[float]]
@@ -162,7 +172,12 @@ def run_stretch(
             f"Use at most {MAX_VALUES // (chart.rows * chart.columns)}, or the command line.",
         )
     test = stretch_chart(
-        chart, find_material(request.material), request, cancelled=cancelled, progress=progress
+        chart,
+        find_material(request.material),
+        request,
+        stitch=None if request.outline is None else outline_marks(request.outline),
+        cancelled=cancelled,
+        progress=progress,
     )
     return _stitches(chart, request, test)
 
@@ -172,10 +187,11 @@ def stretch_chart(
     material: Material,
     options: StretchOptions,
     *,
+    stitch: NDArray[np.bool_] | None = None,
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> StripTest:
-    """The strip test of any chart and material."""
+    """The strip test of any chart and material; ``stitch`` (rows, columns) of a shaped piece."""
     return strip_test(
         chart,
         material,
@@ -185,6 +201,7 @@ def stretch_chart(
         clamps=options.clamps,
         model=options.model,
         shear_modulus=options.shear_modulus_n_per_mm,
+        stitch=stitch,
         width_mm=options.width_mm,
         length_mm=options.length_mm,
         cancelled=cancelled,
@@ -239,17 +256,22 @@ def warm_up(*, cancelled: Callable[[], bool]) -> None:
 
 def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> StretchRun:
     shape = (test.steps, chart.rows, chart.columns)
-    x, y, xx, yy, used = np.zeros((5, *shape))
+    ux, uy, xx, yy, used = np.zeros((5, *shape))
     for step in range(test.steps):
         at = test.fields(step)
         for values, nodes in (
-            (x, at.x_mm + at.ux_mm),
-            (y, at.y_mm + at.uy_mm),
+            (ux, at.ux_mm),
+            (uy, at.uy_mm),
             (xx, at.strain_xx),
             (yy, at.strain_yy),
             (used, at.utilisation),
         ):
             values[step] = nodes[1::2, 1::2]  # nodes lie on the quarter grid
+    there = test.sheet.grid.cloth[::2, ::2]
+    x = _carried(test.x_mm[1::2, 1::2], ux, xx, there)
+    y = _carried(test.y_mm[1::2, 1::2], uy, yy, there)
+    for values in (xx, yy, used):
+        values[:, ~there] = 0.0
     result = StretchResult(
         **stretch_curve(chart, request, test).model_dump(),
         id=stretch_key(request),
@@ -266,6 +288,20 @@ def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> S
         strain=np.stack([xx, yy], axis=-1).astype(np.float32),
         utilisation=used.astype(np.float32),
     )
+
+
+def _carried(
+    rest_mm: NDArray[np.float64],
+    moved_mm: NDArray[np.float64],
+    strain: NDArray[np.float64],
+    there: NDArray[np.bool_],
+) -> NDArray[np.float64]:
+    """Positions at each step; where there is no stitch, as the nearest one would carry it on, for
+    the loops of an edge are drawn by the distances to all neighbours.
+    """
+    row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)
+    stretched = (rest_mm - rest_mm[row, column]) * (1 + strain[:, row, column])
+    return np.asarray(rest_mm[row, column] + moved_mm[:, row, column] + stretched)
 
 
 def _rounded(values: NDArray[np.float64]) -> list[list[float]]:

@@ -66,34 +66,46 @@ export function surroundings(grid, outline = null) {
 
 /**
  * @param {Grid} grid
+ * @param {Uint8Array | null} [outline] 0 where there is no stitch
  * @returns {Record<Direction, SegmentCounts>}
  */
-export function countSegments({ rows, columns, purl }) {
-  let course = 0;
-  let wale = 0;
-  for (let row = 0; row < rows; row++) {
-    const end = (row + 1) * columns;
-    for (let i = end - columns + 1; i < end; i++) course += purl[i] ^ purl[i - 1];
-  }
-  for (let i = columns; i < purl.length; i++) wale += purl[i] ^ purl[i - columns];
-  return {
-    course: { even: rows * (columns - 1) - course, odd: course },
-    wale: { even: (rows - 1) * columns - wale, odd: wale },
+export function countSegments({ rows, columns, purl }, outline = null) {
+  /** @param {Direction} direction @returns {SegmentCounts} */
+  const count = (direction) => {
+    const step = direction === "course" ? 1 : columns;
+    let all = 0;
+    let odd = 0;
+    for (let row = direction === "course" ? 0 : 1; row < rows; row++) {
+      const end = (row + 1) * columns;
+      for (let i = end - columns + (direction === "course" ? 1 : 0); i < end; i++) {
+        const there = outline ? outline[i] & outline[i - step] : 1;
+        all += there;
+        odd += there & (purl[i] ^ purl[i - step]);
+      }
+    }
+    return { even: all - odd, odd };
   };
+  return { course: count("course"), wale: count("wale") };
 }
 
 /**
  * Shares of the four fabrics, by quarters.
  *
  * @param {Uint8Array} codes
+ * @param {Uint8Array | null} [outline] 0 where there is no stitch
  * @returns {number[]} by phase, summing to 1
  */
-export function fabricShares(codes) {
+export function fabricShares(codes, outline = null) {
   const kinds = new Uint32Array(16);
-  for (const code of codes) kinds[code]++;
+  let all = 0;
+  for (let i = 0; i < codes.length; i++) {
+    if (outline && !outline[i]) continue;
+    kinds[codes[i]]++;
+    all++;
+  }
   const shares = [0, 0, 0, 0];
   kinds.forEach((count, code) => {
-    for (const phase of QUARTERS[code]) shares[phase] += count / (4 * codes.length);
+    for (const phase of QUARTERS[code]) shares[phase] += count / (4 * all);
   });
   return shares;
 }

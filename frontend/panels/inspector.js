@@ -94,7 +94,7 @@ export function inspector(host, studio) {
     if (busy && shown === value) return; // asked anew: the old numbers stay, greyed, until the answer
     shown = value;
     const part = scopeOf(studio);
-    const { rows, columns } = part.grid;
+    const { rows, columns } = part.kind === "chart" ? studio.document.grid : part.grid;
     title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, `${columns} × ${rows}`));
     title.title = part.note;
     problem.hidden = !wrong;
@@ -115,10 +115,12 @@ export function inspector(host, studio) {
     }
   };
   const count = () => {
-    const { kind, grid: part } = scopeOf(studio);
-    const codes = kind === "chart" ? studio.document.codes : surroundings(part);
-    const segments = countSegments(part);
-    const mix = fabricShares(codes);
+    const { document: chart } = studio;
+    const part = scopeOf(studio);
+    const whole = part.kind === "chart";
+    const outline = whole && chart.shaped ? chart.outline : null;
+    const segments = countSegments(whole ? chart.grid : part.grid, outline);
+    const mix = fabricShares(whole ? chart.codes : surroundings(part.grid), outline);
     shares.replaceChildren(
       shareBar(
         "share-fabrics",

@@ -148,7 +148,6 @@ export function stretchdrawer(host, studio, stretcher) {
     } else if (busy) note.append(waiting() ? "Waiting for its turn …" : "Pulling the cloth between two clamps …");
     else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
     else if (value) {
-      if (studio.document.shaped) note.append("Of the rectangle around the fabric. ");
       note.append(
         value.converged
           ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`

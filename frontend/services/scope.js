@@ -11,6 +11,7 @@
  */
 
 import { Grid } from "../core/grid.js";
+import { largestRectangle } from "../core/inscribed.js";
 import { selectionOf } from "../core/selection.js";
 
 /**
@@ -27,8 +28,11 @@ export function scopeOf(studio) {
   }
   const region = seeing.region.value === null ? null : chart.region(seeing.region.value);
   if (!region?.count) {
-    const note = chart.shaped ? "Of the rectangle around the fabric: its parts are regions." : "";
-    return { kind: "chart", title: "Whole chart", grid, note };
+    const inside = chart.shaped ? largestRectangle(chart.outline, grid.columns) : null;
+    if (!inside) return { kind: "chart", title: "Whole chart", grid, note: "" };
+    const part = grid.region(inside);
+    const note = `Of the largest rectangle inside the fabric, ${part.columns} × ${part.rows} stitches: its other parts are regions.`;
+    return { kind: "chart", title: "Whole chart", grid: part, note };
   }
   const title = region.name;
   if (region.fill) return { kind: "region", title, grid: region.fill, note: "Of the repeat that fills it." };

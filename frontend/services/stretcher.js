@@ -10,6 +10,7 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
 import { Signal } from "../core/signal.js";
+import { outlineText } from "../core/snapshot.js";
 import { runJob } from "./jobs.js";
 
 const STEPS = 20;
@@ -60,7 +61,9 @@ export class Stretcher {
     const controller = new AbortController();
     this.#running = controller;
     this.progress.value = null;
-    const request = { ...studio.request, direction, strain, steps: STEPS, ...options };
+    const { document: chart } = studio;
+    const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
+    const request = { ...studio.request, outline, direction, strain, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
       /** @type {Stretch} */

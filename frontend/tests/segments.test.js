@@ -47,3 +47,14 @@ test("quarters: a stitch between odd segments left and below is half of everythi
   assert.deepEqual(QUARTERS[15], [3, 3, 3, 3]);
   assert.deepEqual(QUARTERS[1 + 4], [3, 1, 2, 0]);
 });
+
+test("segments and shares of a shaped chart are of its stitches alone", () => {
+  const grid = Grid.fromText("KPK\nPPP\nKPK");
+  const outline = Uint8Array.of(0, 1, 1, 1, 1, 1, 0, 1, 0); // the lowest row first
+  assert.deepEqual(countSegments(grid, outline), { course: { even: 2, odd: 1 }, wale: { even: 2, odd: 1 } });
+  const shares = fabricShares(surroundings(grid, outline), outline);
+  assert.equal(shares.reduce((sum, share) => sum + share).toFixed(12), "1.000000000000");
+  const junk = Grid.fromText("PPP\nPPP\nPPK");
+  assert.deepEqual(countSegments(junk, outline), countSegments(grid, outline));
+  assert.deepEqual(fabricShares(surroundings(junk, outline), outline), shares);
+});

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.mechanics.stiffening import StiffeningForm, stiffening
+from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.models import EnergyModel
 from knitcore.swatch.sheet import Sheet, State
 
@@ -16,7 +17,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Fields:
-    """Fields of one state on the corners of the cells; arrays (rows + 1, columns + 1).
+    """Fields of one state on the corners of the cells; arrays (rows + 1, columns + 1), not a
+    number (NaN) at corners without cloth.
 
     Attributes
     ----------
@@ -86,11 +88,12 @@ def cell_strains(sheet: Sheet, state: State) -> CellStrains:
 
 
 def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
-    """alpha * strain of every cell and direction, (2, rows, columns)."""
+    """alpha * strain of every cell and direction, (2, rows, columns); 0 without cloth."""
     xx, yy, _ = strains.mean
     alpha = np.array([(law.alpha_xx, law.alpha_yy) for law in sheet.laws])[sheet.grid.law_of_cell]
     kappa = sheet.model.stiffening_coupling
-    return np.stack([alpha[..., 0] * (xx + kappa * yy), alpha[..., 1] * (yy + kappa * xx)])
+    used = np.stack([alpha[..., 0] * (xx + kappa * yy), alpha[..., 1] * (yy + kappa * xx)])
+    return np.where(sheet.grid.cloth, used, 0.0)
 
 
 def node_fields(sheet: Sheet, state: State) -> Fields:
@@ -101,13 +104,11 @@ def node_fields(sheet: Sheet, state: State) -> Fields:
     cells["strain_xy"] = strains.mean[2]
     cells |= _response(sheet, *strains.mean)
     cells["utilisation"] = utilisation(sheet, strains).max(axis=0)
-    area = grid.natural_width * grid.natural_height
-    total = _to_corners(area)
-    nodes = {name: _to_corners(area * value) / total for name, value in cells.items()}
+    nodes = {name: corner_means(grid, value) for name, value in cells.items()}
     xx, yy, xy = nodes["strain_xx"], nodes["strain_yy"], nodes["strain_xy"]
     middle, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
     shape = xx.shape
-    moved = state.corners - grid.corners
+    moved = np.where(grid.used_corners[:, None], state.corners - grid.corners, np.nan)
     return Fields(
         x_mm=grid.corners[:, 0].reshape(shape),
         y_mm=grid.corners[:, 1].reshape(shape),
@@ -145,6 +146,15 @@ def _response(sheet: Sheet, xx: Array, yy: Array, xy: Array) -> dict[str, Array]
         "stress_xy": 2 * shear * xy,
         "energy_density": (xx * linear_x + yy * linear_y) / 2 + 2 * shear * xy**2 + stored,
     }
+
+
+def corner_means(grid: QuarterGrid, cells: Array) -> Array:
+    """Means (rows + 1, columns + 1) of cells over the cloth that meets at each corner, weighted by
+    rest area; NaN where there is none.
+    """
+    area = np.where(grid.cloth, grid.natural_width * grid.natural_height, 0.0)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(_to_corners(area * cells) / _to_corners(area))
 
 
 def _to_corners(cells: Array) -> Array:

@@ -30,7 +30,7 @@ def displacement_figure(test: SwatchTest, step: int = -1, component: str = "x") 
     fields = test.fields(step)
     value = fields.ux_mm if component == "x" else fields.uy_mm
     x, y = fields.x_mm + fields.ux_mm, fields.y_mm + fields.uy_mm
-    top = float(np.abs(value).max()) or 1.0
+    top = float(np.nanmax(np.abs(value))) or 1.0
     stride = max(1, int(np.ceil(np.sqrt(value.size / MAX_PATCHES))))
     kept = (_kept(value.shape[0], stride)[:, None], _kept(value.shape[1], stride))
     figure = go.Figure(
@@ -129,7 +129,7 @@ def _arms(fields: Fields, crosses: int, sign: int) -> tuple[Array, Array]:
     pick = (slice(stride // 2, None, stride), slice(stride // 2, None, stride))
     x, y = (fields.x_mm + fields.ux_mm)[pick].ravel(), (fields.y_mm + fields.uy_mm)[pick].ravel()
     angle = fields.principal_angle[pick].ravel()
-    largest = float(np.abs(fields.principal_strain).max()) or 1.0
+    largest = float(np.nanmax(np.abs(fields.principal_strain))) or 1.0
     spacing = np.hypot(np.diff(x).max(initial=1.0) if len(x) > 1 else 1.0, 0.0)
     lines_x, lines_y = [], []
     for value, turn in zip(fields.principal_strain, (0.0, np.pi / 2), strict=True):

@@ -56,6 +56,8 @@ def write_npz(test: SwatchTest, path: Path) -> None:
 def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
     """One step on the rest shape, quarter cells as quadrilaterals; warp by ``displacement_mm``.
 
+    What is no cloth is left out.
+
     Raises
     ------
     InputError
@@ -67,15 +69,16 @@ def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
         raise InputError("out", "no step converged, so there is no field.", "Use a smaller strain.")
     fields = test.fields(step)
     grid = test.sheet.grid
+    used, cloth = grid.used_corners, grid.cloth.ravel()
     flat = np.zeros(fields.x_mm.size)
 
     def column(*parts: np.ndarray) -> np.ndarray:
-        return np.column_stack([np.asarray(part).ravel() for part in parts])
+        return np.column_stack([np.asarray(part).ravel()[used] for part in parts])
 
     larger, smaller = fields.principal_strain
     meshio.Mesh(
         points=column(fields.x_mm, fields.y_mm, flat),
-        cells=[("quad", grid.cell_corners)],
+        cells=[("quad", (np.cumsum(used) - 1)[grid.cell_corners[cloth]])],
         point_data={
             "displacement_mm": column(fields.ux_mm, fields.uy_mm, flat),
             "strain_xx_yy_xy": column(fields.strain_xx, fields.strain_yy, fields.strain_xy),
@@ -86,8 +89,8 @@ def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
             "stress_xx_yy_xy_n_per_mm": column(
                 fields.stress_xx, fields.stress_yy, fields.stress_xy
             ),
-            "energy_density_n_per_mm": fields.energy_density.ravel(),
-            "utilisation": fields.utilisation.ravel(),
+            "energy_density_n_per_mm": fields.energy_density.ravel()[used],
+            "utilisation": fields.utilisation.ravel()[used],
         },
-        cell_data={"phase": [grid.law_of_cell.ravel().astype(np.int32)]},
+        cell_data={"phase": [grid.law_of_cell.ravel()[cloth].astype(np.int32)]},
     ).write(path, file_format="vtu")

@@ -28,7 +28,8 @@ class Misfit:
 
     Attributes
     ----------
-    course, wale : (rows, columns) laid-out size over natural size - 1, of each quarter cell.
+    course, wale : (rows, columns) laid-out size over natural size - 1, of each quarter cell; 0
+        where there is no cloth.
     by_fabric : mean (course, wale) of each fabric in the chart.
     """
 
@@ -46,13 +47,14 @@ def misfit(grid: QuarterGrid) -> Misfit:
     """How far the cells of a grid are from their natural sizes."""
     course = np.diff(grid.column_lines) / grid.natural_width - 1
     wale = np.diff(grid.row_lines)[:, None] / grid.natural_height - 1
-    codes = grid.law_of_cell
+    course[~grid.cloth] = wale[~grid.cloth] = 0.0
+    codes = np.where(grid.cloth, grid.law_of_cell, len(PHASES))
     return Misfit(
         course,
         wale,
         {
             PHASES[code]: (float(course[codes == code].mean()), float(wale[codes == code].mean()))
-            for code in np.unique(codes)
+            for code in np.unique(grid.law_of_cell[grid.cloth])
         },
     )
 
@@ -75,9 +77,10 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
     """
     grid = sheet.grid
     fixed = np.zeros((len(grid.corners), 2), dtype=bool)
-    middle = (grid.rows + 1) // 2 * (grid.columns + 1) + (grid.columns + 1) // 2
-    fixed[middle] = True  # no drift
-    fixed[middle - 1, 1] = True  # no turning
+    middle = int(np.argmin(np.where(grid.cloth.ravel(), np.hypot(*grid.centres.T), np.inf)))
+    left, right, *_ = grid.cell_corners[middle]
+    fixed[right] = True  # no drift
+    fixed[left, 1] = True  # no turning
     plain = replace(sheet.model, tension_field=False)
     path = draw_in(sheet.with_model(plain), fixed, cancelled=cancelled)
     if path.problem and sheet.model.tension_field:
@@ -108,12 +111,10 @@ def draw_in(
     for stage in range(1, RELAXATION_STAGES + 1):
         share = stage / RELAXATION_STAGES
         part = sheet.with_grid(
-            QuarterGrid(
-                grid.column_lines,
-                grid.row_lines,
-                grid.law_of_cell,
-                laid.natural_width ** (1 - share) * grid.natural_width**share,
-                laid.natural_height ** (1 - share) * grid.natural_height**share,
+            replace(
+                grid,
+                natural_width=laid.natural_width ** (1 - share) * grid.natural_width**share,
+                natural_height=laid.natural_height ** (1 - share) * grid.natural_height**share,
             )
         )
         path = run_path(

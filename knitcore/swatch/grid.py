@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -24,7 +25,7 @@ MAX_CELLS = 1_500_000
 
 @dataclass(frozen=True, eq=False)
 class QuarterGrid:
-    """A rectangle of rows x columns cells between straight grid lines.
+    """Rows x columns cells between straight grid lines, all or some of them cloth.
 
     Parameters
     ----------
@@ -36,11 +37,14 @@ class QuarterGrid:
         Which law a cell follows; for a chart, its phase code.
     natural_width, natural_height : float arrays (rows, columns), mm
         Size of the cell's own fabric at rest. By default the size between the lines.
+    cloth : bool array (rows, columns)
+        Which cells there are; by default all. The others carry nothing, whatever their law.
 
     Raises
     ------
     InputError
-        If sizes are not positive or the mesh would not fit in memory.
+        If sizes are not positive, the mesh would not fit in memory, or the cloth is not in one
+        piece.
     """
 
     column_lines: Array
@@ -48,6 +52,7 @@ class QuarterGrid:
     law_of_cell: NDArray[np.uint8]
     natural_width: Array
     natural_height: Array
+    cloth: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
         rows, columns = self.law_of_cell.shape
@@ -61,6 +66,7 @@ class QuarterGrid:
         for array in (self.natural_width, self.natural_height):
             if array.shape != (rows, columns) or not np.all(array > 0):
                 raise InputError("size", "a cell has no natural size.", "Give sizes above 0 mm.")
+        check_cloth(self.cloth, rows, columns)
 
     @classmethod
     def uniform(cls, columns: int, rows: int, width_mm: float, length_mm: float) -> QuarterGrid:
@@ -85,6 +91,7 @@ class QuarterGrid:
             law_of_cell,
             np.broadcast_to(np.diff(column_lines), shape).copy(),
             np.broadcast_to(np.diff(row_lines)[:, None], shape).copy(),
+            np.ones(shape, dtype=bool),
         )
 
     @classmethod
@@ -93,6 +100,7 @@ class QuarterGrid:
         chart: StitchChart,
         stitch_size_mm: Mapping[Fabric, tuple[float, float]],
         *,
+        stitch: NDArray[np.bool_] | None = None,
         width_mm: float | None = None,
         length_mm: float | None = None,
     ) -> QuarterGrid:
@@ -101,10 +109,15 @@ class QuarterGrid:
         Where fabrics of different gauge meet, a column is as wide and a row as high as its
         quarters are on average; what each quarter would like to measure stays in
         ``natural_width`` and ``natural_height``. With ``width_mm`` or ``length_mm`` all sizes are
-        scaled so that the swatch measures that.
+        scaled so that the swatch measures that. ``stitch`` (rows, columns) leaves out what has no
+        stitch.
         """
         check_cells(2 * chart.rows, 2 * chart.columns)
-        phases = quarter_phases(chart)
+        inside = np.ones_like(chart.purl) if stitch is None else np.asarray(stitch, dtype=bool)
+        check_cloth(inside, chart.rows, chart.columns)
+        cloth = inside.repeat(2, axis=0).repeat(2, axis=1)
+        phases = quarter_phases(chart, stitch=inside)
+        phases[~cloth] = phases[cloth][0]
         sizes = np.full((len(PHASES), 2), np.nan)
         for code in np.unique(phases):
             fabric = PHASES[code]
@@ -117,7 +130,8 @@ class QuarterGrid:
             check_size_mm(*stitch_size_mm[fabric])
             sizes[code] = stitch_size_mm[fabric]
         natural_width, natural_height = (sizes[phases, axis] / 2 for axis in (0, 1))
-        widths, heights = natural_width.mean(axis=0), natural_height.mean(axis=1)
+        widths = _means(natural_width, cloth, axis=0)
+        heights = _means(natural_height, cloth, axis=1)
         if width_mm is not None:
             check_size_mm(width_mm, 1.0)
             scale = width_mm / widths.sum()
@@ -126,7 +140,7 @@ class QuarterGrid:
             check_size_mm(1.0, length_mm)
             scale = length_mm / heights.sum()
             heights, natural_height = heights * scale, natural_height * scale
-        return cls(_lines(widths), _lines(heights), phases, natural_width, natural_height)
+        return cls(_lines(widths), _lines(heights), phases, natural_width, natural_height, cloth)
 
     @property
     def rows(self) -> int:
@@ -141,12 +155,18 @@ class QuarterGrid:
     @property
     def width_mm(self) -> float:
         """Course-wise size."""
-        return float(self.column_lines[-1] - self.column_lines[0])
+        return float(np.ptp(self.corners[self.used_corners, 0]))
 
     @property
     def length_mm(self) -> float:
         """Wale-wise size."""
-        return float(self.row_lines[-1] - self.row_lines[0])
+        return float(np.ptp(self.corners[self.used_corners, 1]))
+
+    @property
+    def area_mm2(self) -> float:
+        """Of the cloth as laid out."""
+        areas = np.outer(np.diff(self.row_lines), np.diff(self.column_lines))
+        return float(areas[self.cloth].sum())
 
     @property
     def dofs(self) -> int:
@@ -156,7 +176,8 @@ class QuarterGrid:
     @property
     def at_rest_as_laid_out(self) -> QuarterGrid:
         """The same grid without the misfit of the gauges."""
-        return QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
+        plain = QuarterGrid.between(self.column_lines, self.row_lines, self.law_of_cell)
+        return replace(plain, cloth=self.cloth)
 
     @property
     def has_misfit(self) -> bool:
@@ -191,16 +212,23 @@ class QuarterGrid:
         above = first + self.columns + 1
         return np.column_stack([first, first + 1, above + 1, above])
 
+    @cached_property
+    def used_corners(self) -> NDArray[np.bool_]:
+        """Which corners belong to cloth, (corners,)."""
+        used = np.zeros(len(self.corners), dtype=bool)
+        used[self.cell_corners[self.cloth.ravel()]] = True
+        return used
+
     def edge(self, name: str) -> Indices:
-        """Corner numbers along ``bottom``, ``top``, ``left`` or ``right``."""
-        numbers = np.arange((self.rows + 1) * (self.columns + 1)).reshape(self.rows + 1, -1)
-        edges: dict[str, Indices] = {
-            "bottom": numbers[0],
-            "top": numbers[-1],
-            "left": numbers[:, 0],
-            "right": numbers[:, -1],
-        }
-        return edges[name]
+        """Corner numbers of the outermost cloth at ``bottom``, ``top``, ``left`` or ``right``."""
+        used = self.used_corners.reshape(self.rows + 1, self.columns + 1)
+        numbers = np.arange(used.size).reshape(used.shape)
+        axis = 1 if name in ("bottom", "top") else 0
+        lines = np.flatnonzero(used.any(axis=axis))
+        line = lines[0] if name in ("bottom", "left") else lines[-1]
+        along: Indices = numbers.take(line, axis=1 - axis)
+        chosen: Indices = along[used.take(line, axis=1 - axis)]
+        return chosen
 
     @cached_property
     def triangles(self) -> Indices:
@@ -246,6 +274,31 @@ def check_cells(rows: int, columns: int) -> None:
         )
 
 
+def check_cloth(cloth: NDArray[np.bool_], rows: int, columns: int) -> None:
+    """Refuse what is no cloth in one piece; pieces that touch at a corner are not joined.
+
+    Raises
+    ------
+    InputError
+        Saying into how many pieces it falls.
+    """
+    if cloth.shape != (rows, columns):
+        raise InputError(
+            "outline",
+            f"it has {'x'.join(map(str, cloth.shape[::-1]))} cells, the chart {columns}x{rows}.",
+            "Give one mark for every stitch of the chart.",
+        )
+    _, pieces = label(cloth)
+    if pieces == 0:
+        raise InputError("outline", "it holds no stitch.", "Mark at least one stitch.")
+    if pieces > 1:
+        raise InputError(
+            "outline",
+            f"the fabric is in {pieces} pieces, which pull on nothing together.",
+            "Join them by a stitch, or stretch one piece at a time.",
+        )
+
+
 def check_size_mm(width_mm: float, length_mm: float) -> None:
     """Refuse sizes that are not positive numbers.
 
@@ -257,6 +310,14 @@ def check_size_mm(width_mm: float, length_mm: float) -> None:
     for name, value in (("width_mm", width_mm), ("length_mm", length_mm)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(name, f"{value} mm is no size.", "Give a number above 0 mm.")
+
+
+def _means(sizes: Array, cloth: NDArray[np.bool_], axis: int) -> Array:
+    """Mean size of the cloth in each column or row; of all cloth where one has none."""
+    count = cloth.sum(axis=axis)
+    sums = np.where(cloth, sizes, 0.0).sum(axis=axis)
+    means: Array = np.where(count > 0, sums / np.maximum(count, 1), sizes[cloth].mean())
+    return means
 
 
 def _lines(sizes: Array) -> Array:

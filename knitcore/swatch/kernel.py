@@ -179,6 +179,7 @@ def total_energy(
     model: int,
     laws: Array,
     law_of_cell: NDArray[np.uint8],
+    cloth: NDArray[np.bool_],
     columns: int,
     width: Array,
     height: Array,
@@ -190,6 +191,8 @@ def total_energy(
     force, stiffness = np.empty(4), np.empty((4, 4))
     x = np.empty((4, 2))
     for cell in range(law_of_cell.size):
+        if not cloth[cell]:
+            continue
         first = cell // columns * (columns + 1) + cell % columns
         x[0], x[1] = corners[first], corners[first + 1]
         x[3], x[2] = corners[first + columns + 1], corners[first + columns + 2]
@@ -246,6 +249,7 @@ def assemble(
     model: int,
     laws: Array,
     law_of_cell: NDArray[np.uint8],
+    cloth: NDArray[np.bool_],
     columns: int,
     width: Array,
     height: Array,
@@ -262,7 +266,8 @@ def assemble(
     Writes ``corner_force`` (corners, 2) and ``centre_force`` (cells, 2), the full gradient;
     ``matrix`` (cells, 8, 8), the tangent of each cell with its centre eliminated; and what is
     needed to recover the centre, ``centre_rows`` (cells, 2, 8) and ``centre_inverse`` (cells, 3:
-    xx, xy, yy of the inverse of the centre's own block). Returns the energy (N·mm).
+    xx, xy, yy of the inverse of the centre's own block). All is 0 where there is no ``cloth``.
+    Returns the energy (N·mm).
     """
     corner_force[:] = 0.0
     centre_force[:] = 0.0
@@ -272,6 +277,9 @@ def assemble(
     k, kc, kcc = np.empty((8, 8)), np.empty((2, 8)), np.empty((2, 2))
     node = np.empty(4, np.int64)
     for cell in range(law_of_cell.size):
+        if not cloth[cell]:
+            matrix[cell], centre_rows[cell], centre_inverse[cell] = 0.0, 0.0, 0.0
+            continue
         first = cell // columns * (columns + 1) + cell % columns
         node[0], node[1], node[2], node[3] = (
             first,

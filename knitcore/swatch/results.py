@@ -80,12 +80,12 @@ class SwatchTest:
 
     @property
     def ux_mm(self) -> Array:
-        """Course-wise displacements, (steps, rows + 1, columns + 1)."""
+        """Course-wise displacements, (steps, rows + 1, columns + 1); NaN without cloth."""
         return self._displacements(0)
 
     @property
     def uy_mm(self) -> Array:
-        """Wale-wise displacements, (steps, rows + 1, columns + 1)."""
+        """Wale-wise displacements, (steps, rows + 1, columns + 1); NaN without cloth."""
         return self._displacements(1)
 
     def fields(self, step: int = -1) -> Fields:
@@ -120,6 +120,7 @@ class SwatchTest:
 
     def _displacements(self, axis: int) -> Array:
         rest = self.sheet.grid.corners[:, axis]
+        rest = np.where(self.sheet.grid.used_corners, rest, np.nan)
         moved = [(s.corners[:, axis] - rest).reshape(self._shape) for s in self.states]
         return np.array(moved).reshape(-1, *self._shape)
 
@@ -137,8 +138,8 @@ class StripTest(SwatchTest):
     strain : clamp-to-clamp engineering strain per step.
     force_n : force on a clamp per step.
     stress_n_per_mm : force per initial width.
-    waist_strain : change of width half-way between the clamps, over the initial width.
-    width_mm, length_mm : initial size across and along the pull.
+    waist_strain : change of width half-way between the clamps, over the initial width there.
+    width_mm, length_mm : initial size across and along the pull; of a shaped piece its mean width.
     requested_strain : what was asked for.
     """
 

@@ -105,6 +105,7 @@ class Sheet:
         self.laws = tuple(model.prepare(law) for law in laws)
         self._parameters = model.parameters(laws)
         self._law_of_cell = grid.law_of_cell.ravel()
+        self._cloth = grid.cloth.ravel()
         self._width = grid.natural_width.ravel()
         self._height = grid.natural_height.ravel()
 
@@ -133,6 +134,7 @@ class Sheet:
                 self.model.energy.code,
                 self._parameters,
                 self._law_of_cell,
+                self._cloth,
                 self.grid.columns,
                 self._width,
                 self._height,
@@ -164,6 +166,7 @@ class Sheet:
             self.model.energy.code,
             self._parameters,
             self._law_of_cell,
+            self._cloth,
             self.grid.columns,
             self._width,
             self._height,

@@ -77,7 +77,8 @@ class PathSolver:
     ----------
     sheet : the sheet.
     fixed : bool array (corners, 2)
-        Unknowns that are prescribed. They must at least take away the rigid motions.
+        Unknowns that are prescribed. They must at least take away the rigid motions. Corners
+        without cloth are prescribed in any case.
     tolerance : when a state counts as balanced.
     cancelled : asked between linear solves; True stops with :class:`CancelledError`.
     """
@@ -91,11 +92,11 @@ class PathSolver:
         cancelled: Callable[[], bool] | None = None,
     ) -> None:
         self.sheet = sheet
-        self.fixed = fixed
-        self.free = (~fixed).astype(float)
+        self.fixed = fixed | ~sheet.grid.used_corners[:, None]
+        self.free = (~self.fixed).astype(float)
         self.tolerance = tolerance or Tolerance()
         self.cancelled = cancelled or (lambda: False)
-        self.factor = GridFactor(sheet.grid.columns, sheet.grid.rows, fixed.ravel())
+        self.factor = GridFactor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
         self.factorisations = 0
         self.conjugate_steps = 0
         self._has_factor = False

@@ -49,6 +49,7 @@ def strip_test(
     shear_modulus: float | None = None,
     clamps: Clamps | str = Clamps.CLAMPED,
     draw_in: bool = False,
+    stitch: NDArray[np.bool_] | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
     progress: Progress | None = None,
@@ -69,6 +70,8 @@ def strip_test(
     draw_in : let each fabric keep its own gauge as rest size instead of the mean grid's, so that
         regions of different gauge pull on each other (the ends stay at the grid's size). What is
         pushed together wrinkles: by default the model then has its tension field on.
+    stitch : bool (rows, columns), where a shaped piece has stitches, row 0 at the bottom; the
+        clamps hold those of its outermost rows or columns. All of the rectangle by default.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
     progress : called with (steps done, steps in all).
     cancelled : asked now and then; True stops the test.
@@ -82,7 +85,8 @@ def strip_test(
     Raises
     ------
     InputError
-        For strains at or beyond the lock-up, sizes, steps or meshes that cannot be used.
+        For strains at or beyond the lock-up, sizes, steps or meshes that cannot be used, or a
+        shaped piece that falls apart.
     CancelledError
         If ``cancelled`` returned True.
 
@@ -95,7 +99,14 @@ def strip_test(
     (True, [0.1, 0.2, 0.3])
     """
     sheet = chart_sheet(
-        chart, material, model, shear_modulus, draw_in, width_mm=width_mm, length_mm=length_mm
+        chart,
+        material,
+        model,
+        shear_modulus,
+        draw_in,
+        stitch=stitch,
+        width_mm=width_mm,
+        length_mm=length_mm,
     )
     return pull(
         sheet,
@@ -114,10 +125,11 @@ def chart_sheet(
     shear_modulus: float | None = None,
     draw_in: bool = False,
     *,
+    stitch: NDArray[np.bool_] | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
 ) -> Sheet:
-    """The sheet that a chart of a material is."""
+    """The sheet that a chart of a material is; ``stitch`` as for :func:`strip_test`."""
     chosen = sheet_model(model, shear_modulus)
     if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
         chosen = replace(chosen, tension_field=True)
@@ -125,7 +137,7 @@ def chart_sheet(
         fabric: (record.stitch_course_mm, record.stitch_wale_mm)
         for fabric, record in material.fabrics.items()
     }
-    grid = QuarterGrid.of_chart(chart, sizes, width_mm=width_mm, length_mm=length_mm)
+    grid = QuarterGrid.of_chart(chart, sizes, stitch=stitch, width_mm=width_mm, length_mm=length_mm)
     if not draw_in:
         grid = grid.at_rest_as_laid_out
     used = {PHASES[code] for code in np.unique(grid.law_of_cell)}
@@ -189,7 +201,8 @@ def pull(
 def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) -> StripTest:
     """The result of a path whose steps are the strains ``levels``."""
     grid, axis = sheet.grid, direction.axis
-    length, width = _along_across(grid, direction)
+    length = _length(grid, direction)
+    width = grid.area_mm2 / length
     _, end = clamp_edges(direction)
     force = path.forces(grid.edge(end), axis)
     return StripTest(
@@ -231,15 +244,19 @@ def load_levels(strain: float | Sequence[float], steps: int) -> Array:
 
 
 def lock_up_strain(sheet: Sheet, direction: Direction) -> float:
-    """Clamp-to-clamp strain at which the first straight line of cells locks (may be infinite)."""
+    """Clamp-to-clamp strain at which the first straight line of cells locks.
+
+    Infinite for laws that never lock, and for a shape of which no line runs straight through.
+    """
     if sheet.model.energy is EnergyModel.PUBLISHED:
         return float("inf")
     grid, axis = sheet.grid, direction.axis
     limits = np.array([law.lock_up_strain(direction) for law in sheet.laws])[grid.law_of_cell]
     natural = grid.natural_width if axis == 0 else grid.natural_height
-    lines = grid.column_lines if axis == 0 else grid.row_lines
-    longest = np.sum(natural * (1 + limits), axis=1 if axis == 0 else 0)
-    return float(longest.min() / (lines[-1] - lines[0]) - 1)
+    along = 1 - axis
+    through = grid.cloth.sum(axis=along) == np.count_nonzero(grid.cloth.any(axis=axis))
+    longest = np.sum(np.where(grid.cloth, natural * (1 + limits), 0.0), axis=along)[through]
+    return float(longest.min(initial=np.inf) / _length(grid, direction) - 1)
 
 
 def check_lock_up(sheet: Sheet, direction: Direction, strain: float) -> None:
@@ -318,16 +335,26 @@ def homogeneous_sheet(
     return Sheet(grid, [law], model or SheetModel())
 
 
-def _along_across(grid: QuarterGrid, direction: Direction) -> tuple[float, float]:
-    sizes = (grid.width_mm, grid.length_mm)
-    return sizes[direction.axis], sizes[direction.other.axis]
+def _length(grid: QuarterGrid, direction: Direction) -> float:
+    """Distance of the clamps at rest."""
+    return grid.width_mm if direction is Direction.COURSE else grid.length_mm
 
 
 def _waist(grid: QuarterGrid, corners: Array, direction: Direction) -> float:
-    """Relative change of width half-way between the clamps."""
-    across = direction.other.axis
-    first, last = ("bottom", "top") if direction is Direction.COURSE else ("left", "right")
-    width = corners[grid.edge(last), across] - corners[grid.edge(first), across]
-    lines = grid.column_lines if direction is Direction.COURSE else grid.row_lines
-    middle = float(np.interp((lines[0] + lines[-1]) / 2, lines, width))
-    return middle / _along_across(grid, direction)[1] - 1
+    """Relative change of width, from edge to edge, half-way between the clamps."""
+    shape = (grid.rows + 1, grid.columns + 1)
+    used = grid.used_corners.reshape(shape)
+    if direction is Direction.COURSE:  # a line of corners across the pull becomes a row
+        used = used.T
+    lines = np.flatnonzero(used.any(axis=1))
+    first = used.argmax(axis=1)[lines]
+    last = used.shape[1] - 1 - used[:, ::-1].argmax(axis=1)[lines]
+
+    def widths(positions: Array) -> Array:
+        across = positions[:, direction.other.axis].reshape(shape)
+        across = across.T if direction is Direction.COURSE else across
+        return np.asarray(across[lines, last] - across[lines, first])
+
+    at = (grid.column_lines if direction is Direction.COURSE else grid.row_lines)[lines]
+    ratio = widths(corners) / widths(grid.corners)
+    return float(np.interp((at[0] + at[-1]) / 2, at, ratio)) - 1

@@ -9,6 +9,9 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.operations.stretch import StretchRequest, run_stretch
+from knitcore.chart import StitchChart
+from knitcore.formats.design import DesignFile
 
 GARTER = {"fabric": "garter", "columns": 9, "rows": 6}
 ASKED = {"chart": GARTER, "material": "acrylic", "direction": "wale", "strain": 0.4, "steps": 4}
@@ -92,3 +95,58 @@ def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, out: str
     assert result.exit_code == 2
     assert "out" in result.stderr
     assert result.stdout == ""
+
+
+def test_a_shaped_piece_is_pulled_without_what_is_no_stitch(client: TestClient) -> None:
+    """Its stitches are those of the narrow rectangle, in whichever chart they stand."""
+    shape = {"outline": "\n".join(["..xxxxx.."] * 6)}
+    shaped = client.post("/api/v1/stretch", json=ASKED | shape).json()
+    narrow = ASKED | {"chart": GARTER | {"columns": 5}}
+    alone = client.post("/api/v1/stretch", json=narrow).json()
+    assert shaped["id"] != alone["id"]
+    assert shaped["force_n"] == pytest.approx(alone["force_n"], rel=1e-6)
+    assert shaped["waist_strain"] == pytest.approx(alone["waist_strain"], abs=1e-6)
+    used = [answer["nearest_lock_up"]["utilisation"] for answer in (shaped, alone)]
+    assert used[0] == pytest.approx(used[1], abs=1e-6)
+    for name in ("strain_course", "strain_wale", "utilisation"):
+        there = np.reshape(shaped["stitch_fields"][name], (4, 6, 9))
+        assert there[:, :, 2:7].reshape(4, 30) == pytest.approx(
+            np.array(alone["stitch_fields"][name]), abs=2e-4
+        )
+        assert not there[:, :, :2].any()
+        assert not there[:, :, 7:].any()
+
+
+def test_positions_go_on_smoothly_where_a_shaped_piece_has_no_stitch() -> None:
+    request = StretchRequest.model_validate(
+        ASKED | {"outline": "\n".join(["xxxxxxxxx"] * 2 + ["...xxx..."] * 2 + ["xxxxxxxxx"] * 2)}
+    )
+    run = run_stretch(request, cancelled=lambda: False)
+    assert np.isfinite(run.positions_mm).all()
+    across = np.diff(run.positions_mm[-1, :, :, 0], axis=1)
+    assert across.min() > 0.5 * across.max()
+
+
+def test_a_piece_that_falls_apart_is_refused(client: TestClient) -> None:
+    broken = ASKED | {"outline": "\n".join(["xxxx.xxxx"] * 6)}
+    response = client.post("/api/v1/stretch", json=broken)
+    assert response.status_code == 422
+    assert response.json()["field"] == "outline"
+    assert "2 pieces" in response.json()["detail"]
+
+
+def test_the_command_line_pulls_a_design_in_its_outline(tmp_path: Path) -> None:
+    design = DesignFile(
+        name="narrow",
+        material="acrylic",
+        chart=StitchChart.of_fabric("garter", rows=6, columns=9).text,
+        outline="\n".join(["..xxxxx.."] * 6),
+    )
+    file = tmp_path / "narrow.json"
+    file.write_text(design.model_dump_json(), encoding="utf-8")
+    rest = ["--material", "acrylic", "--direction", "wale", "--strain", "0.4", "--steps", "4"]
+    shaped = CliRunner().invoke(main, ["stretch", str(file), *rest, "--json"])
+    alone = CliRunner().invoke(main, ["stretch", "garter", "--size", "5x6", *rest, "--json"])
+    assert shaped.exit_code == 0, shaped.output
+    forces = [json.loads(result.stdout)["force_n"] for result in (shaped, alone)]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
