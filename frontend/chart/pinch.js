@@ -8,9 +8,12 @@ export function listenToPinches(view, giveUp) {
   /** @type {Map<number, {x: number, y: number}>} */
   const fingers = new Map();
   let pinching = false;
+  let before = 1;
+  /** The point of the chart between the fingers when they came down, in stitches; it stays there. */
+  let [column, row] = [0, 0];
   const measure = () => {
     const [a, b] = [...fingers.values()];
-    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.hypot(a.x - b.x, a.y - b.y) };
+    return { mx: (a.x + b.x) / 2, my: (a.y + b.y) / 2, apart: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)) };
   };
   /** @param {"pointerdown" | "pointermove" | "pointerup" | "pointercancel"} name @param {(event: PointerEvent) => void} follow */
   const listen = (name, follow) =>
@@ -28,16 +31,21 @@ export function listenToPinches(view, giveUp) {
     if (fingers.size === 2) {
       pinching = true;
       giveUp();
+      const { mx, my, apart } = measure();
+      const { x, y, cellWidth, cellHeight } = view.viewport;
+      before = apart;
+      [column, row] = [(mx - x) / cellWidth, (my - y) / cellHeight];
     }
   });
   listen("pointermove", ({ pointerId, offsetX, offsetY }) => {
     if (!fingers.has(pointerId)) return;
-    const before = fingers.size === 2 ? measure() : null;
     fingers.set(pointerId, { x: offsetX, y: offsetY });
-    if (!before || !pinching) return;
-    const after = measure();
-    view.pan(after.x - before.x, after.y - before.y);
-    view.zoom(after.apart / Math.max(1, before.apart), after.x, after.y);
+    if (!pinching || fingers.size !== 2) return;
+    const { mx, my, apart } = measure();
+    view.zoom(apart / before, mx, my);
+    before = apart;
+    const { x, y, cellWidth, cellHeight, fitted } = view.viewport;
+    if (!fitted) view.pan(mx - column * cellWidth - x, my - row * cellHeight - y);
   });
   /** @param {PointerEvent} event */
   const lift = ({ pointerId }) => {

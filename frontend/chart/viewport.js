@@ -19,6 +19,8 @@ export class Viewport {
   aspect = 0.8;
   cellWidth = 10;
   cellHeight = 8;
+  /** What zooming has come to: cells are rounded, and small steps would be lost. */
+  #wanted = 10;
   /** Upper left corner of the chart. */
   x = 0;
   y = 0;
@@ -45,7 +47,7 @@ export class Viewport {
    */
   zoom(factor, px, py, grid) {
     const smallest = Math.min(this.#fittedWidth(grid), LARGEST);
-    const width = Math.min(MOST_ENLARGED, Math.max(smallest, this.cellWidth * factor));
+    const width = Math.min(MOST_ENLARGED, Math.max(smallest, this.#wanted * factor));
     if (width <= smallest * 1.001) {
       this.fit(grid);
       return;
@@ -129,6 +131,7 @@ export class Viewport {
 
   /** Cells of whole device pixels, where that matters. @param {number} width */
   #size(width) {
+    this.#wanted = width;
     const crisp = width * this.dpr > 5;
     this.cellWidth = crisp ? Math.floor(width * this.dpr) / this.dpr : Math.max(width, 0.5);
     const height = this.cellWidth * this.aspect;
