@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from playwright.sync_api import Page
 
 SCRIPT = Path(__file__).resolve().parents[2] / "frontend/node_modules/axe-core/axe.min.js"
+THEMES: list[Literal["light", "dark"]] = ["light", "dark"]
 RUN = """async (within) => {
     const { violations } = await axe.run(within, {
         resultTypes: ["violations"],

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.axe import violations
+from tests.browser.axe import THEMES, violations
 from tests.browser.page import kept_chart
 
 MENUS = ["designs", "material", "export"]
@@ -29,9 +28,6 @@ PANELS: dict[str, Callable[[Page], None]] = {
 }
 
 
-THEMES: list[Literal["light", "dark"]] = ["light", "dark"]
-
-
 def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page) -> None:
     page, found = flat_studio, []
     for theme in THEMES:
@@ -48,6 +44,23 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
             found += [f"{theme} {name}: {wrong}" for wrong in violations(page, f"#{name}")]
             page.locator(f"#{name} header").get_by_label("Close").click()
             expect(page.locator(f"#{name}")).to_be_hidden()
+    assert not found, "\n".join(found)
+
+
+def test_nothing_serious_is_wrong_in_any_stop_of_the_tour(flat_studio: Page) -> None:
+    page, found = flat_studio, []
+    for theme in THEMES:
+        page.emulate_media(color_scheme=theme)
+        page.click("#designs-button")
+        page.click("#menu-tour")
+        expect(page.locator("#tour")).to_be_visible()
+        stops = 0
+        while page.locator("#tour").is_visible():
+            title = page.locator("#tour-title").inner_text()
+            found += [f"{theme} {title}: {wrong}" for wrong in violations(page)]
+            page.keyboard.press("ArrowRight")
+            stops += 1
+        assert stops >= 8
     assert not found, "\n".join(found)
 
 

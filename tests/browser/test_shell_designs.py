@@ -8,6 +8,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.axe import THEMES, violations
 from tests.browser.conftest import CHART, wait_for_numbers
 from tests.browser.page import drag, kept_chart
 
@@ -104,6 +105,9 @@ def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page)
     flat_studio.unroute(SERVICE)
     expect(flat_studio.locator("#conflict-dialog")).to_be_visible()
     expect(flat_studio.locator("#conflict-dialog")).to_contain_text("name")
+    for theme in THEMES:
+        flat_studio.emulate_media(color_scheme=theme)
+        assert not violations(flat_studio), theme
     flat_studio.click("#conflict-both")
     expect(flat_studio.locator(".design-name")).to_have_value("Mine (mine)")
     saved(flat_studio)
