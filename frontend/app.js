@@ -23,7 +23,7 @@ import { selectionbar } from "./panels/selectionbar.js";
 import { shelf } from "./panels/shelf.js";
 import { split } from "./panels/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
-import { topbar } from "./panels/topbar.js";
+import { offerTour, topbar } from "./panels/topbar.js";
 import { watchConnection } from "./services/connection.js";
 import { listenToImports } from "./services/importer.js";
 import { startPredictor } from "./services/predictor.js";
@@ -152,12 +152,7 @@ watchConnection(studio, () => {
 
 const elsewhere = openAddressed(studio, keeper);
 if (!kept && !elsewhere) {
-  studio.message.value = {
-    kind: "info",
-    title: "New here?",
-    detail: "A tour shows the page in two minutes.",
-    action: { label: "Take the tour", perform: () => context.open("tour") },
-  };
+  offerTour(byId("topbar"), context);
   void stretcher.run("wale", FIRST_STRAIN).then(() => {
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) stretcher.play();
   });

@@ -13,8 +13,7 @@
  * @typedef {{value: Prediction | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
  * @typedef {{value: Stretch | null, direction: Direction, busy: boolean, stale: boolean,
  *   problem: Problem | null}} StretchState
- * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null,
- *   action?: {label: string, perform: () => void}}} Message
+ * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
 
 import { Grid } from "./core/grid.js";

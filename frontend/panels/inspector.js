@@ -174,7 +174,7 @@ export function inspector(host, studio) {
   offer();
   studio.document.onChange(countSoon);
   count();
-  studio.stretch.listen(({ value, stale, direction }) => {
+  studio.stretch.watch(({ value, stale, direction }) => {
     if (!value || stale) return;
     studio.seeing.pull.value = direction;
     choose("curve");

@@ -34,6 +34,7 @@ export function menu({ id, label, content, class: style }) {
       if (!open) return;
       const box = button.getBoundingClientRect();
       list.style.top = `${box.bottom + 6}px`;
+      list.style.maxHeight = `${innerHeight - box.bottom - 14}px`;
       list.style.left = `${Math.max(8, Math.min(box.left, innerWidth - list.offsetWidth - 8))}px`;
       const first = list.querySelector("[aria-checked=true]") ?? list.querySelector("button");
       if (first instanceof HTMLElement) first.focus();

@@ -17,18 +17,17 @@ const INFO_MS = 5000;
 export function messages(host, banner, studio) {
   studio.message.listen((message) => {
     if (!message) return;
-    const { kind, title, detail, remedy, action } = message;
+    const { kind, title, detail, remedy } = message;
     const close = () => box.remove();
     const box = h(
       "div",
       { class: `message ${kind}` },
       icon(kind === "error" ? "warning" : "info"),
       h("div", {}, h("strong", {}, title), detail && h("p", {}, detail), remedy && h("p", {}, remedy)),
-      action && h("button", { class: "button primary", type: "button", onclick: () => (close(), action.perform()) }, action.label),
       h("button", { class: "button quiet icon-only message-close", type: "button", "aria-label": "Close this message", onclick: close }, icon("close")),
     );
     host.replaceChildren(box);
-    if (kind === "info" && !action) setTimeout(close, INFO_MS);
+    if (kind === "info") setTimeout(close, INFO_MS);
     studio.message.value = null;
   });
 

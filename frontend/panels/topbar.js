@@ -89,6 +89,20 @@ export function topbar(host, studio, context) {
   );
 }
 
+/**
+ * On a first visit, in the bar's free middle, where it covers nothing.
+ *
+ * @param {HTMLElement} host
+ * @param {ActionContext} context
+ */
+export function offerTour(host, { open }) {
+  const offer = h("div", { class: "tour-offer", id: "tour-offer" },
+    h("button", { class: "button quiet", type: "button", onclick: () => (offer.remove(), open("tour")) },
+      icon("tour"), h("span", { class: "wide" }, "New here?"), "Take the tour"),
+    h("button", { class: "button quiet icon-only", type: "button", "aria-label": "No tour", onclick: () => offer.remove() }, icon("close")));
+  host.querySelector(".spacer")?.before(offer);
+}
+
 /** @param {Studio} studio */
 function materialMenu(studio) {
   const label = h("span", { class: "ellipsis" }, "Material");
