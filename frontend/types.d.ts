@@ -118,7 +118,11 @@ export interface Stretch {
   strain: number[];
   force_n: number[];
   stress_n_per_mm: number[];
+  /** Ends of its 90 % interval, as all that follow here; the service had none of them once. */
+  force_low_n?: number[];
+  force_high_n?: number[];
   waist_strain: number[];
+  waist_margin?: number[];
   iterations: number[];
   converged: boolean;
   seconds: number;

@@ -18,6 +18,7 @@ from app.cli.common import (
 )
 from app.cli.materials import resolve_material
 from app.operations.stretch import StretchCurve, StretchOptions, stretch_chart, stretch_curve
+from app.operations.stretch_margins import stretch_margins
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.swatch import EnergyModel
@@ -63,21 +64,32 @@ def command(
         width_mm=width_mm,
         length_mm=length_mm,
     )
-    test = stretch_chart(
-        piece.chart, resolve_material(material), options, stitch=piece.shaped.stitch
-    )
+    yarn = resolve_material(material)
+    test = stretch_chart(piece.chart, yarn, options, stitch=piece.shaped.stitch)
     if out is not None:
         from knitcore.swatch.files import write_fields
 
         write_fields(test, out)
-    curve = stretch_curve(piece.chart, options, test)
+    margins = stretch_margins(test, yarn, options.clamps)
+    curve = stretch_curve(piece.chart, options, test, margins)
     emit(curve, _text(curve), as_json=as_json)
 
 
 def _text(curve: StretchCurve) -> str:
-    lines = [f"{'strain':>8} {'force N':>9} {'N/mm':>8} {'waist':>8}"]
-    rows = zip(curve.strain, curve.force_n, curve.stress_n_per_mm, curve.waist_strain, strict=True)
-    lines += [f"{e:8.3f} {f:9.3f} {s:8.4f} {w:8.3f}" for e, f, s, w in rows]
+    lines = [f"{'strain':>8} {'force N':>9} {'90 %':>17} {'N/mm':>8} {'waist':>8}"]
+    rows = zip(
+        curve.strain,
+        curve.force_n,
+        curve.force_low_n,
+        curve.force_high_n,
+        curve.stress_n_per_mm,
+        curve.waist_strain,
+        strict=True,
+    )
+    lines += [
+        f"{e:8.3f} {f:9.3f} {low:8.3f}-{high:<8.3f} {s:8.4f} {w:8.3f}"
+        for e, f, low, high, s, w in rows
+    ]
     if curve.nearest_lock_up is not None:
         spot = curve.nearest_lock_up
         lines.append(

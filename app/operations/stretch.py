@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from scipy.ndimage import distance_transform_edt
 
 from app.operations.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
+from app.operations.stretch_margins import StretchMargins, sampled_steps, stretch_margins
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -72,6 +73,10 @@ class StitchFields(BaseModel):
     strain_course: list[list[float]]
     strain_wale: list[list[float]]
     utilisation: list[list[float]] = Field(description="alpha * strain; 1 is the lock-up.")
+    strain_margin: list[list[float]] = Field(
+        description="Of the strain along the pull: its 90 % interval is this much to either side."
+    )
+    utilisation_margin: list[list[float]] = Field(description="The same of the utilisation.")
 
 
 class NearestLockUp(BaseModel):
@@ -89,8 +94,11 @@ class StretchCurve(BaseModel):
 
     strain: list[float]
     force_n: list[float]
-    stress_n_per_mm: list[float]
+    force_low_n: list[float] = Field(description="Lower end of the 90 % interval.")
+    force_high_n: list[float] = Field(description="Upper end of the 90 % interval.")
+    stress_n_per_mm: list[float] = Field(description="Force per width, and as sure as the force.")
     waist_strain: list[float]
+    waist_margin: list[float] = Field(description="90 % interval, to either side.")
     iterations: list[int]
     converged: bool
     seconds: float
@@ -171,15 +179,29 @@ def run_stretch(
             f"{request.steps} are too many here for a chart of this size.",
             f"Use at most {MAX_VALUES // (chart.rows * chart.columns)}, or the command line.",
         )
+    material = find_material(request.material)
+    samples = len(sampled_steps(request.steps))
+
+    def tell(done: int, _of: int) -> None:
+        if progress is not None:
+            progress(done, request.steps + samples)
+
     test = stretch_chart(
         chart,
-        find_material(request.material),
+        material,
         request,
         stitch=None if request.outline is None else outline_marks(request.outline),
         cancelled=cancelled,
-        progress=progress,
+        progress=tell,
     )
-    return _stitches(chart, request, test)
+    margins = stretch_margins(
+        test,
+        material,
+        request.clamps,
+        progress=lambda done: tell(request.steps + done, 0),
+        cancelled=cancelled,
+    )
+    return _stitches(chart, request, test, margins)
 
 
 def stretch_chart(
@@ -209,13 +231,18 @@ def stretch_chart(
     )
 
 
-def stretch_curve(chart: StitchChart, options: StretchOptions, test: StripTest) -> StretchCurve:
+def stretch_curve(
+    chart: StitchChart, options: StretchOptions, test: StripTest, margins: StretchMargins
+) -> StretchCurve:
     """The numbers of a test."""
     return StretchCurve(
         strain=test.strain.tolist(),
         force_n=test.force_n.tolist(),
+        force_low_n=(test.force_n / margins.force_factor).tolist(),
+        force_high_n=(test.force_n * margins.force_factor).tolist(),
         stress_n_per_mm=test.stress_n_per_mm.tolist(),
         waist_strain=test.waist_strain.tolist(),
+        waist_margin=margins.waist.tolist(),
         iterations=list(test.iterations),
         converged=test.converged,
         seconds=test.seconds,
@@ -254,7 +281,9 @@ def warm_up(*, cancelled: Callable[[], bool]) -> None:
     run_stretch(request, cancelled=cancelled)
 
 
-def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> StretchRun:
+def _stitches(
+    chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
+) -> StretchRun:
     shape = (test.steps, chart.rows, chart.columns)
     ux, uy, xx, yy, used = np.zeros((5, *shape))
     for step in range(test.steps):
@@ -273,12 +302,16 @@ def _stitches(chart: StitchChart, request: StretchRequest, test: StripTest) -> S
     for values in (xx, yy, used):
         values[:, ~there] = 0.0
     result = StretchResult(
-        **stretch_curve(chart, request, test).model_dump(),
+        **stretch_curve(chart, request, test, margins).model_dump(),
         id=stretch_key(request),
         rows=chart.rows,
         columns=chart.columns,
         stitch_fields=StitchFields(
-            strain_course=_rounded(xx), strain_wale=_rounded(yy), utilisation=_rounded(used)
+            strain_course=_rounded(xx),
+            strain_wale=_rounded(yy),
+            utilisation=_rounded(used),
+            strain_margin=_rounded(margins.strain),
+            utilisation_margin=_rounded(margins.utilisation),
         ),
     )
     return StretchRun(

@@ -24,6 +24,18 @@ export function range(interval) {
 }
 
 /**
+ * The ends of a share's interval that reaches so far to either side, in percent; "" if not known.
+ *
+ * @param {number} share
+ * @param {number | undefined} margin
+ * @param {number} [decimals]
+ */
+export function percentRange(share, margin, decimals = 0) {
+  if (margin === undefined) return "";
+  return [share - margin, share + margin].map((end) => percent(end, decimals).slice(0, -2)).join(" – ");
+}
+
+/**
  * @param {number} share
  * @param {number} [decimals]
  */

@@ -9,7 +9,7 @@
 
 import { OVERLAYS } from "../chart/overlays.js";
 import { groupAt, meanExtensibility } from "../chart/rectangles.js";
-import { percent, figure, range } from "../core/format.js";
+import { figure, percent, percentRange, range } from "../core/format.js";
 import { h } from "../dom.js";
 
 /** Sides of the blocks that rectangles may stand for. */
@@ -159,10 +159,16 @@ function describe(studio, cell) {
   const kind = studio.kinds()[codes[i]];
   const strain = studio.field("strain")?.[i];
   const used = studio.field("utilisation")?.[i];
+  /** @param {"strain" | "utilisation"} name @param {number} share @param {number} [decimals] */
+  const within = (name, share, decimals) => {
+    const margin = studio.currentStretch()?.stitch_fields[`${name}_margin`]?.[studio.step.value]?.[i];
+    const interval = percentRange(share, margin, decimals);
+    return interval && ` (${interval})`;
+  };
   if (studio.overlay.value.id === "strain" && strain !== undefined) {
-    parts.push(`strain ${percent(strain, 1)}`);
+    parts.push(`strain ${percent(strain, 1)}${within("strain", strain, 1)}`);
   } else if (studio.overlay.value.id === "utilisation" && used !== undefined) {
-    parts.push(`${percent(used)} of lock-up`);
+    parts.push(`${percent(used)}${within("utilisation", used)} of lock-up`);
   } else if (kind) {
     const value = (/** @type {"course" | "wale"} */ direction) => {
       const interval = range(kind[`modulus_${direction}_interval`]);

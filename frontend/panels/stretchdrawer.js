@@ -6,7 +6,7 @@
  * @import {Direction, Problem} from "../types.js"
  */
 
-import { figure, percent } from "../core/format.js";
+import { figure, percent, percentRange, range } from "../core/format.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 
@@ -119,13 +119,16 @@ export function stretchdrawer(host, studio, stretcher) {
     slider.value = String(i);
     if (!value) return;
     slider.setAttribute("aria-valuetext", `${percent(value.strain[i])} strain`);
-    /** @param {string} term @param {string} text @param {string} hint */
-    const pair = (term, text, hint) => h("div", { title: hint }, h("dt", {}, term), h("dd", {}, text));
+    const [low = NaN, high = NaN] = [value.force_low_n?.[i], value.force_high_n?.[i]];
+    const widths = value.stress_n_per_mm[i] / value.force_n[i];
+    /** @param {string} term @param {string} text @param {string} hint @param {string} [interval] */
+    const pair = (term, text, hint, interval) => h("div", { title: hint }, h("dt", {}, term),
+      h("dd", {}, text, interval && h("span", { class: "interval", title: "90 % interval" }, interval)));
     figures.replaceChildren(
       pair("Strain", percent(value.strain[i]), "Clamp to clamp, along the pull"),
-      pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches"),
-      pair("Stress", `${figure(value.stress_n_per_mm[i])} N/mm`, "Force per relaxed width"),
-      pair("Waist", percent(value.waist_strain[i]), "Change of width half way between the clamps"),
+      pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches", range([low, high])),
+      pair("Stress", `${figure(value.stress_n_per_mm[i])} N/mm`, "Force per relaxed width", range([widths * low, widths * high])),
+      pair("Waist", percent(value.waist_strain[i], 1), "Change of width half way between the clamps", percentRange(value.waist_strain[i], value.waist_margin?.[i], 1)),
     );
   };
   const show = () => {

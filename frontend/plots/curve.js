@@ -121,7 +121,7 @@ function traces(studio, own) {
   const stretch = shownStretch(studio);
   const { stale } = studio.stretch.value;
   const { kind } = scopeOf(studio);
-  const band = stressBand(studio, stretch);
+  const band = stressBand(stretch);
   const farthest = Math.max(...(stretch?.strain ?? [0]), own ? 0.6 * Math.max(...own.strain) : 0);
   const end = farthest ? 1.35 * farthest : 0.6;
   /**
@@ -193,22 +193,18 @@ function traces(studio, own) {
 }
 
 /**
- * The interval of the stretch test: the modulus' uncertainty as one of the whole scale of stress.
+ * The interval of the stretch test.
  *
- * @param {Studio} studio
  * @param {Stretch | null} stretch
  */
-function stressBand(studio, stretch) {
-  const { value, scope } = studio.prediction.value;
-  const direction = studio.seeing.pull.value;
-  const interval = value?.[`modulus_${direction}_interval_n_per_mm`];
-  if (!stretch || !value || !interval || scope !== "chart") return { x: [], y: [] };
-  const [low, high] = interval.map((end) => end / value[`modulus_${direction}_n_per_mm`]);
+function stressBand(stretch) {
+  if (!stretch?.force_low_n || !stretch.force_high_n) return { x: [], y: [] };
+  const { force_n: force, stress_n_per_mm: stress, force_low_n: low, force_high_n: high } = stretch;
   const strain = stretch.strain.map((one) => 100 * one);
-  const stress = stretch.stress_n_per_mm;
+  const scaled = (/** @type {number[]} */ ends) => ends.map((end, i) => (end * stress[i]) / force[i]);
   return {
     x: [0, ...strain, ...strain.toReversed()],
-    y: [0, ...stress.map((one) => low * one), ...stress.map((one) => high * one).toReversed()],
+    y: [0, ...scaled(low), ...scaled(high).toReversed()],
   };
 }
 

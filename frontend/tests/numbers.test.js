@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { batlow, vik } from "../chart/colormaps.js";
 import { logScale } from "../chart/overlays.js";
-import { figure, percent, range } from "../core/format.js";
+import { figure, percent, percentRange, range } from "../core/format.js";
 
 test("three figures, with the zeros that count", () => {
   assert.equal(figure(0.223147), "0.223");
@@ -20,6 +20,9 @@ test("intervals and percentages", () => {
   assert.equal(range(null), "");
   assert.equal(percent(0.3), "30 %");
   assert.equal(percent(-0.064, 1), "−6.4 %");
+  assert.equal(percentRange(0.064, 0.0712, 1), "−0.7 – 13.5");
+  assert.equal(percentRange(0.3, 0.02), "28 – 32");
+  assert.equal(percentRange(0.3, undefined), "");
 });
 
 test("colour maps end where Crameri's end, and take what is outside to the ends", () => {

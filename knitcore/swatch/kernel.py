@@ -213,6 +213,112 @@ def total_energy(
 
 
 @njit(cache=True)
+def gradient(
+    model: int,
+    laws: Array,
+    law_of_cell: NDArray[np.uint8],
+    cloth: NDArray[np.bool_],
+    columns: int,
+    width: Array,
+    height: Array,
+    corners: Array,
+    centres: Array,
+    corner_force: Array,
+    centre_force: Array,
+) -> None:
+    """Gradient of the energy on corners (corners, 2) and centres (cells, 2), as in ``assemble``.
+
+    It is linear in the laws' stiffnesses and betas, so that laws made of derivatives of these give
+    the derivative of the forces. Laws that are all 0 are passed over.
+    """
+    corner_force[:] = 0.0
+    centre_force[:] = 0.0
+    force, h = np.empty(4), np.empty((4, 4))
+    x = np.empty((4, 2))
+    node = np.empty(4, np.int64)
+    for cell in range(law_of_cell.size):
+        p = laws[law_of_cell[cell]]
+        if not cloth[cell] or not p.any():
+            continue
+        first = cell // columns * (columns + 1) + cell % columns
+        node[0], node[1], node[2], node[3] = (
+            first,
+            first + 1,
+            first + columns + 2,
+            first + columns + 1,
+        )
+        for i in range(4):
+            x[i, 0], x[i, 1] = corners[node[i], 0], corners[node[i], 1]
+        hx, hy = width[cell], height[cell]
+        area = 0.25 * hx * hy
+        for t in range(4):
+            i, j = _FIRST[t], _SECOND[t]
+            inward = _INWARD[t]
+            e0, e1 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
+            c0 = inward * (2.0 * centres[cell, 0] - x[i, 0] - x[j, 0])
+            c1 = inward * (2.0 * centres[cell, 1] - x[i, 1] - x[j, 1])
+            if _COURSEWISE[t]:
+                e, c = 0, 2
+                se, sc = 1.0 / hx, inward / hy
+                _point(model, p, e0 / hx, e1 / hx, c0 / hy, c1 / hy, force, h)
+            else:
+                e, c = 2, 0
+                se, sc = 1.0 / hy, inward / hx
+                _point(model, p, c0 / hx, c1 / hx, e0 / hy, e1 / hy, force, h)
+            for m in range(2):
+                fe, fc = area * se * force[e + m], area * sc * force[c + m]
+                corner_force[node[i], m] += -fe - fc
+                corner_force[node[j], m] += fe - fc
+                centre_force[cell, m] += 2.0 * fc
+
+
+@njit(cache=True)
+def strain_change(
+    model: int,
+    cloth: NDArray[np.bool_],
+    columns: int,
+    width: Array,
+    height: Array,
+    corners: Array,
+    centres: Array,
+    corner_step: Array,
+    centre_step: Array,
+) -> Array:
+    """Change of the mean strains along course and wale of every cell, (2, cells), to first order
+    in a step of corners and centres.
+    """
+    out = np.zeros((2, cloth.size))
+    x, d = np.empty((4, 2)), np.empty((4, 2))
+    for cell in range(cloth.size):
+        if not cloth[cell]:
+            continue
+        first = cell // columns * (columns + 1) + cell % columns
+        nodes = (first, first + 1, first + columns + 2, first + columns + 1)
+        for i in range(4):
+            for m in range(2):
+                x[i, m], d[i, m] = corners[nodes[i], m], corner_step[nodes[i], m]
+        for t in range(4):
+            i, j = _FIRST[t], _SECOND[t]
+            along = 0 if _COURSEWISE[t] else 1  # of the edge; the inward derivative is across
+            for axis, f0, f1, s0, s1 in (
+                (along, x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], d[j, 0] - d[i, 0], d[j, 1] - d[i, 1]),
+                (
+                    1 - along,
+                    _INWARD[t] * (2.0 * centres[cell, 0] - x[i, 0] - x[j, 0]),
+                    _INWARD[t] * (2.0 * centres[cell, 1] - x[i, 1] - x[j, 1]),
+                    _INWARD[t] * (2.0 * centre_step[cell, 0] - d[i, 0] - d[j, 0]),
+                    _INWARD[t] * (2.0 * centre_step[cell, 1] - d[i, 1] - d[j, 1]),
+                ),
+            ):
+                if model == 0:
+                    change = s0 if axis == 0 else s1
+                else:
+                    change = (f0 * s0 + f1 * s1) / math.sqrt(f0 * f0 + f1 * f1)
+                out[axis, cell] += 0.25 * change / (width[cell] if axis == 0 else height[cell])
+    return out
+
+
+@njit(cache=True)
 def _add_triangle(
     i: int,
     j: int,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -50,6 +50,10 @@ class Linearisation:
     centre_rows: Array
     centre_inverse: Array
     columns: int
+
+    def with_force(self, corner_force: Array, centre_force: Array) -> Linearisation:
+        """The same tangent beside other forces."""
+        return replace(self, corner_force=corner_force, centre_force=centre_force)
 
     def condensed_force(self) -> Array:
         """Gradient on the corners (corners, 2) with the centres in balance to first order."""
@@ -142,6 +146,48 @@ class Sheet:
                 state.centres,
             )
         )
+
+    def law_force(self, laws: Array, state: State) -> tuple[Array, Array]:
+        """Force (N) on corners (corners, 2) and centres (cells, 2) that other laws would add.
+
+        Parameters
+        ----------
+        laws : (laws, 10), kernel parameters as :meth:`SheetModel.parameters` gives them; changes of
+            the stiffnesses and betas are as good, for the force is linear in them.
+        state : positions.
+        """
+        corner_force, centre_force = np.empty_like(state.corners), np.empty_like(state.centres)
+        kernel.gradient(
+            self.model.energy.code,
+            laws,
+            self._law_of_cell,
+            self._cloth,
+            self.grid.columns,
+            self._width,
+            self._height,
+            state.corners,
+            state.centres,
+            corner_force,
+            centre_force,
+        )
+        return corner_force, centre_force
+
+    def strain_change(self, state: State, corner_step: Array, centre_step: Array) -> Array:
+        """Change of the cells' mean strains (2, rows, columns), course and wale, to first order in
+        a step of the nodes.
+        """
+        change = kernel.strain_change(
+            self.model.energy.code,
+            self._cloth,
+            self.grid.columns,
+            self._width,
+            self._height,
+            state.corners,
+            state.centres,
+            corner_step,
+            centre_step,
+        )
+        return np.asarray(change.reshape(2, self.grid.rows, self.grid.columns))
 
     def linearise(self, state: State, reuse: Linearisation | None = None) -> Linearisation:
         """Energy, forces and tangent; ``reuse`` gives its arrays away."""

@@ -217,7 +217,7 @@ def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) 
         strain=levels[: len(path.found)],
         force_n=force,
         stress_n_per_mm=force / width,
-        waist_strain=np.array([_waist(grid, s.corners, direction) for s in path.states]),
+        waist_strain=np.array([waist_strain(grid, s.corners, direction) for s in path.states]),
         width_mm=width,
         length_mm=length,
         requested_strain=tuple(float(e) for e in levels),
@@ -340,7 +340,7 @@ def _length(grid: QuarterGrid, direction: Direction) -> float:
     return grid.width_mm if direction is Direction.COURSE else grid.length_mm
 
 
-def _waist(grid: QuarterGrid, corners: Array, direction: Direction) -> float:
+def waist_strain(grid: QuarterGrid, corners: Array, direction: Direction) -> float:
     """Relative change of width, from edge to edge, half-way between the clamps."""
     shape = (grid.rows + 1, grid.columns + 1)
     used = grid.used_corners.reshape(shape)

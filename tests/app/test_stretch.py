@@ -29,6 +29,36 @@ def test_the_service_pulls_a_swatch(client: TestClient) -> None:
     assert np.mean(answer["stitch_fields"]["strain_wale"][-1]) == pytest.approx(0.4, rel=0.1)
 
 
+def test_force_waist_and_every_stitch_have_an_interval(client: TestClient) -> None:
+    """Those of a pure fabric's force are as wide as those of its modulus; no other source of doubt
+    matters as much.
+    """
+    answer = client.post("/api/v1/stretch", json=ASKED | {"steps": 9}).json()
+    low, force, high = (np.array(answer[f"force_{name}n"]) for name in ("low_", "", "high_"))
+    assert np.all(low < force)
+    assert np.all(force < high)
+    asked = {"chart": GARTER, "material": "acrylic"}
+    modulus = client.post("/api/v1/predict", json=asked).json()
+    ends = np.array(modulus["modulus_wale_interval_n_per_mm"]) / modulus["modulus_wale_n_per_mm"]
+    assert high / force == pytest.approx(ends[1], rel=0.05)
+    assert np.all(np.array(answer["waist_margin"]) > 0)
+    for name in ("strain_margin", "utilisation_margin"):
+        margins = np.array(answer["stitch_fields"][name])
+        assert margins.shape == (9, 54)
+        assert 0 < margins[-1].max() < 0.1
+
+
+def test_intervals_between_the_computed_steps_are_as_computed(client: TestClient) -> None:
+    chart = "\n".join(["KPKPKKKK"] * 4 + ["KKKKPKPK"] * 4)
+    many = client.post("/api/v1/stretch", json=ASKED | {"chart": chart, "steps": 20}).json()
+    few = client.post("/api/v1/stretch", json=ASKED | {"chart": chart, "steps": 4}).json()
+    for name in ("strain_margin", "utilisation_margin"):
+        computed = np.array(few["stitch_fields"][name])
+        between = np.array(many["stitch_fields"][name])[4::5]
+        widest = computed.max(axis=1, keepdims=True)
+        assert np.all(np.abs(between - computed) <= 0.06 * widest)
+
+
 def test_the_command_line_gives_the_same_curve(client: TestClient, tmp_path: Path) -> None:
     out = tmp_path / "fields.npz"
     arguments = ["garter", "--size", "9x6", "--material", "acrylic", "--direction", "wale"]

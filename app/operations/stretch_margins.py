@@ -1,0 +1,89 @@
+"""The intervals of a stretch test at the border: at every step, of the whole and of each stitch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from knitcore.errors import CancelledError
+from knitcore.materials import Material
+from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.swatch import Clamps, StripTest
+from knitcore.swatch.spread import StripSpread
+
+Array = NDArray[np.float64]
+
+SAMPLES = 5
+"""Steps at which intervals are computed; between them they are interpolated over the strain (off by
+less than 5 % of the step's widest one of a strain, 12 % of a utilisation, in 20 steps to 0.28)."""
+
+
+@dataclass(frozen=True, eq=False)
+class StretchMargins:
+    """Half widths of 90 % intervals.
+
+    Attributes
+    ----------
+    force_factor : (steps,), force and stress times or divided by it.
+    waist : (steps,).
+    strain, utilisation : (steps, rows, columns) at the stitches; the strain along the pull.
+    """
+
+    force_factor: Array
+    waist: Array
+    strain: Array
+    utilisation: Array
+
+
+def sampled_steps(steps: int) -> list[int]:
+    """Steps at which the intervals of a test are computed, the first and the last among them."""
+    count = min(steps, SAMPLES)
+    return sorted(set(np.linspace(0, steps - 1, count).round().astype(int).tolist()))
+
+
+def stretch_margins(
+    test: StripTest,
+    material: Material,
+    clamps: Clamps,
+    *,
+    progress: Callable[[int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> StretchMargins:
+    """Intervals of a test of a chart; ``progress`` is called with the number of samples done.
+
+    Raises
+    ------
+    CancelledError
+        If ``cancelled`` returned True.
+    """
+    spread = StripSpread(test, material, clamps)
+    picked = sampled_steps(test.steps)
+    samples: list[tuple[Array, Array, Array, Array]] = []
+    for step in picked:
+        if cancelled is not None and cancelled():
+            raise CancelledError("The caller stopped the test.")
+        at = spread.at(step)
+        along = at.strain_xx_sd if test.direction.axis == 0 else at.strain_yy_sd
+        samples.append(
+            (
+                np.array(at.force_log_sd),
+                np.array(at.waist_sd),
+                along[1::2, 1::2],  # nodes lie on the quarter grid
+                at.utilisation_sd[1::2, 1::2],
+            )
+        )
+        if progress is not None:
+            progress(len(samples))
+
+    def at_all_steps(kind: int) -> Array:
+        known = Z_SCORE * np.array([sample[kind] for sample in samples])
+        known = np.nan_to_num(known)  # where a shaped piece has no stitch
+        if len(samples) < 2:
+            return known
+        return np.asarray(PchipInterpolator(test.strain[picked], known, axis=0)(test.strain))
+
+    return StretchMargins(np.exp(at_all_steps(0)), *(at_all_steps(kind) for kind in (1, 2, 3)))
