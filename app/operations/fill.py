@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
+from app.operations.charts import ChartText
+from knitcore.chart import StitchChart
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import InputError
@@ -65,6 +67,9 @@ class FillRequest(BaseModel):
     wishes: list[WishInput] | None = Field(
         None, min_length=1, max_length=MAX_WISHES, description="Instead of the two maps."
     )
+    chart: ChartText | None = Field(
+        None, description="Stitches without a wish stay as they are here; filled, too, otherwise."
+    )
     repeats: Extent = "small"
     smallest_patch: int = Field(4, ge=1, le=100, description="Smallest side of a patch.")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
@@ -95,7 +100,9 @@ class FillResult(BaseModel):
     rows: int
     columns: int
     chart: str
-    off_share: float = Field(description="Share of stitches off by more than 10 %.")
+    off_share: float = Field(
+        description="Share of the stitches with a wish that are off by more than 10 %."
+    )
     patches: list[PatchResult]
     messages: list[str]
 
@@ -135,6 +142,7 @@ def run_fill(
         wale,
         find_material(request.material),
         atlas,
+        kept=None if request.chart is None else StitchChart.parse(request.chart),
         smallest_patch=request.smallest_patch,
         seed=request.seed,
         check=request.check,

@@ -59,13 +59,14 @@ class FilledField:
     Attributes
     ----------
     chart : the stitches.
-    patches : number of the patch of every stitch, into ``regions``.
+    patches : number of the patch of every stitch, into ``regions``; one beyond them for stitches
+        that were kept.
     regions : the patches; none if the map is (nearly) a chart's own and was read back.
     local : local moduli of the chart.
-    off_share : share of the stitches off by more than 10 % in a wanted direction: of patches by
-        their effective moduli in the swatch beside the wish at each stitch (of a single patch in a
-        large cloth: the edges of its swatch are none of its own), of a chart that was read back by
-        its local moduli.
+    off_share : share of the stitches with a wish that are off by more than 10 % in a wanted
+        direction: of patches by their effective moduli in the swatch beside the wish at each stitch
+        (of a single patch in a large cloth: the edges of its swatch are none of its own), of a
+        chart that was read back by its local moduli.
     messages : what was not reached.
     """
 
@@ -83,6 +84,7 @@ def fill_field(
     material: Material,
     atlas: Atlas,
     *,
+    kept: StitchChart | None = None,
     smallest_patch: int = 4,
     seed: int = 0,
     check: bool = True,
@@ -97,6 +99,8 @@ def fill_field(
         where nothing is wanted.
     material : one yarn for the whole chart.
     atlas : of that material.
+    kept : what the stitches without any wish stay as; the others are fitted to them, and judged
+        beside them. Without it they are filled, too, as their neighbours suit.
     smallest_patch : smallest side of a patch in stitches.
     seed : of the order in which stitches are tried.
     check : pull the chart in the finite swatch, and choose again what departs there.
@@ -111,13 +115,19 @@ def fill_field(
         If it was asked to stop.
     """
     wanted = _checked(modulus_course_n_per_mm, modulus_wale_n_per_mm, smallest_patch)
+    if kept is not None and kept.purl.shape != wanted[0].shape:
+        rows, columns = wanted[0].shape
+        raise InputError(
+            "chart",
+            f"it has {kept.columns}x{kept.rows} stitches, the wishes are for {columns}x{rows}.",
+            "Give the chart that the wishes were drawn on.",
+        )
     if atlas.material != material.identifier:
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    return _Fill(wanted, material, atlas, seed, Telling(progress, cancelled)).run(
-        smallest_patch, check=check and wanted[0].size <= MOST_CHECKED
-    )
+    fill = _Fill(wanted, kept, material, atlas, seed, Telling(progress, cancelled))
+    return fill.run(smallest_patch, check=check and wanted[0].size <= MOST_CHECKED)
 
 
 @dataclass(frozen=True)
@@ -142,9 +152,18 @@ class _Fill:
     """One run."""
 
     def __init__(
-        self, wanted: Array, material: Material, atlas: Atlas, seed: int, telling: Telling
+        self,
+        wanted: Array,
+        kept: StitchChart | None,
+        material: Material,
+        atlas: Atlas,
+        seed: int,
+        telling: Telling,
     ) -> None:
         self._wanted, self._material, self._atlas = wanted, material, atlas
+        no_wish = np.isnan(wanted).all(axis=0)
+        self._kept, self._fixed = kept, no_wish if kept is not None else np.zeros_like(no_wish)
+        self._has_wish = ~no_wish
         self._seed, self._telling = seed, telling
         self._table = stitch_table(material)
         self._have = np.log(np.stack([atlas.modulus(d) for d in Direction], axis=1))
@@ -152,7 +171,7 @@ class _Fill:
 
     def run(self, smallest_patch: int, *, check: bool) -> FilledField:
         self._telling.look(0.01)
-        own = nearest_chart(self._wanted, self._table)
+        own = self._beside_kept(nearest_chart(self._wanted, self._table))
         exact = float(np.nanmax(np.abs(deviation(own, self._wanted, self._table))))
         if exact <= EXACT:
             return self._read_back(own, "The map is that of a chart, which was read back.")
@@ -160,9 +179,11 @@ class _Fill:
         chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
         labels = smooth(cost, smallest_patch)
         effective = self._have[chosen[labels]].transpose(2, 0, 1)
-        patches = patches_of(labels)
-        first = np.unique(patches, return_index=True)[1]
-        medians = self._wishes(patches, len(first))[patches].transpose(2, 0, 1)
+        patches = patches_of(np.where(self._fixed, len(chosen), labels))
+        count = len(np.unique(patches[~self._fixed]))
+        patches[self._fixed] = count  # labels come in order, so these were the last ones
+        first = np.unique(patches, return_index=True)[1][:count]
+        medians = _spread(self._wishes(patches, count), patches)
         rough = self._rms(deviation(own, self._wanted, self._table))
         uneven_map = self._rms(medians - self._wanted)
         if rough <= min(
@@ -192,7 +213,7 @@ class _Fill:
         wishes = self._wishes(patches, len(choices))
         off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - wishes)).max(axis=1)
         sizes = np.bincount(patches.ravel())
-        large = [k for k in np.argsort(-sizes) if sizes[k] >= LEAST_MIXED]
+        large = [k for k in np.argsort(-sizes[: len(choices)]) if sizes[k] >= LEAST_MIXED]
         poor = [k for k in large if off[k] > CLOSE][:MOST_MIXED]
         known: dict[tuple[float, ...], _Choice | None] = {}
         found = list(choices)
@@ -221,7 +242,7 @@ class _Fill:
     def _chosen_again(self, patches: Labels, last: _Trial) -> list[_Choice] | None:
         """The nearest of the atlas to what the swatch asks of each repeat; None if none changes."""
         wishes = self._wishes(patches, len(last.choices)) - last.factors
-        if len(last.choices) == 1:
+        if self._is_alone(last.choices):
             return None
         found = list(last.choices)
         for patch, choice in enumerate(last.choices):
@@ -242,6 +263,7 @@ class _Fill:
             repeats,
             self._wanted,
             self._table,
+            kept=self._kept,
             seed=self._seed,
             look=lambda share: self._telling.look(start + 0.15 * share),
         )
@@ -252,8 +274,8 @@ class _Fill:
                     chart, self._material, patches, repeats, cancelled=self._telling.cancelled
                 )
             )
-        off = _judged(choices, factors)[patches].transpose(2, 0, 1) - self._wanted
-        return _Trial(chart, tuple(choices), factors, _off_share(off) + 0.1 * self._rms(off))
+        off = _spread(self._judged(choices, factors), patches) - self._wanted
+        return _Trial(chart, tuple(choices), factors, self._off_share(off) + 0.1 * self._rms(off))
 
     def _wishes(self, patches: Labels, count: int) -> Array:
         """(patches, 2) medians of the wanted logarithms, NaN where a patch has no wish."""
@@ -276,7 +298,7 @@ class _Fill:
             np.zeros(chart.purl.shape, dtype=np.intp),
             (),
             local_moduli(chart, self._material),
-            _off_share(off),
+            self._off_share(off),
             (message,),
         )
 
@@ -292,27 +314,46 @@ class _Fill:
             row, column = (int(k) + 1 for k in np.argwhere(cells)[0])
             place = int(cells.sum()), row, column
             regions.append(Patch(repeat_key(choice.repeat), *place, *off[patch], *there[patch]))
-        judged = _judged(trial.choices, trial.factors)
+        judged = self._judged(trial.choices, trial.factors)
         self._telling.look(1.0)
         return FilledField(
             trial.chart,
             patches,
             tuple(regions),
             local_moduli(trial.chart, self._material),
-            _off_share(judged[patches].transpose(2, 0, 1) - self._wanted),
+            self._off_share(_spread(judged, patches) - self._wanted),
             tuple(unreached(regions, wishes, np.expm1(judged - wishes), self._have)),
         )
 
+    def _beside_kept(self, chart: StitchChart) -> StitchChart:
+        """The chart, or all of it swapped, where there are wishes; what is kept elsewhere."""
+        if self._kept is None:
+            return chart
+        charts = [
+            StitchChart(np.where(self._fixed, self._kept.purl, chart.purl ^ swap))
+            for swap in (False, True)
+        ]
+        return min(charts, key=lambda c: self._rms(deviation(c, self._wanted, self._table)))
 
-def _off_share(off: Array) -> float:
-    """Share of stitches off by more than 10 % (logarithms (2, rows, columns); NaN is not off)."""
-    return float((np.abs(np.expm1(off)) > OFF).any(axis=0).mean())
+    def _off_share(self, off: Array) -> float:
+        """Share of stitches with a wish that are off by more than 10 % (logarithms)."""
+        missed = (np.abs(np.expm1(off)) > OFF).any(axis=0)
+        return float(missed[self._has_wish].mean())
+
+    def _is_alone(self, choices: Sequence[_Choice]) -> bool:
+        """Whether there is one patch and nothing beside it."""
+        return len(choices) == 1 and not self._fixed.any()
+
+    def _judged(self, choices: Sequence[_Choice], factors: Array) -> Array:
+        """(patches, 2) logarithms of moduli: in the swatch, but of a patch alone in a large one."""
+        moduli = np.stack([choice.log_moduli for choice in choices])
+        return moduli if self._is_alone(choices) else moduli + factors
 
 
-def _judged(choices: Sequence[_Choice], factors: Array) -> Array:
-    """(patches, 2) logarithms of moduli: in the swatch, but of a single patch in a large cloth."""
-    moduli = np.stack([choice.log_moduli for choice in choices])
-    return moduli + factors if len(choices) > 1 else moduli
+def _spread(values: Array, patches: Labels) -> Array:
+    """(2, rows, columns) of values (patches, 2); NaN at stitches that are kept."""
+    known = np.vstack([values, np.full(2, np.nan)])
+    return known[patches].transpose(2, 0, 1)
 
 
 def _extent(cells: NDArray[np.bool_]) -> tuple[int, int]:

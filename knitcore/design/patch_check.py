@@ -37,7 +37,7 @@ def finite_size(
     Parameters
     ----------
     chart : of the patches.
-    patches : (rows, columns) number of each stitch's patch.
+    patches : (rows, columns) number of each stitch's patch; numbers without a repeat are none.
     repeats : of each patch.
 
     Raises
@@ -53,11 +53,11 @@ def finite_size(
         )
         fields = test.fields()
         area = _stitch_areas(fields).ravel()
-        total = np.bincount(patches.ravel(), area, count)
+        total = np.bincount(patches.ravel(), area)[:count]
         for component, name in enumerate(("xx", "yy")):
             for array, kind in ((stress, "stress"), (strain, "strain")):
                 at_stitches = getattr(fields, f"{kind}_{name}")[1::2, 1::2].ravel()
-                sums = np.bincount(patches.ravel(), area * at_stitches, count)
+                sums = np.bincount(patches.ravel(), area * at_stitches)[:count]
                 array[:, component, pull.axis] = sums / total
     compliance = strain @ np.linalg.inv(stress)
     in_swatch = 1 / np.stack([compliance[:, 0, 0], compliance[:, 1, 1]], axis=1)

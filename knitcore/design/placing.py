@@ -29,6 +29,7 @@ def placed(
     wanted: Array,
     table: StitchTable,
     *,
+    kept: StitchChart | None = None,
     seed: int,
     look: Look,
 ) -> StitchChart:
@@ -36,7 +37,8 @@ def placed(
 
     Parameters
     ----------
-    patches : (rows, columns) number of each stitch's patch.
+    patches : (rows, columns) number of each stitch's patch; a number without a repeat means that
+        the stitch stays as it is in ``kept``.
     repeats : of each patch.
     wanted : (2, rows, columns) logarithms of the wanted moduli, NaN is no wish.
     table : of the material.
@@ -45,12 +47,12 @@ def placed(
     """
     rng = np.random.default_rng(seed)
     local = _LocalCost(wanted, table)
-    purl = np.zeros(patches.shape, dtype=bool)
+    purl = np.zeros(patches.shape, dtype=bool) if kept is None else kept.purl.copy()
     for patch, repeat in enumerate(repeats):
         purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
-    if len(repeats) > 1:
+    if patches.max() > 0:
         _shift(purl, patches, repeats, local, rng, look)
-        _turn(purl, patches, local, rng, look)
+        _turn(purl, patches, patches < len(repeats), local, rng, look)
     return StitchChart(purl)
 
 
@@ -109,13 +111,18 @@ def _shift(
 
 
 def _turn(
-    purl: Grid, patches: NDArray[np.intp], local: _LocalCost, rng: np.random.Generator, look: Look
+    purl: Grid,
+    patches: NDArray[np.intp],
+    free: Grid,
+    local: _LocalCost,
+    rng: np.random.Generator,
+    look: Look,
 ) -> None:
-    """Turn single stitches, and pairs of neighbours, near borders where that lowers the cost."""
+    """Turn single free stitches, and pairs of them, near borders where that lowers the cost."""
     edge = np.zeros(purl.shape, dtype=bool)
     edge[:, :-1] |= patches[:, :-1] != patches[:, 1:]
     edge[:-1] |= patches[:-1] != patches[1:]
-    near = np.argwhere(ndimage.binary_dilation(edge, iterations=BORDER))
+    near = np.argwhere(ndimage.binary_dilation(edge, iterations=BORDER) & free)
     for sweep in range(_SWEEPS):
         improved = False
         for count, (row, column) in enumerate(rng.permutation(near).tolist()):
@@ -124,6 +131,8 @@ def _turn(
             for height, width in ((1, 1), (1, 2), (2, 1)):
                 rows = slice(row, min(row + height, purl.shape[0]))
                 columns = slice(column, min(column + width, purl.shape[1]))
+                if not free[rows, columns].all():
+                    continue
                 before = local.around(purl, rows, columns)
                 purl[rows, columns] ^= True
                 if local.around(purl, rows, columns) < before - _ENOUGH:

@@ -123,6 +123,15 @@ def test_wishes_for_parts_fill_them_and_contradictions_are_refused(client: TestC
     assert (filled.json()["rows"], filled.json()["columns"]) == (8, 16)
     assert filled.json()["off_share"] <= 0.3
 
+    kept = ["KPPKKPKKPPKPPPKK"] * 8
+    rest = {"wishes": wishes[:1], "chart": "\n".join(kept)}
+    beside = client.post("/api/v1/fill", json=request | rest)
+    assert beside.status_code == 200, beside.text
+    assert [line[8:] for line in beside.json()["chart"].split()] == [line[8:] for line in kept]
+    small = client.post("/api/v1/fill", json=request | rest | {"chart": "KP"})
+    assert small.status_code == 422
+    assert small.json()["field"] == "chart"
+
     wishes[1] = {"name": "thumb", "runs": box, "modulus_course_n_per_mm": 0.1}
     refused = client.post("/api/v1/fill", json=request)
     assert refused.status_code == 422
@@ -179,6 +188,15 @@ def test_the_values_of_a_chart_give_the_chart_back(
     assert result["off_share"] == 0
     assert (result["rows"], result["columns"]) == (12, 12)
     assert json.loads(design.read_text())["chart"] == result["chart"]
+
+    lines = values.read_text().splitlines()
+    values.write_text(
+        "\n".join([*lines[:61], *(f"{k // 12 + 1},{k % 12 + 1},," for k in range(60, 144))])
+    )
+    told = CliRunner().invoke(main, [*fill, f"--chart={chart}", "--json"])
+    assert told.exit_code == 0, told.output
+    assert json.loads(told.stdout)["chart"].split()[:7] == chart.read_text().split()[:7]
+    values.write_text("\n".join(lines))
 
     course, wale = (m.tolist() for m in read_wanted_moduli(values))
     request = {"material": "acrylic", "modulus_course_n_per_mm": course}

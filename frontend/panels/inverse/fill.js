@@ -11,6 +11,7 @@ import { figure, percent } from "../../core/format.js";
 import { Grid } from "../../core/grid.js";
 import { FABRICS } from "../../core/segments.js";
 import { selectedCells } from "../../core/selection.js";
+import { outlineText } from "../../core/snapshot.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { thumbnail } from "../thumbnail.js";
@@ -32,7 +33,8 @@ export function fillTab(studio) {
   let size = "";
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
-  const add = (/** @type {string} */ name, /** @type {number[]} */ cells) => {
+  const add = (/** @type {string} */ name, /** @type {number[]} */ all) => {
+    const cells = all.filter((i) => chart.outline[i]);
     if (!cells.length) return;
     if (size !== sizeNow()) parts = [];
     size = sizeNow();
@@ -113,6 +115,7 @@ export function fillTab(studio) {
       material: studio.materialId.value,
       rows,
       columns,
+      chart: chart.grid.text,
       wishes: wished.map(({ name, cells, course, wale }) => ({
         name,
         runs: runsOf(cells, columns),
@@ -130,8 +133,6 @@ export function fillTab(studio) {
   const preview = (found, wished) => {
     const filled = Grid.fromText(found.chart);
     const cells = [...new Set(wished.flatMap((part) => part.cells))];
-    const whole = chart.grid.clone();
-    for (const i of cells) whole.purl[i] = filled.purl[i];
     const use = h("button", { class: "button primary", type: "button", id: "fill-apply", onclick: () => {
       if (size !== sizeNow()) {
         run.say({ title: "The chart has another size now", detail: "The preview does not fit it any more.", remedy: "Fill again." });
@@ -143,9 +144,9 @@ export function fillTab(studio) {
     const good = found.off_share <= 0.05;
     answer.replaceChildren(
       h("p", { class: good ? "inverse-verdict good" : "inverse-verdict" }, icon(good ? "check" : "info"),
-        h("span", {}, `${percent(1 - found.off_share)} of the area is within 10 % of the wish.`)),
+        h("span", {}, `${percent(1 - found.off_share)} of the area with a wish is within 10 % of it.`)),
       h("div", { class: "inverse-preview" },
-        thumbnail({ chart: whole.text }, { side: 190, label: "The filled chart" }),
+        thumbnail({ chart: found.chart, outline: chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null }, { side: 190, label: "The filled chart" }),
         h("div", { class: "preview-words" },
           ...found.messages.slice(0, 4).map((message) => h("p", {}, message)),
           found.patches.length > 0 && patchTable(found),

@@ -139,6 +139,63 @@ def test_no_wish_is_no_constraint() -> None:
     assert StitchChart(field.chart.purl[:, :5]).repeat() in REPEATS_OF_GARTER
 
 
+PART = (slice(3, 10), slice(4, 13))
+
+
+def wish_in_part(fabric: Fabric, shape: tuple[int, int] = (14, 18)) -> list[np.ndarray]:
+    """The fabric's moduli in a part of a chart."""
+    maps = [np.full(shape, np.nan) for _ in Direction]
+    for direction in Direction:
+        maps[direction.axis][PART] = ACRYLIC.law(fabric).modulus(direction)
+    return maps
+
+
+@pytest.mark.parametrize("shift", [0, 1])
+def test_a_part_is_filled_so_that_it_goes_on_with_what_is_around_it(shift: int) -> None:
+    """Garter wished for in garter: the rows go through, whichever of them is knit."""
+    around = StitchChart.of_fabric("garter", 14, 18).purl ^ bool(shift)
+    field = fill_field(*wish_in_part(Fabric.GARTER), ACRYLIC, ATLAS, kept=StitchChart(around))
+    assert np.array_equal(field.chart.purl, around)
+    assert field.off_share == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("fabric", [Fabric.SEED, Fabric.GARTER])
+def test_what_has_no_wish_is_kept_and_the_part_is_fitted_to_it(seed: int, fabric: Fabric) -> None:
+    kept = hidden_chart(seed, side=18, patches=4, least=4).purl[:14]
+    maps = wish_in_part(fabric)
+    field = fill_field(*maps, ACRYLIC, ATLAS, kept=StitchChart(kept), seed=seed)
+    outside = np.ones(kept.shape, dtype=bool)
+    outside[PART] = False
+    assert np.array_equal(field.chart.purl[outside], kept[outside])
+    unaware = fill_field(*maps, ACRYLIC, ATLAS, seed=seed).chart.purl
+    pasted = StitchChart(np.where(outside, kept, unaware))
+
+    def distance(chart: StitchChart) -> float:
+        local = local_moduli(chart, ACRYLIC)
+        have = [local.modulus_course_n_per_mm, local.modulus_wale_n_per_mm]
+        return float(np.nansum(np.log(np.array(have) / np.array(maps)) ** 2))
+
+    assert distance(field.chart) <= distance(pasted) + 1e-9
+    assert all(np.isfinite([r.swatch_course, r.swatch_wale]).all() for r in field.regions)
+    assert sum(region.stitches for region in field.regions) in (0, 7 * 9)
+
+
+def test_what_is_off_is_a_share_of_what_was_wished_for() -> None:
+    course = np.full((12, 12), np.nan)
+    course[:4, :4] = 9.0
+    for kept in (None, StitchChart.of_fabric("rib", 12, 12)):
+        field = fill_field(course, np.full((12, 12), np.nan), ACRYLIC, ATLAS, kept=kept)
+        assert field.off_share == 1
+
+
+def test_a_chart_of_another_size_is_refused() -> None:
+    with pytest.raises(InputError, match="18x14"):
+        fill_field(
+            *wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart.of_fabric("rib", 3, 3)
+        )
+
+
 def test_what_cannot_be_reached_is_told() -> None:
     field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, ATLAS)
     assert field.off_share == 1
