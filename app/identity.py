@@ -10,6 +10,6 @@ LOCAL_USER = "local"
 current_user: ContextVar[str] = ContextVar("current_user", default=LOCAL_USER)
 
 
-def asking() -> str:
-    """The user whose request this is."""
+async def asking() -> str:
+    """The user whose request this is; asynchronous, for FastAPI gives others a thread."""
     return current_user.get()

@@ -16,6 +16,8 @@ from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+from app.packed import takes_gzip
+
 log = logging.getLogger("knitcore.app")
 
 SOURCES = Path(__file__).resolve().parent.parent / "frontend"
@@ -97,11 +99,6 @@ class PageFiles(StaticFiles):
         if file:
             return packed(Path(file), Headers(scope=scope), caching)
         raise HTTPException(404)
-
-
-def takes_gzip(headers: Headers) -> bool:
-    """Whether a client unpacks gzip."""
-    return "gzip" in headers.get("accept-encoding", "")
 
 
 def packed(file: Path, headers: Headers, caching: str) -> Response:

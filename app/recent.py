@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import Any
 
-MOST_BYTES = 64_000_000
+MOST_BYTES = 32_000_000
 
 
 class RecentResults:

@@ -62,11 +62,11 @@ Token = Annotated[str, Path(min_length=1, max_length=100, pattern=r"^[A-Za-z0-9_
 ShareId = Annotated[str, Path(min_length=1, max_length=64, pattern=r"^[A-Za-z0-9_-]+$")]
 
 
-def _store(request: Request) -> DesignStore:
+async def _store(request: Request) -> DesignStore:
     return DesignStore(request.app.state.database)
 
 
-def _sharing(request: Request) -> Sharing:
+async def _sharing(request: Request) -> Sharing:
     return Sharing(request.app.state.database)
 
 
@@ -166,14 +166,14 @@ def patch_design(
 
 
 @router.post("/designs/{design}/strokes", summary="Paint on a design", responses=CONFLICT)
-def post_strokes(
+async def post_strokes(
     design: DesignId, body: Strokes, store: Store, owner: Owner, response: Response
 ) -> Painted:
     """Strokes of several people merge; sending the same strokes again changes nothing more.
 
     Refused with 409 if the chart has another size by now.
     """
-    painted = store.paint(owner, design, body)
+    painted = await store.painted(owner, design, body)
     response.headers["ETag"] = etag(painted.revision)
     return painted
 

@@ -15,6 +15,7 @@ from app.identity import asking
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.jobs.kinds import JobRequest
 from app.jobs.runner import JobRunner
+from app.packed import json_response
 from app.problems import NotFoundError, Problem
 
 MISSING = {"model": Problem, "description": "No such thing, or it is not yours."}
@@ -28,7 +29,7 @@ Owner = Annotated[str, Depends(asking)]
 JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
-def _runner(request: Request) -> JobRunner:
+async def _runner(request: Request) -> JobRunner:
     runner: JobRunner = request.app.state.jobs
     return runner
 
@@ -78,16 +79,16 @@ async def get_events(
     """Server-sent events, one per change, each a job as `GET /jobs/{job}` has it; ends with it."""
     first = await runner.status(owner, job)
     return StreamingResponse(
-        _events(first, job, request, owner),
+        _events(first, job, request, runner, owner),
         media_type="text/event-stream",
         headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
     )
 
 
 async def _events(
-    status: JobStatus, job: str, request: Request, owner: str
+    status: JobStatus, job: str, request: Request, runner: JobRunner, owner: str
 ) -> AsyncIterator[bytes]:
-    runner, told, quiet = _runner(request), "", 0
+    told, quiet = "", 0
     with contextlib.suppress(NotFoundError):  # deleted while it was followed
         while not request.app.state.stopping:
             text = status.model_dump_json()
@@ -115,7 +116,7 @@ async def _events(
         409: {"model": Problem, "description": "The job is not done."},
     },
 )
-async def get_result(job: JobId, runner: Runner, owner: Owner) -> Response:
+async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request) -> Response:
     """The same JSON that the operation's own address answers."""
     status = await runner.status(owner, job)
     if status.state is not JobState.DONE:
@@ -131,7 +132,7 @@ async def get_result(job: JobId, runner: Runner, owner: Owner) -> Response:
         raise NotFoundError(
             "The result is not kept any more.", field="job", remedy="Run the job again."
         )
-    return Response(body, media_type="application/json")
+    return await json_response(body, request.headers)
 
 
 @router.delete("/jobs/{job}", summary="Cancel a job")

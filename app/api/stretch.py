@@ -11,6 +11,7 @@ from app.operations.stretch import (
     run_stretch,
     stretch_key,
 )
+from app.packed import json_response
 
 router = APIRouter(tags=["stretch"])
 
@@ -27,4 +28,4 @@ async def post_stretch(body: StretchRequest, request: Request) -> Response:
     if run is None:
         run = await state.compute.run(request.is_disconnected, run_stretch, body)
         state.recent.put(key, run, run.size_bytes)
-    return Response(run.result_json, media_type="application/json")
+    return await json_response(run.result, request.headers)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import secrets
 import time
+from collections.abc import Callable
 from datetime import UTC, datetime
+from functools import cache
 from typing import Any
 
-from sqlalchemy import Connection, Row, func, insert, select, tuple_, update
+from sqlalchemy import Connection, Row, Select, bindparam, func, insert, select, tuple_, update
 
 from app.designs.conditions import ConflictError, check_match
 from app.designs.document import (
@@ -40,6 +42,7 @@ _SUMMARY = [c for c in designs.c if c.name not in ("chart", "note", "layout", "o
 _VERSION_SUMMARY = [
     design_versions.c[n] for n in ("number", "name", "automatic", "revision", "created_at")
 ]
+_CHANGE = update(designs).where(designs.c.id == bindparam("design"))
 
 
 class DesignStore:
@@ -124,7 +127,15 @@ class DesignStore:
         ConflictError
             If the chart has another size by now.
         """
+        return self._database.write(self._painting(owner, design, strokes))
 
+    async def painted(self, owner: str, design: str, strokes: Strokes) -> Painted:
+        """The same for the event loop, for people paint more often than all the rest together."""
+        return await self._database.written(self._painting(owner, design, strokes))
+
+    def _painting(
+        self, owner: str, design: str, strokes: Strokes
+    ) -> Callable[[Connection], Painted]:
         def action(connection: Connection) -> Painted:
             row = find(connection, owner, design, change=True)
             if (row.rows, row.columns) != (strokes.rows, strokes.columns):
@@ -139,14 +150,14 @@ class DesignStore:
                 "revision": row.revision + 1,
                 "changed_at": now(),
             }
-            connection.execute(update(designs).where(designs.c.id == row.id).values(values))
+            connection.execute(_CHANGE, values | {"design": row.id})
             return Painted(
                 revision=values["revision"],
                 changed_at=moment(values["changed_at"]),
                 map=kinds_around(values["chart"], row.rows, row.columns, strokes.runs),
             )
 
-        return self._database.write(action)
+        return action
 
     def delete(self, owner: str, design: str, if_match: str | None) -> None:
         """Put a design aside; it can be recovered for 30 days."""
@@ -252,6 +263,16 @@ def moment(seconds: float) -> datetime:
     return datetime.fromtimestamp(seconds, UTC)
 
 
+@cache
+def _finding(change: bool, deleted: bool) -> Select[Any]:
+    chosen = select(designs).where(
+        designs.c.id == bindparam("design"),
+        designs.c.owner == bindparam("owner"),
+        designs.c.deleted_at.is_not(None) if deleted else designs.c.deleted_at.is_(None),
+    )
+    return chosen.with_for_update() if change else chosen
+
+
 def find(
     connection: Connection, owner: str, design: str, *, change: bool = False, deleted: bool = False
 ) -> Row[Any]:
@@ -263,12 +284,8 @@ def find(
         If there is none, it is deleted (or, with ``deleted``, is not), or is somebody else's: a
         stranger cannot tell which.
     """
-    chosen = select(designs).where(
-        designs.c.id == design,
-        designs.c.owner == owner,
-        designs.c.deleted_at.is_not(None) if deleted else designs.c.deleted_at.is_(None),
-    )
-    row = connection.execute(chosen.with_for_update() if change else chosen).one_or_none()
+    wanted = {"design": design, "owner": owner}
+    row = connection.execute(_finding(change, deleted), wanted).one_or_none()
     if row is None:
         raise NotFoundError(
             f"There is no {'deleted ' if deleted else ''}design {design} of yours.",
@@ -329,7 +346,7 @@ def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
 
 def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> Design:
     stamped = values | {"revision": row.revision + 1, "changed_at": now()}
-    connection.execute(update(designs).where(designs.c.id == row.id).values(stamped))
+    connection.execute(_CHANGE, stamped | {"design": row.id})
     return full(connection.execute(select(designs).where(designs.c.id == row.id)).one())
 
 

@@ -41,6 +41,7 @@ from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
+from app.packed import packed
 
 DECIDING = frozenset({".py", ".csv", ".json", ".npz"})
 """Endings of program and data files."""
@@ -132,12 +133,8 @@ JobRequest = Annotated[
 ]
 
 
-def _json(answer: BaseModel) -> bytes:
-    return answer.model_dump_json().encode()
-
-
-def _json_of_run(run: StretchRun) -> bytes:
-    return run.result_json
+def _packed_already(run: StretchRun) -> bytes:
+    return run.result
 
 
 @dataclass(frozen=True)
@@ -148,17 +145,17 @@ class JobKind:
     ----------
     request, result : what it takes and gives.
     function : does the work in a worker.
-    told : JSON for the caller, of what the function returns.
+    told : packed JSON for the caller, of what the function returns.
     """
 
     request: type[BaseModel]
     result: type[BaseModel]
     function: Callable[..., Any]
-    told: Callable[[Any], bytes] = _json
+    told: Callable[[Any], bytes] = packed
 
 
 KINDS: dict[str, JobKind] = {
-    "stretch": JobKind(StretchRequest, StretchResult, run_stretch, _json_of_run),
+    "stretch": JobKind(StretchRequest, StretchResult, run_stretch, _packed_already),
     "curve": JobKind(CurveRequest, CurveResult, run_curve),
     "relax": JobKind(RelaxRequest, RelaxResult, run_relax),
     "sweep": JobKind(SweepRequest, SweepResult, run_sweep),

@@ -64,10 +64,10 @@ class JobRunner:
     async def submit(self, owner: str, kind: str, request: str) -> JobStatus:
         """Take a job on; if its result is known, it is done at once."""
         key = content_key(kind, request)
-        known = await asyncio.to_thread(self.store.kept, key)
-        state = JobState.WAITING if known is None else JobState.DONE
+        known = await asyncio.to_thread(self.store.knows, key)
+        state = JobState.DONE if known else JobState.WAITING
         status = await asyncio.to_thread(self.store.add, owner, kind, request, key, state)
-        if known is None:
+        if not known:
             self._start(status.id, owner, kind, request)
         return status
 
@@ -164,7 +164,7 @@ class JobRunner:
             )
             if isinstance(wanted, StretchRequest):
                 self._recent.put(stretch_key(wanted), answer, answer.size_bytes)
-            body = described.told(answer)
+            body = await asyncio.to_thread(described.told, answer)
             await self._keep(lambda: self.store.finish(job, kind, content_key(kind, request), body))
             log.info("job done", extra=extra)
         except asyncio.CancelledError:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import gzip
 import secrets
 from collections.abc import Mapping
 from typing import Any
@@ -192,26 +191,31 @@ class JobStore:
         return self._database.write(action)
 
     def result(self, owner: str, job: str) -> bytes | None:
-        """The result of a job as JSON, or None if it is not kept (any more)."""
+        """The result of a job as packed JSON, or None if it is not kept (any more)."""
         with self._database.read() as connection:
             key = _one(connection, owner, job).key
-        return self.kept(key)
+            body: bytes | None = connection.execute(
+                select(results.c.body).where(results.c.key == key)
+            ).scalar()
+        if body is not None:
+            self._used(key)
+        return body
 
-    def kept(self, key: str) -> bytes | None:
-        """A result by its content."""
+    def knows(self, key: str) -> bool:
+        """Whether the result of this content is kept; if so, for longer."""
         with self._database.read() as connection:
-            body = select(results.c.body).where(results.c.key == key)
-            packed = connection.execute(body).scalar()
-        if packed is None:
-            return None
+            found = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
+        if found is not None:
+            self._used(key)
+        return found is not None
+
+    def _used(self, key: str) -> None:
         used = update(results).where(results.c.key == key).values(used_at=now())
         with contextlib.suppress(StoreError):  # with a full disk it can still be read
             self._database.write(lambda connection: connection.execute(used))
-        return gzip.decompress(packed)
 
     def finish(self, job: str, kind: str, key: str, body: bytes) -> bool:
-        """Keep a result and close its job, both or neither."""
-        packed = gzip.compress(body, compresslevel=4)
+        """Keep a packed result and close its job, both or neither."""
 
         def action(connection: Connection) -> bool:
             done = connection.execute(
@@ -222,7 +226,7 @@ class JobStore:
             connection.execute(results.delete().where(results.c.key == key))
             connection.execute(
                 insert(results).values(
-                    key=key, kind=kind, body=packed, size_bytes=len(packed), used_at=now()
+                    key=key, kind=kind, body=body, size_bytes=len(body), used_at=now()
                 )
             )
             return done.rowcount == 1

@@ -14,6 +14,7 @@ from scipy.ndimage import distance_transform_edt
 
 from app.operations.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
 from app.operations.stretch_margins import StretchMargins, sampled_steps, stretch_margins
+from app.packed import packed
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -127,15 +128,15 @@ class StretchRun:
 
     Attributes
     ----------
-    result_json : what the caller gets, written where the test ran: a megabyte of numbers would
-        hold up the event loop.
+    result : what the caller gets as packed JSON, made where the test ran: megabytes of numbers
+        would hold up the event loop.
     direction : of the pull.
     positions_mm : (steps, rows, columns, 2) stitch centres.
     strain : (steps, rows, columns, 2) course-wise and wale-wise.
     utilisation : (steps, rows, columns).
     """
 
-    result_json: bytes
+    result: bytes
     direction: Direction
     positions_mm: Array
     strain: Array
@@ -145,7 +146,7 @@ class StretchRun:
     def size_bytes(self) -> int:
         """About how much memory it takes."""
         arrays = (self.positions_mm, self.strain, self.utilisation)
-        return len(self.result_json) + sum(array.nbytes for array in arrays)
+        return len(self.result) + sum(array.nbytes for array in arrays)
 
 
 def stretch_key(request: StretchRequest) -> str:
@@ -315,7 +316,7 @@ def _stitches(
         ),
     )
     return StretchRun(
-        result_json=result.model_dump_json().encode(),
+        result=packed(result),
         direction=request.direction,
         positions_mm=np.stack([x, y], axis=-1).astype(np.float32),
         strain=np.stack([xx, yy], axis=-1).astype(np.float32),

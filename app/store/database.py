@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 import queue
@@ -10,6 +11,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from typing import Any, TypeVar
 
+from fastapi.concurrency import run_in_threadpool
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
@@ -91,10 +93,21 @@ class Database:
         if self._writer is None:
             with _told(), self.engine.begin() as connection:
                 return action(connection)
-        done: Future[T] = Future()
-        self._waiting.put((action, done))
         with _told():
-            return done.result()
+            return self._hand_in(action).result()
+
+    async def written(self, action: Callable[[Connection], T]) -> T:
+        """The same for the event loop, where no thread waits for the disk.
+
+        Raises
+        ------
+        StoreError
+            As in :meth:`write`.
+        """
+        if self._writer is None:
+            return await run_in_threadpool(self.write, action)
+        with _told():
+            return await asyncio.wrap_future(self._hand_in(action))
 
     def close(self) -> None:
         """Write what waits, then let go of all connections."""
@@ -104,13 +117,19 @@ class Database:
             self._writer = None
         self.engine.dispose()
 
+    def _hand_in(self, action: Callable[[Connection], T]) -> Future[T]:
+        done: Future[T] = Future()
+        self._waiting.put((action, done))
+        return done
+
     def _write_all(self) -> None:
         open_ = True
         while open_:
             batch = []
             entry = self._waiting.get()
             while entry is not None:
-                batch.append(entry)
+                if entry[1].set_running_or_notify_cancel():  # somebody still waits for it
+                    batch.append(entry)
                 if len(batch) == LARGEST_BATCH:
                     break
                 try:
@@ -123,12 +142,13 @@ class Database:
 
     def _commit(self, batch: list[tuple[Action, Future[Any]]]) -> None:
         outcomes: list[tuple[Future[Any], Any, Exception | None]] = []
+        attempt = _attempt if len(batch) > 1 else _do
         try:
             with self.engine.connect() as connection:
                 connection.execution_options(knitcore_write=True)
                 with connection.begin():
                     for action, done in batch:
-                        outcomes.append((done, *_attempt(connection, action)))
+                        outcomes.append((done, *attempt(connection, action)))
         except Exception as error:
             if len(batch) > 1:
                 for entry in batch:  # one by one: only who is to blame pays
@@ -141,6 +161,11 @@ class Database:
                 done.set_result(result)
             else:
                 done.set_exception(refused)
+
+
+def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
+    """An action with a transaction of its own, which its error ends."""
+    return action(connection), None
 
 
 def _attempt(connection: Connection, action: Action) -> tuple[Any, Exception | None]:

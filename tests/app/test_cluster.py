@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 import json
 import os
 import subprocess
@@ -112,7 +113,7 @@ def test_a_job_of_the_service_is_done_there(compute: Compute, tmp_path: Path) ->
     answer = asyncio.run(scenario())
     database.close()
     assert answer is not None
-    assert CurveResult.model_validate_json(answer) == run_curve(request)
+    assert CurveResult.model_validate_json(gzip.decompress(answer)) == run_curve(request)
 
 
 def test_an_abandoned_job_and_one_beyond_its_time_are_stopped(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -85,7 +86,7 @@ def test_a_worker_killed_in_mid_job_costs_that_job_only(
             assert (await _ended(runner, again.id)).state is JobState.DONE
             answer = await asyncio.to_thread(runner.store.result, "ada", again.id)
             assert answer is not None
-            described.result.model_validate_json(answer)
+            described.result.model_validate_json(gzip.decompress(answer))
 
     asyncio.run(scenario())
 
