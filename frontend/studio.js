@@ -117,6 +117,7 @@ export class Studio {
     this.selection.value = null;
     this.materialId.value = design.material;
     this.document.open(design, history);
+    this.stretch.value = { ...this.stretch.value, value: null, stale: false, problem: null };
   }
 
   /**

@@ -229,6 +229,9 @@ export const OVERLAYS = [
   utilisation,
 ];
 
+/** What is chosen, or the fabrics while there is no stretch test that it could show. @param {Studio} studio */
+export const shownOverlay = (studio) => (studio.overlay.value.available(studio) ? studio.overlay.value : fabrics);
+
 /** @param {number[]} values positive */
 export function logScale(values) {
   const low = Math.min(...values);

@@ -12,9 +12,9 @@ import { actionButton } from "./actionbutton.js";
 
 /** @type {[Look, string][]} */
 const LOOKS = [
-  ["both", "Colour & dot"],
-  ["colours", "Colour"],
-  ["symbols", "Symbol"],
+  ["both", "Dots"],
+  ["colours", "Colours"],
+  ["symbols", "Symbols"],
   ["loops", "Loops"],
 ];
 

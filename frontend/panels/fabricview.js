@@ -8,7 +8,7 @@
  */
 
 import { ApiError, api } from "../api.js";
-import { OVERLAYS } from "../chart/overlays.js";
+import { shownOverlay } from "../chart/overlays.js";
 import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
@@ -175,7 +175,7 @@ export function fabricview(host, studio, view) {
 function wanted(studio, view) {
   const { document: chart, seeing } = studio;
   const stretch = studio.currentStretch();
-  const overlay = studio.overlay.value.available(studio) ? studio.overlay.value : OVERLAYS[1];
+  const overlay = shownOverlay(studio);
   const colour = seeing.yarnColours.value === "chart" ? overlay.view : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;

@@ -97,7 +97,8 @@ export function inspector(host, studio) {
     const { rows, columns } = part.kind === "chart" ? studio.document.grid : part.grid;
     title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, `${columns} × ${rows}`));
     title.title = part.note;
-    problem.hidden = !wrong;
+    // While the service is away the banner says so.
+    problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) {
       problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
     }

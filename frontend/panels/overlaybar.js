@@ -7,7 +7,7 @@
  * @import {Studio} from "../studio.js"
  */
 
-import { OVERLAYS } from "../chart/overlays.js";
+import { OVERLAYS, shownOverlay } from "../chart/overlays.js";
 import { groupAt, meanExtensibility } from "../chart/rectangles.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
 import { h } from "../dom.js";
@@ -73,13 +73,13 @@ export function overlaybar(host, studio, view) {
   const readout = h("output", { class: "readout figures", id: "readout" });
 
   const show = () => {
+    const shown = shownOverlay(studio);
     OVERLAYS.forEach((overlay, i) => {
-      chips[i].setAttribute("aria-checked", String(overlay === studio.overlay.value));
+      chips[i].setAttribute("aria-checked", String(overlay === shown));
       const available = overlay.available(studio);
       chips[i].disabled = !available;
       chips[i].title = available ? overlay.hint : `${overlay.hint}. Needs a stretch test of this chart.`;
     });
-    const shown = studio.overlay.value.available(studio) ? studio.overlay.value : OVERLAYS[1];
     const content = shown.legend(studio, view.palette);
     legend.replaceChildren(
       ...(content.kind === "scale"
@@ -92,13 +92,12 @@ export function overlaybar(host, studio, view) {
     );
     if (studio.rectangles.value) {
       legend.append(
-        h("label", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), "give (√ scale) of", grouping),
+        h("label", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), h("span", { class: "wide" }, "give (√ scale) of"), grouping),
       );
     }
   };
   for (const signal of [studio.overlay, studio.material, studio.rectangles]) signal.listen(show);
   for (const signal of [studio.rectangles, groups, block]) signal.listen(() => read());
-  studio.stretch.watch(show);
   studio.rectangles.watch((on) => rectangles.setAttribute("aria-pressed", String(on)));
 
   const read = () => (readout.textContent = describe(studio, view.hover.value));
@@ -106,6 +105,10 @@ export function overlaybar(host, studio, view) {
   view.hover.listen(read);
   studio.document.onChange(read);
   studio.step.listen(read);
+  studio.stretch.watch(() => {
+    show();
+    read();
+  });
 
   host.append(
     h("div", { class: "chips" },
@@ -124,16 +127,13 @@ export function overlaybar(host, studio, view) {
 
 /** @param {ScaleLegend} scale */
 function scale({ map, low, high, unit, log, label }) {
-  const canvas = h("canvas", { width: 160, height: 10, class: "gradient" });
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  for (let x = 0; x < 160; x++) {
-    context.fillStyle = map.css(x / 159);
-    context.fillRect(x, 0, 1, 10);
-  }
+  const gradient = h("span", { class: "gradient" });
+  const colours = Array.from({ length: 33 }, (_, i) => map.css(i / 32));
+  gradient.style.backgroundImage = `linear-gradient(to right, ${colours})`;
   return [
     h("span", {}, label),
     h("span", { class: "figures" }, figure(low, 2)),
-    canvas,
+    gradient,
     h("span", { class: "figures" }, `${figure(high, 2)}${unit ? ` ${unit}` : ""}`),
     log && h("span", { class: "muted" }, "log"),
   ].filter((part) => part instanceof Node);
@@ -157,6 +157,7 @@ function describe(studio, cell) {
     return parts.join(" · ");
   }
   const kind = studio.kinds()[codes[i]];
+  const { id } = shownOverlay(studio);
   const strain = studio.field("strain")?.[i];
   const used = studio.field("utilisation")?.[i];
   /** @param {"strain" | "utilisation"} name @param {number} share @param {number} [decimals] */
@@ -165,9 +166,9 @@ function describe(studio, cell) {
     const interval = percentRange(share, margin, decimals);
     return interval && ` (${interval})`;
   };
-  if (studio.overlay.value.id === "strain" && strain !== undefined) {
+  if (id === "strain" && strain !== undefined) {
     parts.push(`strain ${percent(strain, 1)}${within("strain", strain, 1)}`);
-  } else if (studio.overlay.value.id === "utilisation" && used !== undefined) {
+  } else if (id === "utilisation" && used !== undefined) {
     parts.push(`${percent(used)}${within("utilisation", used)} of lock-up`);
   } else if (kind) {
     const value = (/** @type {"course" | "wale"} */ direction) => {

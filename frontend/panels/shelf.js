@@ -122,14 +122,29 @@ export function shelf(host, studio, context) {
 }
 
 /**
+ * An image, not a canvas: each canvas on the page is a layer that every frame has to blend.
+ *
  * @param {Ink} ink
  * @param {Palette} palette
  * @param {string} colour of a region
  */
 function thumbnail(ink, palette, colour) {
-  const canvas = h("canvas", { width: 2 * SIDE, height: 2 * SIDE, class: "thumbnail" });
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const side = 2 * SIDE;
+  const canvas = h("canvas", { width: side, height: side });
+  drawThumbnail(
+    /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")), side, ink, palette, colour,
+  );
+  return h("img", { src: canvas.toDataURL(), class: "thumbnail", alt: "" });
+}
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {number} side in pixels
+ * @param {Ink} ink
+ * @param {Palette} palette
+ * @param {string} colour of a region
+ */
+function drawThumbnail(context, side, ink, palette, colour) {
   /** @param {number[]} rgb */
   const css = (rgb) => `rgb(${rgb.map(Math.round).join(" ")})`;
   if (ink.target === "outline") {
@@ -137,12 +152,12 @@ function thumbnail(ink, palette, colour) {
     context.lineWidth = 3;
     context.setLineDash([7, 6]);
     context.strokeRect(8, 8, side - 16, side - 16);
-    return canvas;
+    return;
   }
   if (ink.target !== "stitches") {
     context.fillStyle = colour;
     context.fillRect(0, 0, side, side);
-    return canvas;
+    return;
   }
   if (!ink.repeat || ink === KNIT || ink === PURL) {
     context.fillStyle = css(ink === PURL ? palette.purl : palette.knit);
@@ -161,7 +176,7 @@ function thumbnail(ink, palette, colour) {
       context.arc(side / 2, side / 2, side * 0.13, 0, 2 * Math.PI);
       context.fill();
     }
-    return canvas;
+    return;
   }
   const count = Math.min(MOST, Math.max(6, ink.repeat.rows, ink.repeat.columns));
   const cell = side / count;
@@ -182,5 +197,4 @@ function thumbnail(ink, palette, colour) {
       });
     }
   }
-  return canvas;
 }

@@ -117,7 +117,7 @@ export function stretchdrawer(host, studio, stretcher) {
     const { value } = studio.stretch.value;
     const i = studio.step.value;
     slider.value = String(i);
-    if (!value) return;
+    if (!value) return figures.replaceChildren();
     slider.setAttribute("aria-valuetext", `${percent(value.strain[i])} strain`);
     const [low = NaN, high = NaN] = [value.force_low_n?.[i], value.force_high_n?.[i]];
     const widths = value.stress_n_per_mm[i] / value.force_n[i];
@@ -140,10 +140,8 @@ export function stretchdrawer(host, studio, stretcher) {
     const current = value !== null && !stale;
     player.classList.toggle("idle", !current);
     slider.disabled = play.disabled = !current;
-    if (value) {
-      slider.max = String(value.strain.length - 1);
-      showStep();
-    }
+    if (value) slider.max = String(value.strain.length - 1);
+    showStep();
     note.className = problem ? "stretch-note error" : "stretch-note";
     note.replaceChildren();
     if (problem) {

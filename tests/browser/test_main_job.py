@@ -86,7 +86,21 @@ def test_change_after_a_stretch_marks_it_as_old(flat_studio: Page) -> None:
     expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
     drag(flat_studio, 30, 0)
     expect(flat_studio.locator("#stretch-note")).to_contain_text("changed since")
-    expect(flat_studio.locator("#overlay-strain")).to_be_disabled()
+    strain = flat_studio.locator("#overlay-strain")
+    expect(strain).to_be_disabled()
+    expect(strain).to_have_attribute("aria-checked", "false")
+    expect(flat_studio.locator("#overlay-fabrics")).to_have_attribute("aria-checked", "true")
+    expect(flat_studio.locator("#readout")).not_to_contain_text("strain")
+
+
+def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> None:
+    flat_studio.fill("#stretch-amount", "10")
+    flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    flat_studio.keyboard.press("Shift+N")
+    flat_studio.click("#gallery-seed")
+    expect(flat_studio.locator("#stretch-slider")).to_be_disabled()
+    expect(flat_studio.locator("#stretch-figures")).not_to_contain_text("10 %")
 
 
 def test_3d_view_shows_the_fabrics_in_their_colours(studio: Page) -> None:

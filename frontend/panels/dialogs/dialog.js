@@ -13,7 +13,7 @@ export function dialog(id, title, ...content) {
     "dialog",
     { id, class: "dialog", "aria-labelledby": `${id}-title` },
     h("header", {},
-      h("h2", { id: `${id}-title` }, title),
+      h("h2", { id: `${id}-title`, tabIndex: -1, autofocus: true }, title),
       h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Close", onclick: () => element.close() }, icon("close"))),
     ...content,
   );

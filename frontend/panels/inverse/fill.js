@@ -95,7 +95,7 @@ export function fillTab(studio) {
   };
 
   const smallest = field("Smallest patch, stitches", 4, { min: "1", max: "100", step: "1" });
-  const seed = field("Seed", 0, { min: "0", step: "1" });
+  const seed = field("Variant", 0, { min: "0", step: "1" });
   const large = h("input", { type: "checkbox" });
 
   const fill = async () => {
@@ -168,9 +168,9 @@ export function fillTab(studio) {
       h("div", { class: "inverse-bar" },
         addButton,
         h("button", { class: "button", type: "button", id: "part-regions", onclick: addRegions }, icon("plus"), "Regions"),
-        h("label", { class: "check" }, "patches ≥", smallest),
-        h("label", { class: "check", title: "The same seed gives the same chart" }, "seed", seed),
-        h("label", { class: "check", title: "Choose from repeats up to 4 × 4; the first time takes up to a minute" }, large, "4 × 4"),
+        h("label", { class: "check" }, "patches from", smallest, "sts"),
+        h("label", { class: "check", title: "Another number gives another chart, the same the same" }, "variant", seed),
+        h("label", { class: "check", title: "Choose from repeats up to 4 × 4; the first time takes up to a minute" }, large, "Up to 4 × 4"),
         h("span", { class: "spacer" }),
         h("button", { class: "button primary", type: "submit", id: "fill-run" }, "Fill"))),
     run.element,

@@ -20,17 +20,17 @@ import { Run } from "./run.js";
 
 /** @type {Quantity[]} */
 const QUANTITIES = [
-  { id: "modulus_course_n_per_mm", label: "Stiffness along rows", short: "rows", unit: "N/mm", start: 0.1 },
-  { id: "modulus_wale_n_per_mm", label: "Stiffness along columns", short: "columns", unit: "N/mm", start: 0.1 },
-  { id: "stretch_course", label: "Stretch along rows", short: "stretch, rows", unit: "%", start: 60, percent: true, needs: "load" },
-  { id: "stretch_wale", label: "Stretch along columns", short: "stretch, columns", unit: "%", start: 40, percent: true, needs: "load" },
+  { id: "modulus_course_n_per_mm", label: "Stiffness, rows", short: "rows", unit: "N/mm", start: 0.1 },
+  { id: "modulus_wale_n_per_mm", label: "Stiffness, columns", short: "columns", unit: "N/mm", start: 0.1 },
+  { id: "stretch_course", label: "Stretch, rows", short: "stretch, rows", unit: "%", start: 60, percent: true, needs: "load" },
+  { id: "stretch_wale", label: "Stretch, columns", short: "stretch, columns", unit: "%", start: 40, percent: true, needs: "load" },
   { id: "pressure_course_mmhg", label: "Pressure, rows around a limb", short: "pressure", unit: "mmHg", start: 20, needs: "limb" },
   { id: "pressure_wale_mmhg", label: "Pressure, columns around a limb", short: "pressure", unit: "mmHg", start: 20, needs: "limb" },
   { id: "anisotropy", label: "Anisotropy (rows over columns)", short: "anisotropy", unit: "", start: 1 },
   { id: "poisson_yx", label: "Poisson’s ratio, pulled along rows", short: "Poisson, rows", unit: "", start: 0.2, difference: true },
   { id: "poisson_xy", label: "Poisson’s ratio, pulled along columns", short: "Poisson, columns", unit: "", start: 0.4, difference: true },
-  { id: "extensibility_course_mm_per_n", label: "Extensibility along rows", short: "ext., rows", unit: "mm/N", start: 10 },
-  { id: "extensibility_wale_mm_per_n", label: "Extensibility along columns", short: "ext., columns", unit: "mm/N", start: 10 },
+  { id: "extensibility_course_mm_per_n", label: "Extensibility, rows", short: "ext., rows", unit: "mm/N", start: 10 },
+  { id: "extensibility_wale_mm_per_n", label: "Extensibility, columns", short: "ext., columns", unit: "mm/N", start: 10 },
 ];
 const COUNT = 12;
 
@@ -176,7 +176,7 @@ export function findTab(studio, context) {
       h("button", { class: "button", type: "button", id: "wish-add", onclick: () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]) }, icon("plus"), "Wish"),
       transfers.label, curl.label,
       h("label", { class: "check" }, across, "All yarns"),
-      h("label", { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" }, large, "4 × 4"),
+      h("label", { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" }, large, "Up to 4 × 4"),
       h("span", { class: "spacer" }),
       h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find")));
   const element = h("div", { class: "inverse-tab scrolls" }, form, run.element, answer);

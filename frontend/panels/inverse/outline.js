@@ -34,7 +34,7 @@ export function outlineTab(studio) {
   /** @type {number[] | null} */ let reached = null;
   const strain = field("Stretch in percent", 30, { min: "1", max: "200", step: "any", id: "outline-strain" });
   const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
-  const seed = field("Seed", 0, { min: "0", step: "1" });
+  const seed = field("Variant", 0, { min: "0", step: "1" });
 
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
@@ -180,8 +180,8 @@ export function outlineTab(studio) {
       h("div", { class: "inverse-bar" },
         h("span", { class: "muted" }, "Pulled along"), pulls,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
-        h("label", { class: "check" }, "bands ≥", band),
-        h("label", { class: "check", title: "The same seed gives the same chart" }, "seed", seed),
+        h("label", { class: "check" }, "bands from", band, "lines"),
+        h("label", { class: "check", title: "Another number gives another chart, the same the same" }, "variant", seed),
         h("span", { class: "spacer" }),
         h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"))),
     run.element,

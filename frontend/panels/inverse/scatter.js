@@ -60,6 +60,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     const line = getComputedStyle(canvas).getPropertyValue("--line");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
+    if (!table) return;
     context.font = "13px system-ui, sans-serif";
     context.lineWidth = 1;
     context.strokeStyle = line;
@@ -81,7 +82,6 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     context.textAlign = "center";
     context.fillText("along columns (wale), N/mm", 0, 0);
     context.restore();
-    if (!table) return;
     for (const { key, index, x, y } of points) {
       if (PURE.includes(key)) continue;
       mark(context, table.provenance[index], x, y, palette);
