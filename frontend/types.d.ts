@@ -40,6 +40,8 @@ export interface Material extends MaterialSummary {
   notes?: string[];
   stitch_table: { codes: StitchKind[] };
   curves: Partial<Record<FabricName, Partial<Record<Direction, Curve>>>>;
+  /** Of stretch tests, where they are kept with the material. */
+  measured?: Partial<Record<FabricName, Partial<Record<Direction, Curve & { pulls: number }>>>>;
 }
 
 export interface Pattern {

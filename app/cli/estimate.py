@@ -114,17 +114,19 @@ def _swatch(
     fabric = Fabric.parse(name)
     path = Path(source)
     if path.suffix.lower() == ".json" and path.is_file() and '"fabrics"' not in path.read_text():
-        law, length, known = load_law(path).law, None, ""
+        file = load_law(path)
+        law, length, known, curves = file.law, None, "", file.curves
     else:
         is_file = path.suffix.lower() in FILE_KINDS
         record = (load_material_file(path) if is_file else material(source)).record(fabric)
         law, length, known = record.law, record.loop_length_mm, record.setting
+        curves = record.measured
     length = own.get(fabric) or length or product.get(fabric)
     if length is None:
         raise InputError(
             "swatch_loop_length_mm", f"is missing for {fabric}.", "Unravel ten stitches."
         )
-    return MeasuredSwatch(fabric, law, length, setting or known)
+    return MeasuredSwatch(fabric, law, length, setting or known, curves)
 
 
 def _text(r: EstimateResult) -> str:

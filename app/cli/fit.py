@@ -46,7 +46,8 @@ def command(
     fit = fit_paths(test_course, test_wale, Reduction(reduction), file_format)
     if out is not None:
         source = f"fitted to {test_course.name} and {test_wale.name}, {fit.reduction} reduction"
-        save_law(LawFile(fit.law, source, fit.standard_errors, fit.largest_strain), out)
+        file = LawFile(fit.law, source, fit.standard_errors, fit.largest_strain, fit.curves)
+        save_law(file, out)
     if residuals is not None:
         _write_residuals(fit, residuals)
     result = fit_result(fit)

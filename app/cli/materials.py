@@ -13,8 +13,8 @@ from app.operations.materials import (
     describe_material,
     list_materials,
 )
+from app.own_materials import find_material
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.materials.files import load_material_file
 
 FILE_KINDS = (".json", ".yaml", ".yml")

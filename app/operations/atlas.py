@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint
@@ -22,7 +23,6 @@ from knitcore.design.repeats import known_larger_repeats, repeats_up_to, striped
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.materials import material as find_material
 
 log = logging.getLogger("knitcore.atlas")
 

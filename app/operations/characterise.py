@@ -9,11 +9,11 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from app.own_materials import find_material
 from knitcore.batch import BatchProgress
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.materials.document import MaterialDocument
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.lawfit import MAX_STRESS_N_PER_MM

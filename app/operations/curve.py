@@ -11,10 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
 from app.operations.predict import GaugeInput
+from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.mechanics.chart_curve import DEFAULT_STRESS_N_PER_MM, ChartCurve, chart_curve
 from knitcore.mechanics.prediction import Provenance, predict
 from knitcore.mechanics.uniaxial import free_strains_at_stress

@@ -204,6 +204,7 @@ def _record(found: FabricEstimate, setting: str) -> FabricRecord:
         origin=Origin.FITTED if found.measured else Origin.ESTIMATED,
         loop_length_mm=found.loop_length_mm,
         setting=setting,
+        measured=found.curves,
     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
+from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.export import (
@@ -18,7 +19,6 @@ from knitcore.formats.export import (
 )
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
-from knitcore.materials import material as find_material
 from knitcore.worked import Construction, Side
 
 MAX_KNITOUT_STITCHES = 20_000

@@ -9,10 +9,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.materials import LawResult
 from app.operations.uploads import UploadedFile, stored
+from app.own_materials import find_material
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile
-from knitcore.materials import material as find_material
 from knitcore.measure.stretch_test import stated_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test

@@ -12,11 +12,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
 from app.operations.charts import ChartText
+from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import InputError
-from knitcore.materials import material as find_material
 
 MAX_STITCHES = 40_000
 """Over REST; the command line takes larger maps."""

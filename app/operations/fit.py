@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.operations.materials import LawResult
 from app.operations.uploads import UploadedFile, stored
 from knitcore.fabric import Direction
+from knitcore.materials.document import CurveDocument
 from knitcore.measure.uniaxial import LawFit, Reduction, Residuals, fit_files
 
 FileFormat = Literal["csv", "h5"]
@@ -73,6 +74,9 @@ class FitResult(LawResult):
     error_method: str
     notes: list[str]
     residuals: dict[Direction, ResidualPoints] | None = None
+    curves: dict[Direction, CurveDocument] = Field(
+        description="Median curve of the pulls in each direction; kept with the law in a file."
+    )
 
 
 def run_fit(request: FitRequest, *, cancelled: Callable[[], bool] | None = None) -> FitResult:
@@ -111,6 +115,7 @@ def fit_result(fit: LawFit, *, residuals: bool = False) -> FitResult:
         error_method=fit.error_method,
         notes=list(fit.notes),
         residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
+        curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},
     )
 
 

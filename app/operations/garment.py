@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.own_materials import find_material
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.design import DesignFile
 from knitcore.formats.garment_design import design_of_plan
@@ -15,7 +16,6 @@ from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worn import Fit, Worn
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 
 Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
 Ease = Annotated[float, Field(ge=-0.6, le=1, allow_inf_nan=False)]

@@ -7,9 +7,10 @@ from functools import lru_cache
 import numpy as np
 from pydantic import BaseModel, Field
 
+from app.own_materials import find_material, own_materials
 from knitcore.fabric import PHASES, Direction, Fabric
 from knitcore.materials import FabricRecord, Material, load_library, load_variants
-from knitcore.materials import material as find_material
+from knitcore.materials.document import CurveDocument
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.mechanics.local import StitchTable, stitch_table
 from knitcore.mechanics.uniaxial import uniaxial_response
@@ -141,12 +142,15 @@ class MaterialDetail(BaseModel):
     stitch_table: StitchTableResult | None = Field(
         description="None for a material that lacks one of the four fabrics."
     )
-    curves: dict[Fabric, dict[Direction, CurveResult]]
+    curves: dict[Fabric, dict[Direction, CurveResult]] = Field(description="Of the laws.")
+    measured: dict[Fabric, dict[Direction, CurveDocument]] = Field(
+        description="Of the stretch tests, where they are kept with the material."
+    )
 
 
 def list_materials() -> Materials:
-    """The library and its variants, in short."""
-    found = [*load_library().values(), *load_variants().values()]
+    """One's own, the library and its variants, in short."""
+    found = [*own_materials().values(), *load_library().values(), *load_variants().values()]
     return Materials(
         materials=[
             MaterialSummary(
@@ -183,6 +187,11 @@ def describe_material(material: Material) -> MaterialDetail:
         curves={
             fabric: {d: _curve(record.law, d) for d in Direction}
             for fabric, record in material.fabrics.items()
+        },
+        measured={
+            fabric: {d: CurveDocument.from_curve(c) for d, c in record.measured.items()}
+            for fabric, record in material.fabrics.items()
+            if record.measured
         },
     )
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
+from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
-from knitcore.materials import material as find_material
 from knitcore.mechanics.prediction import predict
 from knitcore.mechanics.relaxed import RelaxedSize
 from knitcore.segments import segment_map

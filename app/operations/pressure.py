@@ -7,11 +7,11 @@ from dataclasses import asdict
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.own_materials import find_material
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.materials.uncertainty import Z_SCORE, log_deviation
 from knitcore.mechanics import pressure
 from knitcore.mechanics.constitutive import ConstitutiveLaw

@@ -13,11 +13,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.kept import KeptResults
 from app.operations.charts import ChartInput, to_chart, to_repeat
+from app.own_materials import find_material
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax

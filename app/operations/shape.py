@@ -8,9 +8,9 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
+from app.own_materials import find_material
 from knitcore.design.shape import ShapedSwatch, fill_shape
 from knitcore.fabric import Direction
-from knitcore.materials import material as find_material
 
 Width = Annotated[float, Field(gt=0.05, lt=3, allow_inf_nan=False)] | None
 

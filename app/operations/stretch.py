@@ -14,13 +14,13 @@ from scipy.ndimage import distance_transform_edt
 
 from app.operations.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
 from app.operations.stretch_margins import StretchMargins, sampled_steps, stretch_margins
+from app.own_materials import find_material
 from app.packed import packed
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
 
 Array = NDArray[np.float32]

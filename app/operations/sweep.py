@@ -21,11 +21,11 @@ from app.operations.relax import (
     what_decides,
     yarn_result,
 )
+from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 from knitcore.yarnlevel.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_law
 from knitcore.yarnlevel.published.sweep import sweep_published
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat

@@ -17,6 +17,7 @@ from app.operations.view_colours import (
     region_labels,
     stitch_colours,
 )
+from app.own_materials import find_material
 from app.viewer.fabric import FabricScene
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -27,7 +28,6 @@ from knitcore.geometry.placing import Placement, at_rest, carried
 from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
 from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
-from knitcore.materials import material as find_material
 
 MAX_REGIONS = 200
 

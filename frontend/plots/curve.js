@@ -1,6 +1,7 @@
 /**
- * Stress against strain: the four fabrics of the material, the chart (or its part) with the interval
- * that the service knows, and the stretch test with the step on show.
+ * Stress against strain: the four fabrics of the material, as points where they were measured, the
+ * chart (or its part) with the interval that the service knows, and the stretch test with the step
+ * on show.
  *
  * @import {Studio} from "../studio.js"
  * @import {ChartCurve, Stretch} from "../types.js"
@@ -188,6 +189,17 @@ function traces(studio, own) {
         line: { color: colour("accent"), width: 3 },
       },
     },
+    ...FABRICS.map((fabric) => {
+      const curve = studio.material.value?.measured?.[fabric]?.[studio.seeing.pull.value];
+      const pulls = curve?.pulls === 1 ? "1 pull" : `median of ${curve?.pulls} pulls`;
+      return {
+        name: `${fabric}, measured`,
+        ...upTo(curve?.strain ?? [], curve?.stress_n_per_mm ?? []),
+        mode: "markers",
+        marker: { color: colour("panel"), size: 5, line: { color: colour(fabric), width: 1.4 } },
+        hovertemplate: `%{x:.0f} %, %{y:.3g} N/mm<extra>${fabric}, measured, ${pulls}</extra>`,
+      };
+    }),
   );
   return result;
 }

@@ -338,7 +338,7 @@ class _Fill:
     def _off_share(self, off: Array) -> float:
         """Share of stitches with a wish that are off by more than 10 % (logarithms)."""
         missed = (np.abs(np.expm1(off)) > OFF).any(axis=0)
-        return float(missed[self._has_wish].mean())
+        return float(np.mean(missed, where=self._has_wish))
 
     def _is_alone(self, choices: Sequence[_Choice]) -> bool:
         """Whether there is one patch and nothing beside it."""

@@ -4,7 +4,8 @@
 
     {"format": "knitcore-law", "version": 1, "source": "fitted, recommended reduction",
      "law": {"stiffness_xxxx": 0.23, …, "beta_yy": 0.02, "shear_modulus": 0.01},
-     "standard_errors": {"stiffness_xxxx": 0.006, …}, "largest_strain": {"course": 0.55, …}}
+     "standard_errors": {"stiffness_xxxx": 0.006, …}, "largest_strain": {"course": 0.55, …},
+     "curves": {"course": {"strain": […], "stress_n_per_mm": […], "pulls": 4}, …}}
 
 Only ``law`` is needed; the constants may also stand at the top, with or without their unit
 (``stiffness_xxxx_n_per_mm``), so that the output of ``knitcore fit --json`` is such a file too.
@@ -18,11 +19,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.materials.document import LawDocument
+from knitcore.materials.document import CurveDocument, LawDocument
+from knitcore.materials.measured import MeasuredCurve
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 FORMAT = "knitcore-law"
@@ -40,12 +42,14 @@ class LawFile:
     source : where they come from, in words.
     standard_errors : by the law's field names, where known.
     largest_strain : strain that the tests reached, by direction, where known.
+    curves : median curves of the tests, by direction, where known.
     """
 
     law: ConstitutiveLaw
     source: str = ""
     standard_errors: Mapping[str, float] = field(default_factory=dict)
     largest_strain: Mapping[Direction, float] = field(default_factory=dict)
+    curves: Mapping[Direction, MeasuredCurve] = field(default_factory=dict)
 
 
 def save_law(file: LawFile, path: Path) -> None:
@@ -57,6 +61,7 @@ def save_law(file: LawFile, path: Path) -> None:
         "law": asdict(file.law),
         "standard_errors": dict(file.standard_errors),
         "largest_strain": {str(d): e for d, e in file.largest_strain.items()},
+        "curves": {str(d): asdict(curve) for d, curve in file.curves.items()},
     }
     Path(path).write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
 
@@ -94,12 +99,19 @@ def law_from_mapping(data: Mapping[str, Any]) -> LawFile:
     nested = data.get("law", data)
     constants = _plain(nested if isinstance(nested, Mapping) else {})
     try:
+        curves = _Curves.model_validate({"curves": data.get("curves", {})})
         document = LawDocument.model_validate(
             {k: v for k, v in constants.items() if k in ConstitutiveLaw.__dataclass_fields__}
         )
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"])
+        if where.startswith("curves"):
+            raise InputError(
+                where,
+                f"{first['msg']}.",
+                "Give curves as `knitcore fit --out` writes them, or leave them out.",
+            ) from None
         raise InputError(
             f"law.{where}" if where else "law",
             f"{first['msg']}.",
@@ -115,7 +127,12 @@ def law_from_mapping(data: Mapping[str, Any]) -> LawFile:
             for k, v in _floats(data.get("largest_strain")).items()
             if k in set(Direction)
         },
+        curves={d: curve.to_curve() for d, curve in curves.curves.items()},
     )
+
+
+class _Curves(BaseModel):
+    curves: dict[Direction, CurveDocument]
 
 
 def _plain(data: Any) -> dict[str, Any]:

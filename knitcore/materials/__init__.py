@@ -9,6 +9,7 @@ from knitcore.materials.files import (
 )
 from knitcore.materials.library import load_library, load_variants, material
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
+from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import Interval, LawUncertainty
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "LawUncertainty",
     "Material",
     "MaterialDocument",
+    "MeasuredCurve",
     "Origin",
     "Yarn",
     "load_library",

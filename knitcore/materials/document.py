@@ -8,9 +8,10 @@ from typing import Annotated, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from knitcore.errors import InputError
-from knitcore.fabric import Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials.consistency import check_stated_constants
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
+from knitcore.materials.measured import MOST_POINTS, MeasuredCurve
 from knitcore.materials.uncertainty import LawUncertainty, log_deviation
 from knitcore.mechanics.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 
@@ -117,6 +118,27 @@ class DeviationDocument(_Model):
     poisson_xy: Deviation | None = None
 
 
+class CurveDocument(_Model):
+    """A measured stress–strain curve."""
+
+    strain: Annotated[list[float], Field(min_length=2, max_length=MOST_POINTS)]
+    stress_n_per_mm: Annotated[list[float], Field(min_length=2, max_length=MOST_POINTS)]
+    pulls: Annotated[int, Field(ge=1)] = 1
+
+    def to_curve(self) -> MeasuredCurve:
+        """The curve."""
+        return MeasuredCurve(tuple(self.strain), tuple(self.stress_n_per_mm), self.pulls)
+
+    @classmethod
+    def from_curve(cls, curve: MeasuredCurve) -> CurveDocument:
+        """The document of a curve."""
+        return cls(
+            strain=list(curve.strain),
+            stress_n_per_mm=list(curve.stress_n_per_mm),
+            pulls=curve.pulls,
+        )
+
+
 class FabricDocument(_Model):
     """One pure fabric of a user's material."""
 
@@ -129,6 +151,7 @@ class FabricDocument(_Model):
     setting: str = ""
     origin: Origin = Origin.FITTED
     standard_deviation: DeviationDocument = DeviationDocument()
+    measured: dict[Direction, CurveDocument] = Field(default_factory=dict)
 
     def to_record(self, fabric: Fabric) -> FabricRecord:
         """The record of this fabric."""
@@ -151,6 +174,7 @@ class FabricDocument(_Model):
             loop_length_mm=self.loop_length_mm,
             yarn_diameter_mm=self.yarn_diameter_mm,
             setting=self.setting,
+            measured={d: curve.to_curve() for d, curve in self.measured.items()},
         )
 
     def _uncertainty(self, law: ConstitutiveLaw) -> LawUncertainty:
@@ -194,6 +218,7 @@ class FabricDocument(_Model):
                 poisson_yx=spread.poisson_yx,
                 poisson_xy=spread.poisson_xy,
             ),
+            measured={d: CurveDocument.from_curve(c) for d, c in record.measured.items()},
         )
 
 

@@ -11,6 +11,7 @@ from types import MappingProxyType
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials.figures import Figure
+from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import LawUncertainty
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 
@@ -75,6 +76,7 @@ class FabricRecord:
     setting : machine and stitch setting, or needle.
     origin : measured, simulated, fitted or estimated.
     uncertainty : standard deviations of the linear constants.
+    measured : curves of the tests behind the law, by direction; empty where none are known.
     """
 
     fabric: Fabric
@@ -90,6 +92,7 @@ class FabricRecord:
     stitch_size_source: str = ""
     setting: str = ""
     printed: Mapping[str, Figure] = field(default_factory=lambda: MappingProxyType({}))
+    measured: Mapping[Direction, MeasuredCurve] = field(default_factory=dict)
 
     @property
     def stitch_area_mm2(self) -> float:

@@ -26,7 +26,9 @@ from numpy.typing import NDArray
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.materials.measured import MeasuredCurve
 from knitcore.measure.law_fit import ALPHA_SHARE_LIMIT, DirectionFit, fit_direction
+from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
 from knitcore.mechanics.constitutive import ConstitutiveLaw
@@ -85,6 +87,7 @@ class LawFit:
     rms_n_per_mm : of all residuals; ``rms_course_n_per_mm`` and ``rms_wale_n_per_mm`` of one test.
     largest_strain : fitted range per direction.
     residuals : data for plots, per direction.
+    curves : median curve of the pulls per direction, to be kept with the law.
     runs : number of pulls used per direction.
     error_method : what the standard errors come from.
     notes : what was left out, which constants the tests do not determine.
@@ -98,6 +101,7 @@ class LawFit:
     rms_wale_n_per_mm: float
     largest_strain: dict[Direction, float]
     residuals: dict[Direction, Residuals]
+    curves: dict[Direction, MeasuredCurve]
     runs: dict[Direction, int]
     error_method: str
     notes: tuple[str, ...]
@@ -158,6 +162,7 @@ def fit_law(
         rms_wale_n_per_mm=rms[Direction.WALE],
         largest_strain={d: f.largest_strain for d, f in zip(Direction, fits, strict=True)},
         residuals=residuals,
+        curves={d: median_curve(t) for d, t in zip(Direction, (course, wale), strict=True)},
         runs={d: len(t.runs) for d, t in zip(Direction, (course, wale), strict=True)},
         error_method="jackknife over pulls"
         if not single

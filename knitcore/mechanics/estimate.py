@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.materials.measured import MeasuredCurve
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.mechanics.estimate_model import (
     DIRECTIONS,
@@ -58,12 +59,14 @@ class MeasuredSwatch:
     law : fitted to its stretch tests.
     loop_length_mm : yarn per stitch.
     setting : needle or stitch setting, in words ("" if unknown).
+    curves : of its stretch tests, by direction, where known.
     """
 
     fabric: Fabric
     law: ConstitutiveLaw
     loop_length_mm: float
     setting: str = ""
+    curves: Mapping[Direction, MeasuredCurve] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,7 @@ class FabricEstimate:
     loop_length_mm : given. stitch_course_mm, stitch_wale_mm : from the library's mean proportions
         of stitch to loop length.
     measured : whether the law is the swatch's own.
+    curves : of the swatch's stretch tests, by direction, where known.
     """
 
     fabric: Fabric
@@ -91,6 +95,7 @@ class FabricEstimate:
     stitch_course_mm: float
     stitch_wale_mm: float
     measured: bool
+    curves: Mapping[Direction, MeasuredCurve]
 
 
 @dataclass(frozen=True)
@@ -151,6 +156,7 @@ def estimate_yarn(
             stitch_course_mm=float(stitch[i, 0]),
             stitch_wale_mm=float(stitch[i, 1]),
             measured=swatch is not None,
+            curves=swatch.curves if swatch else {},
         )
     return YarnEstimate(fabrics, tuple(_warnings(swatches, loops, scale, table, product_setting)))
 

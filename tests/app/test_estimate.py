@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -11,8 +12,9 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from knitcore.fabric import Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials import load_material_file, material
+from tests.knitcore.measure.synthetic import write_csv
 
 
 def run(*arguments: str | Path) -> dict[str, object]:
@@ -49,6 +51,30 @@ def test_an_estimate_from_one_swatch(client: TestClient) -> None:
     assert next(iter(asked["fabrics"]["rib"])) == "strain_at_0_1_n_per_mm"
     assert asked["left_out"]["modulus_rms_factor"] == pytest.approx(1.60, abs=0.01)
     assert asked["warnings"] == []
+
+
+def test_measured_curves_go_from_the_tests_into_the_material(
+    client: TestClient, tmp_path: Path
+) -> None:
+    """fit, estimate, materials: the median curve of the pulls stays with the fabric."""
+    files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
+    law, out = tmp_path / "law.json", tmp_path / "mine.yaml"
+    fitted = run("fit", *files, "--out", law)
+    run("estimate", "--bending-modulus-n-mm2", "0.02", "--loop-length-mm", "12",
+        "--swatch", f"garter={law}", "--out", out)  # fmt: skip
+    told = run("materials", out)
+    assert told["measured"] == {"garter": fitted["curves"]}
+    saved = load_material_file(out)
+    curve = saved.record(Fabric.GARTER).measured[Direction.WALE]
+    assert curve.pulls == 4
+    assert not saved.record(Fabric.RIB).measured
+    uploads = {
+        f"test_{d}": {"name": f.name, "content": base64.b64encode(f.read_bytes()).decode()}
+        for d, f in zip(Direction, files, strict=True)
+    }
+    asked = client.post("/api/v1/fit", json=uploads).json()
+    assert asked["curves"] == fitted["curves"]
+    assert client.get("/api/v1/materials/acrylic").json()["measured"] == {}
 
 
 def test_an_estimate_becomes_a_material(tmp_path: Path) -> None:

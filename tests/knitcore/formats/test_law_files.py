@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -10,15 +11,32 @@ import pytest
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law, save_law
+from knitcore.materials import MeasuredCurve
 from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 LAW = ConstitutiveLaw(0.24, 0.06, 0.036, 0.029, 1.17, 0.8, 0.022, 0.02, shear_modulus=0.02)
 
 
 def test_what_was_written_reads_back(tmp_path: Path) -> None:
-    file = LawFile(LAW, "made", {"alpha_xx": 0.01}, {Direction.WALE: 0.8})
+    curve = MeasuredCurve((0.1, 0.2), (0.01, 0.03), pulls=4)
+    file = LawFile(LAW, "made", {"alpha_xx": 0.01}, {Direction.WALE: 0.8}, {Direction.WALE: curve})
     save_law(file, tmp_path / "law.json")
     assert load_law(tmp_path / "law.json") == file
+
+
+@pytest.mark.parametrize(
+    ("curves", "field"),
+    [
+        ({"wale": {"strain": [0.1, 0.2], "stress_n_per_mm": [0.1, "x"]}}, "curves.wale"),
+        ({"bias": {"strain": [0.1, 0.2], "stress_n_per_mm": [0.1, 0.2]}}, "curves.bias"),
+        ({"wale": {"strain": [0.2, 0.1], "stress_n_per_mm": [0.1, 0.2]}}, "measured"),
+        ([1], "curves"),
+    ],
+)
+def test_curves_that_are_none_are_refused_by_name(curves: object, field: str) -> None:
+    with pytest.raises(InputError) as caught:
+        law_from_mapping({"law": asdict(LAW), "curves": curves})
+    assert caught.value.field.startswith(field)
 
 
 def test_constants_may_carry_their_unit() -> None:

@@ -6,8 +6,9 @@ import pytest
 import yaml
 
 from knitcore.errors import InputError
-from knitcore.fabric import Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials import (
+    MeasuredCurve,
     load_library,
     load_material_file,
     load_variants,
@@ -73,6 +74,33 @@ def test_saving_and_loading_keeps_the_laws(tmp_path, identifier, suffix):
         assert copy.uncertainty.log_modulus_wale == pytest.approx(
             record.uncertainty.log_modulus_wale
         )
+
+
+@pytest.mark.parametrize("suffix", [".json", ".yaml"])
+def test_measured_curves_are_kept_with_a_material(tmp_path, document, suffix):
+    curve = {"strain": [0.0, 0.1, 0.3], "stress_n_per_mm": [0.0, 0.02, 0.11], "pulls": 3}
+    document["fabrics"]["stockinette"]["measured"] = {"course": curve}
+    merino = material_from_mapping(document)
+    save_material_file(merino, tmp_path / f"m{suffix}")
+    again = load_material_file(tmp_path / f"m{suffix}").record(Fabric.STOCKINETTE).measured
+    assert again == merino.record(Fabric.STOCKINETTE).measured
+    assert again == {Direction.COURSE: MeasuredCurve((0.0, 0.1, 0.3), (0.0, 0.02, 0.11), 3)}
+
+
+@pytest.mark.parametrize(
+    ("curve", "field"),
+    [
+        ({"strain": [0.1, 0.2]}, "stress_n_per_mm"),
+        ({"strain": [0.2, 0.1], "stress_n_per_mm": [0.1, 0.2]}, "measured"),
+        ({"strain": list(range(200)), "stress_n_per_mm": list(range(200))}, "strain"),
+    ],
+)
+def test_measured_curves_that_are_none_are_refused(document, curve, field):
+    document["fabrics"]["stockinette"]["measured"] = {"wale": curve}
+    with pytest.raises(InputError) as caught:
+        material_from_mapping(document)
+    assert caught.value.field.startswith("fabrics.stockinette.measured")
+    assert field in caught.value.field
 
 
 def test_moduli_that_contradict_the_stiffnesses_are_refused(document):

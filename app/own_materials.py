@@ -1,0 +1,76 @@
+"""Materials of one's own beside the library: files in the folder ``materials`` of the data folder.
+
+Every process reads them for itself, workers too. An identifier ends in a mark of the file's
+content, for designs, atlases and results of jobs are kept by it: a file that was changed is another
+material.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+from app.settings import Settings
+from knitcore.errors import InputError
+from knitcore.materials import Material, load_material_file, material
+
+FOLDER = "materials"
+PREFIX = "own:"
+KINDS = (".json", ".yaml", ".yml")
+MOST_FILES = 200
+
+_log = logging.getLogger("knitcore.materials")
+
+
+def find_material(identifier: str) -> Material:
+    """A material of the library or of one's own.
+
+    Raises
+    ------
+    InputError
+        If there is none of that identifier.
+    """
+    if not identifier.startswith(PREFIX):
+        return material(identifier)
+    own = own_materials()
+    if identifier in own:
+        return own[identifier]
+    stem = identifier.rpartition(".")[0]
+    changed = any(other.rpartition(".")[0] == stem for other in own)
+    raise InputError(
+        "material",
+        f"the file of {identifier} was changed since." if changed else f"{identifier} is gone.",
+        "Choose it again." if changed else "Have it put back, or choose another material.",
+    )
+
+
+def own_materials() -> dict[str, Material]:
+    """All materials in the folder, by identifier; files that hold none are logged and left out."""
+    folder = _folder()
+    if not folder.is_dir():
+        return {}
+    files = sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS)
+    found = {}
+    for file in files[:MOST_FILES]:
+        try:
+            facts = file.stat()
+            own = _read(file, facts.st_mtime_ns, facts.st_size)
+        except (InputError, OSError) as error:
+            _log.warning("%s is no material: %s", file, error)
+            continue
+        found[own.identifier] = own
+    return found
+
+
+def _folder() -> Path:
+    return Settings().data_dir.expanduser() / FOLDER
+
+
+@lru_cache(maxsize=MOST_FILES)
+def _read(file: Path, _modified_ns: int, _size: int) -> Material:
+    own = load_material_file(file)
+    mark = hashlib.sha256(file.read_bytes()).hexdigest()[:6]
+    return replace(own, identifier=f"{PREFIX}{own.identifier}.{mark}")
