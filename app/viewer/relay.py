@@ -26,6 +26,8 @@ VIEW_STYLE = """<style>
   .mantine-Paper-root, .mantine-Notifications-root { display: none !important; }
   /* The page's theme shows through. */
   html, body, #root, #root div { background-color: transparent !important; }
+  /* Where viser draws rectangles to select with: one more layer that every frame would blend. */
+  canvas[width="0"] { display: none !important; }
 </style>"""
 SHARE_REQUESTS = frozenset({"ShareUrlRequest", "ShareUrlDisconnect"})
 """Messages that would make viser open a public tunnel to this machine."""

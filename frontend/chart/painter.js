@@ -16,6 +16,12 @@ import { Brush } from "../core/stroke.js";
 import { listenToPinches } from "./pinch.js";
 import { boxAt, placedAt, placedBox, shifted } from "./placing.js";
 
+/**
+ * The stitch under the pointer is shown this much later: a press that comes at once must not wait
+ * for the frame that shows it, which takes longer than that where there is no GPU.
+ */
+const HOVER_MS = 24;
+
 /** @type {Cell} */
 const CORNER = [0, 0];
 
@@ -27,6 +33,7 @@ export class Painter {
   /** @type {Floating | null} */ #floating = null;
   /** A copy of a repeat that is being moved. @type {Placed | null} */ #placed = null;
   /** Where a selection by keys began. @type {Cell | null} */ #anchor = null;
+  /** Stitch to be shown as under the pointer. @type {Cell | null} */ #pointed = null;
   #panning = false;
   #space = false;
 
@@ -45,6 +52,7 @@ export class Painter {
     canvas.addEventListener("pointerup", () => this.#up());
     canvas.addEventListener("pointercancel", () => this.#cancel());
     canvas.addEventListener("pointerleave", () => {
+      this.#pointed = null;
       if (!this.#gesture) view.hover.value = null;
     });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -68,6 +76,7 @@ export class Painter {
     if (document.activeElement !== view.canvas) view.canvas.focus({ preventScroll: true });
     view.canvas.setPointerCapture(event.pointerId);
     const cell = view.cellAt(event);
+    this.#hover(cell);
     const { mode } = studio.tool.value;
     if (event.button === 1 || this.#space || mode === "pan") {
       this.#panning = true;
@@ -143,16 +152,31 @@ export class Painter {
       return;
     }
     const cell = view.cellAt(event);
-    const hover = view.hover.value;
-    const moved = hover?.[0] !== cell[0] || hover[1] !== cell[1];
-    if (moved) view.hover.value = this.studio.document.grid.has(...cell) ? cell : null;
     const gesture = this.#gesture;
-    if (!gesture) return;
+    if (!gesture) {
+      this.#hoverSoon(cell);
+      return;
+    }
+    this.#hover(cell);
     const { mode } = this.studio.tool.value;
     const freehand = mode === "stroke" || mode === "select";
     const between = freehand ? event.getCoalescedEvents?.() ?? [] : [];
     for (const each of between.length ? between : [event]) this.#follow(view.cellAt(each), event.shiftKey);
     view.flush();
+  }
+
+  /** @param {Cell} cell */
+  #hoverSoon(cell) {
+    if (!this.#pointed) setTimeout(() => this.#pointed && this.#hover(this.#pointed), HOVER_MS);
+    this.#pointed = cell;
+  }
+
+  /** @param {Cell} cell */
+  #hover(cell) {
+    this.#pointed = null;
+    const { hover } = this.view;
+    const moved = hover.value?.[0] !== cell[0] || hover.value[1] !== cell[1];
+    if (moved) hover.value = this.studio.document.grid.has(...cell) ? cell : null;
   }
 
   /**

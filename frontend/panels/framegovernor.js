@@ -6,14 +6,18 @@
 
 /** Frames further apart than this on average mean a slow machine. */
 const SLOW_MS = 45;
-/** A sleeping viewer still draws this often, for news that came late or from elsewhere. */
+/**
+ * A sleeping viewer still draws after this time, for news that came late or from elsewhere; then
+ * after twice as long and so on, as a frame may keep such a machine busy for seconds.
+ */
 const HEARTBEAT_MS = 2500;
+const LONGEST_HEARTBEAT_MS = 20_000;
 
 export class FrameGovernor {
   /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */ #waiting = new Map();
   /** @type {((callback: FrameRequestCallback) => number) | null} */ #request = null;
   #next = 1;
-  #beating = false;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #heart;
   #awakeUntil = 0;
   #held = false;
   #lastFrame = 0;
@@ -40,7 +44,7 @@ export class FrameGovernor {
     viewer.cancelAnimationFrame = (id) => {
       if (!this.#waiting.delete(id)) cancel(id);
     };
-    this.#beat();
+    this.#beat(HEARTBEAT_MS);
     for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "resize"]) {
       viewer.addEventListener(name, () => this.wake(1200), { passive: true });
     }
@@ -53,6 +57,7 @@ export class FrameGovernor {
    */
   wake(milliseconds) {
     this.#awakeUntil = Math.max(this.#awakeUntil, performance.now() + milliseconds);
+    this.#beat(HEARTBEAT_MS);
     this.#release();
   }
 
@@ -67,12 +72,13 @@ export class FrameGovernor {
     return this.#pace >= SLOW_MS;
   }
 
-  #beat() {
-    if (this.#beating) return;
-    this.#beating = true;
-    setInterval(() => {
+  /** @param {number} milliseconds to the next heartbeat */
+  #beat(milliseconds) {
+    clearTimeout(this.#heart);
+    this.#heart = setTimeout(() => {
       if (!this.#held) this.#draw();
-    }, HEARTBEAT_MS);
+      this.#beat(Math.min(2 * milliseconds, LONGEST_HEARTBEAT_MS));
+    }, milliseconds);
   }
 
   #open() {
