@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 MEMORY_BYTES = 4_000_000_000
 NICENESS = 10
-"""Pages come before computations: a worker gets about a tenth of a core that the service wants."""
+"""About a tenth of a core that something else wants."""
 
 
 class Cell(IntEnum):
@@ -37,11 +37,13 @@ class ProcessPlace:
     Parameters
     ----------
     memory_bytes : most memory of the process.
+    idle : whether it takes only what nothing else wants, where the system knows that (Linux).
     """
 
-    def __init__(self, memory_bytes: int) -> None:
+    def __init__(self, memory_bytes: int, *, idle: bool = False) -> None:
         self._context = multiprocessing.get_context("spawn")
         self._memory_bytes = memory_bytes
+        self._idle = idle
         self._cells = self._context.Array("d", len(Cell), lock=False)
         self._executor = self._new()
 
@@ -83,13 +85,15 @@ class ProcessPlace:
             1,
             mp_context=self._context,
             initializer=_adopt,
-            initargs=(self._cells, self._memory_bytes),
+            initargs=(self._cells, self._memory_bytes, self._idle),
         )
 
 
-def processes(count: int, memory_bytes: int = MEMORY_BYTES) -> list[ProcessPlace]:
+def processes(
+    count: int, memory_bytes: int = MEMORY_BYTES, *, idle: bool = False
+) -> list[ProcessPlace]:
     """Several places, each with at most so much memory."""
-    return [ProcessPlace(memory_bytes) for _ in range(count)]
+    return [ProcessPlace(memory_bytes, idle=idle) for _ in range(count)]
 
 
 def _kill(executor: ProcessPoolExecutor) -> None:
@@ -102,13 +106,25 @@ _cells: Any = None
 _memory_bytes = 0
 
 
-def _adopt(cells: Any, memory_bytes: int) -> None:
+def _adopt(cells: Any, memory_bytes: int, idle: bool) -> None:
     """In a worker: remember the shared memory, and take no more of anything than allowed."""
     global _cells, _memory_bytes
     _cells, _memory_bytes = cells, memory_bytes
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    os.nice(NICENESS)
+    _stand_back(idle)
     resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))
+
+
+def _stand_back(idle: bool) -> None:
+    """Pages come before computations.
+
+    A process that is only nice keeps a core to the end of its turn, some milliseconds, while a
+    stroke waits; an idle one gives it up at once.
+    """
+    if idle and hasattr(os, "SCHED_IDLE"):
+        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+    else:
+        os.nice(NICENESS)
 
 
 def _end_with_parent() -> None:

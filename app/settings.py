@@ -72,6 +72,11 @@ class Settings(BaseSettings):
         ge=500_000_000,
         description="Most memory of one process for heavy work; half of the machine's by default.",
     )
+    worker_priority: Literal["idle", "low"] = Field(
+        "idle",
+        description="Computations take what nothing else wants (idle, Linux only), or a tenth of a "
+        "core that others want (low).",
+    )
     results_max_bytes: int = Field(
         1_000_000_000, ge=0, description="Most room for results of jobs, as they are stored."
     )

@@ -30,6 +30,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     from app.main import create_app
     from app.observing import configure_logging
 
+    memory.keep_no_large_blocks()
     configure_logging(settings.log_format)
     listener = _listen(settings)
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104

@@ -19,6 +19,11 @@ def add(a: int, b: int, *, cancelled: Callable[[], bool]) -> int:
     return a + b
 
 
+def priority(*, cancelled: object) -> tuple[int, int]:
+    """Scheduling policy and niceness of the worker."""
+    return os.sched_getscheduler(0), os.nice(0)
+
+
 def refuse(*, cancelled: Callable[[], bool]) -> None:
     raise InputError("strain", "is too much.", "Use less.")
 

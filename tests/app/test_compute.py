@@ -134,3 +134,15 @@ def test_too_many_waiting_jobs_are_refused(compute: Compute, tmp_path: Path) -> 
 
     outcome = asyncio.run(crowd())
     assert [o for o in outcome if isinstance(o, str)] == ["0", "1", "2", "3", "4"]
+
+
+@pytest.mark.skipif(not hasattr(os, "SCHED_IDLE"), reason="only Linux knows idle processes")
+@pytest.mark.parametrize("idle", [True, False])
+def test_workers_stand_back(idle: bool) -> None:
+    compute = Compute(processes(1, idle=idle), timeout_s=30.0)
+    try:
+        policy, niceness = asyncio.run(compute.run(never, jobs.priority))
+    finally:
+        compute.close()
+    assert (policy == os.SCHED_IDLE) is idle
+    assert niceness == (os.nice(0) if idle else min(os.nice(0) + 10, 19))
