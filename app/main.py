@@ -23,6 +23,7 @@ from app.page import serve_page
 from app.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.processes import processes
 from app.recent import RecentResults
+from app.reference import serve_reference
 from app.schema import install_schema
 from app.security import Guard
 from app.settings import Settings
@@ -83,6 +84,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         summary="Design the mechanics of knitted fabric, stitch by stitch.",
         version="1",
         lifespan=lifespan,
+        docs_url=None,  # FastAPI's pages ask other hosts for their scripts
+        redoc_url=None,
         responses=PROBLEM_RESPONSES,
     )
     app.state.settings = chosen
@@ -94,6 +97,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.include_router(router, prefix="/api/v1")
     app.include_router(relay.router)
     app.include_router(health.router)
+    serve_reference(app)
     serve_page(app)
     app.add_middleware(Guard, settings=chosen)
     app.add_middleware(Observer, metrics=app.state.metrics)
@@ -133,7 +137,9 @@ def _places(settings: Settings) -> list[Place]:
 
         cluster = Cluster(settings.scheduler)
         return [ClusterPlace(cluster) for _ in range(settings.workers)]
-    workers = processes(settings.workers, settings.worker_memory_bytes)
+    workers = processes(
+        settings.workers, settings.worker_memory_bytes, idle=settings.worker_priority == "idle"
+    )
     for worker in workers:
         worker.warm_up(warm_up)
     return list(workers)

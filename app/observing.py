@@ -128,6 +128,9 @@ class Observer:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
+        asked = scope["method"]
+        if asked == "HEAD":  # as GET; the server leaves the content out
+            scope = {**scope, "method": "GET"}
         offered = Headers(scope=scope).get("x-request-id", "")
         mark = offered if SAFE_ID.fullmatch(offered) else secrets.token_hex(8)
         request_id.set(mark)
@@ -143,12 +146,12 @@ class Observer:
         try:
             await self.app(scope, receive, watched)
         finally:
-            self._note(scope, status, time.perf_counter() - start)
+            self._note(scope, asked, status, time.perf_counter() - start)
 
-    def _note(self, scope: Scope, status: int, seconds: float) -> None:
+    def _note(self, scope: Scope, asked: str, status: int, seconds: float) -> None:
         # the route's template (below its prefix), not the address: that would make endless numbers
         route = getattr(scope.get("route"), "path", None) or "other"
-        method = scope["method"] if scope["method"] in METHODS else "other"
+        method = asked if asked in METHODS else "other"
         self.metrics.requests.labels(method, route, str(status)).inc()
         self.metrics.seconds.labels(method, route).observe(seconds)
         if scope["path"] in QUIET_PATHS:

@@ -166,6 +166,7 @@ def problem_of(error: Exception) -> Problem:
 
 
 def _invalid(error: RequestValidationError) -> Problem:
+    """The first error of a request; an address that nothing can have is not found."""
     first = error.errors()[0]
     if first["type"] == "json_invalid":
         return Problem(
@@ -176,21 +177,50 @@ def _invalid(error: RequestValidationError) -> Problem:
             field="body",
             remedy="Send one JSON object as /docs describes it.",
         )
+    place, told = first["loc"], first.get("ctx", {})
+    if place[0] == "path":
+        return NotFoundError(
+            f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
+        ).problem
+    if len(place) > 2 and place[2] == "request":  # of a job: its kind is no part of the place
+        place = (place[0], *place[2:])
     # Pydantic names the alternatives of a union as parts of the place; no caller wrote those.
-    parts = [str(part) for part in first["loc"] if part not in _NOT_FIELDS]
+    parts = [str(part) for part in place if part not in _NOT_FIELDS]
+    if first["type"].startswith("union_tag"):
+        parts.append(told["discriminator"].strip("'"))
     field = ".".join(parts) or "body"
-    missing = first["type"] == "missing"
+    remedy = _REMEDIES.get(first["type"], "{msg}; see /docs.")
     return Problem(
         type="input",
         title="This input cannot be used",
         status=422,
         detail=f"{field}: {first['msg']}.",
         field=field,
-        remedy=f"Give {field}; /docs has an example." if missing else f"{first['msg']}; see /docs.",
+        remedy=remedy.format_map(told | {"field": field, "msg": first["msg"]}),
     )
 
 
 _NOT_FIELDS = frozenset({"body", "path", "query", "float", "K/P text", "pure fabric"})
+_REMEDIES = {
+    "missing": "Give {field}; /docs has an example.",
+    "extra_forbidden": "Leave {field} out, or compare its name with /docs.",
+    "model_attributes_type": "Send a JSON object, with Content-Type: application/json.",
+    "union_tag_invalid": "Use one of {expected_tags}.",
+    "literal_error": "Use {expected}.",
+    "enum": "Use {expected}.",
+    "greater_than": "Use more than {gt}.",
+    "greater_than_equal": "Use {ge} or more.",
+    "less_than": "Use less than {lt}.",
+    "less_than_equal": "Use {le} or less.",
+    "string_too_short": "Use {min_length} or more characters.",
+    "string_too_long": "Use {max_length} or fewer characters.",
+    "too_short": "Give {min_length} or more.",
+    "too_long": "Give {max_length} or fewer.",
+    "int_parsing": "Use a whole number.",
+    "int_from_float": "Use a whole number.",
+    "float_parsing": "Use a number.",
+}
+"""What would be accepted, by pydantic's names of errors and with what they tell."""
 
 
 def install_problem_handlers(app: FastAPI) -> None:

@@ -7,6 +7,10 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from app.operations.materials import MaterialDetail, Materials, explain_material, list_materials
+from app.problems import NotFoundError, Problem
+from knitcore.errors import InputError
+
+MISSING = {"model": Problem, "description": "It is not in the library."}
 
 router = APIRouter(tags=["materials"])
 
@@ -17,9 +21,16 @@ def get_materials() -> Materials:
     return list_materials()
 
 
-@router.get("/materials/{identifier}", summary="Everything known of a material")
+@router.get(
+    "/materials/{identifier}", summary="Everything known of a material", responses={404: MISSING}
+)
 def get_material(
     identifier: Annotated[str, Path(max_length=80, examples=["acrylic"])],
 ) -> MaterialDetail:
     """Laws, sizes, uncertainty, the paper's figures with corrections, and values per stitch."""
-    return explain_material(identifier)
+    try:
+        return explain_material(identifier)
+    except InputError as error:
+        raise NotFoundError(
+            f"{error.field}: {error.problem}", field="identifier", remedy=error.remedy
+        ) from None

@@ -20,14 +20,14 @@ from app.viewer.fabric import Box
 from app.viewer.share import picture_png
 from app.viewer.views import View
 
-router = APIRouter(tags=["views"])
-
 EVENT_PERIOD_S = 0.5
 HEARTBEATS = 30
 """Periods without a click after which a line is sent, so that a vanished client is noticed."""
 MISSING: dict[int | str, dict[str, Any]] = {
     404: {"model": Problem, "description": "This view is not open."}
 }
+
+router = APIRouter(tags=["views"], responses=MISSING)
 
 
 class BoxInput(BaseModel):
@@ -71,16 +71,14 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     return await asyncio.to_thread(draw)
 
 
-@router.put("/views/{design}/mark", status_code=204, summary="Outline stitches", responses=MISSING)
+@router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
 async def put_mark(design: DesignId, body: MarkRequest, request: Request) -> None:
     """Outline stitches on both sides of the fabric; without a box nothing is outlined."""
     box = Box(**body.box.model_dump()) if body.box else None
     await asyncio.to_thread(_view(design, request).writer.mark, box)
 
 
-@router.put(
-    "/views/{design}/camera", status_code=204, summary="Look from a side", responses=MISSING
-)
+@router.put("/views/{design}/camera", status_code=204, summary="Look from a side")
 async def put_camera(design: DesignId, body: CameraRequest, request: Request) -> None:
     """Turn the camera of everybody who watches, so that the whole fabric is seen."""
     await asyncio.to_thread(_view(design, request).writer.look, body.side)
@@ -92,7 +90,6 @@ async def put_camera(design: DesignId, body: CameraRequest, request: Request) ->
     response_class=StreamingResponse,
     responses={
         200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."},
-        **MISSING,
     },
 )
 async def get_events(design: DesignId, request: Request) -> StreamingResponse:
@@ -112,7 +109,7 @@ async def get_events(design: DesignId, request: Request) -> StreamingResponse:
     "/views/{design}/picture",
     summary="A picture of the view",
     response_class=Response,
-    responses={200: {"content": {"image/png": {}}, "description": "A PNG."}, **MISSING},
+    responses={200: {"content": {"image/png": {}}, "description": "A PNG."}},
 )
 async def get_picture(
     design: DesignId,

@@ -87,7 +87,7 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
     counted = {
         s.labels["route"]: s.value
         for s in families["knitcore_requests"].samples
-        if s.name.endswith("_total") and s.labels["status"] == "404"
+        if s.name.endswith("_total") and (s.labels["method"], s.labels["status"]) == ("GET", "404")
     }
     assert counted["/designs/{design}"] >= 3
     assert counted["other"] >= 1
