@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 from pydantic import BaseModel
 
-from app.designs.conditions import etag
+from app.designs.conditions import etag, knows
 from app.designs.document import (
     Design,
     DesignDocument,
@@ -134,7 +134,7 @@ def get_design(
 ) -> Design | Response:
     """The document and its ETag; 304 if the caller has it already."""
     found = store.get(owner, design)
-    if if_none_match is not None and etag(found.revision) in if_none_match:
+    if if_none_match is not None and knows(if_none_match, found.revision):
         return Response(status_code=304, headers={"ETag": etag(found.revision)})
     return _tagged(response, found)
 

@@ -28,6 +28,14 @@ def etag(revision: int) -> str:
     return f'"{revision}"'
 
 
+def knows(tags: str, revision: int) -> bool:
+    """Whether the ETags of an If-Match or If-None-Match name this revision, or any; a proxy that
+    packs answers makes them weak.
+    """
+    offered = {tag.strip().removeprefix("W/") for tag in tags.split(",")}
+    return "*" in offered or etag(revision) in offered
+
+
 def check_match(if_match: str | None, revision: int) -> None:
     """Let a change through that was made on the present revision.
 
@@ -44,8 +52,7 @@ def check_match(if_match: str | None, revision: int) -> None:
             field="If-Match",
             remedy='Send the ETag of the design you have changed as If-Match, or "*" to overwrite.',
         )
-    offered = {tag.strip() for tag in if_match.split(",")}
-    if "*" not in offered and etag(revision) not in offered:
+    if not knows(if_match, revision):
         raise StaleError(
             f"The design is at revision {revision} now; your change was made on another one, and "
             "nothing was overwritten.",

@@ -27,8 +27,12 @@ def test_a_new_design_has_an_address_and_a_tag(client: TestClient) -> None:
     found = client.get(answer.headers["location"])
     assert found.json() == answer.json()
     assert found.headers["etag"] == '"1"'
-    same = client.get(answer.headers["location"], headers={"If-None-Match": '"1"'})
-    assert (same.status_code, same.content) == (304, b"")
+    for tags in ('"1"', '"7", W/"1"', "*"):
+        same = client.get(answer.headers["location"], headers={"If-None-Match": tags})
+        assert (same.status_code, same.content) == (304, b"")
+    other = client.get(answer.headers["location"], headers={"If-None-Match": '"11"'})
+    assert other.status_code == 200
+    assert other.headers["cache-control"] == "private, no-cache"
 
 
 def test_the_document_is_what_the_command_line_reads(
