@@ -74,6 +74,8 @@ export interface Prediction {
   extensibility_wale_mm_per_n: number;
   modulus_course_interval_n_per_mm?: Interval | null;
   modulus_wale_interval_n_per_mm?: Interval | null;
+  poisson_yx_interval?: Interval | null;
+  poisson_xy_interval?: Interval | null;
   provenance: string;
   notes?: string[];
 }
