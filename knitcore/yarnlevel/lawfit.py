@@ -14,7 +14,7 @@ import numpy as np
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.measure.law_fit import DirectionFit, fit_direction
+from knitcore.measure.law_fit import LINEAR_FLOOR, DirectionFit, fit_direction
 from knitcore.mechanics.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.yarnlevel.results import FloatArray, Sweep
 
@@ -60,8 +60,8 @@ def fit_law(
     Raises
     ------
     InputError
-        If a stretch has the wrong direction or fewer than five points in the range, or if the
-        constants make no stable law.
+        If a stretch has the wrong direction or fewer than five points in the range, if the points
+        leave no positive initial stiffness, or if the constants make no stable law.
     """
     points = {}
     for direction, sweep in ((Direction.COURSE, course), (Direction.WALE, wale)):
@@ -72,8 +72,8 @@ def fit_law(
         points[direction] = _in_range(sweep, max_stress_n_per_mm)
     poisson_yx = _slope(*points[Direction.COURSE][:2])
     poisson_xy = _slope(*points[Direction.WALE][:2])
-    x = _fit(points[Direction.COURSE], poisson_xy)
-    y = _fit(points[Direction.WALE], poisson_yx)
+    x = _fit(Direction.COURSE, points[Direction.COURSE], poisson_xy)
+    y = _fit(Direction.WALE, points[Direction.WALE], poisson_yx)
     law = ConstitutiveLaw(
         stiffness_xxxx=x.stiffness,
         stiffness_yyyy=y.stiffness,
@@ -107,6 +107,18 @@ def _slope(along: FloatArray, across: FloatArray) -> float:
     return -float(np.polyfit(along, across, 1)[0])
 
 
-def _fit(points: tuple[FloatArray, FloatArray, FloatArray], coupling: float) -> DirectionFit:
+def _fit(
+    direction: Direction, points: tuple[FloatArray, FloatArray, FloatArray], coupling: float
+) -> DirectionFit:
     along, across, stress = points
-    return fit_direction(along, across, stress, np.ones_like(stress), coupling)
+    found = fit_direction(along, across, stress, np.ones_like(stress), coupling)
+    floor = LINEAR_FLOOR * float(stress.max()) / found.largest_strain
+    if found.stiffness <= floor * (1.0 + 1e-6):
+        # at its bound it says nothing of the fabric, and the modulus made of it would be nonsense
+        raise InputError(
+            "max_stress_n_per_mm",
+            f"up to {stress.max():.3g} N/mm the {direction} stretch stiffens faster than the law "
+            "can, and leaves no positive initial stiffness.",
+            "Fit a smaller range of stress.",
+        )
+    return found

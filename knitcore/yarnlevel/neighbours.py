@@ -11,6 +11,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.yarnlevel.kernels.curve import laid_out
+
 EXCLUSION_RADII = 2.1
 """Samples of one yarn nearer than this many radii along it do not touch (authors' code)."""
 
@@ -132,19 +134,19 @@ def pair_changes(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Distance of each pair, and length of the change of its vector to a later curve, mm."""
     rows, wales = shape
-    samples = place.shape[0]
+    here = laid_out(curve, place, *cell)
+    there = laid_out(later, place, *later_cell)
     distance = np.empty(pairs.shape[0])
     change = np.empty(pairs.shape[0])
     for q in range(pairs.shape[0]):
         i, j, flip = pairs[q, 0], pairs[q, 1], pairs[q, 4]
-        across = place[j % samples] + pairs[q, 2] * wales - place[i % samples]
-        up = float(j // samples + pairs[q, 3] * rows - i // samples)
-        x = curve[j, 0, 0] - curve[i, 0, 0] + across * cell[0]
-        y = curve[j, 0, 1] - curve[i, 0, 1] + up * cell[1]
-        z = flip * curve[j, 0, 2] - curve[i, 0, 2]
-        dx = later[j, 0, 0] - later[i, 0, 0] + across * later_cell[0] - x
-        dy = later[j, 0, 1] - later[i, 0, 1] + up * later_cell[1] - y
-        dz = flip * later[j, 0, 2] - later[i, 0, 2] - z
+        right, up = wales * pairs[q, 2], rows * pairs[q, 3]
+        x = here[j, 0] - here[i, 0] + right * cell[0]
+        y = here[j, 1] - here[i, 1] + up * cell[1]
+        z = flip * here[j, 2] - here[i, 2]
+        dx = there[j, 0] - there[i, 0] + right * later_cell[0] - x
+        dy = there[j, 1] - there[i, 1] + up * later_cell[1] - y
+        dz = flip * there[j, 2] - there[i, 2] - z
         distance[q] = np.sqrt(x * x + y * y + z * z)
         change[q] = np.sqrt(dx * dx + dy * dy + dz * dz)
     return distance, change

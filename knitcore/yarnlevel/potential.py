@@ -59,19 +59,20 @@ def potential_curvature(distance: float, k: float, p: float, radius: float, core
 
 
 @numba.njit(cache=True)
-def potential_and_slope(
+def potential_and_derivatives(
     distance: float, k: float, p: float, radius: float, core: float
-) -> tuple[float, float]:
-    """V(R) and V'(R) at the price of one of them."""
+) -> tuple[float, float, float]:
+    """V(R), V'(R) and V''(R) at the price of one of them."""
     shell = 2.0 * (radius - core)
     zeta = (distance - 2.0 * core) / shell
     if zeta >= 1.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, 0.0
     if zeta < 1e-5:
         return (
             potential(distance, k, p, radius, core),
             potential_slope(distance, k, p, radius, core),
+            potential_curvature(distance, k, p, radius, core),
         )
     power = zeta ** (-p)
     value = k * shell * shell / (p * (p - 1.0)) * (power * zeta - 1.0 - (p - 1.0) * (1.0 - zeta))
-    return value, -k * shell / p * (power - 1.0)
+    return value, -k * shell / p * (power - 1.0), k * power / zeta

@@ -62,3 +62,19 @@ def control_of(span: int, a: int, count: int, mirror: int) -> tuple[int, float]:
     if c >= count:
         return c - count, float(mirror)
     return c, 1.0
+
+
+@numba.njit(cache=True)
+def laid_out(curve: Array, place: Array, course_mm: float, wale_mm: float) -> Array:
+    """(n, 6) of every sample: x, y and z with the drift of the cell, t and row, and |d1|."""
+    samples = place.shape[0]
+    out = np.empty((curve.shape[0], 6))
+    for i in range(curve.shape[0]):
+        t, row = place[i % samples], float(i // samples)
+        out[i, 0] = curve[i, 0, 0] + t * course_mm
+        out[i, 1] = curve[i, 0, 1] + row * wale_mm
+        out[i, 2] = curve[i, 0, 2]
+        out[i, 3] = t
+        out[i, 4] = row
+        out[i, 5] = np.sqrt(curve[i, 1, 0] ** 2 + curve[i, 1, 1] ** 2 + curve[i, 1, 2] ** 2)
+    return out

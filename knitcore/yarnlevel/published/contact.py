@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.potential import potential_and_slope
+from knitcore.yarnlevel.potential import potential_and_derivatives
 from knitcore.yarnlevel.published.elastic import bernstein
 
 FloatArray = npt.NDArray[np.float64]
@@ -142,7 +142,9 @@ def contact_energy(
                                 continue
                             distance = max(np.sqrt(square), 1e-12)
                             closest = min(closest, distance)
-                            value, slope = potential_and_slope(distance, k, p, radius, core)
+                            value, slope, _ = potential_and_derivatives(
+                                distance, k, p, radius, core
+                            )
                             value *= 2.0 * factor
                             energy += value * lengths[i] * lengths[j]
                             weights_bar[i] += value * lengths[j]

@@ -60,3 +60,13 @@ def test_swapped_or_short_stretches_are_refused():
         fit_law(wale, course)
     with pytest.raises(InputError, match="points"):
         fit_law(course, wale, max_stress_n_per_mm=1e-4)
+
+
+def test_a_stretch_that_leaves_no_initial_stiffness_has_no_law():
+    # flat, then steep, as a welt that unfolds: least squares want a negative initial stiffness
+    course, _ = stretches()
+    strain = np.linspace(0.0, 1.4, 30)
+    stress = 0.01 * strain + 0.25 * (strain / 1.4) ** 12
+    unfolding = sweep(Direction.WALE, strain, -NU_XY * strain, stress)
+    with pytest.raises(InputError, match="wale stretch stiffens faster"):
+        fit_law(course, unfolding)

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from knitcore.yarnlevel.potential import (
     CAP,
     potential,
-    potential_and_slope,
+    potential_and_derivatives,
     potential_curvature,
     potential_slope,
 )
@@ -52,8 +52,10 @@ def test_inside_the_core_the_potential_is_finite_and_grows():
 
 @settings(deadline=None)
 @given(st.floats(-0.2, 1.2))
-def test_both_at_once_are_each_of_them(zeta):
+def test_all_at_once_are_each_of_them(zeta):
     distance = 2 * CORE + zeta * SHELL
-    value, slope = potential_and_slope(distance, K, P, R, CORE)
-    assert value == pytest.approx(potential(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)
-    assert slope == pytest.approx(potential_slope(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)
+    together = potential_and_derivatives(distance, K, P, R, CORE)
+    for one, function in zip(
+        together, (potential, potential_slope, potential_curvature), strict=True
+    ):
+        assert one == pytest.approx(function(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)
