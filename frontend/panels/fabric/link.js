@@ -8,6 +8,7 @@
  */
 
 import { ApiError, api } from "../../api.js";
+import { paced } from "../../core/paced.js";
 
 /** Outlines follow the pointer this often. */
 const PERIOD_MS = 150;
@@ -16,7 +17,6 @@ const RETRY_MS = 2500;
 
 export class ViewLink {
   /** @type {EventSource | null} */ #events = null;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
   #marked = "";
   #sending = false;
 
@@ -30,12 +30,7 @@ export class ViewLink {
     this.studio = studio;
     this.view = view;
     this.hooks = hooks;
-    const later = () => {
-      this.#timer ??= setTimeout(() => {
-        this.#timer = undefined;
-        void this.mark();
-      }, PERIOD_MS);
-    };
+    const later = paced(() => void this.mark(), PERIOD_MS);
     view.hover.listen(later);
     studio.selection.listen(later);
     studio.step.listen(later);

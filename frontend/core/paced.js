@@ -1,0 +1,18 @@
+/**
+ * For what need not keep up with the pointer: done at most once in so long, the last time after the
+ * last wish. So it stays out of the frame that shows a stroke.
+ *
+ * @param {() => void} act
+ * @param {number} milliseconds
+ * @returns {() => void} wishes for it
+ */
+export function paced(act, milliseconds) {
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  return () => {
+    timer ??= setTimeout(() => {
+      timer = undefined;
+      act();
+    }, milliseconds);
+  };
+}
