@@ -173,7 +173,7 @@ async def post_strokes(
 
     Refused with 409 if the chart has another size by now.
     """
-    painted = await store.painted(owner, design, body)
+    painted = await store.paint(owner, design, body)
     response.headers["ETag"] = etag(painted.revision)
     return painted
 

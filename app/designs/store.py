@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 import time
-from collections.abc import Callable
 from datetime import UTC, datetime
 from functools import cache
 from typing import Any
@@ -119,23 +118,17 @@ class DesignStore:
 
         return self._database.write(action)
 
-    def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
+    async def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
         """Merge strokes into the present chart, whoever else has painted since.
+
+        Asynchronous, because people paint more often than they do all the rest.
 
         Raises
         ------
         ConflictError
             If the chart has another size by now.
         """
-        return self._database.write(self._painting(owner, design, strokes))
 
-    async def painted(self, owner: str, design: str, strokes: Strokes) -> Painted:
-        """The same for the event loop, for people paint more often than all the rest together."""
-        return await self._database.written(self._painting(owner, design, strokes))
-
-    def _painting(
-        self, owner: str, design: str, strokes: Strokes
-    ) -> Callable[[Connection], Painted]:
         def action(connection: Connection) -> Painted:
             row = find(connection, owner, design, change=True)
             if (row.rows, row.columns) != (strokes.rows, strokes.columns):
@@ -157,7 +150,7 @@ class DesignStore:
                 map=kinds_around(values["chart"], row.rows, row.columns, strokes.runs),
             )
 
-        return action
+        return await self._database.written(action)
 
     def delete(self, owner: str, design: str, if_match: str | None) -> None:
         """Put a design aside; it can be recovered for 30 days."""

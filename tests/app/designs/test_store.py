@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -29,6 +30,10 @@ def _strokes(*runs: tuple[int, int, str], rows: int = 2, columns: int = 4) -> St
     return Strokes(rows=rows, columns=columns, runs=painted)
 
 
+def _paint(designs: DesignStore, owner: str, design: str, strokes: Strokes) -> None:
+    asyncio.run(designs.paint(owner, design, strokes))
+
+
 def test_what_is_kept_comes_back(designs: DesignStore) -> None:
     made = designs.create("ada", RIB.model_copy(update={"chart": "kp|•\nkpkp"}))
     assert made.document == RIB
@@ -40,7 +45,7 @@ def test_designs_are_private_to_their_owner(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
     for attempt in (
         lambda: designs.get("eve", made.id),
-        lambda: designs.paint("eve", made.id, _strokes((0, 0, "P"))),
+        lambda: _paint(designs, "eve", made.id, _strokes((0, 0, "P"))),
         lambda: designs.replace("eve", made.id, RIB, "*"),
         lambda: designs.delete("eve", made.id, None),
         lambda: designs.versions("eve", made.id),
@@ -103,7 +108,7 @@ def test_strokes_of_several_people_merge(designs: DesignStore) -> None:
 
     def stroke(number: int) -> None:
         row, column = divmod(number, 16)
-        designs.paint("ada", made.id, _strokes((row, column, "P"), rows=16, columns=16))
+        _paint(designs, "ada", made.id, _strokes((row, column, "P"), rows=16, columns=16))
 
     with ThreadPoolExecutor(8) as threads:
         list(threads.map(stroke, range(0, 256, 2)))
@@ -114,12 +119,12 @@ def test_strokes_of_several_people_merge(designs: DesignStore) -> None:
 
 def test_strokes_know_their_place(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
-    designs.paint("ada", made.id, _strokes((0, 1, "KK"), (1, 3, "K"), (0, 2, "P")))
+    _paint(designs, "ada", made.id, _strokes((0, 1, "KK"), (1, 3, "K"), (0, 2, "P")))
     assert designs.get("ada", made.id).document.chart == "KPKK\nKKPP"
     with pytest.raises(InputError, match="leaves the chart"):
-        designs.paint("ada", made.id, _strokes((0, 3, "KK")))
+        _paint(designs, "ada", made.id, _strokes((0, 3, "KK")))
     with pytest.raises(ConflictError, match="4x2"):
-        designs.paint("ada", made.id, _strokes((0, 0, "K"), rows=3))
+        _paint(designs, "ada", made.id, _strokes((0, 0, "K"), rows=3))
     assert designs.get("ada", made.id).revision == 2
 
 
@@ -171,7 +176,7 @@ def test_a_copy_is_a_design_of_its_own(designs: DesignStore) -> None:
     copy = designs.duplicate("ada", made.id)
     assert copy.id != made.id
     assert copy.name == "Cuff (copy)"
-    designs.paint("ada", copy.id, _strokes((0, 0, "PPPP")))
+    _paint(designs, "ada", copy.id, _strokes((0, 0, "PPPP")))
     assert designs.get("ada", made.id).document == RIB
 
 
@@ -211,7 +216,7 @@ def test_links_show_copy_and_close(database: Database, designs: DesignStore) -> 
     made = designs.create("ada", RIB)
     read = links.give("ada", made.id, ShareMode.READ)
     copy = links.give("ada", made.id, ShareMode.COPY)
-    designs.paint("ada", made.id, _strokes((0, 0, "P")))
+    _paint(designs, "ada", made.id, _strokes((0, 0, "P")))
     assert links.open(read.token).document.chart == "KPKP\nPPKP"
     with pytest.raises(NotAllowedError):
         links.copy("bob", read.token)
@@ -272,7 +277,7 @@ def test_outline_regions_repeats_and_shelf_are_kept_everywhere(designs: DesignSt
     assert made.document == LAYOUT
     assert made.document.version == 2
     designs.keep_version("ada", made.id, "shaped")
-    designs.paint("ada", made.id, _strokes((0, 0, "P")))
+    _paint(designs, "ada", made.id, _strokes((0, 0, "P")))
     painted = designs.get("ada", made.id).document
     assert painted == LAYOUT.model_copy(update={"chart": "KPKP\nPPKP"})
     assert designs.duplicate("ada", made.id).document.regions == LAYOUT.regions

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -91,6 +92,28 @@ def test_waiting_changes_share_a_commit_and_fail_alone(database: Database) -> No
     assert kept.count(False) == 5  # 10 to 14 repeat 0 to 4
     assert _values(database) == list(range(10))
     assert len(commits) == 2
+
+
+def test_a_change_that_nobody_waits_for_any_more_is_left_out(database: Database) -> None:
+    _table(database)
+    begun, go_on = threading.Event(), threading.Event()
+
+    def first(connection: Connection) -> None:
+        begun.set()
+        go_on.wait(10)
+        _insert(1)(connection)
+
+    async def scenario() -> None:
+        opening = asyncio.create_task(database.written(first))
+        assert await asyncio.to_thread(begun.wait, 10)
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(database.written(_insert(2)), 0.05)
+        go_on.set()
+        await opening
+        await database.written(_insert(3))
+
+    asyncio.run(scenario())
+    assert _values(database) == [1, 3]
 
 
 def test_a_full_disk_is_told_and_costs_only_what_did_not_fit(database: Database) -> None:
