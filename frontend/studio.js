@@ -189,8 +189,8 @@ export class Studio {
    *
    * @param {Problem} problem
    */
-  tellProblem({ title, detail, remedy }) {
-    this.message.value = { kind: "error", title, detail: detail === title ? "" : detail, remedy };
+  tellProblem(problem) {
+    this.message.value = { kind: "error", ...problem };
   }
 
   /** @param {string} title */

@@ -8,7 +8,7 @@
 
 import { action } from "../actions/registry.js";
 import { h } from "../dom.js";
-import { actionButton } from "./actionbutton.js";
+import { actionButton } from "./buttons.js";
 
 /** @type {[Look, string][]} */
 const LOOKS = [
@@ -88,7 +88,7 @@ export function chartstrip(host, context) {
  */
 function choice(label, key, signal, options) {
   const buttons = options.map(([value, text]) =>
-    h("button", { class: "segment", type: "button", role: "radio", id: `choose-${text.toLowerCase()}`, onclick: () => (signal.value = value) }, text),
+    h("button", { class: "segment", role: "radio", id: `choose-${text.toLowerCase()}`, onclick: () => (signal.value = value) }, text),
   );
   signal.watch((now) =>
     buttons.forEach((button, k) => button.setAttribute("aria-checked", String(options[k][0] === now))),

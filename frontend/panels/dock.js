@@ -7,7 +7,7 @@
  */
 
 import { byId, h } from "../dom.js";
-import { icon } from "../icons.js";
+import { iconButton } from "./buttons.js";
 
 /**
  * @param {Studio} studio
@@ -36,7 +36,7 @@ export function docked(studio, name, title, ...content) {
     },
     h("header", {},
       h("h2", { id: `panel-${name}-title`, tabIndex: -1 }, title),
-      h("button", { class: "button quiet icon-only", type: "button", "aria-label": `Close ${title.toLowerCase()}`, onclick: close }, icon("close"))),
+      iconButton("close", `Close ${title.toLowerCase()}`, close)),
     ...content,
   );
   const dock = document.getElementById("dock") ?? h("aside", { id: "dock", class: "dock", "aria-label": "Parts of the chart" });

@@ -16,6 +16,7 @@ import { FrameGovernor } from "./framegovernor.js";
 import { ViewLink } from "./fabric/link.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
+import { problemText } from "./problem.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
@@ -105,17 +106,14 @@ export function fabricview(host, studio, view) {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
-      const { title, detail, remedy, field } = error.problem;
+      const { field } = error.problem;
       const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
       if (id !== null && id !== studio.seeing.forgotten.value) {
         status.replaceChildren(h("span", { class: "spinner" }), "Pulling the cloth once more …");
         studio.seeing.forgotten.value = id; // it is run again, and then sent again
         return;
       }
-      status.replaceChildren(
-        icon("warning"),
-        h("div", {}, h("strong", {}, title), h("p", {}, detail === title ? "" : detail), h("p", {}, remedy ?? "")),
-      );
+      status.replaceChildren(icon("warning"), problemText(error.problem));
     } finally {
       sending = false;
       if (again) {

@@ -28,7 +28,6 @@ export function keptchip(context) {
   const { keeper } = context;
   const chip = h("button", {
     class: "kept quiet",
-    type: "button",
     id: "kept",
     onclick: () => {
       const { value } = keeper.state;
@@ -67,7 +66,7 @@ export function sharedbanner(host, { keeper, studio }) {
       h("span", { class: "spacer" }),
     );
     if (state.mode === "copy") {
-      host.append(h("button", { class: "button", type: "button", id: "shared-copy", onclick: () => void copy(state.token) }, icon("copy"), "Make my copy"));
+      host.append(h("button", { class: "button", id: "shared-copy", onclick: () => void copy(state.token) }, icon("copy"), "Make my copy"));
     }
   });
 

@@ -44,7 +44,6 @@ export function menu({ id, label, content, class: style }) {
     "button",
     {
       class: style,
-      type: "button",
       id: `${id}-button`,
       "aria-haspopup": "menu",
       "aria-expanded": "false",
@@ -62,7 +61,6 @@ export function menu({ id, label, content, class: style }) {
           "button",
           {
             class: "menu-item",
-            type: "button",
             id: item.id,
             role: item.checked === undefined ? "menuitem" : "menuitemradio",
             "aria-checked": item.checked === undefined ? undefined : String(item.checked),

@@ -6,6 +6,8 @@
 
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
+import { iconButton } from "./buttons.js";
+import { problemText } from "./problem.js";
 
 const INFO_MS = 5000;
 
@@ -17,14 +19,14 @@ const INFO_MS = 5000;
 export function messages(host, banner, studio) {
   studio.message.listen((message) => {
     if (!message) return;
-    const { kind, title, detail, remedy } = message;
+    const { kind } = message;
     const close = () => box.remove();
     const box = h(
       "div",
       { class: `message ${kind}` },
       icon(kind === "error" ? "warning" : "info"),
-      h("div", {}, h("strong", {}, title), detail && h("p", {}, detail), remedy && h("p", {}, remedy)),
-      h("button", { class: "button quiet icon-only message-close", type: "button", "aria-label": "Close this message", onclick: close }, icon("close")),
+      problemText(message),
+      iconButton("close", "Close this message", close),
     );
     host.replaceChildren(box);
     if (kind === "info") setTimeout(close, INFO_MS);

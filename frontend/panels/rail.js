@@ -10,7 +10,7 @@ import { action, shown } from "../actions/registry.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { TOOLS } from "../tools/registry.js";
-import { actionButton } from "./actionbutton.js";
+import { actionButton } from "./buttons.js";
 
 const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
 
@@ -25,7 +25,6 @@ export function rail(host, studio, context) {
       "button",
       {
         class: "tool",
-        type: "button",
         id: `tool-${tool.id}`,
         title: `${tool.label} (${tool.key})\n${tool.hint}`,
         "aria-label": tool.label,
@@ -41,7 +40,6 @@ export function rail(host, studio, context) {
 
   const size = h("button", {
     class: "tool size",
-    type: "button",
     id: "brush-size",
     onclick: () => {
       studio.size.value = SIZES[(SIZES.indexOf(studio.size.value) + 1) % SIZES.length];
@@ -72,7 +70,6 @@ export function rail(host, studio, context) {
       "button",
       {
         class: "tool",
-        type: "button",
         id: `open-${name}`,
         title: `${label} (${shown(action(name).keys[0])})`,
         "aria-label": label,

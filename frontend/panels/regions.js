@@ -18,6 +18,7 @@ import { loadShelf } from "../core/store.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { pencil } from "../tools/pencil.js";
+import { iconButton } from "./buttons.js";
 import { docked, refreshed } from "./dock.js";
 
 /**
@@ -29,12 +30,11 @@ export function create(studio, context) {
   const list = h("ol", { class: "part-list", reversed: true });
   let chosen = chart.regions.at(-1)?.id ?? "";
 
-  const fromSelection = h("button", { class: "button", type: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) }, icon("select"), "From selection");
+  const fromSelection = h("button", { class: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) }, icon("select"), "From selection");
   const empty = h(
     "button",
     {
       class: "button",
-      type: "button",
       id: "region-new",
       title: "A new region, to be painted",
       onclick: () => {
@@ -60,10 +60,10 @@ export function create(studio, context) {
     const open = id === chosen;
     /** @param {string} what @param {IconName} picture @param {string} label @param {() => void} perform @param {Record<string, unknown>} [more] */
     const small = (what, picture, label, perform, more = {}) =>
-      h("button", { class: "button quiet icon-only", type: "button", id: `${id}-${what}`, title: label, "aria-label": `${label}: ${name}`, onclick: perform, ...more }, icon(picture));
+      iconButton(picture, `${label}: ${name}`, perform, { id: `${id}-${what}`, title: label, ...more });
     /** @param {string} what @param {IconName} picture @param {string} label @param {() => void} perform @param {Record<string, unknown>} [more] */
     const wide = (what, picture, label, perform, more = {}) =>
-      h("button", { class: "button", type: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
+      h("button", { class: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
     /** @param {number} value */
     const selected = (value) => {
       if (!selection.value) return;
@@ -76,7 +76,7 @@ export function create(studio, context) {
       { class: open ? "part open" : "part" },
       h("div", { class: "part-head" },
         h("input", { type: "color", id: `${id}-colour`, value: colour, title: "Colour", "aria-label": `Colour of ${name}`, onchange: (/** @type {Event} */ { target }) => chart.changeRegion(id, { colour: /** @type {HTMLInputElement} */ (target).value }, "Recolour a region") }),
-        h("button", { class: "part-name", type: "button", id: `${id}-open`, "aria-expanded": String(open), onclick: () => ((chosen = open ? "" : id), show()) },
+        h("button", { class: "part-name", id: `${id}-open`, "aria-expanded": String(open), onclick: () => ((chosen = open ? "" : id), show()) },
           h("span", { class: "ellipsis" }, name),
           h("span", { class: "muted figures" }, `${count} sts`)),
         small("hide", hidden ? "hidden" : "eye", hidden ? "Show" : "Hide", () => chart.changeRegion(id, { hidden: !hidden }, "Hide or show a region"), { "aria-pressed": String(hidden) }),

@@ -14,6 +14,7 @@ import { MAX_ITEMS } from "../core/design.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { repeat as placeTool } from "../tools/repeat.js";
+import { iconButton } from "./buttons.js";
 import { docked, refreshed } from "./dock.js";
 import { thumbnail } from "./thumbnail.js";
 
@@ -24,7 +25,7 @@ import { thumbnail } from "./thumbnail.js";
 export function create(studio, context) {
   const { document: chart, selection, editing } = studio;
   const list = h("ol", { class: "part-list" });
-  const fromSelection = h("button", { class: "button", type: "button", id: "repeat-from-selection", onclick: () => action("make-repeat").perform(context) }, icon("select"), "New from the selection");
+  const fromSelection = h("button", { class: "button", id: "repeat-from-selection", onclick: () => action("make-repeat").perform(context) }, icon("select"), "New from the selection");
   let closed = false;
 
   /** @param {Repeat} repeat */
@@ -33,7 +34,7 @@ export function create(studio, context) {
     const open = !closed && editing.repeat?.id === id;
     /** @param {string} what @param {IconName} picture @param {string} label @param {() => void} perform @param {Record<string, unknown>} [more] */
     const wide = (what, picture, label, perform, more = {}) =>
-      h("button", { class: "button", type: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
+      h("button", { class: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
     /** @param {"edgeColumns" | "edgeRows"} field @param {string} label @param {number} value */
     const edge = (field, label, value) =>
       h("label", { class: "edge-field" }, label,
@@ -48,7 +49,7 @@ export function create(studio, context) {
       { class: open ? "part open" : "part" },
       h("div", { class: "part-head" },
         thumbnail({ chart: motif.tiled(Math.max(6, motif.rows), Math.max(6, motif.columns)).text }, { side: 34 }),
-        h("button", { class: "part-name", type: "button", id: `${id}-open`, "aria-expanded": String(open), onclick: () => ((closed = open), (editing.repeatId.value = id), show()) },
+        h("button", { class: "part-name", id: `${id}-open`, "aria-expanded": String(open), onclick: () => ((closed = open), (editing.repeatId.value = id), show()) },
           h("span", { class: "ellipsis" }, name),
           h("span", { class: "muted figures" }, `${motif.columns} × ${motif.rows}`)),
       ),
@@ -77,7 +78,7 @@ export function create(studio, context) {
         h("p", { class: "muted" }, "Paint any copy: all follow."),
         h("div", { class: "part-foot" },
           h("span", { class: "spacer" }),
-          h("button", { class: "button quiet icon-only", type: "button", id: `${id}-remove`, title: "Remove; its stitches stay", "aria-label": `Remove ${name}; its stitches stay`, onclick: () => chart.removeRepeat(id) }, icon("trash")))),
+          iconButton("trash", `Remove ${name}; its stitches stay`, () => chart.removeRepeat(id), { id: `${id}-remove`, title: "Remove; its stitches stay" }))),
     );
   };
 
@@ -104,18 +105,18 @@ export function create(studio, context) {
     /** @param {"rows" | "columns"} axis @param {string} word */
     const stepper = (axis, word) =>
       h("span", { class: "stepper", role: "group", "aria-label": `Motifs ${word}` },
-        h("button", { type: "button", class: "step", id: `${id}-${at}-${axis}-less`, "aria-label": `One motif less ${word}`, onclick: () => resize(axis, -1) }, "−"),
+        h("button", { class: "step", id: `${id}-${at}-${axis}-less`, "aria-label": `One motif less ${word}`, onclick: () => resize(axis, -1) }, "−"),
         h("span", { class: "figures" }, Math.floor(place[axis] / motif[axis])),
-        h("button", { type: "button", class: "step", id: `${id}-${at}-${axis}-more`, "aria-label": `One motif more ${word}`, onclick: () => resize(axis, 1) }, "+"));
+        h("button", { class: "step", id: `${id}-${at}-${axis}-more`, "aria-label": `One motif more ${word}`, onclick: () => resize(axis, 1) }, "+"));
     return h(
       "li",
       { class: "copy" },
-      h("button", { class: "copy-name figures", type: "button", title: "Select this copy", id: `${id}-${at}-select`, onclick: () => (selection.value = boxOf(place)) },
+      h("button", { class: "copy-name figures", title: "Select this copy", id: `${id}-${at}-select`, onclick: () => (selection.value = boxOf(place)) },
         `Row ${place.row + 1}, st ${chart.grid.columns - place.column - place.columns + 1}`),
       stepper("columns", "across"),
       "×",
       stepper("rows", "up"),
-      h("button", { class: "button quiet icon-only", type: "button", id: `${id}-${at}-unlink`, title: "Unlink this copy: its stitches stay", "aria-label": "Unlink this copy; its stitches stay", onclick: () => lay(repeat, placements.toSpliced(at, 1), "Unlink a copy") }, icon("unlink")),
+      iconButton("unlink", "Unlink this copy; its stitches stay", () => lay(repeat, placements.toSpliced(at, 1), "Unlink a copy"), { id: `${id}-${at}-unlink`, title: "Unlink this copy; its stitches stay" }),
     );
   };
 

@@ -33,7 +33,6 @@ export function selectionbar(host, context) {
       "button",
       {
         class: text ? "bar-button named" : "bar-button",
-        type: "button",
         id: `selection-${id}`,
         title: keys[0] ? `${label} (${shown(keys[0])})` : label,
         "aria-label": label,

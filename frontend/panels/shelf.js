@@ -15,6 +15,7 @@ import { ownInk, ownPatterns } from "../core/shelf.js";
 import { loadShelf, saveShelf } from "../core/store.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
+import { iconButton } from "./buttons.js";
 
 const SIDE = 34;
 /** A thumbnail shows at most this many stitches a side. */
@@ -34,7 +35,6 @@ export function shelf(host, studio, context) {
     "button",
     {
       class: "button",
-      type: "button",
       id: "fill-all",
       title: "Fill the selection, or the whole chart, with this pattern (F)",
       onclick: () => fill.perform(context),
@@ -42,24 +42,14 @@ export function shelf(host, studio, context) {
     icon("fill"),
     h("span", {}, "Fill chart"),
   );
-  const removeButton = h(
-    "button",
-    {
-      class: "button quiet icon-only",
-      type: "button",
-      id: "shelf-remove",
-      title: "Take this pattern off the shelf",
-      "aria-label": "Take this pattern off the shelf",
-      onclick: () => {
-        const motif = studio.ink.value.repeat ? motifText(studio.ink.value.repeat) : "";
-        saveShelf(loadShelf().filter((item) => item.motif !== motif));
-        chart.changeShelf(chart.shelf.filter((item) => item.motif !== motif), "Remove a pattern");
-        studio.ink.value = FLIP;
-        show();
-      },
-    },
-    icon("trash"),
-  );
+  const removeLabel = "Take this pattern off the shelf";
+  const removeButton = iconButton("trash", removeLabel, () => {
+    const motif = studio.ink.value.repeat ? motifText(studio.ink.value.repeat) : "";
+    saveShelf(loadShelf().filter((item) => item.motif !== motif));
+    chart.changeShelf(chart.shelf.filter((item) => item.motif !== motif), "Remove a pattern");
+    studio.ink.value = FLIP;
+    show();
+  }, { id: "shelf-remove", title: removeLabel });
   studio.selection.watch((box) => {
     const text = fillButton.querySelector("span");
     if (text) text.textContent = box ? "Fill selection" : "Fill chart";
@@ -82,7 +72,6 @@ export function shelf(host, studio, context) {
             "button",
             {
               class: "swatch",
-              type: "button",
               role: "radio",
               id: `ink-${ink.id}`,
               title: ink.note || ink.name,

@@ -24,7 +24,6 @@ export function stretchdrawer(host, studio, stretcher) {
       "button",
       {
         class: "segment",
-        type: "button",
         role: "radio",
         id: `stretch-${which}`,
         title: `Pull ${which}-wise: ${which === "course" ? "along the rows" : "along the columns"}`,
@@ -73,7 +72,7 @@ export function stretchdrawer(host, studio, stretcher) {
       shear_modulus_n_per_mm: shear > 0 ? shear : null,
     });
   };
-  const run = h("button", { class: "button primary", type: "button", id: "stretch-run", onclick: () => (studio.stretch.value.busy ? stretcher.cancel() : start()) });
+  const run = h("button", { class: "button primary", id: "stretch-run", onclick: () => (studio.stretch.value.busy ? stretcher.cancel() : start()) });
   const done = h("span");
   const progress = h("div", { class: "progress", role: "progressbar", "aria-label": "Stretch test", hidden: true }, done);
   const options = stretchOptions();
@@ -81,7 +80,6 @@ export function stretchdrawer(host, studio, stretcher) {
 
   const play = h("button", {
     class: "button icon-only",
-    type: "button",
     id: "stretch-play",
     onclick: () => (stretcher.playing ? stretcher.pause() : stretcher.play()),
   });
@@ -198,7 +196,6 @@ function stretchOptions() {
     h("p", { class: "muted" }, "Nobody measured the shear modulus; where none is given, the paper's assumption is taken."));
   const button = h("button", {
     class: "button quiet",
-    type: "button",
     id: "stretch-more",
     title: "Ends, law and shear modulus",
     popoverTargetElement: panel,

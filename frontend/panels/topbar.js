@@ -9,6 +9,7 @@
 import { action, shown } from "../actions/registry.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
+import { iconButton } from "./buttons.js";
 import { keptchip } from "./keptchip.js";
 import { menu } from "./menu.js";
 
@@ -43,7 +44,6 @@ export function topbar(host, studio, context) {
       "button",
       {
         class: text ? "button quiet" : "button quiet icon-only",
-        type: "button",
         id: `action-${id}`,
         title: keys[0] ? `${label} (${shown(keys[0])})` : label,
         "aria-label": text ?? label,
@@ -62,7 +62,6 @@ export function topbar(host, studio, context) {
 
   const size = h("button", {
     class: "button quiet figures",
-    type: "button",
     id: "chart-size",
     title: "Size and new chart (N)",
     onclick: () => context.open("resize"),
@@ -97,9 +96,9 @@ export function topbar(host, studio, context) {
  */
 export function offerTour(host, { open }) {
   const offer = h("div", { class: "tour-offer", id: "tour-offer" },
-    h("button", { class: "button quiet", type: "button", onclick: () => (offer.remove(), open("tour")) },
+    h("button", { class: "button quiet", onclick: () => (offer.remove(), open("tour")) },
       icon("tour"), h("span", { class: "wide" }, "New here?"), "Take the tour"),
-    h("button", { class: "button quiet icon-only", type: "button", "aria-label": "No tour", onclick: () => offer.remove() }, icon("close")));
+    iconButton("close", "No tour", () => offer.remove()));
   host.querySelector(".spacer")?.before(offer);
 }
 

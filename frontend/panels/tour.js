@@ -59,8 +59,8 @@ export function create(_studio, _context) {
   const title = h("h2", { id: "tour-title" });
   const text = h("p", { id: "tour-text" });
   const place = h("span", { class: "muted figures" });
-  const back = h("button", { class: "button", type: "button", id: "tour-back", onclick: () => go(at - 1) }, "Back");
-  const next = h("button", { class: "button primary", type: "button", id: "tour-next", onclick: () => go(at + 1) }, "Next");
+  const back = h("button", { class: "button", id: "tour-back", onclick: () => go(at - 1) }, "Back");
+  const next = h("button", { class: "button primary", id: "tour-next", onclick: () => go(at + 1) }, "Next");
   const ring = h("div", { class: "tour-ring" });
   const box = h("div", { class: "tour-box" },
     title,
@@ -68,7 +68,7 @@ export function create(_studio, _context) {
     h("div", { class: "dialog-buttons" },
       place,
       h("span", { class: "spacer" }),
-      h("button", { class: "button quiet", type: "button", id: "tour-end", onclick: () => element.close() }, "End the tour"),
+      h("button", { class: "button quiet", id: "tour-end", onclick: () => element.close() }, "End the tour"),
       back,
       next));
   const element = h("dialog", {

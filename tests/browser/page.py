@@ -82,13 +82,20 @@ class Chart:
         """Find the stitches again, after the chart has moved."""
         found = self.page.evaluate(
             """async () => {
-                // A panel that has opened beside the chart moves it with the next frame.
+                // A panel that has opened beside the chart moves it with the next frame, and what
+                // the last move of the pointer shows comes a moment later.
                 for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);
+                await new Promise((done) => setTimeout(done, 200));
                 const canvas = document.querySelector("#chart");
                 const readout = document.querySelector("#readout");
                 const box = canvas.getBoundingClientRect();
+                // The page waits a moment before it shows what is under the pointer: not here.
+                const due = [];
+                const later = window.setTimeout;
+                window.setTimeout = (act, ms) => (ms <= 100 ? due.push(act) : later(act, ms));
                 const at = (clientX, clientY) => {
                     canvas.dispatchEvent(new PointerEvent("pointermove", { clientX, clientY }));
+                    while (due.length) due.shift()();
                     const found = readout.textContent.match(/row (\\d+).*?stitch (\\d+)/i);
                     return found && [Number(found[1]), Number(found[2])];
                 };
@@ -102,6 +109,7 @@ class Chart:
                     const row = at(x0, y)?.[0];
                     if (row) (rows[row] ??= []).push(y);
                 }
+                window.setTimeout = later;
                 const middle = (list) => (list[0] + list[list.length - 1]) / 2;
                 const middles = (lists) =>
                     Object.fromEntries(Object.entries(lists).map(([k, v]) => [k, middle(v)]));

@@ -49,6 +49,7 @@ def test_what_is_selected_is_moved_copied_and_turned_and_all_undone(flat_studio:
     assert purls(kept_chart(flat_studio)) == block((5, 5), (4, 6))
     flat_studio.keyboard.press("Control+c")
     flat_studio.mouse.move(*chart.at(9, 12))
+    expect(flat_studio.locator("#readout")).to_contain_text("Row 9 RS, stitch 12")
     flat_studio.keyboard.press("Control+v")
     assert purls(kept_chart(flat_studio)) == block((5, 5), (4, 6)) | block((9, 9), (10, 12))
     flat_studio.click("#selection-flip")

@@ -74,9 +74,13 @@ def test_a_chart_is_painted_with_keys_alone(flat_studio: Page) -> None:
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
     assert kept_chart(page).count("P") == 1
-    assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle !== 'none'"), (
-        "the focus cannot be seen"
+    frame = "getComputedStyle(document.activeElement.parentElement).borderTopColor"
+    focused = page.evaluate(frame)
+    page.evaluate("document.querySelector('.design-name').focus()")
+    left = page.evaluate(
+        frame.replace("activeElement.parentElement", "querySelector('.chart-host')")
     )
+    assert focused != left, "the focus cannot be seen"
 
 
 def test_reduced_motion_stills_the_page(flat_studio: Page) -> None:

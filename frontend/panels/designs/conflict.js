@@ -25,7 +25,6 @@ export function create(studio, { keeper }) {
     h("div", { class: "option" },
       h("button", {
         class: style,
-        type: "button",
         id: `conflict-${choice}`,
         onclick: async () => {
           if ((await attempt(status, () => keeper.resolve(choice).then(() => true))) !== null) element.close();

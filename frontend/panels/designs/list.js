@@ -9,6 +9,7 @@
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { designs } from "../../keeping/designs.js";
+import { iconButton } from "../buttons.js";
 import { dialog } from "../dialogs/dialog.js";
 import { thumbnail } from "../thumbnail.js";
 import { attempt } from "./attempt.js";
@@ -33,12 +34,11 @@ export function create(studio, context) {
     "aria-label": "Find a design by its name",
     oninput: () => filter(),
   });
-  const more = h("button", { class: "button", type: "button", onclick: () => void load() }, "Show more");
+  const more = h("button", { class: "button", onclick: () => void load() }, "Show more");
   /** @param {boolean} which @param {string} label @param {string} id */
   const tab = (which, label, id) =>
     h("button", {
       class: "segment",
-      type: "button",
       role: "radio",
       id,
       "aria-checked": String(which === deleted),
@@ -58,8 +58,8 @@ export function create(studio, context) {
       search,
       tabs,
       h("span", { class: "spacer" }),
-      h("button", { class: "button", type: "button", id: "designs-gallery", onclick: () => leave(() => context.open("gallery")) }, icon("gallery"), "Examples"),
-      h("button", { class: "button primary", type: "button", id: "designs-new", onclick: () => leave(() => context.open("gallery")) }, icon("plus"), "New")),
+      h("button", { class: "button", id: "designs-gallery", onclick: () => leave(() => context.open("gallery")) }, icon("gallery"), "Examples"),
+      h("button", { class: "button primary", id: "designs-new", onclick: () => leave(() => context.open("gallery")) }, icon("plus"), "New")),
     status,
     list,
     more,
@@ -123,7 +123,6 @@ export function create(studio, context) {
     pictures.observe(frame);
     const open = h("button", {
       class: "card-open",
-      type: "button",
       disabled: deleted,
       "aria-label": `Open ${design.name}`,
       "aria-current": here ? "true" : undefined,
@@ -137,11 +136,11 @@ export function create(studio, context) {
     const item = h("li", { class: here ? "card here" : "card", "data-name": design.name.toLowerCase() }, open, name, facts);
     /** @param {import("../../icons.js").IconName} sign @param {string} label @param {() => void} perform */
     const tool = (sign, label, perform) =>
-      h("button", { class: "button quiet icon-only", type: "button", title: label, "aria-label": `${label}: ${design.name}`, onclick: perform }, icon(sign));
+      iconButton(sign, `${label}: ${design.name}`, perform, { title: label });
     item.append(
       h("span", { class: "card-tools" },
         ...(deleted
-          ? [h("button", { class: "button", type: "button", onclick: () => void recover(design, item) }, icon("undo"), "Bring back")]
+          ? [h("button", { class: "button", onclick: () => void recover(design, item) }, icon("undo"), "Bring back")]
           : [
               tool("pencil", "Rename", () => rename(design, name)),
               tool("copy", "Duplicate", () => void duplicate(design)),
@@ -195,7 +194,7 @@ export function create(studio, context) {
     status.replaceChildren(
       h("div", { class: "notice" },
         h("span", {}, `“${design.name}” was deleted. It stays under Deleted for 30 days.`),
-        h("button", { class: "button", type: "button", id: "designs-undo", onclick: () => void recover(design, null) }, icon("undo"), "Undo")),
+        h("button", { class: "button", id: "designs-undo", onclick: () => void recover(design, null) }, icon("undo"), "Undo")),
     );
     /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button"))?.focus();
   };

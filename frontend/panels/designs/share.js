@@ -31,7 +31,6 @@ export function create(_studio, { keeper }) {
   const link = h("input", { class: "text-field", id: "share-link", readOnly: true, "aria-label": "The link", onfocus: () => link.select() });
   const copy = h("button", {
     class: "button",
-    type: "button",
     onclick: () =>
       void navigator.clipboard?.writeText(link.value).then(
         () => (copied.textContent = "The link is on the clipboard."),
@@ -48,7 +47,6 @@ export function create(_studio, { keeper }) {
         h("span", {}, h("strong", {}, MODES[which][0]), h("span", { class: "muted" }, MODES[which][1])))));
   const make = h("button", {
     class: "button primary",
-    type: "button",
     id: "share-make",
     onclick: async () => {
       const id = await remote();
@@ -88,7 +86,6 @@ export function create(_studio, { keeper }) {
       h("span", { class: "row-text" }, h("span", {}, MODES[share.mode][0]), h("span", { class: "muted" }, `made ${ago(share.created_at)}`)),
       h("button", {
         class: "button",
-        type: "button",
         onclick: async () => {
           const id = keeper.remoteId;
           if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();

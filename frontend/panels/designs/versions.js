@@ -80,7 +80,6 @@ export function create(studio, { keeper }) {
         h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept by itself" : ""}`)),
       h("button", {
         class: "button",
-        type: "button",
         "aria-label": `Restore ${version.name}`,
         onclick: async () => {
           const known = await remote();

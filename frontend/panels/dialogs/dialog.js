@@ -2,6 +2,8 @@
 
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
+import { iconButton } from "../buttons.js";
+import { problemText } from "../problem.js";
 
 /**
  * @param {string} id
@@ -14,7 +16,7 @@ export function dialog(id, title, ...content) {
     { id, class: "dialog", "aria-labelledby": `${id}-title` },
     h("header", {},
       h("h2", { id: `${id}-title`, tabIndex: -1, autofocus: true }, title),
-      h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Close", onclick: () => element.close() }, icon("close"))),
+      iconButton("close", "Close", () => element.close())),
     ...content,
   );
   element.addEventListener("click", (event) => {
@@ -30,12 +32,8 @@ export function dialog(id, title, ...content) {
  * @param {import("../../types.js").Problem} problem
  * @param {() => void} [again] tries once more
  */
-export function problemBox({ title, detail, remedy }, again) {
+export function problemBox(problem, again) {
   return h("div", { class: "problem", role: "alert" },
     icon("warning"),
-    h("div", {},
-      h("strong", {}, title),
-      detail && detail !== title && h("p", {}, detail),
-      remedy && h("p", {}, remedy),
-      again && h("button", { class: "button", type: "button", onclick: again }, "Try again")));
+    problemText(problem, again && h("button", { class: "button", onclick: again }, "Try again")));
 }

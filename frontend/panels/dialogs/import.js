@@ -8,6 +8,7 @@
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { importFile, importText } from "../../services/importer.js";
+import { problemText } from "../problem.js";
 import { dialog } from "./dialog.js";
 
 /**
@@ -28,9 +29,8 @@ export function create(_, context) {
   const settle = async (outcome) => {
     const wrong = await outcome;
     problem.hidden = wrong === null;
-    if (wrong) {
-      problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
-    } else element.close();
+    if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
+    else element.close();
   };
   const file = h("input", {
     type: "file",
@@ -48,7 +48,7 @@ export function create(_, context) {
     h("div", { class: "dialog-buttons" },
       h("label", { class: "button", for: "import-file" }, "Choose a file …"),
       file,
-      h("button", { class: "button primary", type: "button", id: "import-apply", onclick: () => void settle(importText(context, text.value)) }, "Import")),
+      h("button", { class: "button primary", id: "import-apply", onclick: () => void settle(importText(context, text.value)) }, "Import")),
   );
   return () => {
     problem.hidden = true;

@@ -45,7 +45,6 @@ export function create(_studio, context) {
           "button",
           {
             class: "command",
-            type: "button",
             role: "option",
             tabIndex: -1,
             "aria-selected": String(i === 0),

@@ -73,7 +73,7 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
   const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
   const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
   const problem = h("p", { class: "problem-text", role: "alert" });
-  const apply = h("button", { class: "button primary", type: "button", id: "picture-apply", onclick: () => {
+  const apply = h("button", { class: "button primary", id: "picture-apply", onclick: () => {
     const grid = read();
     if (!grid) return;
     element.close();
@@ -83,7 +83,7 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
 
   /** @param {string} id @param {string} label @param {{columns: number, rows: number}} size */
   const size = (id, label, size) =>
-    h("button", { class: "button", type: "button", id, onclick: () => {
+    h("button", { class: "button", id, onclick: () => {
       columns.input.value = String(size.columns);
       rows.input.value = String(size.rows);
       show();
@@ -139,7 +139,7 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
     h("div", { class: "picture-tone" }, h("label", { for: "picture-threshold" }, "Purl if darker than"), threshold, share,
       h("label", { class: "check" }, inverted, "Light is purl")),
     h("div", { class: "dialog-buttons" },
-      h("button", { class: "button", type: "button", onclick: () => element.close() }, "Cancel"),
+      h("button", { class: "button", onclick: () => element.close() }, "Cancel"),
       apply),
   );
   element.addEventListener("close", () => element.remove());

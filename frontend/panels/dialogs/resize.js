@@ -61,7 +61,7 @@ export function create(studio) {
         if (next.rows === size[0] && next.columns === size[1]) return [];
         return [
           h("p", { class: "muted" }, `${repeat.name} is a ${repeat.rule}.`),
-          h("button", { class: "button", type: "button", onclick: () => {
+          h("button", { class: "button", onclick: () => {
             columns.input.value = String(next.columns);
             rows.input.value = String(next.rows);
             advise();
@@ -86,9 +86,9 @@ export function create(studio) {
     advice,
     h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
     h("div", { class: "dialog-buttons" },
-      h("button", { class: "button", type: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) }, "New, all knit"),
-      h("button", { class: "button", type: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) }, "Repeat to this size"),
-      h("button", { class: "button primary", type: "button", id: "resize-apply", onclick: () => apply((r, c) => {
+      h("button", { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) }, "New, all knit"),
+      h("button", { class: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) }, "Repeat to this size"),
+      h("button", { class: "button primary", id: "resize-apply", onclick: () => apply((r, c) => {
         const same = r === document.grid.rows && c === document.grid.columns;
         if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
       }) }, "Resize")),

@@ -42,7 +42,7 @@ export function create(studio, _) {
   };
   const status = h("div", { class: "dialog-status", role: "status" });
   const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
-  const make = h("button", { class: "button primary", type: "button", id: "export-make", onclick: () => void run() }, icon("export"), "Make the file");
+  const make = h("button", { class: "button primary", id: "export-make", onclick: () => void run() }, icon("export"), "Make the file");
 
   /** @param {ExportKind} one */
   const choose = (one) => {
@@ -97,7 +97,7 @@ export function create(studio, _) {
     outcome.replaceChildren(
       h("ul", { class: "planner-notes" }, ...found.map((words) => h("li", {}, icon("check"), words))),
       text && kind.to !== "svg" ? h("pre", { class: "exports-text", tabIndex: 0, "aria-label": "The file" }, text) : "",
-      h("div", { class: "dialog-buttons" }, h("button", { class: "button", type: "button", onclick: save }, "Save it again")),
+      h("div", { class: "dialog-buttons" }, h("button", { class: "button", onclick: save }, "Save it again")),
     );
     save();
   }

@@ -33,7 +33,7 @@ const COLOURS = [
  */
 export function toolbar(studio, look, wish) {
   const sides = SIDES.map(({ side, label, hint }) =>
-    h("button", { class: "segment", type: "button", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
+    h("button", { class: "segment", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
   );
   const { root, setItems, button } = menu({
     id: "fabric-colours",

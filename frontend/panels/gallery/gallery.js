@@ -49,7 +49,7 @@ export function create(studio, { keeper, open }) {
    */
   const card = (id, name, note, picture, perform) =>
     h("li", { class: "card" },
-      h("button", { class: "card-open", type: "button", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
+      h("button", { class: "card-open", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
         h("span", { class: "card-picture" }, picture)),
       h("span", { class: "card-name" }, name),
       h("span", { class: "card-facts muted" }, note));

@@ -22,6 +22,7 @@ import { ApiError, call, isAbort } from "../../api.js";
 import { Latest } from "../../core/latest.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
+import { iconButton } from "../buttons.js";
 import { dialog, problemBox } from "../dialogs/dialog.js";
 import { LengthField, choice, labelled } from "./fields.js";
 import { drawGarment } from "./preview.js";
@@ -86,7 +87,6 @@ export function create(studio, { keeper }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const make = h("button", {
     class: "button primary",
-    type: "button",
     id: "planner-make",
     disabled: true,
     onclick: () => {
@@ -189,19 +189,19 @@ export function create(studio, { keeper }) {
       const row = h("tr", {},
         h("td", {}, place.at.input),
         h("td", {}, place.around.input),
-        h("td", {}, h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Remove this place", onclick: () => {
+        h("td", {}, iconButton("close", "Remove this place", () => {
           if (places.length <= 2) return;
           places.splice(places.indexOf(place), 1);
           row.remove();
           changed();
-        } }, icon("close"))));
+        })));
       body.append(row);
     };
     start.forEach(add);
     const element = h("div", { class: "planner-profile" },
       h("table", { class: "planner-table" },
         h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))), body),
-      h("button", { class: "button", type: "button", id: "planner-add", onclick: () => {
+      h("button", { class: "button", id: "planner-add", onclick: () => {
         const last = places[places.length - 1];
         add([last.at.mm + 40, last.around.mm]);
         changed();

@@ -46,7 +46,7 @@ export function atlasTab(studio, context) {
     "div",
     { class: "segmented", role: "radiogroup", "aria-label": "Which repeats" },
     ...EXTENTS.map(({ id, label }) =>
-      h("button", { class: "segment", type: "button", role: "radio", id: `atlas-${id}`, "aria-checked": String(id === extent), onclick: () => {
+      h("button", { class: "segment", role: "radio", id: `atlas-${id}`, "aria-checked": String(id === extent), onclick: () => {
         extent = id;
         for (const other of extents.children) other.setAttribute("aria-checked", String(other.id === `atlas-${id}`));
         void load();
@@ -102,8 +102,8 @@ export function atlasTab(studio, context) {
           h("strong", { id: "inverse-name" }, nameOf(key)),
           h("span", { class: "muted" }, sourceInWords(table.provenance[k])),
           h("div", { class: "inverse-buttons" },
-            h("button", { class: "button primary", type: "button", id: "atlas-apply", onclick: apply }, icon("fill"), studio.selection.value ? "Fill the selection" : "Fill the chart"),
-            h("button", { class: "button", type: "button", onclick: () => paintWith(studio, key) }, icon("pencil"), "Paint with it")))),
+            h("button", { class: "button primary", id: "atlas-apply", onclick: apply }, icon("fill"), studio.selection.value ? "Fill the selection" : "Fill the chart"),
+            h("button", { class: "button", onclick: () => paintWith(studio, key) }, icon("pencil"), "Paint with it")))),
       h("table", { class: "inverse-numbers" },
         h("tbody", {},
           row("Along rows", `${figure(table.modulus_course_n_per_mm[k])} N/mm`, range([table.modulus_course_low[k], table.modulus_course_high[k]])),

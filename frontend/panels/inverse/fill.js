@@ -14,6 +14,7 @@ import { selectedCells } from "../../core/selection.js";
 import { outlineText } from "../../core/snapshot.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
+import { iconButton } from "../buttons.js";
 import { thumbnail } from "../thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field } from "./find.js";
@@ -75,10 +76,10 @@ export function fillTab(studio) {
       h("div", { class: "wish-line" },
         h("input", { type: "text", class: "text part-title", value: part.name, maxLength: 80, "aria-label": "Name", onchange: (/** @type {Event} */ { target }) => (part.name = /** @type {HTMLInputElement} */ (target).value.trim() || part.name) }),
         h("span", { class: "muted figures part-count" }, `${part.cells.length} sts`),
-        h("button", { class: "button quiet icon-only", type: "button", "aria-label": `Remove ${part.name}`, onclick: () => {
+        iconButton("close", `Remove ${part.name}`, () => {
           parts = parts.filter((other) => other !== part);
           show();
-        } }, icon("close"))),
+        })),
       h("div", { class: "wish-extra" },
         h("span", { class: "muted" }, "stiffness along"),
         value("course", "Stiffness along rows, N/mm"),
@@ -133,7 +134,7 @@ export function fillTab(studio) {
   const preview = (found, wished) => {
     const filled = Grid.fromText(found.chart);
     const cells = [...new Set(wished.flatMap((part) => part.cells))];
-    const use = h("button", { class: "button primary", type: "button", id: "fill-apply", onclick: () => {
+    const use = h("button", { class: "button primary", id: "fill-apply", onclick: () => {
       if (size !== sizeNow()) {
         run.say({ title: "The chart has another size now", detail: "The preview does not fit it any more.", remedy: "Fill again." });
         return;
@@ -151,13 +152,13 @@ export function fillTab(studio) {
           ...found.messages.slice(0, 4).map((message) => h("p", {}, message)),
           found.patches.length > 0 && patchTable(found),
           h("div", { class: "inverse-buttons" }, use,
-            h("button", { class: "button", type: "button", onclick: () => answer.replaceChildren() }, "Discard")))),
+            h("button", { class: "button", onclick: () => answer.replaceChildren() }, "Discard")))),
     );
     use.focus();
   };
 
   selection.listen(() => (addButton.lastChild && (addButton.lastChild.textContent = selection.value ? "Selection" : "Whole chart")));
-  const addButton = h("button", { class: "button", type: "button", id: "part-add", onclick: addSelection }, icon("plus"), selection.value ? "Selection" : "Whole chart");
+  const addButton = h("button", { class: "button", id: "part-add", onclick: addSelection }, icon("plus"), selection.value ? "Selection" : "Whole chart");
   show();
   const element = h("div", { class: "inverse-section" },
     h("form", { class: "inverse-form", onsubmit: (/** @type {Event} */ event) => {
@@ -167,7 +168,7 @@ export function fillTab(studio) {
       list,
       h("div", { class: "inverse-bar" },
         addButton,
-        h("button", { class: "button", type: "button", id: "part-regions", onclick: addRegions }, icon("plus"), "Regions"),
+        h("button", { class: "button", id: "part-regions", onclick: addRegions }, icon("plus"), "Regions"),
         h("label", { class: "check" }, "patches from", smallest, "sts"),
         h("label", { class: "check", title: "Another number gives another chart, the same the same" }, "variant", seed),
         h("label", { class: "check", title: "Choose from repeats up to 4 × 4; the first time takes up to a minute" }, large, "Up to 4 × 4"),

@@ -9,6 +9,7 @@
 import { figure } from "../../core/format.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
+import { iconButton } from "../buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
 import { Run } from "./run.js";
@@ -62,10 +63,10 @@ export function findTab(studio, context) {
     const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
     const extra = h("div", { class: "wish-extra" });
-    const remove = h("button", { class: "button quiet icon-only", type: "button", "aria-label": "Remove this wish", onclick: () => {
+    const remove = iconButton("close", "Remove this wish", () => {
       readers.splice(readers.indexOf(read), 1);
       row.remove();
-    } }, icon("close"));
+    });
     const show = () => {
       const q = quantityOf(select.value);
       unit.textContent = q.unit;
@@ -161,8 +162,8 @@ export function findTab(studio, context) {
         h("div", { class: "candidate-values figures" }, ...Object.keys(candidate.values).map((label) => valueOf(candidate, label))),
         h("div", { class: "muted candidate-cost" }, `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`)),
       h("div", { class: "candidate-buttons" },
-        h("button", { class: "button icon-only", type: "button", title: "Fill the selection or the chart", "aria-label": `Fill with ${nameOf(key)}`, onclick: () => fillWith(studio, key, chosenPlace(studio), candidate.material) }, icon("fill")),
-        h("button", { class: "button icon-only", type: "button", title: "Paint with it", "aria-label": `Paint with ${nameOf(key)}`, onclick: () => paintWith(studio, key) }, icon("pencil"))));
+        iconButton("fill", `Fill with ${nameOf(key)}`, () => fillWith(studio, key, chosenPlace(studio), candidate.material), { title: "Fill the selection or the chart" }),
+        iconButton("pencil", `Paint with ${nameOf(key)}`, () => paintWith(studio, key), { title: "Paint with it" })));
   };
 
   addRow(QUANTITIES[0]);
@@ -173,7 +174,7 @@ export function findTab(studio, context) {
   } },
     rows,
     h("div", { class: "inverse-bar" },
-      h("button", { class: "button", type: "button", id: "wish-add", onclick: () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]) }, icon("plus"), "Wish"),
+      h("button", { class: "button", id: "wish-add", onclick: () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]) }, icon("plus"), "Wish"),
       transfers.label, curl.label,
       h("label", { class: "check" }, across, "All yarns"),
       h("label", { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" }, large, "Up to 4 × 4"),

@@ -7,7 +7,7 @@
  */
 
 import { byId, h } from "../../dom.js";
-import { icon } from "../../icons.js";
+import { iconButton } from "../buttons.js";
 import { atlasTab } from "./atlas.js";
 import { fillTab } from "./fill.js";
 import { findTab } from "./find.js";
@@ -50,7 +50,7 @@ function panel(studio, context) {
     { id: "outline", label: "Outline under a stretch", ...outlineTab(studio) },
   ];
   const way = h("div", { class: "segmented", role: "radiogroup", "aria-label": "What is wished for" },
-    ...ways.map(({ id, label }) => h("button", { class: "segment", type: "button", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label)));
+    ...ways.map(({ id, label }) => h("button", { class: "segment", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label)));
   const showWay = (/** @type {string} */ chosen) => {
     ways.forEach(({ id, element }, i) => {
       element.hidden = id !== chosen;
@@ -68,7 +68,7 @@ function panel(studio, context) {
   };
   const tabs = h("div", { class: "inverse-tabs", role: "tablist", "aria-label": "Inverse design" },
     ...TABS.map(({ id, label }) => h("button", {
-      class: "inverse-tab-button", type: "button", role: "tab", id: `inverse-${id}`, "aria-controls": `inverse-${id}-content`,
+      class: "inverse-tab-button", role: "tab", id: `inverse-${id}`, "aria-controls": `inverse-${id}-content`,
       onclick: () => show(/** @type {TabName} */ (id)),
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
         const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
@@ -90,7 +90,7 @@ function panel(studio, context) {
       close();
     },
   },
-    h("header", {}, tabs, yarn, h("button", { class: "button quiet icon-only", type: "button", id: "inverse-close", "aria-label": "Close inverse design", onclick: close }, icon("close"))),
+    h("header", {}, tabs, yarn, iconButton("close", "Close inverse design", close, { id: "inverse-close" })),
     ...TABS.map(({ id }) => {
       const content = contents[/** @type {TabName} */ (id)];
       content.id = `inverse-${id}-content`;

@@ -150,11 +150,11 @@ export function outlineTab(studio) {
           h("p", {}, `From the ${direction === "wale" ? "bottom" : "left"}: ${found.bands.map(({ repeat, lines }) => `${lines} of ${nameOf(repeat)}`).join(", ")}.`),
           ...found.messages.map((message) => h("p", {}, message)),
           h("div", { class: "inverse-buttons" },
-            h("button", { class: "button primary", type: "button", id: "outline-apply", onclick: () => {
+            h("button", { class: "button primary", id: "outline-apply", onclick: () => {
               studio.document.replace(filled, "Fill from an outline");
               studio.tell("The chart is filled. Stretch it below to see the outline.");
             } }, icon("check"), "Apply"),
-            h("button", { class: "button", type: "button", onclick: () => {
+            h("button", { class: "button", onclick: () => {
               reached = null;
               draw();
               answer.replaceChildren();
@@ -163,7 +163,7 @@ export function outlineTab(studio) {
   };
 
   const pulls = h("div", { class: "segmented", role: "radiogroup", "aria-label": "Pulled along" },
-    ...[["wale", "Columns"], ["course", "Rows"]].map(([id, label]) => h("button", { class: "segment", type: "button", role: "radio", "aria-checked": String(id === direction), onclick: (/** @type {Event} */ { currentTarget }) => {
+    ...[["wale", "Columns"], ["course", "Rows"]].map(([id, label]) => h("button", { class: "segment", role: "radio", "aria-checked": String(id === direction), onclick: (/** @type {Event} */ { currentTarget }) => {
       direction = /** @type {Direction} */ (id);
       for (const other of pulls.children) other.setAttribute("aria-checked", String(other === currentTarget));
       reached = null;

@@ -8,6 +8,7 @@ import { ApiError, isAbort } from "../../api.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { runJob } from "../../services/jobs.js";
+import { problemText } from "../problem.js";
 
 export class Run {
   /** @type {AbortController | null} */ #running = null;
@@ -18,7 +19,7 @@ export class Run {
     { class: "inverse-run", hidden: true },
     this.#bar,
     this.#text,
-    h("button", { class: "button", type: "button", onclick: () => this.cancel() }, icon("stop"), "Cancel"),
+    h("button", { class: "button", onclick: () => this.cancel() }, icon("stop"), "Cancel"),
   );
   #problem = h("div", { class: "problem", role: "alert", hidden: true });
   element = h("div", { class: "inverse-status", "aria-live": "polite" }, this.#busy, this.#problem);
@@ -69,12 +70,9 @@ export class Run {
   }
 
   /** @param {Pick<Problem, "title" | "detail" | "remedy">} problem */
-  say({ title, detail, remedy }) {
+  say(problem) {
     this.#problem.hidden = false;
-    this.#problem.replaceChildren(
-      icon("warning"),
-      h("div", {}, h("strong", {}, title), h("p", {}, detail === title ? "" : detail), h("p", {}, remedy ?? "")),
-    );
+    this.#problem.replaceChildren(icon("warning"), problemText(problem));
   }
 
   /** Give it up; the service stops it too. */

@@ -1,7 +1,8 @@
 /**
- * A small button for an action: its icon, with the name and the key to hear and to hover.
+ * Buttons with a sign in place of words.
  *
  * @import {Action, ActionContext} from "../actions/action.js"
+ * @import {IconName} from "../icons.js"
  */
 
 import { shown } from "../actions/registry.js";
@@ -9,6 +10,20 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 
 /**
+ * A quiet button; its label is there to hear and, where it is not plain to see, to hover.
+ *
+ * @param {IconName} sign
+ * @param {string} label
+ * @param {() => void} perform
+ * @param {Record<string, unknown>} [more] properties
+ */
+export function iconButton(sign, label, perform, more = {}) {
+  return h("button", { class: "button quiet icon-only", "aria-label": label, onclick: perform, ...more }, icon(sign));
+}
+
+/**
+ * A small button for an action, with its key.
+ *
  * @param {Action} action
  * @param {ActionContext} context
  * @param {string} look its CSS class
@@ -18,7 +33,6 @@ export function actionButton({ id, label, icon: picture, keys, perform }, contex
     "button",
     {
       class: look,
-      type: "button",
       id: `action-${id}`,
       title: `${label} (${shown(keys[0])})`,
       "aria-label": label,
