@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.mechanics.stiffening import StiffeningForm, stiffening
-from knitcore.swatch.grid import QuarterGrid
+from knitcore.swatch.grid import QuarterGrid, sums_at_corners
 from knitcore.swatch.models import EnergyModel
 from knitcore.swatch.sheet import Sheet, State
 
@@ -152,16 +152,5 @@ def corner_means(grid: QuarterGrid, cells: Array) -> Array:
     """Means (rows + 1, columns + 1) of cells over the cloth that meets at each corner, weighted by
     rest area; NaN where there is none.
     """
-    area = np.where(grid.cloth, grid.natural_width * grid.natural_height, 0.0)
     with np.errstate(invalid="ignore"):
-        return np.asarray(_to_corners(area * cells) / _to_corners(area))
-
-
-def _to_corners(cells: Array) -> Array:
-    """Sums over the up to four cells that meet at each corner."""
-    out = np.zeros((cells.shape[0] + 1, cells.shape[1] + 1))
-    out[:-1, :-1] += cells
-    out[:-1, 1:] += cells
-    out[1:, :-1] += cells
-    out[1:, 1:] += cells
-    return out
+        return np.asarray(sums_at_corners(grid.natural_area * cells) / grid.corner_area)

@@ -219,6 +219,16 @@ class QuarterGrid:
         used[self.cell_corners[self.cloth.ravel()]] = True
         return used
 
+    @cached_property
+    def natural_area(self) -> Array:
+        """Rest area (mm²) of each cell, (rows, columns); 0 without cloth."""
+        return np.where(self.cloth, self.natural_width * self.natural_height, 0.0)
+
+    @cached_property
+    def corner_area(self) -> Array:
+        """Rest area (mm²) of the cells that meet at each corner, (rows + 1, columns + 1)."""
+        return sums_at_corners(self.natural_area)
+
     def edge(self, name: str) -> Indices:
         """Corner numbers of the outermost cloth at ``bottom``, ``top``, ``left`` or ``right``."""
         used = self.used_corners.reshape(self.rows + 1, self.columns + 1)
@@ -255,6 +265,16 @@ class QuarterGrid:
         )
 
 
+def sums_at_corners(cells: Array) -> Array:
+    """Sums (rows + 1, columns + 1) over the up to four cells that meet at each corner."""
+    out = np.zeros((cells.shape[0] + 1, cells.shape[1] + 1))
+    out[:-1, :-1] += cells
+    out[:-1, 1:] += cells
+    out[1:, :-1] += cells
+    out[1:, 1:] += cells
+    return out
+
+
 def check_cells(rows: int, columns: int) -> None:
     """Refuse a mesh that is empty or would not fit in memory.
 
@@ -288,6 +308,8 @@ def check_cloth(cloth: NDArray[np.bool_], rows: int, columns: int) -> None:
             f"it has {'x'.join(map(str, cloth.shape[::-1]))} cells, the chart {columns}x{rows}.",
             "Give one mark for every stitch of the chart.",
         )
+    if cloth.all():
+        return
     _, pieces = label(cloth)
     if pieces == 0:
         raise InputError("outline", "it holds no stitch.", "Mark at least one stitch.")
