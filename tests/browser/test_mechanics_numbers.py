@@ -1,0 +1,159 @@
+"""Numbers of the mechanics on the page: stretch tests, their intervals, measured curves, wishes."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import MeasuredCurve, material, save_material_file
+from tests.browser.conftest import wait_for_numbers
+from tests.browser.page import Chart, kept_chart
+
+NUMBER = r"−?\d+(\.\d+)?"
+INTERVAL = rf"{NUMBER} – {NUMBER}"
+WAISTED = "\n".join(["x" * 12] * 3 + ["..xxxxxxxx.."] * 4 + ["x" * 12] * 3)
+RIBBED = "\n".join(["KPKPKPKKKKKK"] * 5 + ["KKKKKKKPKPKP"] * 5)
+LEFT = {
+    "id": "left",
+    "name": "Left",
+    "colour": "#8a5a9e",
+    "runs": [[row, 0, 6] for row in range(10)],
+}
+
+
+def open_design(page: Page, service: str, **content: object) -> Page:
+    """Show a design, with an empty 3D view."""
+    page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    design = {
+        "id": os.urandom(16).hex(),
+        "format": "knitcore-design",
+        "version": 2,
+        "name": "Test",
+        "material": "acrylic",
+        "note": "",
+        "chart": RIBBED,
+        "outline": None,
+        "regions": [],
+        "repeats": [],
+        "shelf": [],
+    } | content
+    page.add_init_script(f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}")
+    page.goto(service)
+    wait_for_numbers(page)
+    return page
+
+
+def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
+    visitor: Page, service: str
+) -> None:
+    page = open_design(visitor, service, outline=WAISTED)
+    expect(page.locator("#inspector h2")).to_contain_text("12 × 10")
+    expect(page.locator("#inspector h2")).to_have_attribute(
+        "title", re.compile("largest rectangle inside the fabric, 8 × 10")
+    )
+    for number in ("modulus-course", "extensibility-wale", "poisson-yx"):
+        expect(page.locator(f"#{number} .interval")).to_have_text(re.compile(INTERVAL))
+    page.click("#stretch-run")
+    figures = page.locator("#stretch-figures .interval")
+    expect(figures).to_have_count(3)  # force, stress and waist
+    for k in range(3):
+        expect(figures.nth(k)).to_have_text(re.compile(INTERVAL))
+    chart = Chart(page)
+    readout = page.locator("#readout")
+    page.mouse.move(*chart.at(5, 6))
+    expect(readout).to_have_text(re.compile(rf"strain {NUMBER} % \({INTERVAL}\)"))
+    page.click("#overlay-utilisation")
+    page.mouse.move(*chart.at(6, 6))
+    expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of lock-up"))
+
+
+@pytest.fixture
+def own_material() -> Iterator[str]:
+    """Name of a material file that the service offers, with one measured curve."""
+    acrylic = material("acrylic")
+    curve = MeasuredCurve((0.0, 0.1, 0.2, 0.3), (0.0, 0.006, 0.013, 0.022), pulls=4)
+    fabrics = {**acrylic.fabrics}
+    fabrics[Fabric.GARTER] = replace(fabrics[Fabric.GARTER], measured={Direction.WALE: curve})
+    folder = Path(os.environ["KNITCORE_DATA_DIR"]) / "materials"
+    folder.mkdir(exist_ok=True)
+    file = folder / "mine.json"
+    save_material_file(
+        replace(acrylic, identifier="mine", name="My acrylic", fabrics=fabrics), file
+    )
+    yield "My acrylic"
+    file.unlink()
+
+
+def test_measured_curves_of_an_own_material_are_drawn_as_points(
+    visitor: Page, service: str, own_material: str
+) -> None:
+    page = open_design(visitor, service)
+    page.click("#material-button")
+    page.get_by_role("menuitemradio", name=own_material).click()
+    expect(page.locator("#material-button")).to_contain_text(own_material)
+    page.click("#tab-curve")
+    page.click("#curve-wale")
+    page.wait_for_function(
+        """() => document.querySelector('#plot-curve')?.data?.some(
+            ({ name, mode, x }) =>
+                name === 'garter, measured' && mode === 'markers' && x.length === 4)"""
+    )
+    page.click("#curve-course")
+    page.wait_for_function(
+        """() => document.querySelector('#plot-curve').data.every(
+            ({ name, x }) => !name.endsWith('measured') || x.length === 0)"""
+    )
+
+
+def test_a_wish_for_a_region_fills_it_alone(visitor: Page, service: str) -> None:
+    page = open_design(visitor, service, regions=[LEFT])
+    page.keyboard.press("Shift+W")
+    page.click("#part-regions")
+    fill_first_part(page, course="0.223", wale="0.056")  # garter's
+    lines = kept_chart(page).split("\n")
+    assert [line[6:] for line in lines] == [line[6:] for line in RIBBED.split("\n")]
+    inner = {line[:5] for line in lines}
+    assert inner == {"KKKKK", "PPPPP"}
+
+
+def test_a_wish_for_a_selection_fills_it_alone(visitor: Page, service: str) -> None:
+    page = open_design(visitor, service, outline=WAISTED)
+    chart = Chart(page)
+    page.click("#tool-select")
+    page.mouse.move(*chart.at(3, 10))
+    page.mouse.down()
+    page.mouse.move(*chart.at(10, 5), steps=4)
+    page.mouse.up()
+    page.keyboard.press("Shift+W")
+    page.click("#part-add")
+    expect(page.locator(".part-count")).to_have_text("48 sts")
+    fill_first_part(page, course="0.223", wale="0.056")
+    before, after = RIBBED.split("\n"), kept_chart(page).split("\n")
+    outside = [line[:2] + line[8:] for line in after]
+    assert outside == [line[:2] + line[8:] for line in before]
+    assert after[8:] == before[8:]
+    assert after[:8] != before[:8]
+
+
+def test_a_wish_for_a_whole_shaped_chart_is_for_its_stitches(visitor: Page, service: str) -> None:
+    page = open_design(visitor, service, outline=WAISTED)
+    page.keyboard.press("Shift+W")
+    page.click("#part-add")
+    expect(page.locator(".part-count")).to_have_text("104 sts")
+
+
+def fill_first_part(page: Page, *, course: str, wale: str) -> None:
+    """Wish for stiffness of the only part, fill and apply."""
+    page.fill("#part-0-course", course)
+    page.fill("#part-0-wale", wale)
+    page.click("#fill-run")
+    expect(page.locator("#fill-answer")).to_contain_text("of the area with a wish")
+    page.click("#fill-apply")
