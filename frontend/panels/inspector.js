@@ -2,16 +2,20 @@
  * The numbers of the chart or the selection, with interval and source, and two plots.
  *
  * @import {Studio} from "../studio.js"
- * @import {Direction, Prediction} from "../types.js"
+ * @import {Direction, Interval, Prediction} from "../types.js"
  */
 
 import { figure, percent, range } from "../core/format.js";
+import { paced } from "../core/paced.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../core/segments.js";
 import { scopeOf } from "../services/scope.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { curvePlot } from "../plots/curve.js";
 import { rigidityPlot } from "../plots/rigidity.js";
+import { problemText } from "./problem.js";
+
+const COUNT_MS = 80;
 
 /**
  * @param {HTMLElement} host
@@ -45,7 +49,6 @@ export function inspector(host, studio) {
       "button",
       {
         class: "tab",
-        type: "button",
         role: "tab",
         id: `tab-${id}`,
         "aria-controls": `plot-${id}`,
@@ -56,7 +59,7 @@ export function inspector(host, studio) {
   const tabs = { rigidity: tab("rigidity", "Stiffness map"), curve: tab("curve", "Stress–strain") };
   const pulls = h("div", { class: "segmented small curve-pulls", role: "radiogroup", "aria-label": "Direction of the curves" });
   const ways = (/** @type {Direction[]} */ (["course", "wale"])).map((way) => {
-    const button = h("button", { class: "segment", type: "button", role: "radio", id: `curve-${way}`, title: `Pulled ${way}-wise`, "aria-label": way, onclick: () => (studio.seeing.pull.value = way) }, icon(way));
+    const button = h("button", { class: "segment", role: "radio", id: `curve-${way}`, title: `Pulled ${way}-wise`, "aria-label": way, onclick: () => (studio.seeing.pull.value = way) }, icon(way));
     studio.seeing.pull.watch((chosen) => button.setAttribute("aria-checked", String(chosen === way)));
     return button;
   });
@@ -99,9 +102,7 @@ export function inspector(host, studio) {
     title.title = part.note;
     // While the service is away the banner says so.
     problem.hidden = !wrong || wrong.type === "offline";
-    if (wrong) {
-      problem.replaceChildren(icon("warning"), h("div", {}, h("strong", {}, wrong.title), h("p", {}, wrong.detail), h("p", {}, wrong.remedy ?? "")));
-    }
+    if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     // Numbers of another scope would be mistaken for this one's.
     fill(table, scope === part.kind ? value : null);
     source.hidden = !value;
@@ -141,13 +142,7 @@ export function inspector(host, studio) {
       }),
     );
   };
-  let frame = 0;
-  const countSoon = () => {
-    frame ||= requestAnimationFrame(() => {
-      frame = 0;
-      count();
-    });
-  };
+  const countSoon = paced(count, COUNT_MS);
   studio.prediction.watch(show);
   studio.selection.listen(() => {
     shown = undefined;
@@ -212,12 +207,17 @@ function fill(table, value) {
         cell("modulus-course", value?.modulus_course_n_per_mm, "N/mm", range(value?.modulus_course_interval_n_per_mm)),
         cell("modulus-wale", value?.modulus_wale_n_per_mm, "N/mm", range(value?.modulus_wale_interval_n_per_mm))),
       row("Gives", "Extensibility: one over the modulus",
-        cell("extensibility-course", value?.extensibility_course_mm_per_n, "mm/N"),
-        cell("extensibility-wale", value?.extensibility_wale_mm_per_n, "mm/N")),
+        cell("extensibility-course", value?.extensibility_course_mm_per_n, "mm/N", range(inverse(value?.modulus_course_interval_n_per_mm))),
+        cell("extensibility-wale", value?.extensibility_wale_mm_per_n, "mm/N", range(inverse(value?.modulus_wale_interval_n_per_mm)))),
       row("Poisson", "Contraction across when pulled along",
-        cell("poisson-yx", value?.poisson_yx, ""),
-        cell("poisson-xy", value?.poisson_xy, ""))),
+        cell("poisson-yx", value?.poisson_yx, "", range(value?.poisson_yx_interval)),
+        cell("poisson-xy", value?.poisson_xy, "", range(value?.poisson_xy_interval)))),
   );
+}
+
+/** @param {Interval | null | undefined} interval @returns {Interval | null} */
+function inverse(interval) {
+  return interval ? [1 / interval[1], 1 / interval[0]] : null;
 }
 
 /**

@@ -10,10 +10,12 @@
 import { OVERLAYS, shownOverlay } from "../chart/overlays.js";
 import { groupAt, meanExtensibility } from "../chart/rectangles.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
+import { paced } from "../core/paced.js";
 import { h } from "../dom.js";
 
 /** Sides of the blocks that rectangles may stand for. */
 const BLOCKS = [2, 4, 8, 16];
+const READ_MS = 80;
 const IDLE = "Click or drag to paint. Right button: the opposite. Wheel: zoom. ?: all keys.";
 
 /**
@@ -28,7 +30,6 @@ export function overlaybar(host, studio, view) {
       "button",
       {
         class: "chip",
-        type: "button",
         role: "radio",
         id: `overlay-${overlay.id}`,
         title: overlay.hint,
@@ -42,7 +43,6 @@ export function overlaybar(host, studio, view) {
     "button",
     {
       class: "chip",
-      type: "button",
       id: "overlay-rectangles",
       title: "Extensibility rectangles: as wide and as high as a stitch gives along course and wale (E)",
       onclick: () => (studio.rectangles.value = !studio.rectangles.value),
@@ -102,8 +102,9 @@ export function overlaybar(host, studio, view) {
 
   const read = () => (readout.textContent = describe(studio, view.hover.value));
   read();
-  view.hover.listen(read);
-  studio.document.onChange(read);
+  const readSoon = paced(read, READ_MS);
+  view.hover.listen(readSoon);
+  studio.document.onChange(readSoon);
   studio.step.listen(read);
   studio.stretch.watch(() => {
     show();
