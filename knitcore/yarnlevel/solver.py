@@ -55,6 +55,7 @@ class Options:
     relief : by how much a step that went as predicted lessens the damping.
     followers : most steps with an old factor after each new one.
     tolerance : stop when a Newton step would lower the energy by less than this part of it.
+    slack : stop only when the lengths are within this part of a loop length.
     iterations : most Newton steps.
     """
 
@@ -62,6 +63,7 @@ class Options:
     relief: float = 6.0
     followers: int = 3
     tolerance: float = 1e-7
+    slack: float = 1e-7
     iterations: int = 400
 
 
@@ -201,7 +203,7 @@ class _Descent:
             and not moving
             and self.damping <= 0.1 * self.first_damping
             and predicted < self.options.tolerance * abs(terms.energy)
-            and np.abs(terms.excess_mm).max() < 1e-7 * energy.mean_loop_mm
+            and np.abs(terms.excess_mm).max() < self.options.slack * energy.mean_loop_mm
         )
         return True
 
@@ -219,8 +221,8 @@ class _Descent:
             tension = self.tension + change
             actual = energy.merit(here.terms, tension) - energy.merit(leg.to.terms, tension)
             moved = leg.to.state - here.state
-            if leg.fraction < _NO_STEP or actual < 0.2 * system.decrease(
-                slope, moved, change, excess
+            if leg.fraction < _NO_STEP or actual < 0.2 * system.decrease_solved(
+                slope, moved, change, excess, leg.fraction
             ):
                 return
             walker.go(leg)
@@ -272,6 +274,7 @@ class _System:
 
     def factorise(self, damping: float) -> bool:
         """Cholesky factor of the damped matrix; False where it is not positive definite."""
+        self._damping = damping
         matrix = self._hessian.T
         if len(self._held):
             matrix = matrix[np.ix_(self._free, self._free)]
@@ -313,7 +316,17 @@ class _System:
 
     def decrease(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
         """Decrease of the merit, with the changed tensions, that the quadratic model predicts."""
-        by_length = (change + self._penalty * excess) @ (slope.lengths @ step)
         with one_blas_thread():
             bent = self._hessian @ step
-        return -float(slope.gradient @ step + by_length + 0.5 * step @ bent)
+        return self._downhill(slope, step, change, excess) - 0.5 * float(step @ bent)
+
+    def decrease_solved(
+        self, slope: Slope, step: Array, change: Array, excess: Array, fraction: float
+    ) -> float:
+        """The same for a fraction of what ``solve`` returned, without a product with the matrix."""
+        along = self._downhill(slope, step, change, excess)
+        return (1.0 - 0.5 * fraction) * along + 0.5 * self._damping * float(step @ step)
+
+    def _downhill(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
+        by_length = (change + self._penalty * excess) @ (slope.lengths @ step)
+        return -float(slope.gradient @ step + by_length)
