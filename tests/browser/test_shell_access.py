@@ -83,6 +83,18 @@ def test_a_chart_is_painted_with_keys_alone(flat_studio: Page) -> None:
     assert focused != left, "the focus cannot be seen"
 
 
+def test_enter_in_the_palette_does_not_press_what_had_the_focus_before(flat_studio: Page) -> None:
+    page = flat_studio
+    page.focus("#chart-size")
+    page.keyboard.press("Control+k")
+    page.fill("#command-search", "Keys and tools")
+    page.keyboard.press("Enter")
+    expect(page.locator("#help-dialog")).to_be_visible()
+    expect(page.locator("dialog[open]")).to_have_count(1)
+    page.keyboard.press("Escape")
+    expect(page.locator("dialog[open]")).to_have_count(0)
+
+
 def test_reduced_motion_stills_the_page(flat_studio: Page) -> None:
     moving = flat_studio.evaluate(
         """() => [...document.querySelectorAll('*')].filter((element) => {

@@ -30,7 +30,10 @@ export function create(_studio, context) {
         const next = items[(at + step + items.length) % items.length];
         next.ariaSelected = "true";
         next.scrollIntoView({ block: "nearest" });
-      } else if (event.key === "Enter") items[at]?.click();
+      } else if (event.key === "Enter") {
+        event.preventDefault(); // or it presses what has the focus once this is closed
+        items[at]?.click();
+      }
     },
   });
   const show = () => {
