@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
-from app.operations.charts import ChartText
+from app.operations.charts import MAX_TEXT, ChartText
 from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import InputError
+from knitcore.garment.shaped import outline_marks
 
 MAX_STITCHES = 40_000
 """Over REST; the command line takes larger maps."""
@@ -69,6 +70,12 @@ class FillRequest(BaseModel):
     )
     chart: ChartText | None = Field(
         None, description="Stitches without a wish stay as they are here; filled, too, otherwise."
+    )
+    outline: str | None = Field(
+        None,
+        max_length=MAX_TEXT,
+        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
+        "left out. Wishes are for stitches alone.",
     )
     repeats: Extent = "small"
     smallest_patch: int = Field(4, ge=1, le=100, description="Smallest side of a patch.")
@@ -143,6 +150,7 @@ def run_fill(
         find_material(request.material),
         atlas,
         kept=None if request.chart is None else StitchChart.parse(request.chart),
+        stitch=None if request.outline is None else outline_marks(request.outline),
         smallest_patch=request.smallest_patch,
         seed=request.seed,
         check=request.check,

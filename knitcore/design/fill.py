@@ -31,6 +31,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
+from knitcore.swatch.grid import check_cloth
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
@@ -85,6 +86,7 @@ def fill_field(
     atlas: Atlas,
     *,
     kept: StitchChart | None = None,
+    stitch: NDArray[np.bool_] | None = None,
     smallest_patch: int = 4,
     seed: int = 0,
     check: bool = True,
@@ -101,6 +103,8 @@ def fill_field(
     atlas : of that material.
     kept : what the stitches without any wish stay as; the others are fitted to them, and judged
         beside them. Without it they are filled, too, as their neighbours suit.
+    stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere nothing is wanted,
+        and nothing stands beside the others. All by default.
     smallest_patch : smallest side of a patch in stitches.
     seed : of the order in which stitches are tried.
     check : pull the chart in the finite swatch, and choose again what departs there.
@@ -122,11 +126,15 @@ def fill_field(
             f"it has {kept.columns}x{kept.rows} stitches, the wishes are for {columns}x{rows}.",
             "Give the chart that the wishes were drawn on.",
         )
+    if stitch is not None:
+        check_cloth(stitch, *wanted[0].shape)
+        if np.isnan(wanted[:, stitch]).all():
+            raise InputError("target", "nothing is wanted inside the outline.", "Paint there.")
     if atlas.material != material.identifier:
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    fill = _Fill(wanted, kept, material, atlas, seed, Telling(progress, cancelled))
+    fill = _Fill(wanted, kept, stitch, material, atlas, seed, Telling(progress, cancelled))
     return fill.run(smallest_patch, check=check and wanted[0].size <= MOST_CHECKED)
 
 
@@ -155,14 +163,19 @@ class _Fill:
         self,
         wanted: Array,
         kept: StitchChart | None,
+        stitch: NDArray[np.bool_] | None,
         material: Material,
         atlas: Atlas,
         seed: int,
         telling: Telling,
     ) -> None:
-        self._wanted, self._material, self._atlas = wanted, material, atlas
-        no_wish = np.isnan(wanted).all(axis=0)
-        self._kept, self._fixed = kept, no_wish if kept is not None else np.zeros_like(no_wish)
+        inside = np.ones(wanted.shape[1:], dtype=bool) if stitch is None else stitch
+        self._wanted = np.where(inside, wanted, np.nan)
+        self._material, self._atlas, self._stitch = material, atlas, inside
+        no_wish = np.isnan(self._wanted).all(axis=0)
+        self._fixed = ~inside if kept is None else no_wish
+        around = np.zeros_like(inside) if kept is None else kept.purl
+        self._kept = StitchChart(around & inside)
         self._has_wish = ~no_wish
         self._seed, self._telling = seed, telling
         self._table = stitch_table(material)
@@ -264,6 +277,7 @@ class _Fill:
             self._wanted,
             self._table,
             kept=self._kept,
+            stitch=self._stitch,
             seed=self._seed,
             look=lambda share: self._telling.look(start + 0.15 * share),
         )
@@ -271,7 +285,12 @@ class _Fill:
         if check:
             factors = np.log(
                 finite_size(
-                    chart, self._material, patches, repeats, cancelled=self._telling.cancelled
+                    chart,
+                    self._material,
+                    patches,
+                    repeats,
+                    stitch=self._stitch,
+                    cancelled=self._telling.cancelled,
                 )
             )
         off = _spread(self._judged(choices, factors), patches) - self._wanted
@@ -327,7 +346,7 @@ class _Fill:
 
     def _beside_kept(self, chart: StitchChart) -> StitchChart:
         """The chart, or all of it swapped, where there are wishes; what is kept elsewhere."""
-        if self._kept is None:
+        if not self._fixed.any():
             return chart
         charts = [
             StitchChart(np.where(self._fixed, self._kept.purl, chart.purl ^ swap))

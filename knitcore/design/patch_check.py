@@ -30,6 +30,7 @@ def finite_size(
     patches: NDArray[np.intp],
     repeats: Sequence[StitchChart],
     *,
+    stitch: NDArray[np.bool_],
     cancelled: Callable[[], bool] | None = None,
 ) -> Array:
     """(patches, 2) moduli of each patch in the swatch over those of its repeat, course and wale.
@@ -39,6 +40,7 @@ def finite_size(
     chart : of the patches.
     patches : (rows, columns) number of each stitch's patch; numbers without a repeat are none.
     repeats : of each patch.
+    stitch : (rows, columns), where there are stitches at all.
 
     Raises
     ------
@@ -49,7 +51,14 @@ def finite_size(
     stress, strain = np.empty((2, count, 2, 2))  # patch, component, pull
     for pull in Direction:
         test = strip_test(
-            chart, material, pull, SMALL_STRAIN, steps=1, cancelled=cancelled, clamps="sliding"
+            chart,
+            material,
+            pull,
+            SMALL_STRAIN,
+            steps=1,
+            stitch=stitch,
+            cancelled=cancelled,
+            clamps="sliding",
         )
         fields = test.fields()
         area = _stitch_areas(fields).ravel()

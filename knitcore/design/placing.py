@@ -29,7 +29,8 @@ def placed(
     wanted: Array,
     table: StitchTable,
     *,
-    kept: StitchChart | None = None,
+    kept: StitchChart,
+    stitch: Grid,
     seed: int,
     look: Look,
 ) -> StitchChart:
@@ -42,12 +43,14 @@ def placed(
     repeats : of each patch.
     wanted : (2, rows, columns) logarithms of the wanted moduli, NaN is no wish.
     table : of the material.
+    kept : what the stitches without a repeat are.
+    stitch : (rows, columns), where there are stitches at all.
     seed : of the order in which patches and stitches are tried.
     look : told the share done, now and then; may raise to stop.
     """
     rng = np.random.default_rng(seed)
-    local = _LocalCost(wanted, table)
-    purl = np.zeros(patches.shape, dtype=bool) if kept is None else kept.purl.copy()
+    local = _LocalCost(wanted, table, stitch)
+    purl = kept.purl.copy()
     for patch, repeat in enumerate(repeats):
         purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
     if patches.max() > 0:
@@ -59,7 +62,8 @@ def placed(
 class _LocalCost:
     """Squared deviations of local moduli from the map, by windows."""
 
-    def __init__(self, wanted: Array, table: StitchTable) -> None:
+    def __init__(self, wanted: Array, table: StitchTable, stitch: Grid) -> None:
+        self._stitch = stitch
         have = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
         self._cost = np.nansum((have[:, None, None, :] - wanted[..., None]) ** 2, axis=0)
 
@@ -68,7 +72,8 @@ class _LocalCost:
         (row, far_row), (column, far_column) = (
             _window(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
         )
-        codes = surroundings(StitchChart(purl[far_row, far_column]))[
+        far = far_row, far_column
+        codes = surroundings(StitchChart(purl[far]), stitch=self._stitch[far])[
             row.start - far_row.start : row.stop - far_row.start,
             column.start - far_column.start : column.stop - far_column.start,
         ]

@@ -128,6 +128,9 @@ def test_wishes_for_parts_fill_them_and_contradictions_are_refused(client: TestC
     beside = client.post("/api/v1/fill", json=request | rest)
     assert beside.status_code == 200, beside.text
     assert [line[8:] for line in beside.json()["chart"].split()] == [line[8:] for line in kept]
+    shape = {"outline": "\n".join(["xxxxxxxxxxxxxx.."] * 8)}
+    shaped = client.post("/api/v1/fill", json=request | rest | shape)
+    assert shaped.status_code == 200, shaped.text
     small = client.post("/api/v1/fill", json=request | rest | {"chart": "KP"})
     assert small.status_code == 422
     assert small.json()["field"] == "chart"

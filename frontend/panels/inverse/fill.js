@@ -34,6 +34,7 @@ export function fillTab(studio) {
   let size = "";
 
   const sizeNow = () => `${chart.grid.rows} ${chart.grid.columns}`;
+  const outlineNow = () => (chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null);
   const add = (/** @type {string} */ name, /** @type {number[]} */ all) => {
     const cells = all.filter((i) => chart.outline[i]);
     if (!cells.length) return;
@@ -117,6 +118,7 @@ export function fillTab(studio) {
       rows,
       columns,
       chart: chart.grid.text,
+      outline: outlineNow(),
       wishes: wished.map(({ name, cells, course, wale }) => ({
         name,
         runs: runsOf(cells, columns),
@@ -147,7 +149,7 @@ export function fillTab(studio) {
       h("p", { class: good ? "inverse-verdict good" : "inverse-verdict" }, icon(good ? "check" : "info"),
         h("span", {}, `${percent(1 - found.off_share)} of the area with a wish is within 10 % of it.`)),
       h("div", { class: "inverse-preview" },
-        thumbnail({ chart: found.chart, outline: chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null }, { side: 190, label: "The filled chart" }),
+        thumbnail({ chart: found.chart, outline: outlineNow() }, { side: 190, label: "The filled chart" }),
         h("div", { class: "preview-words" },
           ...found.messages.slice(0, 4).map((message) => h("p", {}, message)),
           found.patches.length > 0 && patchTable(found),

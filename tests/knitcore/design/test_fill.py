@@ -181,6 +181,37 @@ def test_what_has_no_wish_is_kept_and_the_part_is_fitted_to_it(seed: int, fabric
     assert sum(region.stitches for region in field.regions) in (0, 7 * 9)
 
 
+def test_a_shaped_piece_is_filled_whatever_stands_where_it_has_no_stitch() -> None:
+    """Also if a wish reaches over its edge: the part of it inside is filled, and judged."""
+    kept = hidden_chart(2, side=18, patches=4, least=4).purl[:14]
+    stitch = np.ones(kept.shape, dtype=bool)
+    stitch[5:9, 10:] = False
+    fields = [
+        fill_field(
+            *wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, kept=StitchChart(chart), stitch=stitch
+        )
+        for chart in (kept, np.where(stitch, kept, ~kept))
+    ]
+    inside = fields[0].chart.purl[stitch]
+    assert np.array_equal(inside, fields[1].chart.purl[stitch])
+    outside = stitch.copy()
+    outside[PART] = False
+    assert np.array_equal(fields[0].chart.purl[outside], kept[outside])
+    assert all(np.isfinite([r.swatch_course, r.swatch_wale]).all() for r in fields[0].regions)
+    assert fields[0].off_share <= 0.3
+
+
+def test_a_wish_off_the_fabric_and_a_fabric_in_parts_are_refused() -> None:
+    stitch = np.ones((14, 18), dtype=bool)
+    stitch[PART] = False
+    with pytest.raises(InputError, match="inside the outline"):
+        fill_field(*wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
+    stitch = np.ones((14, 18), dtype=bool)
+    stitch[:, 8] = False
+    with pytest.raises(InputError, match="2 pieces"):
+        fill_field(*wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
+
+
 def test_what_is_off_is_a_share_of_what_was_wished_for() -> None:
     course = np.full((12, 12), np.nan)
     course[:4, :4] = 9.0
