@@ -187,6 +187,7 @@ def glove(page: Page) -> str | None:
     return None
 
 
+ATLAS = ".inverse-plot[data-count]:not([data-count='0'])"
 WHOLE: dict[str, Scene] = {"page": page, "glove": glove, "fabric": fabric}
 """Pictures with the cloth in 3D, each of a visit of its own."""
 
@@ -194,6 +195,7 @@ PARTS: dict[str, Scene] = {
     "stretch": stretch,
     "curve": curve,
     "inspector": inspector,
+    "tour": tour,
     "fabrics": fabrics,
     "segments": segments,
     "stiffness": stiffness,
@@ -206,11 +208,10 @@ PARTS: dict[str, Scene] = {
     "import": opened("Import a chart", "#import-dialog"),
     "exports": opened("Export, all formats", "#export-dialog"),
     "garments": opened("Plan a garment", "#planner-dialog", "#planner-facts:not(.busy) table"),
-    "atlas": opened("Atlas of all repeats", "#inverse"),
+    "atlas": opened("Atlas of all repeats", "#inverse", ATLAS),
     "designs": designs,
     "regions": regions,
     "repeats": repeats,
-    "tour": tour,
     "offline": offline,
 }
 """Pictures of one visit, without the cloth in 3D, which takes most of the time."""
@@ -240,9 +241,12 @@ def leave(page: Page) -> None:
     """Close what a scene has opened."""
     page.keyboard.press("Escape")
     page.wait_for_function("() => !document.querySelector('dialog[open]')")
-    for close in page.locator(".dock-panel:not([hidden]) header button, #inverse-close").all():
-        if close.is_visible():
-            close.click()
+    page.evaluate(
+        """buttons => document.querySelectorAll(buttons).forEach(
+            (button) => button.checkVisibility() && button.click())""",
+        ".dock-panel:not([hidden]) header button, #inverse-close, #messages button,"
+        " #overlay-rectangles[aria-pressed='true']",
+    )
 
 
 def keep(name: str, picture: bytes) -> None:
@@ -270,26 +274,34 @@ def palette(image: Image.Image, colours: int) -> Image.Image:
     return chosen
 
 
+def pictures(
+    browser: Browser, url: str, theme: Literal["light", "dark"], wanted: list[str]
+) -> None:
+    """All wanted pictures in one theme."""
+    page = visit(browser, url, theme, flat=True)
+    for name in [name for name in PARTS if name in wanted]:
+        picture(page, PARTS[name], f"{name}-{theme}")
+        leave(page)
+    page.context.close()
+    for name in [name for name in WHOLE if name in wanted]:
+        page = visit(browser, url, theme, flat=False)
+        picture(page, WHOLE[name], f"{name}-{theme}")
+        page.context.close()
+
+
 def main(wanted: list[str]) -> None:
     subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
     IMAGES.mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+    with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-        service = Service(Path(folder))
-        service.start().close()
-        try:
-            for theme in THEMES:
-                page = visit(browser, service.url, theme, flat=True)
-                for name in [name for name in PARTS if name in wanted]:
-                    picture(page, PARTS[name], f"{name}-{theme}")
-                    leave(page)
-                page.context.close()
-                for name in [name for name in WHOLE if name in wanted]:
-                    page = visit(browser, service.url, theme, flat=False)
-                    picture(page, WHOLE[name], f"{name}-{theme}")
-                    page.context.close()
-        finally:
-            service.stop()
+        for theme in THEMES:
+            with tempfile.TemporaryDirectory() as folder:
+                service = Service(Path(folder))  # one that has no designs yet
+                service.start().close()
+                try:
+                    pictures(browser, service.url, theme, wanted)
+                finally:
+                    service.stop()
         browser.close()
 
 
