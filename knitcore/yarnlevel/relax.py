@@ -195,7 +195,7 @@ def relax(
     if shakes:
         small = mirrored_cell(repeat, explored)
         smaller = replace(energy, cell=small, loop_length_mm=np.resize(lengths, small.rows))
-        search.continue_from(smaller, MIRRORED_STARTS[0], shakes)
+        search.continue_from(smaller, _starts(Branch.MIRRORED, small, None), shakes)
     search.try_starts(chosen)
     best = search.best()
     if explored != grid:

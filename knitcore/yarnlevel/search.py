@@ -70,14 +70,15 @@ class Search:
         for start in starts:
             self.run(start.name, partial(self._grow, self.energy, start))
 
-    def continue_from(self, smaller: CellEnergy, start: Start, seeds: Sequence[int]) -> None:
-        """Go on from the state of a more symmetric cell, laid out and shaken a little."""
+    def continue_from(
+        self, smaller: CellEnergy, starts: Sequence[Start], seeds: Sequence[int]
+    ) -> None:
+        """Go on from the lowest state of a more symmetric cell, laid out and shaken a little."""
         mirrored: list[Minimum] = []
 
         def run(seed: int) -> Minimum:
             if not mirrored:
-                mirrored.append(self._grow(smaller, start))
-                self.evaluations += mirrored[0].evaluations
+                mirrored.append(self._lowest(smaller, starts))
                 per_stitch = mirrored[0].terms.energy / smaller.cell.stitches
                 self._other = per_stitch, mirrored[0].state[-2:]
             state = tiled_state(smaller.cell, mirrored[0].state, self.energy.cell)
@@ -166,6 +167,21 @@ class Search:
                     f"lower, a stitch {wide:.2f} times as wide and {high:.2f} times as high."
                 )
         return tuple(notes)
+
+    def _lowest(self, energy: CellEnergy, starts: Sequence[Start]) -> Minimum:
+        """From the first start, unless another one ends distinctly lower."""
+        best = self._grow(energy, starts[0])
+        self.evaluations += best.evaluations
+        for start in starts[1:]:
+            try:
+                found = self._grow(energy, start)
+            except (UnravelledError, ConvergenceError):
+                continue
+            self.evaluations += found.evaluations
+            lower = found.terms.energy < best.terms.energy * (1.0 - SAME_ENERGY)
+            if lower and outcome(energy, found) == RELAXED:
+                best = found
+        return best
 
     def _grow(self, energy: CellEnergy, start: Start) -> Minimum:
         return grow(

@@ -6,6 +6,7 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
+from knitcore.materials import material
 from knitcore.yarnlevel.cell import mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
@@ -16,6 +17,7 @@ from knitcore.yarnlevel.solver import COURSE, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import tiled_state
 from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlevel.yarns import yarn_for
 
 STUDY_YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 
@@ -109,6 +111,17 @@ def test_free_branch_is_not_above_the_mirrored_one():
     assert free.energy_n_mm < mirrored.energy_n_mm * (1 + 1e-6)
     assert free.cell.stitches == 4
     assert any("differs from the mirrored" in note for note in free.notes)
+
+
+def test_the_free_branch_goes_on_from_the_lowest_mirrored_state():
+    """Broken rib of acrylic: the second start of the mirrored branch ends 11 % lower."""
+    chart = StitchChart.parse("KP\nKK")
+    used = yarn_for(material("acrylic"), chart)
+    mirrored, free = (
+        relax(chart, used.yarn, used.loop_length_mm, branch=b) for b in ("mirrored", "free")
+    )
+    assert mirrored.starts[1].energy_n_mm < 0.95 * mirrored.starts[0].energy_n_mm
+    assert free.energy_n_mm <= mirrored.energy_n_mm * (1 + 1e-6)
 
 
 def test_swapping_or_mirroring_the_chart_changes_nothing():
