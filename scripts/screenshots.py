@@ -19,22 +19,29 @@ from playwright.sync_api import Browser, Page, sync_playwright
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from tests.app.service import Service
 from tests.browser.conftest import CHROMIUM, FLAGS
+from tests.browser.page import wait_for_colour
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 MOST_BYTES = 200_000
 SCREEN = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
-DRAWN_MS = 9000
-"""How long a machine without a GPU takes to draw the 3D view."""
+LOOPS_PX = 5000
+"""Coloured pixels of a cloth that is drawn."""
 
 Scene = Callable[[Page], str | None]
 """Brings the page into a state and names the part to picture; all of it if None."""
 
 
+def drawn(page: Page) -> None:
+    """Wait for the 3D view, which takes long without a GPU, and for its last frames."""
+    wait_for_colour(page, "#fabric", LOOPS_PX)
+    page.wait_for_timeout(4000)
+
+
 def page(page: Page) -> str | None:
     """The first visit: the example is stretched."""
-    page.wait_for_timeout(DRAWN_MS)
+    drawn(page)
     return None
 
 
@@ -59,7 +66,7 @@ def stiffness(page: Page) -> str | None:
 
 
 def fabric(page: Page) -> str | None:
-    page.wait_for_timeout(DRAWN_MS)
+    drawn(page)
     return "#fabric"
 
 
@@ -183,7 +190,7 @@ def glove(page: Page) -> str | None:
     page.keyboard.press("Shift+N")
     page.click("#gallery-glove")
     page.click("#overlay-fabrics")
-    page.wait_for_timeout(DRAWN_MS)
+    drawn(page)
     return None
 
 
