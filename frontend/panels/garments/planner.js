@@ -47,7 +47,10 @@ export function create(studio, { keeper }) {
   /** @type {Garment | null} */
   let garment = null;
   const latest = new Latest(TYPING_MS);
-  const changed = () => latest.run(plan);
+  const changed = () => {
+    make.disabled = true; // what is made is what is asked for now, not the plan before
+    latest.run(plan);
+  };
 
   // --- what is asked ----------------------------------------------------------------------------
   const measures = h("div", { class: "planner-measures" });
