@@ -10,11 +10,11 @@ from app.cli.common import (
     gauge_options,
     json_option,
     material_option,
-    resolve_chart,
     resolve_gauge,
+    resolve_piece,
 )
 from app.cli.materials import resolve_material
-from app.operations.predict import PredictResult, predict_chart
+from app.operations.predict import PredictResult, predict_shaped
 
 
 @click.command("predict")
@@ -32,7 +32,8 @@ def command(
 ) -> None:
     """Moduli, Poisson's ratios and extensibility of CHART."""
     gauge = resolve_gauge(stitches_per_10_cm, rows_per_10_cm)
-    result = predict_chart(resolve_chart(chart, size), resolve_material(material), gauge)
+    shaped = resolve_piece(chart, size).shaped
+    result = predict_shaped(shaped, resolve_material(material), gauge)
     emit(result, _text(result), as_json=as_json)
 
 

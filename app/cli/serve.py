@@ -55,6 +55,8 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
             app,
             log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
+            # longer than clients and proxies keep theirs, or they send on one that closes just then
+            timeout_keep_alive=75,
             timeout_graceful_shutdown=3,
         )
     )

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart
+from app.operations.charts import MAX_TEXT, ChartInput, to_chart
 from app.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
+from knitcore.garment.inscribed import largest_rectangle
+from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.materials import Interval, Material
 from knitcore.mechanics.prediction import predict
 from knitcore.mechanics.relaxed import RelaxedSize
@@ -37,6 +39,12 @@ class PredictRequest(BaseModel):
 
     chart: ChartInput
     material: str = Field(max_length=80, examples=["acrylic"])
+    outline: str | None = Field(
+        None,
+        max_length=MAX_TEXT,
+        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
+        "left out. The constants are then those of the largest rectangle inside.",
+    )
     gauge: GaugeInput | None = Field(
         None, description="Corrects the draw-in of ribs and welts; from a table otherwise."
     )
@@ -52,7 +60,7 @@ class SegmentCountsResult(BaseModel):
 class PredictResult(BaseModel):
     """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
 
-    rows: int
+    rows: int = Field(description="Of the stitches that the constants are of.")
     columns: int
     segments: dict[Direction, SegmentCountsResult]
     modulus_course_n_per_mm: float
@@ -83,7 +91,25 @@ class PredictResult(BaseModel):
 
 def predict_request(request: PredictRequest) -> PredictResult:
     """The prediction that a request asks for."""
-    return predict_chart(to_chart(request.chart), find_material(request.material), request.gauge)
+    chart = to_chart(request.chart)
+    material = find_material(request.material)
+    if request.outline is None:
+        return predict_chart(chart, material, request.gauge)
+    shaped = ShapedChart(chart, outline_marks(request.outline))
+    return predict_shaped(shaped, material, request.gauge)
+
+
+def predict_shaped(
+    shaped: ShapedChart, material: Material, gauge: GaugeInput | None = None
+) -> PredictResult:
+    """The prediction of the largest rectangle inside an outline."""
+    inside = StitchChart(shaped.chart.purl[largest_rectangle(shaped.stitch)])
+    found = predict_chart(inside, material, gauge)
+    if shaped.stitch.all():
+        return found
+    size = f"{inside.columns} x {inside.rows}"
+    note = f"Of the largest rectangle inside the outline, {size} stitches."
+    return found.model_copy(update={"notes": [note, *found.notes]})
 
 
 def predict_chart(

@@ -58,11 +58,16 @@ export class Painter {
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     canvas.addEventListener("keydown", (event) => this.#key(event));
+    // A key that pastes or inserts means the stitch under the pointer now.
+    window.addEventListener("keydown", () => this.#pointed && this.#hover(this.#pointed), { capture: true });
     canvas.addEventListener("blur", () => (view.hover.value = null));
     window.addEventListener("keyup", ({ key }) => {
       if (key === " ") this.#space = false;
     });
     studio.tool.watch(({ mode }) => (canvas.dataset.mode = mode));
+    studio.document.onTear((names) =>
+      studio.tell(`Unlinked copies that are not whole any more: ${names.join(", ")}. Undo brings them back.`),
+    );
     studio.document.onRefuse((names) =>
       studio.tell(`Locked: ${names.join(", ")}. Unlock it in the list of regions to paint there.`),
     );

@@ -25,6 +25,7 @@ import { Brush, Layer } from "./stroke.js";
 export class ChartDocument extends ChartState {
   /** @type {Set<() => void>} */ #settled = new Set();
   /** @type {Set<(names: string[]) => void>} */ #refused = new Set();
+  /** @type {Set<(names: string[]) => void>} */ #torn = new Set();
   /** @type {{target: Target, layers: Map<string, Layer>, refused: number} | null} */ #stroke = null;
 
   /**
@@ -64,6 +65,16 @@ export class ChartDocument extends ChartState {
    */
   onRefuse(listener) {
     this.#refused.add(listener);
+  }
+
+  /**
+   * When copies of repeats were unlinked because their stitches do not lie together any more; hears
+   * the repeats' names.
+   *
+   * @param {(names: string[]) => void} listener
+   */
+  onTear(listener) {
+    this.#torn.add(listener);
   }
 
   // --- strokes --------------------------------------------------------------------------------
@@ -207,6 +218,9 @@ export class ChartDocument extends ChartState {
     const after = reshaped(this, how);
     this.become(after);
     this.#keep(label, [{ before, after }]);
+    const torn = before.repeats.filter(({ placements }, k) => after.repeats[k].placements.length < placements.length);
+    const names = torn.map(({ name }) => name);
+    if (names.length) for (const listener of this.#torn) listener(names);
   }
 
   /** @returns {string | undefined} what was undone */

@@ -187,8 +187,15 @@ test("rows, columns and turns carry outline, regions and repeats along, and are 
   assert.deepEqual(chart.content.repeats[0].placements, [{ row: 1, column: 0, rows: 2, columns: 4 }]);
   chart.reshape("Resize", resized(chart.grid, 4, 5, [1, 1]));
   assert.equal(chart.grid.text, "KKPKP\nKPKPK\nKPPPP\nKKKKK");
+  /** @type {string[][]} */
+  const torn = [];
+  chart.onTear((names) => torn.push(names));
+  chart.reshape("Insert", inserted(chart.grid, "rows", 0, 1, "before"));
+  chart.undo();
+  assert.deepEqual(torn, [], "copies that stay whole are not told of");
   chart.reshape("Delete", deleted(chart.grid, "columns", 2, 3));
   assert.deepEqual(chart.content.repeats[0].placements, [], "a torn copy is unlinked");
+  assert.deepEqual(torn, [[chart.repeats[0].name]]);
   assert.deepEqual(undoAll(chart), start);
 });
 

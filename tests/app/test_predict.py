@@ -75,6 +75,25 @@ def test_a_chart_file_and_a_material_file_work(tmp_path: Path) -> None:
     assert told["modulus_course_n_per_mm"] == pytest.approx(own["modulus_course_n_per_mm"])
 
 
+def test_of_an_outline_the_largest_rectangle_counts(client: TestClient, tmp_path: Path) -> None:
+    chart, outline = "\n".join(["KKKK"] * 2 + ["PPPP"] * 4), ".xx.\n" * 2 + "xxxx\n" * 4
+    asked = {"chart": chart, "material": "acrylic", "outline": outline}
+    told = client.post("/api/v1/predict", json=asked).json()
+    assert (told["columns"], told["rows"]) == (4, 4)
+    own = run("predict", "stockinette", "--size", "4x4", "--material", "acrylic")
+    assert told["modulus_wale_n_per_mm"] == pytest.approx(own["modulus_wale_n_per_mm"])
+    assert "4 x 4" in told["notes"][0]
+
+    file = tmp_path / "shaped.json"
+    design = {"format": "knitcore-design", "version": 2, "name": "Shaped", "material": "acrylic"}
+    file.write_text(json.dumps(design | {"chart": chart, "outline": outline}))
+    assert run("predict", str(file), "--material", "acrylic") == told
+
+    refused = client.post("/api/v1/predict", json=asked | {"outline": "xx\nxx"})
+    assert refused.status_code == 422
+    assert refused.json()["field"] == "outline"
+
+
 def test_a_small_mixed_repeat_is_labelled_with_care(client: TestClient) -> None:
     rows = "\n".join(["KKPP" * 5] * 10)
     told = client.post("/api/v1/predict", json={"chart": rows, "material": "acrylic"}).json()

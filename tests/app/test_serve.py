@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import http.client
 import json
 import signal
 import socket
@@ -25,6 +26,14 @@ def test_it_starts_on_a_free_port_and_stops_when_told() -> None:
         url = json.loads(process.stdout.readline())["url"]
         assert url.startswith("http://127.0.0.1:")
         assert httpx2.get(f"{url}healthz", timeout=60).json()["status"] == "ok"
+        kept = http.client.HTTPConnection(url.removeprefix("http://").rstrip("/"), timeout=60)
+        kept.connect()
+        kept.auto_open = False
+        for pause_s in (0.0, 6.0):  # clients keep a connection for 5 s without a word
+            time.sleep(pause_s)
+            kept.request("GET", "/healthz")
+            assert json.loads(kept.getresponse().read())["status"] == "ok"
+        kept.close()
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=60) == 0
     finally:
