@@ -175,104 +175,6 @@ def _point(
 
 
 @njit(cache=True)
-def total_energy(
-    model: int,
-    laws: Array,
-    law_of_cell: NDArray[np.uint8],
-    cloth: NDArray[np.bool_],
-    columns: int,
-    width: Array,
-    height: Array,
-    corners: Array,
-    centres: Array,
-) -> float:
-    """Stored energy (N·mm) of all cells; infinite where a fibre has collapsed to a point."""
-    total = 0.0
-    force, stiffness = np.empty(4), np.empty((4, 4))
-    x = np.empty((4, 2))
-    for cell in range(law_of_cell.size):
-        if not cloth[cell]:
-            continue
-        first = cell // columns * (columns + 1) + cell % columns
-        x[0], x[1] = corners[first], corners[first + 1]
-        x[3], x[2] = corners[first + columns + 1], corners[first + columns + 2]
-        hx, hy = width[cell], height[cell]
-        density = 0.0
-        for t in range(4):
-            i, j = _FIRST[t], _SECOND[t]
-            e0, e1 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
-            c0 = _INWARD[t] * (2.0 * centres[cell, 0] - x[i, 0] - x[j, 0])
-            c1 = _INWARD[t] * (2.0 * centres[cell, 1] - x[i, 1] - x[j, 1])
-            p = laws[law_of_cell[cell]]
-            if _COURSEWISE[t]:
-                density += _point(model, p, e0 / hx, e1 / hx, c0 / hy, c1 / hy, force, stiffness)
-            else:
-                density += _point(model, p, c0 / hx, c1 / hx, e0 / hy, e1 / hy, force, stiffness)
-        total += 0.25 * hx * hy * density
-    return total
-
-
-@njit(cache=True)
-def gradient(
-    model: int,
-    laws: Array,
-    law_of_cell: NDArray[np.uint8],
-    cloth: NDArray[np.bool_],
-    columns: int,
-    width: Array,
-    height: Array,
-    corners: Array,
-    centres: Array,
-    corner_force: Array,
-    centre_force: Array,
-) -> None:
-    """Gradient of the energy on corners (corners, 2) and centres (cells, 2), as in ``assemble``.
-
-    It is linear in the laws' stiffnesses and betas, so that laws made of derivatives of these give
-    the derivative of the forces. Laws that are all 0 are passed over.
-    """
-    corner_force[:] = 0.0
-    centre_force[:] = 0.0
-    force, h = np.empty(4), np.empty((4, 4))
-    x = np.empty((4, 2))
-    node = np.empty(4, np.int64)
-    for cell in range(law_of_cell.size):
-        p = laws[law_of_cell[cell]]
-        if not cloth[cell] or not p.any():
-            continue
-        first = cell // columns * (columns + 1) + cell % columns
-        node[0], node[1], node[2], node[3] = (
-            first,
-            first + 1,
-            first + columns + 2,
-            first + columns + 1,
-        )
-        for i in range(4):
-            x[i, 0], x[i, 1] = corners[node[i], 0], corners[node[i], 1]
-        hx, hy = width[cell], height[cell]
-        area = 0.25 * hx * hy
-        for t in range(4):
-            i, j = _FIRST[t], _SECOND[t]
-            inward = _INWARD[t]
-            e0, e1 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
-            c0 = inward * (2.0 * centres[cell, 0] - x[i, 0] - x[j, 0])
-            c1 = inward * (2.0 * centres[cell, 1] - x[i, 1] - x[j, 1])
-            if _COURSEWISE[t]:
-                e, c = 0, 2
-                se, sc = 1.0 / hx, inward / hy
-                _point(model, p, e0 / hx, e1 / hx, c0 / hy, c1 / hy, force, h)
-            else:
-                e, c = 2, 0
-                se, sc = 1.0 / hy, inward / hx
-                _point(model, p, c0 / hx, c1 / hx, e0 / hy, e1 / hy, force, h)
-            for m in range(2):
-                fe, fc = area * se * force[e + m], area * sc * force[c + m]
-                corner_force[node[i], m] += -fe - fc
-                corner_force[node[j], m] += fe - fc
-                centre_force[cell, m] += 2.0 * fc
-
-
-@njit(cache=True)
 def strain_change(
     model: int,
     cloth: NDArray[np.bool_],
@@ -372,19 +274,26 @@ def assemble(
     Writes ``corner_force`` (corners, 2) and ``centre_force`` (cells, 2), the full gradient;
     ``matrix`` (cells, 8, 8), the tangent of each cell with its centre eliminated; and what is
     needed to recover the centre, ``centre_rows`` (cells, 2, 8) and ``centre_inverse`` (cells, 3:
-    xx, xy, yy of the inverse of the centre's own block). All is 0 where there is no ``cloth``.
-    Returns the energy (N·mm).
+    xx, xy, yy of the inverse of the centre's own block). These three may be empty where no tangent
+    is wanted. All is 0 where there is no ``cloth``, and where all of a law is 0. Energy and forces
+    are linear in the laws' stiffnesses and betas, so that laws made of derivatives of these give
+    the derivative of the forces.
+    Returns the energy (N·mm), infinite where a fibre has collapsed to a point; nothing else that
+    is written then means anything.
     """
     corner_force[:] = 0.0
     centre_force[:] = 0.0
     total = 0.0
+    tangent = matrix.size > 0
     force, h = np.empty(4), np.empty((4, 4))
     x = np.empty((4, 2))
     k, kc, kcc = np.empty((8, 8)), np.empty((2, 8)), np.empty((2, 2))
     node = np.empty(4, np.int64)
     for cell in range(law_of_cell.size):
-        if not cloth[cell]:
-            matrix[cell], centre_rows[cell], centre_inverse[cell] = 0.0, 0.0, 0.0
+        p = laws[law_of_cell[cell]]
+        if not cloth[cell] or not p.any():
+            if tangent:
+                matrix[cell], centre_rows[cell], centre_inverse[cell] = 0.0, 0.0, 0.0
             continue
         first = cell // columns * (columns + 1) + cell % columns
         node[0], node[1], node[2], node[3] = (
@@ -397,7 +306,6 @@ def assemble(
             x[i, 0], x[i, 1] = corners[node[i], 0], corners[node[i], 1]
         hx, hy = width[cell], height[cell]
         area = 0.25 * hx * hy
-        p = laws[law_of_cell[cell]]
         k[:] = 0.0
         kc[:] = 0.0
         kcc[:] = 0.0
@@ -421,7 +329,12 @@ def assemble(
                 corner_force[node[i], m] += -fe - fc
                 corner_force[node[j], m] += fe - fc
                 centre_force[cell, m] += 2.0 * fc
-            _add_triangle(i, j, e, c, se, sc, area, h, k, kc, kcc)
+            if tangent:
+                _add_triangle(i, j, e, c, se, sc, area, h, k, kc, kcc)
+        if total == np.inf:
+            return total
+        if not tangent:
+            continue
         det = kcc[0, 0] * kcc[1, 1] - kcc[0, 1] * kcc[0, 1]
         i00, i01, i11 = kcc[1, 1] / det, -kcc[0, 1] / det, kcc[0, 0] / det
         for r in range(8):

@@ -17,6 +17,8 @@ from knitcore.swatch.models import SheetModel
 
 Array = NDArray[np.float64]
 
+_NO_TANGENT = np.empty((0, 8, 8)), np.empty((0, 2, 8)), np.empty((0, 3))
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -133,19 +135,8 @@ class Sheet:
 
     def energy(self, state: State) -> float:
         """Stored energy, N·mm."""
-        return float(
-            kernel.total_energy(
-                self.model.energy.code,
-                self._parameters,
-                self._law_of_cell,
-                self._cloth,
-                self.grid.columns,
-                self._width,
-                self._height,
-                state.corners,
-                state.centres,
-            )
-        )
+        forces = np.empty_like(state.corners), np.empty_like(state.centres)
+        return self._assemble(self._parameters, state, *forces, *_NO_TANGENT)
 
     def law_force(self, laws: Array, state: State) -> tuple[Array, Array]:
         """Force (N) on corners (corners, 2) and centres (cells, 2) that other laws would add.
@@ -156,21 +147,9 @@ class Sheet:
             the stiffnesses and betas are as good, for the force is linear in them.
         state : positions.
         """
-        corner_force, centre_force = np.empty_like(state.corners), np.empty_like(state.centres)
-        kernel.gradient(
-            self.model.energy.code,
-            laws,
-            self._law_of_cell,
-            self._cloth,
-            self.grid.columns,
-            self._width,
-            self._height,
-            state.corners,
-            state.centres,
-            corner_force,
-            centre_force,
-        )
-        return corner_force, centre_force
+        forces = np.empty_like(state.corners), np.empty_like(state.centres)
+        self._assemble(laws, state, *forces, *_NO_TANGENT)
+        return forces
 
     def strain_change(self, state: State, corner_step: Array, centre_step: Array) -> Array:
         """Change of the cells' mean strains (2, rows, columns), course and wale, to first order in
@@ -208,19 +187,24 @@ class Sheet:
                 reuse.centre_rows,
                 reuse.centre_inverse,
             )
-        energy = kernel.assemble(
-            self.model.energy.code,
-            self._parameters,
-            self._law_of_cell,
-            self._cloth,
-            self.grid.columns,
-            self._width,
-            self._height,
-            state.corners,
-            state.centres,
-            *arrays,
+        energy = self._assemble(self._parameters, state, *arrays)
+        return Linearisation(energy, *arrays, columns=self.grid.columns)
+
+    def _assemble(self, laws: Array, state: State, *arrays: Array) -> float:
+        return float(
+            kernel.assemble(
+                self.model.energy.code,
+                laws,
+                self._law_of_cell,
+                self._cloth,
+                self.grid.columns,
+                self._width,
+                self._height,
+                state.corners,
+                state.centres,
+                *arrays,
+            )
         )
-        return Linearisation(float(energy), *arrays, columns=self.grid.columns)
 
 
 @njit(cache=True)

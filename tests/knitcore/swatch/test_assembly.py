@@ -177,6 +177,13 @@ def test_force_and_tangent_are_derivatives_of_the_energy(model: SheetModel) -> N
     )
 
 
+def test_cloth_pulled_to_a_point_has_infinite_energy_and_raises_nothing() -> None:
+    sheet = Sheet(mixed_grid(np.random.default_rng(3)), LAWS, SheetModel())
+    point = State(np.zeros_like(sheet.grid.corners), np.zeros_like(sheet.grid.centres))
+    assert sheet.energy(point) == np.inf
+    assert [sheet.linearise(point).energy for _ in range(5)] == [np.inf] * 5
+
+
 def test_the_grid_numbers_its_nodes_and_edges_like_its_mesh() -> None:
     grid = mixed_grid(np.random.default_rng(0))
     mesh = grid.mesh()
