@@ -29,13 +29,14 @@ from numpy.typing import NDArray
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials.material import Material
-from knitcore.materials.uncertainty import Interval, log_interval
+from knitcore.materials.uncertainty import Interval, LawUncertainty, log_interval
 from knitcore.mechanics.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.mechanics.prediction import PATCHWORK_SHARE
 from knitcore.mechanics.spread import MODEL_LOG_SD
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
 from knitcore.swatch.dissection import GridFactor
 from knitcore.swatch.fields import cell_strains, corner_means, utilisation
+from knitcore.swatch.models import Coupling
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask, waist_strain
@@ -189,7 +190,7 @@ def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Para
         for direction in Direction:
             sd = spread.log_modulus(direction)
             found.append(_Parameter(_table(sheet, code, _scale(law, direction)), sd, model_sd))
-        sd = _coupling_sd(law, spread.poisson_yx, spread.poisson_xy)
+        sd = _coupling_sd(material.law(PHASES[code]), sheet.model.rule, spread)
         found.append(_Parameter(_table(sheet, code, _coupling(law)), sd, 0.0))
         if (
             sheet.model.shear_modulus is None
@@ -234,7 +235,13 @@ def _coupling(law: ConstitutiveLaw) -> tuple[float, ...]:
     )
 
 
-def _coupling_sd(law: ConstitutiveLaw, poisson_yx_sd: float, poisson_xy_sd: float) -> float:
-    """Of r, the geometric mean of the Poisson ratios, by theirs."""
-    aspect = math.sqrt(law.stiffness_xxxx / law.stiffness_yyyy)  # sqrt(nu_yx / nu_xy)
-    return math.hypot(poisson_yx_sd / aspect, poisson_xy_sd * aspect) / 2
+def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:
+    """Of r, by those of the measured Poisson ratios that the model's rule makes it of."""
+    nu_yx, nu_xy = measured.poisson_yx, measured.poisson_xy
+    if rule is Coupling.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
+        aspect = math.sqrt(nu_yx / nu_xy)
+    else:
+        aspect = math.sqrt(measured.stiffness_xxxx / measured.stiffness_yyyy)
+    if rule is Coupling.SCRIPT:  # r = nu_xy aspect
+        return spread.poisson_xy * aspect
+    return math.hypot(spread.poisson_yx / aspect, spread.poisson_xy * aspect) / 2

@@ -112,20 +112,41 @@ def test_a_scale_of_stress_moves_strains_as_in_a_test_of_the_scaled_law(
     assert spread.waist_sd == pytest.approx(abs(waists[0] - waists[1]) / 2, rel=0.02, abs=1e-7)
 
 
-def test_poisson_ratios_move_strains_as_in_a_test_of_the_changed_law(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize(
+    ("model", "name"), [("full", "poisson_yx"), ("full", "poisson_xy"), ("published", "poisson_xy")]
+)
+def test_a_measured_poisson_ratio_moves_strains_as_in_a_test_of_the_changed_law(
+    model: str, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Of rib, whose two couplings differ by a factor of 8; ``published`` uses one of them."""
     monkeypatch.setattr("knitcore.swatch.spread.model_log_sd", lambda _: 0.0)
-    base = changed(Fabric.GARTER, certain(), uncertainty=replace(NONE, poisson_xy=0.01))
-    law = chart_sheet(HALVES, base).laws[Fabric.GARTER.phase]
-    r = law.stiffness_xxyy / math.sqrt(law.stiffness_xxxx * law.stiffness_yyyy)
-    sd = 0.01 / 2 * math.sqrt(law.stiffness_xxxx / law.stiffness_yyyy)
-    tests = [
-        pulled(changed(Fabric.GARTER, base, law=with_poisson(base.record(Fabric.GARTER), f).law))
-        for f in (1 + sd / r, 1 - sd / r)
-    ]
-    spread = StripSpread(pulled(base), base).at(-1)
-    assert largest_error(spread, *(t.fields() for t in tests)) < 0.01
+    sd = 0.01
+    base = changed(Fabric.RIB, certain(), uncertainty=replace(NONE, **{name: sd}))
+    law = base.law(Fabric.RIB)
+
+    def of_ratio(change: float) -> StripTest:
+        nu = {"poisson_yx": law.poisson_yx, "poisson_xy": law.poisson_xy}
+
+        def square() -> float:  # of the coupling over the mean stiffness
+            other = nu["poisson_xy"] * law.stiffness_xxxx / law.stiffness_yyyy
+            return nu["poisson_xy"] * (nu["poisson_yx"] if model == "full" else other)
+
+        stiffer = 1 - square()
+        nu[name] += change
+        stiffer /= 1 - square()  # so that Young's moduli stay
+        other = replace(
+            law,
+            stiffness_xxxx=law.stiffness_xxxx * stiffer,
+            stiffness_yyyy=law.stiffness_yyyy * stiffer,
+            stiffness_xxyy=law.stiffness_xxxx * stiffer * nu["poisson_xy"],
+            stiffness_yyxx=law.stiffness_yyyy * stiffer * nu["poisson_yx"],
+        )
+        changed_one = changed(Fabric.RIB, base, law=other)
+        options = {"steps": 3, "model": model, "shear_modulus": SHEAR_N_PER_MM}
+        return strip_test(HALVES, changed_one, "course", 0.3, **options)
+
+    spread = StripSpread(of_ratio(0.0), base).at(-1)
+    assert largest_error(spread, *(of_ratio(step).fields() for step in (sd, -sd))) < 0.01
 
 
 def test_the_assumed_shear_modulus_counts_and_a_given_one_does_not() -> None:
