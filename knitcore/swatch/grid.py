@@ -108,9 +108,9 @@ class QuarterGrid:
 
         Where fabrics of different gauge meet, a column is as wide and a row as high as its
         quarters are on average; what each quarter would like to measure stays in
-        ``natural_width`` and ``natural_height``. With ``width_mm`` or ``length_mm`` all sizes are
-        scaled so that the swatch measures that. ``stitch`` (rows, columns) leaves out what has no
-        stitch.
+        ``natural_width`` and ``natural_height``. ``stitch`` (rows, columns) leaves out what has no
+        stitch. With ``width_mm`` or ``length_mm`` all sizes are scaled so that the cloth measures
+        that from edge to edge.
         """
         check_cells(2 * chart.rows, 2 * chart.columns)
         inside = np.ones_like(chart.purl) if stitch is None else np.asarray(stitch, dtype=bool)
@@ -134,11 +134,11 @@ class QuarterGrid:
         heights = _means(natural_height, cloth, axis=1)
         if width_mm is not None:
             check_size_mm(width_mm, 1.0)
-            scale = width_mm / widths.sum()
+            scale = width_mm / widths[cloth.any(axis=0)].sum()
             widths, natural_width = widths * scale, natural_width * scale
         if length_mm is not None:
             check_size_mm(1.0, length_mm)
-            scale = length_mm / heights.sum()
+            scale = length_mm / heights[cloth.any(axis=1)].sum()
             heights, natural_height = heights * scale, natural_height * scale
         return cls(_lines(widths), _lines(heights), phases, natural_width, natural_height, cloth)
 

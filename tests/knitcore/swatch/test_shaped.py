@@ -50,6 +50,18 @@ def test_a_rectangle_in_a_larger_chart_is_that_rectangle(direction: Direction) -
     assert inside.waist_strain == pytest.approx(alone.waist_strain, abs=1e-7)
     assert inside.ux_mm[-1][4:-4, 4:-4] == pytest.approx(alone.ux_mm[-1], abs=1e-6)
     assert np.isnan(inside.ux_mm[-1][:4]).all()
+    sized = strip_test(
+        StitchChart(larger),
+        ACRYLIC,
+        direction,
+        0.3,
+        steps=1,
+        stitch=stitch,
+        width_mm=120,
+        length_mm=90,
+    )
+    assert sized.sheet.grid.width_mm == pytest.approx(120)
+    assert sized.sheet.grid.length_mm == pytest.approx(90)
     nearest, alone_nearest = inside.nearest_lock_up, alone.nearest_lock_up
     assert nearest is not None
     assert alone_nearest is not None
