@@ -235,7 +235,7 @@ def load_levels(strain: float | Sequence[float], steps: int) -> Array:
     if not 1 <= steps <= MAX_STEPS:
         raise InputError("steps", f"{steps} cannot be used.", f"Use 1 to {MAX_STEPS}.")
     values = np.asarray(strain, dtype=float)
-    levels = values * np.arange(1, steps + 1) / steps if values.ndim == 0 else values
+    levels = values * (np.arange(1, steps + 1) / steps) if values.ndim == 0 else values
     if levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:
         raise InputError("strain", f"{strain} is no stretch.", "Give a number above 0.")
     if np.any(np.diff(levels) <= 0):

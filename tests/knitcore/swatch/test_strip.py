@@ -26,6 +26,7 @@ from knitcore.swatch import (
 )
 from knitcore.swatch.files import write_fields
 from knitcore.swatch.grid import MAX_CELLS
+from knitcore.swatch.strip import load_levels
 
 ACRYLIC = material("acrylic")
 GARTER = StitchChart.of_fabric("garter", rows=6, columns=8)
@@ -159,6 +160,13 @@ def test_a_strain_beyond_lock_up_is_told_the_accepted_one() -> None:
         strip_test(GARTER, ACRYLIC, "wale", 1.3)
     accepted = float(caught.value.remedy.split()[-1].rstrip("."))
     assert strip_test(GARTER, ACRYLIC, "wale", accepted, steps=8).converged
+
+
+def test_the_last_level_is_the_strain_that_was_asked_for() -> None:
+    """Not the next number above it, which may be beyond a limit that it just reaches."""
+    for strain in (0.8, 0.3, 0.7):
+        for steps in range(1, 60):
+            assert load_levels(strain, steps)[-1] == strain
 
 
 def test_a_mesh_that_would_not_fit_is_refused() -> None:
