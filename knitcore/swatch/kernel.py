@@ -253,6 +253,21 @@ def _add_triangle(
 
 
 @njit(cache=True)
+def _eliminate_centre(
+    k: Array, kc: Array, kcc: Array, matrix: Array, rows: Array, inverse: Array
+) -> None:
+    """Write a cell's tangent without its centre, and what recovers the centre."""
+    det = kcc[0, 0] * kcc[1, 1] - kcc[0, 1] * kcc[0, 1]
+    i00, i01, i11 = kcc[1, 1] / det, -kcc[0, 1] / det, kcc[0, 0] / det
+    for r in range(8):
+        g0, g1 = i00 * kc[0, r] + i01 * kc[1, r], i01 * kc[0, r] + i11 * kc[1, r]
+        for s in range(8):
+            matrix[r, s] = k[r, s] - g0 * kc[0, s] - g1 * kc[1, s]
+    rows[:] = kc
+    inverse[0], inverse[1], inverse[2] = i00, i01, i11
+
+
+@njit(cache=True)
 def assemble(
     model: int,
     laws: Array,
@@ -333,17 +348,8 @@ def assemble(
                 _add_triangle(i, j, e, c, se, sc, area, h, k, kc, kcc)
         if total == np.inf:
             return total
-        if not tangent:
-            continue
-        det = kcc[0, 0] * kcc[1, 1] - kcc[0, 1] * kcc[0, 1]
-        i00, i01, i11 = kcc[1, 1] / det, -kcc[0, 1] / det, kcc[0, 0] / det
-        for r in range(8):
-            g0, g1 = i00 * kc[0, r] + i01 * kc[1, r], i01 * kc[0, r] + i11 * kc[1, r]
-            for s in range(8):
-                matrix[cell, r, s] = k[r, s] - g0 * kc[0, s] - g1 * kc[1, s]
-        for r in range(8):
-            centre_rows[cell, 0, r], centre_rows[cell, 1, r] = kc[0, r], kc[1, r]
-        centre_inverse[cell, 0], centre_inverse[cell, 1], centre_inverse[cell, 2] = i00, i01, i11
+        if tangent:
+            _eliminate_centre(k, kc, kcc, matrix[cell], centre_rows[cell], centre_inverse[cell])
     return total
 
 
