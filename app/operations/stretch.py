@@ -21,6 +21,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import outline_marks
 from knitcore.materials import Material
+from knitcore.mechanics.stiffening import EXTENSION_START
 from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
 
 Array = NDArray[np.float32]
@@ -260,7 +261,15 @@ def _messages(test: StripTest) -> list[str]:
     """What went wrong, and what a careful reader should know."""
     messages = [test.problem] if test.problem else []
     used = float(test.utilisation.max(initial=0.0))
-    if used >= 1:
+    full = test.sheet.model.energy is EnergyModel.FULL
+    if full and test.steps and test.is_past_the_law():
+        first = next(step for step in range(test.steps) if test.is_past_the_law(step))
+        messages.append(
+            f"From a strain of {test.strain[first]:.3g} on some cloth is past "
+            f"{EXTENSION_START:.0%} of its lock-up. There the law is only continued: the force is "
+            "no fabric's."
+        )
+    elif used >= 1:
         messages.append(
             f"alpha times strain reaches {used:.2f}: the cloth locks at 1. The published model "
             "leaves the lock-up out, so it goes on where no cloth can follow."

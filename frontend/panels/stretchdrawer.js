@@ -147,11 +147,10 @@ export function stretchdrawer(host, studio, stretcher) {
     } else if (busy) note.append(waiting() ? "Waiting for its turn …" : "Pulling the cloth between two clamps …");
     else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
     else if (value) {
-      note.append(
-        value.converged
-          ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`
-          : `Stopped early at ${percent(value.strain[value.strain.length - 1] ?? 0)}. ${(value.messages ?? []).join(" ")}`,
-      );
+      const outcome = value.converged
+        ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`
+        : `Stopped early at ${percent(value.strain[value.strain.length - 1] ?? 0)}.`;
+      note.append([outcome, ...(value.messages ?? [])].join(" "));
     } else note.append("Pull the chart along its rows or columns and see where it gives.");
     host.classList.toggle("busy", busy);
   };

@@ -89,11 +89,17 @@ def cell_strains(sheet: Sheet, state: State) -> CellStrains:
 
 def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
     """alpha * strain of every cell and direction, (2, rows, columns); 0 without cloth."""
-    xx, yy, _ = strains.mean
+    return np.asarray(triangle_utilisation(sheet, strains).mean(axis=3))
+
+
+def triangle_utilisation(sheet: Sheet, strains: CellStrains) -> Array:
+    """The same of every triangle, (2, rows, columns, 4)."""
+    xx, yy = strains.xx, strains.yy
     alpha = np.array([(law.alpha_xx, law.alpha_yy) for law in sheet.laws])[sheet.grid.law_of_cell]
+    alpha_x, alpha_y = alpha[..., 0, None], alpha[..., 1, None]
     kappa = sheet.model.stiffening_coupling
-    used = np.stack([alpha[..., 0] * (xx + kappa * yy), alpha[..., 1] * (yy + kappa * xx)])
-    return np.where(sheet.grid.cloth, used, 0.0)
+    used = np.stack([alpha_x * (xx + kappa * yy), alpha_y * (yy + kappa * xx)])
+    return np.where(sheet.grid.cloth[..., None], used, 0.0)
 
 
 def node_fields(sheet: Sheet, state: State) -> Fields:

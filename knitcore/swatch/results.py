@@ -8,7 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.fabric import PHASES, Direction
-from knitcore.swatch.fields import Fields, cell_strains, node_fields, utilisation
+from knitcore.mechanics.stiffening import EXTENSION_START
+from knitcore.swatch.fields import (
+    Fields,
+    cell_strains,
+    node_fields,
+    triangle_utilisation,
+    utilisation,
+)
 from knitcore.swatch.sheet import Sheet, State
 
 Array = NDArray[np.float64]
@@ -96,6 +103,13 @@ class SwatchTest:
     def utilisation(self) -> Array:
         """Largest alpha * strain of any quarter cell, per step."""
         return np.array([self._utilisation(state).max() for state in self.states])
+
+    def is_past_the_law(self, step: int = -1) -> bool:
+        """Whether some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
+        continues its law: force and strains are no fabric's then.
+        """
+        used = triangle_utilisation(self.sheet, cell_strains(self.sheet, self.states[step]))
+        return bool(used.max() > EXTENSION_START + 1e-6)
 
     @property
     def nearest_lock_up(self) -> LockUp | None:

@@ -117,6 +117,32 @@ def test_the_published_model_says_when_it_leaves_the_cloth_behind(client: TestCl
     assert any("the cloth locks at 1" in message for message in answer["messages"])
 
 
+def test_the_full_model_says_from_where_on_its_law_is_only_continued(client: TestClient) -> None:
+    """Stockinette beside rib locks first; pulled on, the force is thousands of newtons."""
+    chart = "\n".join(["KPKPKKKK"] * 2 + ["KKKKPKPK"] * 2)
+    body = ASKED | {"chart": chart, "direction": "course", "strain": 1.2, "steps": 12}
+    answer = client.post("/api/v1/stretch", json=body).json()
+    assert answer["converged"]
+    (message,) = answer["messages"]
+    assert message.startswith("From a strain of 0.9 on")
+    assert "only continued" in message
+    before = client.post("/api/v1/stretch", json=body | {"strain": 0.8, "steps": 8}).json()
+    assert before["messages"] == []
+
+
+def test_a_lock_up_of_part_of_a_quarter_cell_is_told_too(client: TestClient) -> None:
+    """A piece that hangs on one stitch locks at the neck; the mean of a cell hides that."""
+    body = ASKED | {
+        "chart": "PPKKPKP\nKKKPPKK\nPKKKPKK",
+        "outline": "xxxxxxx\nxxxxxxx\n...x...",
+        "strain": 0.8,
+        "steps": 8,
+    }
+    answer = client.post("/api/v1/stretch", json=body).json()
+    assert answer["nearest_lock_up"]["utilisation"] < 0.95
+    assert "only continued" in answer["messages"][0]
+
+
 @pytest.mark.parametrize("out", ["nowhere/fields.npz", ".", "fields.doc"])
 def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, out: str) -> None:
     arguments = ["garter", "--size", "9x6", "--material", "acrylic", "--direction", "wale"]
