@@ -93,6 +93,15 @@ def test_change_after_a_stretch_marks_it_as_old(flat_studio: Page) -> None:
     expect(flat_studio.locator("#readout")).not_to_contain_text("strain")
 
 
+def test_a_stretch_close_to_the_lock_up_says_so(flat_studio: Page) -> None:
+    flat_studio.click("#stretch-course")
+    flat_studio.fill("#stretch-amount", "88")
+    flat_studio.click("#stretch-run")
+    note = flat_studio.locator("#stretch-note")
+    expect(note).to_contain_text("not a certified test.")
+    expect(note).to_contain_text("of their lock-up")
+
+
 def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "10")
     flat_studio.click("#stretch-run")
