@@ -200,7 +200,7 @@ def _invalid(error: RequestValidationError) -> Problem:
     )
 
 
-_NOT_FIELDS = frozenset({"body", "path", "query", "float", "K/P text", "pure fabric"})
+_NOT_FIELDS = frozenset({"body", "path", "query", "header", "float", "K/P text", "pure fabric"})
 _REMEDIES = {
     "missing": "Give {field}; /docs has an example.",
     "extra_forbidden": "Leave {field} out, or compare its name with /docs.",

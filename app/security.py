@@ -119,7 +119,7 @@ class Guard:
             return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
-        if changes and origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+        if changes and origin is not None and _place_of(origin) != host.lower():
             return _refused("origin", "The request comes from a page of another site.", "", 403)
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > self.settings.max_body_bytes:
@@ -184,6 +184,14 @@ class Guard:
 def _who(login: Login, token: str, cookie: str) -> tuple[str, str]:
     found = login.by_token(token) if token else ("", "")
     return found if found[1] or not cookie else login.by_session(cookie)
+
+
+def _place_of(origin: str) -> str | None:
+    """Host and port of an origin, or None if it is none."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return None
 
 
 def _own_path(path: str) -> str:
