@@ -17,7 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
 from app.identity import current_user
-from app.problems import Problem, problem_response
+from app.problems import Problem, problem_response, unexpected
 from app.rate import RateLimit
 from app.settings import Settings
 from app.store.database import StoreError
@@ -94,8 +94,12 @@ class Guard:
                 await self.app(scope, receive, send)
             return
 
+        started = False
+
         async def send_with_headers(message: Message) -> None:
+            nonlocal started
             if message["type"] == "http.response.start":
+                started = True
                 headers = MutableHeaders(scope=message)
                 view = scope["path"].startswith("/view/")
                 headers["Content-Security-Policy"] = VIEW_POLICY if view else PAGE_POLICY
@@ -110,7 +114,13 @@ class Guard:
         if refusal is not None:
             await refusal(scope, receive, send_with_headers)
             return
-        await self.app(scope, _limited(receive, self.settings.max_body_bytes), send_with_headers)
+        try:
+            limited = _limited(receive, self.settings.max_body_bytes)
+            await self.app(scope, limited, send_with_headers)
+        except Exception as error:  # answered here, so that its answer has the headers, too
+            if started:
+                raise
+            await unexpected(error)(scope, receive, send_with_headers)
 
     def _refusal(self, scope: Scope) -> Response | None:
         headers = Headers(scope=scope)

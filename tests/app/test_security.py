@@ -21,7 +21,7 @@ from websockets.typing import Subprotocol
 from app.cli.main import main
 from app.main import create_app
 from app.rate import RateLimit
-from app.security import LOGIN_FAILURES
+from app.security import LOGIN_FAILURES, PAGE_POLICY
 from app.settings import Settings
 from app.tokens import Tokens
 from app.viewer.private_port import RELAY_HEADERS, private_server
@@ -297,6 +297,9 @@ def test_changes_from_another_site_are_refused(client: TestClient) -> None:
     assert evil.status_code == 403
     own = client.post("/api/v1/charts/parse", json=body, headers={"Origin": "http://127.0.0.1"})
     assert own.status_code == 200
+    for none in ("null", "", "http://[", "http://[::1"):
+        strange = client.post("/api/v1/charts/parse", json=body, headers={"Origin": none})
+        assert strange.status_code == 403
 
 
 def test_websockets_from_another_site_are_refused(client: TestClient) -> None:
@@ -329,3 +332,21 @@ def test_no_text_becomes_a_script_in_a_view(client: TestClient) -> None:
     policy = client.get("/view/a-design-of-mine/").headers["content-security-policy"]
     scripts = next(part for part in policy.split("; ") if part.startswith("script-src"))
     assert "'unsafe-eval'" not in scripts.split()
+
+
+def test_an_unexpected_error_carries_the_headers_and_no_secret_to_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    app = create_app(Settings(workers=1))
+
+    @app.get("/api/v1/shared/{token}/broken")
+    def broken(token: str) -> None:
+        raise ZeroDivisionError
+
+    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+        answer = client.get("/api/v1/shared/a-secret-link/broken", headers={"X-Request-ID": "r-7"})
+    assert (answer.status_code, answer.json()["type"]) == (500, "internal")
+    assert answer.headers["X-Request-ID"] == "r-7"
+    assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
+    assert "ZeroDivisionError" in caplog.text
+    assert "a-secret-link" not in caplog.text
