@@ -27,6 +27,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     import uvicorn
 
     from app import memory
+    from app.connections import Connection
     from app.main import create_app
     from app.observing import configure_logging
 
@@ -53,6 +54,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     server = Server(
         uvicorn.Config(
             app,
+            http=Connection,
             log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             # longer than clients and proxies keep theirs, or they send on one that closes just then
