@@ -25,7 +25,8 @@ from app.tokens import SESSION_S, Login
 
 SESSION_COOKIE = "knitcore_session"
 LOGIN_FAILURES = 20
-"""Wrong tokens that one address may try before it must wait; one more every ten seconds."""
+"""Wrong tokens that one address may try before no token of it is looked at; one more every ten
+seconds."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
 HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
 OPEN_PATHS = frozenset({"/healthz", "/readyz"})
@@ -151,18 +152,20 @@ class Guard:
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
         """Let a known user in, within their rate, and note who it is."""
         address = (scope.get("client") or ("unknown", 0))[0]
-        if self.failures.left(address) < 1:
-            return _too_many("Too many wrong tokens came from this address.", 10.0)
+        slowed = self.failures.left(address) < 1
         login: Login = scope["app"].state.login
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)
         link = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
+        tried = "" if slowed else token or link  # a session is no guess: it still opens
         try:
-            identifier, user = await asyncio.to_thread(_who, login, token or link, cookie)
+            identifier, user = await asyncio.to_thread(_who, login, tried, cookie)
         except StoreError as error:
             return problem_response(error.problem)
         if not user:
-            if token or link:
+            if slowed:
+                return _too_many("Too many wrong tokens came from this address.", 10.0)
+            if tried:
                 self.failures.take(address)
             return _refused(
                 "token",

@@ -141,6 +141,19 @@ def test_wrong_tokens_are_slowed_down() -> None:
         assert refused.headers["retry-after"] == "10"
 
 
+def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
+    with _guarded(token=TOKEN) as client:
+        client.get(f"/?token={TOKEN}")
+        cookies = dict(client.cookies)
+        client.cookies.clear()
+        for n in range(25):
+            client.get("/api/v1/patterns", headers=_as(f"guess-{n}"))
+        assert client.get("/api/v1/patterns").status_code == 429
+        client.cookies.update(cookies)
+        assert client.get("/api/v1/patterns").status_code == 200
+        assert client.get("/api/v1/patterns", headers=_as("guess")).status_code == 200
+
+
 def test_users_see_only_their_own(lab: TestClient) -> None:
     ada, bob = (_as(_tokens(lab).create(name).token) for name in ("ada", "bob"))
     design = {"name": "secret", "material": "acrylic", "chart": "KP"}
