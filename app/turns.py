@@ -59,15 +59,25 @@ class Turns(Generic[Place]):
         UnavailableError
             If the line is as long as it may be.
         """
+        self.check_room(owner, background=background)
         lane = self._lanes[background]
-        mine = len(lane.get(owner, ()))
-        full = mine > 0 and self.waiting(background=False) >= self._most_waiting
-        if mine >= self._most_waiting_each if background else full:
-            raise UnavailableError("Too many computations are waiting.")
         ticket = Ticket(owner, background, asyncio.get_running_loop().create_future())
         lane.setdefault(owner, deque()).append(ticket)
         self._hand_out()
         return ticket
+
+    def check_room(self, owner: str, *, background: bool) -> None:
+        """Refuse who may not stand in line now.
+
+        Raises
+        ------
+        UnavailableError
+            If the line is as long as it may be.
+        """
+        mine = len(self._lanes[background].get(owner, ()))
+        full = mine > 0 and self.waiting(background=False) >= self._most_waiting
+        if mine >= self._most_waiting_each if background else full:
+            raise UnavailableError("Too many computations are waiting.")
 
     def leave(self, ticket: Ticket[Place]) -> None:
         """Give the place back, or leave the line without having had one."""
