@@ -24,6 +24,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(Settings().model_dump() | given).check()
+    _ = settings.store_url  # told in one line if there is no place for the data
     import uvicorn
 
     from app import memory
