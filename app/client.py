@@ -127,7 +127,12 @@ class Client:
 
     def submit(self, kind: str, request: Mapping[str, Any]) -> JobStatus:
         """Run something in the background."""
-        answer = self._ask("POST", "/jobs", json={"kind": kind, "request": dict(request)})
+        answer = self._ask(
+            "POST",
+            "/jobs",
+            json={"kind": kind, "request": dict(request)},
+            headers={"Idempotency-Key": secrets.token_urlsafe(16)},
+        )
         return JobStatus.model_validate_json(answer.content)
 
     def follow(self, job: str) -> Iterator[JobStatus]:
@@ -154,8 +159,7 @@ class Client:
             try:
                 answer = self._http.request(method, path, **options)
             except httpx.TransportError:
-                # A new job is not sent twice; everything else takes effect once or is refused.
-                if attempt == ATTEMPTS or path == "/jobs":
+                if attempt == ATTEMPTS:  # until then again: it takes effect once, or is refused
                     raise
                 continue
             if answer.is_error:

@@ -114,6 +114,16 @@ class Compute:
             place.replace()
             raise WorkerDiedError("The process of this computation died.") from error
 
+    def check_room(self, owner: str) -> None:
+        """Refuse a job of the background that could not even wait.
+
+        Raises
+        ------
+        UnavailableError
+            If too many of this owner wait already.
+        """
+        self.turns.check_room(owner, background=True)
+
     def close(self) -> None:
         """Let go of all places."""
         for place in self._places:

@@ -172,6 +172,6 @@ METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
 
 
 def _public_path(path: str) -> str:
-    """A path without the secret of a share link, and without line ends that would forge lines."""
+    """A path without the secret of a share link, and without what would forge lines or colours."""
     shown = re.sub(r"^(/api/v1/shared/)[^/]+", r"\1…", path)
-    return shown.encode("ascii", "backslashreplace").decode().replace("\n", "\\n")[:200]
+    return shown.encode("unicode_escape").decode("ascii")[:200]

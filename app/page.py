@@ -91,7 +91,7 @@ class PageFiles(StaticFiles):
     async def get_response(self, path: str, scope: Scope) -> Response:
         """The file, or 404."""
         name = PurePosixPath(path)
-        if name.suffix not in SUFFIXES or name.parts[0] in NOT_OURS:
+        if name.suffix not in SUFFIXES or name.parts[0] in NOT_OURS or "\0" in path:
             raise HTTPException(404)
         named_by_content = "-" in name.stem and len(name.parts) == 1
         caching = self.caching if named_by_content else CHECK_AGAIN

@@ -200,7 +200,7 @@ def _invalid(error: RequestValidationError) -> Problem:
     )
 
 
-_NOT_FIELDS = frozenset({"body", "path", "query", "float", "K/P text", "pure fabric"})
+_NOT_FIELDS = frozenset({"body", "path", "query", "header", "float", "K/P text", "pure fabric"})
 _REMEDIES = {
     "missing": "Give {field}; /docs has an example.",
     "extra_forbidden": "Leave {field} out, or compare its name with /docs.",
@@ -234,6 +234,11 @@ def install_problem_handlers(app: FastAPI) -> None:
         return problem_response(problem_of(error), getattr(error, "headers", None))
 
     @app.exception_handler(Exception)
-    async def _(request: Request, error: Exception) -> JSONResponse:
-        log.error("unexpected error at %s %s", request.method, request.url.path, exc_info=error)
-        return problem_response(problem_of(error))
+    async def _(_: Request, error: Exception) -> JSONResponse:
+        return unexpected(error)
+
+
+def unexpected(error: Exception) -> JSONResponse:
+    """A mistake of ours; its log line has the id of the request, whose own line has the rest."""
+    log.error("unexpected error", exc_info=error)
+    return problem_response(problem_of(error))

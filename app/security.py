@@ -17,7 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
 from app.identity import current_user
-from app.problems import Problem, problem_response
+from app.problems import Problem, problem_response, unexpected
 from app.rate import RateLimit
 from app.settings import Settings
 from app.store.database import StoreError
@@ -25,7 +25,8 @@ from app.tokens import SESSION_S, Login
 
 SESSION_COOKIE = "knitcore_session"
 LOGIN_FAILURES = 20
-"""Wrong tokens that one address may try before it must wait; one more every ten seconds."""
+"""Wrong tokens that one address may try before no token of it is looked at; one more every ten
+seconds."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
 HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
 OPEN_PATHS = frozenset({"/healthz", "/readyz"})
@@ -94,8 +95,12 @@ class Guard:
                 await self.app(scope, receive, send)
             return
 
+        started = False
+
         async def send_with_headers(message: Message) -> None:
+            nonlocal started
             if message["type"] == "http.response.start":
+                started = True
                 headers = MutableHeaders(scope=message)
                 view = scope["path"].startswith("/view/")
                 headers["Content-Security-Policy"] = VIEW_POLICY if view else PAGE_POLICY
@@ -110,7 +115,13 @@ class Guard:
         if refusal is not None:
             await refusal(scope, receive, send_with_headers)
             return
-        await self.app(scope, _limited(receive, self.settings.max_body_bytes), send_with_headers)
+        try:
+            limited = _limited(receive, self.settings.max_body_bytes)
+            await self.app(scope, limited, send_with_headers)
+        except Exception as error:  # answered here, so that its answer has the headers, too
+            if started:
+                raise
+            await unexpected(error)(scope, receive, send_with_headers)
 
     def _refusal(self, scope: Scope) -> Response | None:
         headers = Headers(scope=scope)
@@ -119,7 +130,7 @@ class Guard:
             return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
-        if changes and origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+        if changes and origin is not None and _place_of(origin) != host.lower():
             return _refused("origin", "The request comes from a page of another site.", "", 403)
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > self.settings.max_body_bytes:
@@ -141,18 +152,20 @@ class Guard:
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
         """Let a known user in, within their rate, and note who it is."""
         address = (scope.get("client") or ("unknown", 0))[0]
-        if self.failures.left(address) < 1:
-            return _too_many("Too many wrong tokens came from this address.", 10.0)
+        slowed = self.failures.left(address) < 1
         login: Login = scope["app"].state.login
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)
         link = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
+        tried = "" if slowed else token or link  # a session is no guess: it still opens
         try:
-            identifier, user = await asyncio.to_thread(_who, login, token or link, cookie)
+            identifier, user = await asyncio.to_thread(_who, login, tried, cookie)
         except StoreError as error:
             return problem_response(error.problem)
         if not user:
-            if token or link:
+            if slowed:
+                return _too_many("Too many wrong tokens came from this address.", 10.0)
+            if tried:
                 self.failures.take(address)
             return _refused(
                 "token",
@@ -184,6 +197,14 @@ class Guard:
 def _who(login: Login, token: str, cookie: str) -> tuple[str, str]:
     found = login.by_token(token) if token else ("", "")
     return found if found[1] or not cookie else login.by_session(cookie)
+
+
+def _place_of(origin: str) -> str | None:
+    """Host and port of an origin, or None if it is none."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return None
 
 
 def _own_path(path: str) -> str:

@@ -30,7 +30,8 @@ class Turns(Generic[Place]):
     places : what is handed out.
     most_background : how many places background work may hold at once, so that a long job leaves
         one for those who look at a page.
-    most_waiting : how many may wait in the foreground.
+    most_waiting : how many may wait in the foreground; who has none waiting there may always add
+        one, so that nobody fills the line for the others.
     most_waiting_each : how many one user may have waiting in the background.
     """
 
@@ -58,14 +59,25 @@ class Turns(Generic[Place]):
         UnavailableError
             If the line is as long as it may be.
         """
+        self.check_room(owner, background=background)
         lane = self._lanes[background]
-        ahead = len(lane.get(owner, ())) if background else self.waiting(background=False)
-        if ahead >= (self._most_waiting_each if background else self._most_waiting):
-            raise UnavailableError("Too many computations are waiting.")
         ticket = Ticket(owner, background, asyncio.get_running_loop().create_future())
         lane.setdefault(owner, deque()).append(ticket)
         self._hand_out()
         return ticket
+
+    def check_room(self, owner: str, *, background: bool) -> None:
+        """Refuse who may not stand in line now.
+
+        Raises
+        ------
+        UnavailableError
+            If the line is as long as it may be.
+        """
+        mine = len(self._lanes[background].get(owner, ()))
+        full = mine > 0 and self.waiting(background=False) >= self._most_waiting
+        if mine >= self._most_waiting_each if background else full:
+            raise UnavailableError("Too many computations are waiting.")
 
     def leave(self, ticket: Ticket[Place]) -> None:
         """Give the place back, or leave the line without having had one."""

@@ -10,6 +10,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 
+from app.api.designs import Key, retry_of
 from app.designs.conditions import ConflictError
 from app.identity import asking
 from app.jobs.document import JobPage, JobState, JobStatus
@@ -42,10 +43,13 @@ async def post_job(
     body: JobRequest,
     runner: Runner,
     owner: Owner,
+    request: Request,
     response: Response,
+    key: Key = None,
 ) -> JobStatus:
     """Waits for its turn among all users; if the result is known, the job is done at once."""
-    status = await runner.submit(owner, body.kind, body.request.model_dump_json())
+    retry = retry_of(owner, key, request, body)
+    status = await runner.submit(owner, body.kind, body.request.model_dump_json(), retry)
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status
 

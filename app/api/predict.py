@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from app.operations.curve import CurveRequest, CurveResult, run_curve
 from app.operations.predict import PredictRequest, PredictResult, predict_request
@@ -17,6 +17,11 @@ def post_predict(request: PredictRequest) -> PredictResult:
 
 
 @router.post("/curve", summary="Stress-strain curve of a chart")
-def post_curve(request: CurveRequest) -> CurveResult:
-    """Strain at each stress, for pure fabrics, ribs, welts and repeats of up to 256 stitches."""
-    return run_curve(request)
+async def post_curve(body: CurveRequest, request: Request) -> CurveResult:
+    """Strain at each stress, for pure fabrics, ribs, welts and repeats of up to 256 stitches.
+
+    Large repeats take minutes; stops when the caller goes away.
+    """
+    compute = request.app.state.compute
+    result: CurveResult = await compute.run(request.is_disconnected, run_curve, body)
+    return result

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import contextvars
 from collections.abc import AsyncIterator, Callable
-from typing import Annotated, Any
+from concurrent.futures import ThreadPoolExecutor
+from typing import Annotated, Any, TypeVar
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
@@ -26,6 +28,11 @@ HEARTBEATS = 30
 MISSING: dict[int | str, dict[str, Any]] = {
     404: {"model": Problem, "description": "This view is not open."}
 }
+
+T = TypeVar("T")
+# Threads of their own: for those that asyncio has, everybody's logins and jobs would wait.
+_drawing = ThreadPoolExecutor(4, "drawing")
+_pictures = ThreadPoolExecutor(4, "pictures")  # waiting for browsers, up to 25 s each
 
 router = APIRouter(tags=["views"], responses=MISSING)
 
@@ -68,7 +75,7 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
         drawn = state.views.open(name).show(scene)
         return ViewResult(stitches=drawn, source=scene.shapes.source, url=f"/view/{design}/")
 
-    return await asyncio.to_thread(draw)
+    return await _in(_drawing, draw)
 
 
 @router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
@@ -119,7 +126,7 @@ async def get_picture(
 ) -> Response:
     """As a browser that watches `/view/{design}/` sees it; somebody must be watching."""
     view = _view(design, request)
-    content = await asyncio.to_thread(picture_png, view, width, height)
+    content = await _in(_pictures, picture_png, view, width, height)
     return Response(content, media_type="image/png")
 
 
@@ -167,9 +174,16 @@ async def _shared(
     media: str,
     ending: str,
 ) -> Response:
-    content = await asyncio.to_thread(make, body, _stretch(body, request))
+    content = await _in(_drawing, make, body, _stretch(body, request))
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
+
+
+async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: Any) -> T:
+    """As ``asyncio.to_thread``, with other threads."""
+    context = contextvars.copy_context()
+    loop = asyncio.get_running_loop()
+    return await loop.run_in_executor(threads, context.run, function, *args)
 
 
 def _stretch(body: ViewRequest, request: Request) -> StretchRun | None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 from pydantic import ValidationError
+from pydantic_settings import SettingsError
 
 import app.cli as commands
 from knitcore.errors import KnitcoreError
@@ -46,6 +47,8 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except KnitcoreError as error:
             raise Failure(str(error)) from error
+        except SettingsError as error:
+            raise Failure(f'{error}. Write a list as JSON, such as ["knit.example"].') from error
         except ValidationError as error:
             first = error.errors()[0]
             field = ".".join(str(part) for part in first["loc"])

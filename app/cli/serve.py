@@ -24,9 +24,11 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(Settings().model_dump() | given).check()
+    _ = settings.store_url  # told in one line if there is no place for the data
     import uvicorn
 
     from app import memory
+    from app.connections import Connection
     from app.main import create_app
     from app.observing import configure_logging
 
@@ -53,6 +55,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     server = Server(
         uvicorn.Config(
             app,
+            http=Connection,
             log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             # longer than clients and proxies keep theirs, or they send on one that closes just then

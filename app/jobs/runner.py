@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.compute import Compute
+from app.designs.idempotency import Retry
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, content_key
 from app.jobs.store import JobStore
@@ -61,12 +63,27 @@ class JobRunner:
         await self._go_on(await asyncio.to_thread(self.store.adopt))
         self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
 
-    async def submit(self, owner: str, kind: str, request: str) -> JobStatus:
-        """Take a job on; if its result is known, it is done at once."""
+    async def submit(
+        self, owner: str, kind: str, request: str, retry: Retry | None = None
+    ) -> JobStatus:
+        """Take a job on; if its result is known, it is done at once.
+
+        Raises
+        ------
+        UnavailableError
+            If too many jobs of this owner wait.
+        """
         key = content_key(kind, request)
         known = await asyncio.to_thread(self.store.knows, key)
         state = JobState.DONE if known else JobState.WAITING
-        status = await asyncio.to_thread(self.store.add, owner, kind, request, key, state)
+        if not known:
+            self._compute.check_room(owner)
+        job = secrets.token_urlsafe(16)
+        status = await asyncio.to_thread(
+            self.store.add, owner, kind, request, key, state, job=job, retry=retry
+        )
+        if status.id != job:
+            return await self.status(owner, status.id)
         if not known:
             self._start(status.id, owner, kind, request)
         return status

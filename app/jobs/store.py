@@ -19,6 +19,7 @@ from sqlalchemy import (
     update,
 )
 
+from app.designs.idempotency import Retry
 from app.designs.store import moment, now
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.problems import NotFoundError, Problem
@@ -52,11 +53,24 @@ class JobStore:
         self._database = database
         self._process = process
 
-    def add(self, owner: str, kind: str, request: str, key: str, state: JobState) -> JobStatus:
-        """Keep a new job; one whose result is known already is done."""
+    def add(
+        self,
+        owner: str,
+        kind: str,
+        request: str,
+        key: str,
+        state: JobState,
+        *,
+        job: str | None = None,
+        retry: Retry | None = None,
+    ) -> JobStatus:
+        """Keep a new job, of this id if one is given; one whose result is known already is done.
+
+        If the request came before, its job of then is told, which has another id.
+        """
         at = now()
         values = {
-            "id": secrets.token_urlsafe(16),
+            "id": job or secrets.token_urlsafe(16),
             "owner": owner,
             "process": self._process,
             "kind": kind,
@@ -72,6 +86,8 @@ class JobStore:
             connection.execute(insert(jobs).values(values))
             return _status(_one(connection, owner, str(values["id"])))
 
+        if retry is not None:
+            return retry.once(self._database, JobStatus, action)
         return self._database.write(action)
 
     def get(self, owner: str, job: str) -> JobStatus:

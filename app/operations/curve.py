@@ -49,13 +49,13 @@ class CurveResult(BaseModel):
 
 def run_curve(request: CurveRequest, *, cancelled: Callable[[], bool] | None = None) -> CurveResult:
     """The curve that a request asks for."""
-    del cancelled  # milliseconds
     return curve_of_chart(
         to_chart(request.chart),
         find_material(request.material),
         request.direction,
         request.stress_n_per_mm,
         request.gauge,
+        cancelled=cancelled,
     )
 
 
@@ -65,6 +65,8 @@ def curve_of_chart(
     direction: Direction,
     stress_n_per_mm: list[float],
     gauge: GaugeInput | None = None,
+    *,
+    cancelled: Callable[[], bool] | None = None,
 ) -> CurveResult:
     """The curve of any chart and material.
 
@@ -81,7 +83,9 @@ def curve_of_chart(
         if law is not None:
             strain = free_strains_at_stress(law, direction, stresses)
             return ChartCurve(stresses, strain, Provenance.YARN_LEVEL)
-        return chart_curve(chart, material, direction, stresses, relaxed=relaxed)
+        return chart_curve(
+            chart, material, direction, stresses, relaxed=relaxed, cancelled=cancelled
+        )
 
     value = modulus.modulus_n_per_mm(direction)
     interval = (

@@ -7,6 +7,7 @@ import gzip
 import json
 import os
 import time
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -125,8 +126,8 @@ def _fill(
                 connection.execute(insert(tables.tables[current]), waiting)
             waiting = []
         if "end" in line:
-            if {k: n for k, n in line["end"].items() if n} != counts:
-                break
+            if {k: n for k, n in line["end"].items() if n} != counts or any(lines):
+                break  # reading on to the end of the file compares its checksum, too
             return dict(line["end"])
         current = line["table"]
         waiting.append(line["row"])
@@ -142,7 +143,7 @@ def _lines(file: Path) -> Iterator[dict[str, Any]]:
                 if not isinstance(found, dict):
                     raise ValueError("not an object")
                 yield found
-    except (OSError, EOFError, ValueError) as error:
+    except (OSError, EOFError, ValueError, zlib.error) as error:
         raise InputError(
             "file", f"{file} cannot be read ({error}).", "Use another backup."
         ) from error

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
-from knitcore.chart import StitchChart, check_size
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
 from knitcore.errors import InputError
 from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
@@ -101,6 +101,12 @@ def read_png_piece(file: Path) -> Piece:
             flat = Image.new("RGBA", image.size, "white")
             flat.alpha_composite(image.convert("RGBA"))
             return Piece.plain(StitchChart(np.asarray(flat.convert("L"))[::-1] < 128))
+    except Image.DecompressionBombError:
+        raise InputError(
+            "chart",
+            f"{file.name} has more pixels than any chart has stitches.",
+            f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
+        ) from None
     except (UnidentifiedImageError, OSError, SyntaxError):
         raise InputError(
             "chart", f"{file.name} is not a readable PNG.", "Export it again as PNG."

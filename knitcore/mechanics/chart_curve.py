@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,8 +47,13 @@ def chart_curve(
     stress_n_per_mm: ArrayLike = DEFAULT_STRESS_N_PER_MM,
     *,
     relaxed: RelaxedSize | None = None,
+    cancelled: Callable[[], bool] | None = None,
 ) -> ChartCurve:
     """Strain of a chart at increasing stresses (N/mm).
+
+    Parameters
+    ----------
+    cancelled : asked before each stress that Newton's method solves for.
 
     Raises
     ------
@@ -55,6 +61,8 @@ def chart_curve(
         If the stresses are not finite, increasing and at least 0, or if the chart is neither a
         pure fabric, nor a rib or welt, nor a repeat of at most 256 stitches: a swatch of that
         size is stretched by knitcore.swatch.
+    CancelledError
+        If ``cancelled`` returned True.
 
     Examples
     --------
@@ -82,5 +90,5 @@ def chart_curve(
     if layout_of(repeat) is Layout.RIB and direction is Direction.WALE:
         strain = flat_rib_wale_wise(repeat, material).strain(stress)
         return ChartCurve(stress, strain, Provenance.STRETCHED)
-    curve = repeat_curve_at_stress(repeat, material, direction, stress)
+    curve = repeat_curve_at_stress(repeat, material, direction, stress, cancelled=cancelled)
     return ChartCurve(stress, curve.strain, Provenance.STRETCHED)

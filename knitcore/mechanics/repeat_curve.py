@@ -9,6 +9,7 @@ composite: what a folded rib does before it lies flat is in :mod:`knitcore.mecha
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.linalg import splu
 
 from knitcore.chart import StitchChart
-from knitcore.errors import ConvergenceError, InputError
+from knitcore.errors import CancelledError, ConvergenceError, InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.mechanics.homogenisation import phase_grid, poisson_asymmetry, stiffness_form
@@ -86,13 +87,19 @@ def repeat_curve(
 
 
 def repeat_curve_at_stress(
-    chart: StitchChart, material: Material, direction: Direction, stress: ArrayLike
+    chart: StitchChart,
+    material: Material,
+    direction: Direction,
+    stress: ArrayLike,
+    *,
+    cancelled: Callable[[], bool] | None = None,
 ) -> UniaxialCurve:
     """The same with the full law, at given mean stresses instead of strains.
 
     Parameters
     ----------
     stress : increasing, at least 0, N/mm.
+    cancelled : asked before each stress.
 
     Raises
     ------
@@ -100,12 +107,16 @@ def repeat_curve_at_stress(
         If the repeat is too large, or the stresses are not finite, increasing and at least 0.
     ConvergenceError
         If Newton's method stops short.
+    CancelledError
+        If ``cancelled`` returned True.
     """
     sigma = _checked(stress, "stress")
     cell = _Cell(_small(chart), material, StiffeningForm.FULL)
     state = np.zeros(cell.unknowns)
     rows: list[tuple[float, float]] = []
     for value in sigma:
+        if cancelled is not None and cancelled():
+            raise CancelledError("The caller stopped the curve.")
         state = cell.solve(state, direction, stress=float(value))
         rows.append((cell.strain(state, direction), cell.transverse_strain(state, direction)))
     strain, transverse = np.array(rows).T

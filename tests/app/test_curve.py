@@ -9,6 +9,10 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.main import create_app
+from app.operations.curve import CurveRequest, run_curve
+from app.settings import Settings
+from knitcore.errors import CancelledError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
 from knitcore.mechanics.uniaxial import strain_at_stress
@@ -69,3 +73,18 @@ def test_stresses_must_increase(client: TestClient) -> None:
     body = {"chart": "K", "material": "acrylic", "direction": "wale", "stress_n_per_mm": [0.2, 0.1]}
     problem = client.post("/api/v1/curve", json=body).json()
     assert (problem["status"], problem["field"]) == (422, "stress")
+
+
+REPEAT = "KKKPPK\nPKPPPK\nKPPKKK\nPPKPKP\nKKPPPK\nPKKPKP"
+"""Large enough that Newton's method takes many seconds."""
+
+
+def test_a_long_curve_is_stopped_and_holds_nobody_up() -> None:
+    body = {"chart": REPEAT, "material": "acrylic", "direction": "course"}
+    app = create_app(Settings(workers=1, job_timeout_s=1.0))
+    with TestClient(app, base_url="http://127.0.0.1") as client:
+        answer = client.post("/api/v1/curve", json=body)
+        assert answer.status_code == 503
+        assert "longer than 1 s" in answer.json()["detail"]
+    with pytest.raises(CancelledError):
+        run_curve(CurveRequest.model_validate(body), cancelled=lambda: True)

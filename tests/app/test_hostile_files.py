@@ -9,6 +9,7 @@ import io
 import os
 import random
 import zipfile
+import zlib
 from collections.abc import Callable
 from typing import Any
 
@@ -25,7 +26,7 @@ from app.operations.measure import (
     run_bending,
     run_compression,
 )
-from knitcore.errors import KnitcoreError
+from knitcore.errors import InputError, KnitcoreError
 
 FILES = int(os.environ.get("KNITCORE_HOSTILE_FILES", "40"))
 
@@ -37,9 +38,10 @@ def _png(width: int, height: int) -> bytes:
 
 
 def _bomb() -> bytes:
-    """A PNG that says it has 60,000 x 60,000 pixels."""
+    """A PNG that says it has 60,000 x 60,000 pixels, with a checksum that agrees."""
     image = bytearray(_png(2, 2))
     image[16:24] = (60_000).to_bytes(4, "big") * 2
+    image[29:33] = zlib.crc32(image[12:29]).to_bytes(4, "big")
     return bytes(image)
 
 
@@ -125,3 +127,8 @@ def test_a_hostile_file_is_refused_in_words(reader: str) -> None:
             told = f"{first['name']} {first['content'][:40]!r}"
             raise AssertionError(f"{told} gives {type(error).__name__}: {error}") from error
     assert refused > FILES * 0.8
+
+
+def test_a_picture_of_billions_of_pixels_is_refused_as_too_large() -> None:
+    with pytest.raises(InputError, match="more pixels than"):
+        READERS["import"]({"name": "a.png", "content": _bomb()}, {})

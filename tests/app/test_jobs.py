@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app import compute as compute_module
 from app.compute import Compute
 from app.jobs import kinds as kinds_module
 from app.jobs import runner as runner_module
@@ -22,7 +23,7 @@ from app.jobs.kinds import KINDS, JobKind
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.main import create_app
-from app.problems import NotFoundError
+from app.problems import NotFoundError, UnavailableError
 from app.processes import processes
 from app.recent import RecentResults
 from app.settings import Settings
@@ -111,6 +112,37 @@ def test_a_job_that_cannot_work_says_why(client: TestClient) -> None:
     assert client.get(f"{address}/result").status_code == 409
     assert client.get(f"{JOBS}/no-such-job").json()["field"] == "job"
     assert client.post(JOBS, json={"kind": "dance", "request": {}}).status_code == 422
+
+
+def test_a_job_that_is_sent_twice_runs_once(client: TestClient) -> None:
+    body = {"kind": "stretch", "request": STRETCH | {"strain": 0.12}}
+    headers = {"Idempotency-Key": "the-same-job"}
+    first, second = (client.post(JOBS, json=body, headers=headers) for _ in range(2))
+    assert first.status_code == second.status_code == 202
+    assert first.json()["id"] == second.json()["id"]
+    body["request"] = STRETCH | {"strain": 0.13}
+    other = client.post(JOBS, json=body, headers=headers)
+    assert (other.status_code, other.json()["field"]) == (422, "Idempotency-Key")
+
+
+def test_who_has_too_many_waiting_is_refused_at_once(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def scenario() -> None:
+        monkeypatch.setattr(compute_module, "WAITING_EACH", 1)
+        pool = Compute(processes(1), timeout_s=60)
+        runner = _runner(database, pool)
+        first = await runner.submit("ada", "work", _wish("wait"))
+        await _running(runner, first.id)
+        await runner.submit("ada", "work", _wish("wait", "second"))
+        await asyncio.sleep(0.1)
+        with pytest.raises(UnavailableError):
+            await runner.submit("ada", "work", _wish("wait", "third"))
+        assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
+        await runner.close()
+        pool.close()
+
+    asyncio.run(scenario())
 
 
 def test_jobs_are_private_and_results_are_shared_by_content(

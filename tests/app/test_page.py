@@ -62,7 +62,15 @@ def test_without_a_bundle_the_sources_are_served(
 
 @pytest.mark.parametrize(
     "path",
-    ["tests/grid.test.js", "package.json", "dist/app-AB12CD.js", "nothing.js", "", "../secret.js"],
+    [
+        "tests/grid.test.js",
+        "package.json",
+        "dist/app-AB12CD.js",
+        "nothing.js",
+        "",
+        "../secret.js",
+        "a%00.js",
+    ],
 )
 def test_nothing_but_the_page_is_served(sources: Path, path: str) -> None:
     (sources.parent / "secret.js").write_text("secret")

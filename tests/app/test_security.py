@@ -21,7 +21,7 @@ from websockets.typing import Subprotocol
 from app.cli.main import main
 from app.main import create_app
 from app.rate import RateLimit
-from app.security import LOGIN_FAILURES
+from app.security import LOGIN_FAILURES, PAGE_POLICY
 from app.settings import Settings
 from app.tokens import Tokens
 from app.viewer.private_port import RELAY_HEADERS, private_server
@@ -139,6 +139,19 @@ def test_wrong_tokens_are_slowed_down() -> None:
         assert answers[LOGIN_FAILURES:] == [429] * (25 - LOGIN_FAILURES)
         refused = client.get("/api/v1/patterns", headers=_as(TOKEN))
         assert refused.headers["retry-after"] == "10"
+
+
+def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
+    with _guarded(token=TOKEN) as client:
+        client.get(f"/?token={TOKEN}")
+        cookies = dict(client.cookies)
+        client.cookies.clear()
+        for n in range(25):
+            client.get("/api/v1/patterns", headers=_as(f"guess-{n}"))
+        assert client.get("/api/v1/patterns").status_code == 429
+        client.cookies.update(cookies)
+        assert client.get("/api/v1/patterns").status_code == 200
+        assert client.get("/api/v1/patterns", headers=_as("guess")).status_code == 200
 
 
 def test_users_see_only_their_own(lab: TestClient) -> None:
@@ -297,6 +310,9 @@ def test_changes_from_another_site_are_refused(client: TestClient) -> None:
     assert evil.status_code == 403
     own = client.post("/api/v1/charts/parse", json=body, headers={"Origin": "http://127.0.0.1"})
     assert own.status_code == 200
+    for none in ("null", "", "http://[", "http://[::1"):
+        strange = client.post("/api/v1/charts/parse", json=body, headers={"Origin": none})
+        assert strange.status_code == 403
 
 
 def test_websockets_from_another_site_are_refused(client: TestClient) -> None:
@@ -329,3 +345,21 @@ def test_no_text_becomes_a_script_in_a_view(client: TestClient) -> None:
     policy = client.get("/view/a-design-of-mine/").headers["content-security-policy"]
     scripts = next(part for part in policy.split("; ") if part.startswith("script-src"))
     assert "'unsafe-eval'" not in scripts.split()
+
+
+def test_an_unexpected_error_carries_the_headers_and_no_secret_to_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    app = create_app(Settings(workers=1))
+
+    @app.get("/api/v1/shared/{token}/broken")
+    def broken(token: str) -> None:
+        raise ZeroDivisionError
+
+    with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
+        answer = client.get("/api/v1/shared/a-secret-link/broken", headers={"X-Request-ID": "r-7"})
+    assert (answer.status_code, answer.json()["type"]) == (500, "internal")
+    assert answer.headers["X-Request-ID"] == "r-7"
+    assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
+    assert "ZeroDivisionError" in caplog.text
+    assert "a-secret-link" not in caplog.text

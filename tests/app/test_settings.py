@@ -3,9 +3,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
+from app.cli.main import main
 from app.cluster import ClusterPlace
 from app.main import create_app
 from app.settings import Settings
@@ -49,3 +51,16 @@ def test_a_scheduler_takes_the_work_away_from_this_machine(tmp_path: Path) -> No
 def test_a_scheduler_has_an_address() -> None:
     with pytest.raises(ValidationError, match="scheduler"):
         Settings(scheduler="somewhere")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "says"),
+    [("ALLOWED_HOSTS", "knit.example", "as JSON"), ("DATA_DIR", "/proc/x", "cannot be made")],
+)
+def test_what_a_setting_cannot_be_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str, says: str
+) -> None:
+    monkeypatch.setenv(f"KNITCORE_{name}", value)
+    result = CliRunner().invoke(main, ["serve", "--port", "0"])
+    assert result.exit_code == 2
+    assert says in result.stderr

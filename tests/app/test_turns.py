@@ -90,9 +90,23 @@ def test_the_line_has_an_end() -> None:
             turns.enter("ada", background=background)
         turns.enter("ada", background=False)
         with pytest.raises(UnavailableError, match="Too many"):
-            turns.enter("bob", background=False)
+            turns.enter("ada", background=False)
         with pytest.raises(UnavailableError, match="Too many"):
             turns.enter("ada", background=True)
         turns.enter("bob", background=True)
 
     asyncio.run(scenario())
+
+
+def test_nobody_fills_the_line_for_the_others() -> None:
+    async def line_up() -> None:
+        turns = Turns([0], most_background=1, most_waiting=3, most_waiting_each=100)
+        for _ in range(4):  # one has the place, three wait
+            turns.enter("ada", background=False)
+        with pytest.raises(UnavailableError):
+            turns.enter("ada", background=False)
+        turns.enter("bob", background=False)
+        with pytest.raises(UnavailableError):
+            turns.enter("bob", background=False)
+
+    asyncio.run(line_up())

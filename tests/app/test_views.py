@@ -1,7 +1,9 @@
 from __future__ import annotations
 
+import os
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import viser
 import zstandard
 from fastapi.testclient import TestClient
 
+from app.api import views as views_api
 from app.viewer.colours import diverging, fabric_mix, sequential
 from app.viewer.relay import _asks_for_a_tunnel
 from app.viewer.views import Views
@@ -142,3 +145,28 @@ def test_every_colour_can_be_asked_for(client: TestClient, colour: str) -> None:
 def test_strain_needs_a_test(client: TestClient) -> None:
     body = {"chart": "KKP", "material": "acrylic", "colour": "strain"}
     assert client.put(f"/api/v1/views/{DESIGN}", json=body).json()["field"] == "colour"
+
+
+def test_pictures_that_no_browser_sends_hold_nobody_up(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client.put("/api/v1/views/hidden-tab", json={"chart": "KP", "material": "cotton"})
+    waiting, over = threading.Semaphore(0), threading.Event()
+
+    def never(*_: object) -> bytes:
+        waiting.release()
+        over.wait(60)
+        return b""
+
+    monkeypatch.setattr(views_api, "picture_png", never)
+    count = min(32, (os.cpu_count() or 1) + 4)  # as many threads as asyncio has for all
+    with ThreadPoolExecutor(count) as browsers:
+        try:
+            for _ in range(count):
+                browsers.submit(client.get, "/api/v1/views/hidden-tab/picture")
+            for _ in range(min(4, count)):
+                assert waiting.acquire(timeout=30)
+            jobs = ThreadPoolExecutor(1).submit(client.get, "/api/v1/jobs")
+            assert jobs.result(10).status_code == 200
+        finally:
+            over.set()

@@ -88,6 +88,19 @@ def _without_a_row(file: Path) -> None:
     file.write_bytes(gzip.compress(b"".join(lines[:1] + lines[2:])))
 
 
+def _rotten(file: Path) -> None:
+    """Other content that can be unpacked, with the checksum of what was written."""
+    packed = file.read_bytes()
+    other = gzip.decompress(packed).replace(b"acrylic", b"cottonn")
+    file.write_bytes(gzip.compress(other)[:-8] + packed[-8:])
+
+
+def _scrambled(file: Path) -> None:
+    packed = bytearray(file.read_bytes())
+    packed[40:60] = bytes(20)
+    file.write_bytes(packed)
+
+
 def _of_the_future(file: Path) -> None:
     lines = gzip.decompress(file.read_bytes()).splitlines()
     header = json.loads(lines[0]) | {"schema": "9999"}
@@ -98,7 +111,9 @@ def _other(file: Path) -> None:
     file.write_bytes(gzip.compress(b'{"format": "something else"}\n'))
 
 
-@pytest.mark.parametrize("damage", [_cut, _without_end, _without_a_row, _of_the_future, _other])
+@pytest.mark.parametrize(
+    "damage", [_cut, _without_end, _without_a_row, _rotten, _scrambled, _of_the_future, _other]
+)
 def test_a_damaged_backup_changes_nothing(filled: Database, tmp_path: Path, damage: object) -> None:
     assert callable(damage)
     file = tmp_path / "backup.gz"
