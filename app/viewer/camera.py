@@ -38,15 +38,32 @@ _TOWARDS: dict[Side, tuple[tuple[float, float, float], tuple[float, float, float
 }
 
 
-def place_camera(server: viser.ViserServer, side: Side, extent_mm: Array) -> None:
-    """Turn everybody's camera, and that of later ones, so that the whole fabric is seen."""
+def stand(side: Side, extent_mm: Array) -> tuple[Array, Array, Array]:
+    """Where the camera stands, what it looks at, and what is up, so that the whole fabric is seen.
+
+    Parameters
+    ----------
+    extent_mm : width and height of the fabric, whose middle is the origin.
+
+    Returns
+    -------
+    position (3,) and aim (3,) in mm, and the direction that is up (3,).
+    """
     direction, up = (np.array(vector) for vector in _TOWARDS[side])
+    direction /= np.linalg.norm(direction)
     width, height = extent_mm
+    # What is nearer than the middle looks larger.
+    nearer = (abs(direction[0]) * width + abs(direction[1]) * height) / 2
     if side is Side.EDGE:
         height = 0.3 * width
     needed = MARGIN * max(height, width / ASPECT) / 2
     aim = LIFT * needed * up
-    position = aim + direction / np.linalg.norm(direction) * needed / np.tan(FIELD_OF_VIEW / 2)
+    return aim + direction * (needed / np.tan(FIELD_OF_VIEW / 2) + nearer), aim, up
+
+
+def place_camera(server: viser.ViserServer, side: Side, extent_mm: Array) -> None:
+    """Turn everybody's camera, and that of later ones, so that the whole fabric is seen."""
+    position, aim, up = stand(side, extent_mm)
     start = server.initial_camera
     start.fov = FIELD_OF_VIEW
     start.up = up

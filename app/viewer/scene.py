@@ -102,7 +102,8 @@ class SceneWriter:
                 room = self._scene.extent_mm
                 if self._scene.room_mm is not None:
                     room = np.maximum(room, self._scene.room_mm)
-                place_camera(self._server, side, room)
+                # Loops reach into the rows and columns beside theirs, the outermost beyond all.
+                place_camera(self._server, side, room + self._scene.placement.sizes_mm[0, 0])
 
     # -- yarn ---------------------------------------------------------------------------------
 

@@ -105,7 +105,8 @@ export function drawRepeats(context, view, { grid, repeats }, palette) {
 }
 
 /**
- * Names of repeats with their numbers of motifs, where there is room. Not mirrored: text must be read.
+ * Names of repeats with their numbers of motifs, on copies so large that these can still be seen. Not
+ * mirrored: text must be read.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {Viewport} view
@@ -125,7 +126,7 @@ export function drawRepeatLabels(context, view, { grid, repeats }, palette) {
       const times = (n, of) => String(Math.floor(n / of));
       const count = `${times(columns, motif.columns)} × ${times(rows, motif.rows)}`;
       const text = [`${name}  ${count}`, count].find((one) => context.measureText(one).width + 12 <= width);
-      if (!text || height < 24) continue;
+      if (!text || height < 57) continue;
       const wide = context.measureText(text).width + 10;
       context.fillStyle = palette.text;
       context.fillRect(x + 1, y + 1, wide, 19);

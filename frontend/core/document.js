@@ -15,7 +15,7 @@ import { flip, toRuns } from "./bits.js";
 import { contentOf } from "./design.js";
 import { Grid } from "./grid.js";
 import { History } from "./history.js";
-import { Region, filling } from "./regions.js";
+import { Region, filling, uncovered } from "./regions.js";
 import { Repeat, laying, matching } from "./repeats.js";
 import { reshaped } from "./reshape.js";
 import { snapshotFrom, snapshotOf } from "./snapshot.js";
@@ -283,7 +283,7 @@ export class ChartDocument extends ChartState {
   }
 
   /**
-   * Put a region higher or lower.
+   * Put a region higher or lower; a fill that comes to lie over another one is laid there.
    *
    * @param {string} id
    * @param {number} index 0 is the lowest
@@ -291,8 +291,8 @@ export class ChartDocument extends ChartState {
   orderRegion(id, index) {
     const region = this.region(id);
     if (!region) return;
-    const others = this.regions.filter((other) => other !== region);
-    this.#arrange("Reorder regions", "regions", others.toSpliced(index, 0, region));
+    const regions = this.regions.filter((other) => other !== region).toSpliced(index, 0, region);
+    this.#arrange("Reorder regions", "regions", regions, uncovered(this, regions));
   }
 
   // --- repeats --------------------------------------------------------------------------------
@@ -340,7 +340,7 @@ export class ChartDocument extends ChartState {
    * @param {string} label
    * @param {L} list
    * @param {ChartDocument[L]} next
-   * @param {Region | Repeat | null} [laid]
+   * @param {Region | Repeat | Brush | null} [laid]
    */
   #arrange(label, list, next, laid = null) {
     this.cancel();
@@ -348,6 +348,7 @@ export class ChartDocument extends ChartState {
     if (laid) {
       this.begin();
       if (laid instanceof Repeat) this.#lay("stitches", this.#linked(laying(laid, this.grid), true), false);
+      else if (laid instanceof Brush) this.paint(laid, false);
       else if (laid.fill) this.paint(filling(laid, this), false);
       const stroke = this.#stroke;
       this.#stroke = null;

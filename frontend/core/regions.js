@@ -111,3 +111,20 @@ export function filling(region, { grid, regions }, added) {
   }
   return brush;
 }
+
+/**
+ * The stitches of fills that lie on top once the regions are in another order, but did not before.
+ *
+ * @param {{grid: Grid, regions: readonly Region[]}} chart
+ * @param {readonly Region[]} regions the same in their new order
+ */
+export function uncovered(chart, regions) {
+  const brush = new Brush(chart.grid.purl.length);
+  for (const region of regions) {
+    if (!region.fill) continue;
+    const before = new Set(filling(region, chart).touched);
+    const after = filling(region, { grid: chart.grid, regions });
+    for (const i of after.touched) if (!before.has(i)) brush.set(i, after.values[i]);
+  }
+  return brush;
+}

@@ -40,6 +40,7 @@ export function inspector(host, studio) {
   const shares = h("div", { class: "shares" });
   const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
   const curve = h("div", { class: "plot", id: "plot-curve" });
+  const plots = { rigidity, curve };
   const drawRigidity = rigidityPlot(rigidity, studio);
   const drawCurve = curvePlot(curve, studio);
 
@@ -52,7 +53,11 @@ export function inspector(host, studio) {
         role: "tab",
         id: `tab-${id}`,
         "aria-controls": `plot-${id}`,
-        onclick: () => choose(id),
+        onclick: () => {
+          choose(id);
+          // Where the plot is below the numbers.
+          plots[id].scrollIntoView({ block: "nearest" });
+        },
       },
       label,
     );

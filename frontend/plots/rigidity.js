@@ -90,8 +90,11 @@ export function rigidityPlot(host, studio) {
         add("line", { x1: x.at(own.x), x2: x.at(own.x), y1: clampY(up[0]), y2: clampY(up[1]), class: "own-interval" });
       }
       add("path", { d: "M0-8L8 0 0 8-8 0z", transform: `translate(${x.at(own.x)} ${y.at(own.y)})`, class: "own-dot" });
-      const right = x.at(own.x) + 118 > width;
-      add("text", { x: x.at(own.x) + (right ? -13 : 13), y: y.at(own.y) - 9, class: `own-label ${right ? "end" : ""}` }, `this ${scope}`);
+      const label = add("text", { y: y.at(own.y) - 9, class: "own-label" }, `this ${scope}`);
+      const wide = /** @type {SVGTextElement} */ (label).getComputedTextLength();
+      const right = x.at(own.x) + 13 + wide > width;
+      // Beside the dot, but never over the axis.
+      label.setAttribute("x", String(Math.max(PAD.left + 3, x.at(own.x) + (right ? -13 - wide : 13))));
     }
     svg.setAttribute(
       "aria-label",

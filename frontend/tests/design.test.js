@@ -127,6 +127,22 @@ test("a fill does not cover a filled region above it", () => {
   assert.equal(chart.grid.text, "PKKP");
 });
 
+test("a filled region that is put above another one covers it, and only there", () => {
+  const chart = new ChartDocument(new Grid(1, 5));
+  const low = chart.addRegion({ name: "Low", colour: "#336699", fill: Grid.fromText("P") }, [0, 1, 2]);
+  const high = chart.addRegion({ name: "High", colour: "#993333", fill: Grid.fromText("K") }, [2, 3]);
+  chart.set([[0, 0], [3, 1]], "Pencil");
+  assert.equal(chart.grid.text, "KPKPK");
+  chart.orderRegion(low, 1);
+  assert.equal(chart.grid.text, "KPPPK", "what was painted on the fills stays");
+  chart.orderRegion(low, 0);
+  assert.equal(chart.grid.text, "KPKPK");
+  chart.undo();
+  chart.undo();
+  assert.equal(chart.grid.text, "KPKPK");
+  assert.equal(chart.regionAt(2)?.id, high);
+});
+
 test("painting one copy of a repeat paints all, and the motif follows", () => {
   const chart = new ChartDocument(new Grid(4, 7));
   const start = chart.content;

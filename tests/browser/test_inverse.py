@@ -74,3 +74,27 @@ def test_a_wish_fills_the_chart_as_one_step(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Escape")
     flat_studio.keyboard.press("Control+z")
     assert kept_chart(flat_studio) == CHART
+
+
+def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:
+    """A 2x2 rib lies just above the 1x1 rib."""
+    flat_studio.evaluate(
+        """() => {
+            const { prototype } = CanvasRenderingContext2D;
+            const fill = prototype.fillText;
+            window.names = {};
+            prototype.fillText = function (text, x, y) {
+                window.names[text] = [x, y, this.measureText(text).width];
+                fill.call(this, text, x, y);
+            };
+        }"""
+    )
+    flat_studio.click("#ink-rib-2-2")
+    flat_studio.click("#fill-all")
+    expect(flat_studio.locator("#provenance")).to_have_text("composite, corrected")
+    open_atlas(flat_studio)
+    flat_studio.wait_for_function("() => 'this chart' in window.names")
+    (x, y, wide), (x1, y1, wide1) = flat_studio.evaluate(
+        "() => [window.names['this chart'], window.names['1×1 rib']]"
+    )
+    assert abs(y - y1) > 13 or abs(x - x1) > (wide + wide1) / 2

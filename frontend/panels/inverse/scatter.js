@@ -104,7 +104,9 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
       context.lineWidth = 2;
       stroke(context, x - 7, y, x + 7, y);
       stroke(context, x, y - 7, x, y + 7);
-      label(context, "this chart", x, y + 20, width, palette);
+      // Below, or above where a fabric's name is below.
+      const taken = points.some((p) => PURE.includes(p.key) && Math.abs(p.x - x) < 80 && Math.abs(p.y - y - 32) < 16);
+      label(context, "this chart", x, taken ? y - 12 : y + 20, width, palette);
     }
     if (chosen !== null) interval(context, chosen, palette);
     for (const point of [hovered, chosen === null ? null : points[chosen]]) {

@@ -1,0 +1,97 @@
+"""On a tablet, 1024 x 768: nothing is cut off, and what needs scrolling shows that it is there."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import pytest
+from playwright.sync_api import Page, ViewportSize, expect
+
+from tests.browser.page import Chart
+
+TABLET: ViewportSize = {"width": 1024, "height": 768}
+AXES: tuple[tuple[Literal["x", "y"], Literal["width", "height"]], ...] = (
+    ("x", "width"),
+    ("y", "height"),
+)
+ROUNDING_PX = 0.5
+
+
+def inside(page: Page, part: str, whole: str) -> bool:
+    """Whether a part lies within another on the screen, horizontally and vertically."""
+    inner, outer = page.locator(part).bounding_box(), page.locator(whole).bounding_box()
+    assert inner
+    assert outer
+    return all(
+        inner[at] >= outer[at] - ROUNDING_PX
+        and inner[at] + inner[size] <= outer[at] + outer[size] + ROUNDING_PX
+        for at, size in AXES
+    )
+
+
+@pytest.mark.parametrize("width", [1024, 1100, 1280, 1400, 1550])
+@pytest.mark.parametrize("dock", [False, True])
+def test_all_buttons_of_a_selection_fit(flat_studio: Page, width: int, dock: bool) -> None:
+    flat_studio.set_viewport_size({"width": width, "height": 768})
+    if dock:
+        flat_studio.click("#open-regions")
+        expect(flat_studio.locator("#panel-regions")).to_be_visible()
+    flat_studio.keyboard.press("Control+a")
+    expect(flat_studio.locator("#selection-bar")).to_be_visible()
+    assert inside(flat_studio, "#selection-bar", "#chart-host")
+    key = flat_studio.locator(".chart-key").bounding_box()
+    bar = flat_studio.locator("#selection-bar").bounding_box()
+    assert bar
+    assert not key or key["x"] + key["width"] <= bar["x"]
+
+
+def test_the_plots_are_one_click_away(flat_studio: Page) -> None:
+    flat_studio.set_viewport_size(TABLET)
+    flat_studio.click("#open-regions")
+    assert inside(flat_studio, "#tab-rigidity", "#inspector")
+    assert not inside(flat_studio, "#plot-rigidity", "#inspector")
+    flat_studio.click("#tab-rigidity")
+    assert inside(flat_studio, "#plot-rigidity", "#inspector")
+    flat_studio.click("#tab-curve")
+    assert inside(flat_studio, "#plot-curve", "#inspector")
+    assert inside(flat_studio, ".curve-pulls", "#plot-curve")
+    assert inside(flat_studio, "#tab-curve", "#inspector")
+
+
+def test_the_readout_is_whole_and_the_chart_keeps_still(flat_studio: Page) -> None:
+    flat_studio.set_viewport_size(TABLET)
+    before = flat_studio.locator("#chart").bounding_box()
+    chart = Chart(flat_studio)
+    flat_studio.mouse.move(*chart.at(10, 12))
+    readout = flat_studio.locator("#readout")
+    expect(readout).to_contain_text("N/mm")
+    assert readout.evaluate(
+        "({ scrollWidth: w, clientWidth: W, scrollHeight: h, clientHeight: H }) => w <= W && h <= H"
+    )
+    assert flat_studio.locator("#chart").bounding_box() == before
+
+
+def test_messages_do_not_cover_a_dock(flat_studio: Page) -> None:
+    flat_studio.keyboard.press("Control+a")
+    flat_studio.click("#selection-make-repeat")
+    expect(flat_studio.locator(".message")).to_be_visible()
+    assert inside(flat_studio, ".message", "#chart-host")
+
+
+def test_the_label_in_the_stiffness_map_stays_off_the_axis(flat_studio: Page) -> None:
+    chart = Chart(flat_studio)
+    flat_studio.click("#ink-purl")
+    chart.drag((4, 10), (2, 10), (2, 8))
+    flat_studio.click("#tool-select")
+    chart.drag((2, 10), (4, 8))
+    expect(flat_studio.locator(".own-label")).to_have_text("this selection")
+    assert flat_studio.evaluate(
+        """() => {
+            const plot = document.querySelector("#plot-rigidity");
+            const label = plot.querySelector(".own-label").getBoundingClientRect();
+            return [...plot.querySelectorAll(".axis, .tick.end")].every((other) => {
+                const { right, top, bottom } = other.getBoundingClientRect();
+                return right <= label.left || bottom <= label.top || top >= label.bottom;
+            });
+        }"""
+    )
