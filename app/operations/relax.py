@@ -41,6 +41,7 @@ class YarnLevelOptions(BaseModel):
     )
     loop_lengths_mm: LoopLengths | None = Field(
         None,
+        min_length=1,
         max_length=MAX_STITCHES_PER_SIDE,
         description="Instead of one length: a list for every row of the chart, the bottom row "
         "first, of one length for all its stitches or one for each.",

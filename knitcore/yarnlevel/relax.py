@@ -182,8 +182,6 @@ def relax(
         raise InputError(
             "branch", "the published ansatz is not a spline.", "Use relax_published for it."
         )
-    if starts is not None and not starts:
-        raise InputError("starts", "there is none.", "Give at least one, or leave them out.")
     repeat, lengths = _loop_lengths(loop_length_mm, chart)
     for length in lengths.ravel():
         check_loop(yarn, float(length))
@@ -203,6 +201,8 @@ def relax(
     chosen = _starts(kind, draft, starts)
     shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else 1]
     shakes = shakes if kind is Branch.FREE and uniform else ()
+    if not chosen and not shakes:
+        raise InputError("starts", "there is none.", "Give at least one, or leave them out.")
     _check_cell(draft, len(chosen) + len(shakes), time_limit_s)
     if lengths.ndim == 1:
         lengths = np.resize(lengths, draft.rows)

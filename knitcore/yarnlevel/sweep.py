@@ -2,9 +2,9 @@
 
 At every size of the stretched direction the other one is free of force. The force is the partial
 derivative of the energy with respect to the size at the minimum, so no energies are differenced.
-Each point is met twice, on the way out and on the way back; the lower one is kept. Where the two
-differ, or where the shape changes abruptly while the force falls or the energy changes by other
-than the work done, the sweep has jumped.
+Each point is met twice, on the way out and on the way back; the lower one is kept. Where
+that changes from one way to the other, or where the shape changes abruptly while the force falls or
+the energy changes by other than the work done, the sweep has jumped.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def sweep(
         if max_stress_n_per_mm is not None and stress > max_stress_n_per_mm:
             break
     best = list(outward)
-    jumps: set[int] = set()
+    lower: set[int] = set()
     if back and len(outward) > 1:
         last = outward[-1]
         for i in range(len(outward) - 2, -1, -1):
@@ -112,12 +112,13 @@ def sweep(
                 break
             if last.energy_n_mm < outward[i].energy_n_mm * (1.0 - SAME_ENERGY):
                 best[i] = last
-                jumps.add(i + 1)
-    jumps.update(_abrupt(best, along))
+                lower.add(i)
+    if 0 in lower:
+        notes.append("The way back ends in a state lower than that at rest.")
+    # the way back leaves the lower states before the first of them
+    jumps = {i for i in lower if i > 0 and i - 1 not in lower} | _abrupt(best, along)
     if jumps:
-        notes.append(
-            f"{len(jumps)} jump(s): the shape changes abruptly, or differs on the way back."
-        )
+        notes.append(f"{len(jumps)} jump(s): the shape changes abruptly, there or on the way back.")
     stress_n_per_mm = np.array([cell.force_n[along.axis] / width for cell in best])
     return Sweep(along, zero, tuple(best), stress_n_per_mm, tuple(sorted(jumps)), tuple(notes))
 

@@ -266,3 +266,17 @@ def test_no_starts_are_refused():
 def test_a_size_that_is_not_reached_is_refused_with_one_that_is(size):
     with pytest.raises((ConvergenceError, UnravelledError), match="mm was reached"):
         relax(StitchChart.parse("K"), STUDY_YARN, 11.28, cell_wale_mm=size, grid=SplineGrid(12, 4))
+
+
+def test_bending_may_press_weak_shells_together():
+    """Rib of a stiff yarn: its core has room, though less than a grown one usually has."""
+    yarn = YarnModel(0.15887, 4.746e-5, 2.223, 0.4866, 0.0944)
+    found = relax(StitchChart.parse("KP"), yarn, 6.4)
+    assert found.converged
+    assert found.min_distance_mm > 2.0 * yarn.core_radius_mm
+
+
+def test_strands_that_nothing_keeps_apart_are_refused_with_a_remedy():
+    yarn = YarnModel(0.0244, 1.62e-4, 1.914, 0.375, 0.0273)
+    with pytest.raises(UnravelledError, match=r"a core of \.25 to \.6 of the radius"):
+        relax(StitchChart.parse("KKP"), yarn, 9.583)

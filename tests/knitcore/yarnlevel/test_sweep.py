@@ -11,6 +11,7 @@ from knitcore.yarnlevel.lawfit import fit_law
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.store import stored_stitch
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -121,3 +122,14 @@ def test_a_state_that_is_held_is_no_rest():
     )  # fmt: skip
     with pytest.raises(InputError, match="its size is held"):
         sweep(held, "wale", 0.1)
+
+
+def test_a_stretch_that_opens_at_another_strain_than_it_folds_jumps_once():
+    entry = stored_stitch(StitchChart.parse("KK\nKP"), "cotton")
+    rest = relax(entry.chart, entry.yarn, entry.loop_length_mm)
+    there = sweep(rest, "course", 0.6, points=25, back=False)
+    curve = sweep(rest, "course", 0.6, points=25)
+    (opens,), (folds,) = there.jumps, curve.jumps
+    assert folds < opens
+    lower = curve.energy_n_mm < there.energy_n_mm * (1.0 - 1e-3)
+    assert np.flatnonzero(lower).tolist() == list(range(folds, opens))
