@@ -23,6 +23,22 @@ class Direction(StrEnum):
         """The transverse direction."""
         return Direction.WALE if self is Direction.COURSE else Direction.COURSE
 
+    @classmethod
+    def parse(cls, name: str) -> Direction:
+        """A direction by its name.
+
+        Raises
+        ------
+        InputError
+            If it is neither course nor wale.
+        """
+        try:
+            return cls(name)
+        except ValueError:
+            raise InputError(
+                "direction", f"{name!r} is no direction.", "Use course or wale."
+            ) from None
+
 
 class Fabric(StrEnum):
     """A fabric whose connecting segments are all alike course-wise and all alike wale-wise.

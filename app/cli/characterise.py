@@ -162,8 +162,8 @@ def _write_curves(results: list[CharacteriseResult], file: Path) -> None:
 def _text(result: CharacteriseResult) -> str:
     lines = [
         f"{result.identifier}: {result.provenance}",
-        f"{result.branch} branch, {result.convention} convention; material file at "
-        f"{result.reference}",
+        f"{result.branch} branch, {result.convention} convention; "
+        + (f"material file at {result.reference}" if result.material else "no material file"),
         "fabric      setting   L mm   wide   high  /cm2   E N·mm contact   Y course     Y wale"
         "   v yx  v xy  strains fitted",
     ]

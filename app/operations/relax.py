@@ -41,6 +41,7 @@ class YarnLevelOptions(BaseModel):
     )
     loop_lengths_mm: LoopLengths | None = Field(
         None,
+        min_length=1,
         max_length=MAX_STITCHES_PER_SIDE,
         description="Instead of one length: a list for every row of the chart, the bottom row "
         "first, of one length for all its stitches or one for each.",
@@ -100,7 +101,7 @@ class RelaxResult(BaseModel):
 
     branch: Branch
     convention: Convention
-    repeat_rows: int
+    repeat_rows: int = Field(description="At least 2 in the free branch, as are the columns.")
     repeat_columns: int
     cell_course_mm: float
     cell_wale_mm: float
@@ -172,12 +173,13 @@ def _relaxed(
     sizes = options.cell_course_mm, options.cell_wale_mm
     cell = relaxed_cell(repeat, used, options, cancelled, sizes)
     force = cell.force_n if isinstance(cell, RelaxedRepeat) else (None, None)
+    shown = cell.chart if isinstance(cell, RelaxedRepeat) else repeat
     lines = [[(x, y, z) for x, y, z in line.tolist()] for line in cell.centre_lines]
     return RelaxResult(
         branch=Branch(cell.branch),
         convention=cell.convention,
-        repeat_rows=repeat.rows,
-        repeat_columns=repeat.columns,
+        repeat_rows=shown.rows,
+        repeat_columns=shown.columns,
         cell_course_mm=cell.cell_course_mm,
         cell_wale_mm=cell.cell_wale_mm,
         energy_n_mm=cell.energy_n_mm,

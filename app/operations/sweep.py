@@ -151,6 +151,7 @@ def _swept(
             )  # fmt: skip
             seconds += both[direction].seconds
         law = fit_law(both[Direction.COURSE], both[Direction.WALE])
+        notes += [note for stretch in both.values() for note in _jumps_fitted(stretch, law)]
     except KnitcoreError as error:
         if cancelled is not None and cancelled():
             raise
@@ -196,6 +197,16 @@ def _sweep(
         options.convention, zero=zero,
         max_stress_n_per_mm=math.inf if max_stress is None else max_stress, cancel=cancelled,
     )  # fmt: skip
+
+
+def _jumps_fitted(stretch: Sweep, law: SimulatedLaw) -> list[str]:
+    fitted = [i for i in stretch.jumps if stretch.stress_n_per_mm[i] <= law.max_stress_n_per_mm]
+    if not fitted:
+        return []
+    return [
+        f"The law is a smooth curve through {len(fitted)} abrupt change(s) of shape along the "
+        f"{stretch.direction}."
+    ]
 
 
 def _law_fields(law: SimulatedLaw) -> dict[str, Any]:

@@ -15,6 +15,8 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from knitcore.errors import InputError
+
 REGULARISATION_N_MM4 = 0.002
 """C, N·mm⁴: weight of the rate of change of curvature (authors' configuration files; the paper's
 table leaves it out)."""
@@ -26,6 +28,21 @@ class Convention(StrEnum):
     PUBLISHED = "published"
     PAPER = "paper"
     AUTHORS_CODE = "authors-code"
+
+    @classmethod
+    def parse(cls, name: str) -> Convention:
+        """A convention by its name.
+
+        Raises
+        ------
+        InputError
+            If there is none of this name.
+        """
+        try:
+            return cls(name)
+        except ValueError:
+            known = ", ".join(cls)
+            raise InputError("convention", f"{name!r} is not known.", f"Use {known}.") from None
 
     @property
     def bending_factor(self) -> float:

@@ -109,10 +109,13 @@ def grow(
             break
         core = max(core, grown)
     else:
-        raise ConvergenceError(
-            f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
-            f"only {core:.3g} mm found room. Give a longer loop or a thinner core."
-        )
+        # where bending presses weak shells together there is no more room around a grown core
+        if core < yarn.core_radius_mm or found.min_distance_mm <= 2.0 * core:
+            raise ConvergenceError(
+                f"The yarn does not fit into its loop: of a core radius of "
+                f"{yarn.core_radius_mm:g} mm only {core:.3g} mm found room. Give a longer loop or "
+                "a thinner core."
+            )
     found = minimise(energy, state, tension=tension, options=options, cancel=cancel)
     return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)
 

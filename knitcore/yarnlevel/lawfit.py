@@ -30,7 +30,8 @@ class SimulatedLaw:
     Parameters
     ----------
     law : the eight constants.
-    max_stress_n_per_mm : the range of stress that was fitted starts at 0 and ends here.
+    max_stress_n_per_mm : the range of stress that was fitted starts at 0 and ends here: where it
+        was asked to, or where the first of the stretches ends.
     largest_strain_course, largest_strain_wale : largest strains fitted.
     rms_course_n_per_mm, rms_wale_n_per_mm : residuals, root mean square.
     """
@@ -85,7 +86,8 @@ def fit_law(
         beta_yy=y.beta,
         shear_modulus=shear_modulus_n_per_mm,
     )
-    return SimulatedLaw(law, max_stress_n_per_mm, x.largest_strain, y.largest_strain, x.rms, y.rms)
+    top = min(max_stress_n_per_mm, *(float(c.stress_n_per_mm.max()) for c in (course, wale)))
+    return SimulatedLaw(law, top, x.largest_strain, y.largest_strain, x.rms, y.rms)
 
 
 def _in_range(sweep: Sweep, max_stress: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -71,6 +71,21 @@ class Branch(StrEnum):
     MIRRORED = "mirrored"
     FREE = "free"
 
+    @classmethod
+    def parse(cls, name: str) -> Branch:
+        """A branch by its name.
+
+        Raises
+        ------
+        InputError
+            If there is none of this name.
+        """
+        try:
+            return cls(name)
+        except ValueError:
+            known = ", ".join(cls)
+            raise InputError("branch", f"{name!r} is not known.", f"Use {known}.") from None
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RelaxedRepeat(RelaxedCell):
@@ -78,7 +93,8 @@ class RelaxedRepeat(RelaxedCell):
 
     Attributes
     ----------
-    chart : the repeat that the centre lines show.
+    chart : the repeat that the centre lines show; in the free branch at least two stitches each
+        way, as they need not look alike there.
     yarn : the yarn.
     loop_lengths_mm : length of yarn per stitch of every course of the cell, (rows,), or of every
         stitch, (rows, wales).
@@ -123,7 +139,7 @@ def relax(
     loop_length_mm: ArrayLike,
     *,
     branch: Branch | str = Branch.MIRRORED,
-    convention: Convention = Convention.PUBLISHED,
+    convention: Convention | str = Convention.PUBLISHED,
     cell_course_mm: float | None = None,
     cell_wale_mm: float | None = None,
     flat: bool = False,
@@ -154,14 +170,14 @@ def relax(
     Raises
     ------
     InputError
-        If the loop is too short or too long for the yarn, a size is out of reach, or the cell is
-        too large.
+        If the loop is too short or too long for the yarn, a size is out of reach, the cell is too
+        large, or a name is not known.
     ConvergenceError
         If no start relaxed.
     UnravelledError
         If every start lost its topology.
     """
-    kind = Branch(branch)
+    kind, factors = Branch.parse(branch), Convention.parse(convention)
     if kind is Branch.PUBLISHED:
         raise InputError(
             "branch", "the published ansatz is not a spline.", "Use relax_published for it."
@@ -180,13 +196,17 @@ def relax(
         grid = FINE if draft.stitches <= FINE_UP_TO else COARSE
     first = ROUGH if draft.stitches >= ROUGH_FROM else COARSE
     explored = grid if grid.controls <= first.controls else first
+    if kind is Branch.FREE:  # neighbouring repeats need not look alike there
+        repeat = StitchChart(draft.purl)
     chosen = _starts(kind, draft, starts)
     shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else 1]
     shakes = shakes if kind is Branch.FREE and uniform else ()
+    if not chosen and not shakes:
+        raise InputError("starts", "there is none.", "Give at least one, or leave them out.")
     _check_cell(draft, len(chosen) + len(shakes), time_limit_s)
     if lengths.ndim == 1:
         lengths = np.resize(lengths, draft.rows)
-    energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
+    energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, factors, flat)
     options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
@@ -262,6 +282,8 @@ def _check_cell(cell: YarnCell, starts: int, time_limit_s: float | None) -> None
         )
     if time_limit_s is None:
         return
+    if not time_limit_s > 0.0:
+        raise InputError("time_limit_s", f"{time_limit_s} is no time.", "Give seconds above 0.")
     seconds = starts * SECONDS_PER_START * cell.stitches**1.5
     if seconds > time_limit_s:
         most = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
@@ -281,21 +303,27 @@ def _held_at(
     places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
     goal = np.array([0.0 if size is None else size for size in sizes])
     begin = found.state[-2:].copy()
+    natural = f"{begin[0]:.2f} x {begin[1]:.2f} mm"
     way = np.where([size is not None for size in sizes], goal - begin, 0.0)
     count = max(1, math.ceil(float(np.abs(way).max()) / (_STRIDE * energy.mean_loop_mm)))
     for k in range(1, count + 1):
-        found = minimise(
-            energy, found.state, tension=found.tension, fixed=tuple(places),
-            target=begin + way * k / count, options=options, cancel=cancel,
-        )  # fmt: skip
+        reached = found.state[-2:]
+        nearer = (
+            f"Give one nearer to the natural {natural}; {reached[0]:.2f} x {reached[1]:.2f} mm "
+            "was reached."
+        )
+        try:
+            found = minimise(
+                energy, found.state, tension=found.tension, fixed=tuple(places),
+                target=begin + way * k / count, options=options, cancel=cancel,
+            )  # fmt: skip
+        except (ConvergenceError, UnravelledError) as error:
+            raise type(error)(f"No equilibrium at this size: {error} {nearer}") from error
         became = outcome(energy, found)
         if became == "unravelled":
-            raise UnravelledError("The stitches come undone on the way to this size.")
+            raise UnravelledError(f"The stitches come undone on the way to this size. {nearer}")
         if became not in (RELAXED, UNSETTLED):
-            raise ConvergenceError(
-                f"No equilibrium at this size: {became}. Give one nearer to the natural "
-                f"{begin[0]:.2f} x {begin[1]:.2f} mm."
-            )
+            raise ConvergenceError(f"No equilibrium at this size: {became}. {nearer}")
     return found
 
 

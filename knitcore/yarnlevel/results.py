@@ -7,10 +7,30 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.conventions import Convention
 
 FloatArray = npt.NDArray[np.float64]
+
+MAX_POINTS = 1000
+"""Most points of a sweep."""
+
+
+def check_stress_limit(max_stress_n_per_mm: float | None) -> None:
+    """Refuse a stress that cannot end a stretch (infinity never does).
+
+    Raises
+    ------
+    InputError
+        If it is not above 0.
+    """
+    if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
+        raise InputError(
+            "max_stress_n_per_mm",
+            f"{max_stress_n_per_mm} N/mm ends no stretch.",
+            "Give a stress above 0.",
+        )
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,11 @@ OVERLONG = 1e-4
 _STRAIGHT = 0.9
 """A stitch of this part of its loop length is pulled straight."""
 
+_REMEDY = (
+    "Give the stitches more yarn, a thinner yarn, or a core of .25 to .6 of the radius, as the "
+    "paper's yarns have."
+)
+
 RELAXED = "relaxed"
 UNSETTLED = "not converged"
 
@@ -119,9 +124,13 @@ class Search:
         """
         if not self.found:
             if self._errors:
+                if isinstance(self._errors[0], UnravelledError):
+                    raise UnravelledError(f"{self._errors[0]} {_REMEDY}")
                 raise self._errors[0]
             reasons = ", ".join(sorted({r.outcome for r in self.reports}))
-            raise UnravelledError(f"No start kept the stitches of this repeat: {reasons}.")
+            raise UnravelledError(
+                f"No start kept the stitches of this repeat: {reasons}. {_REMEDY}"
+            )
         settled = [m for m in self.found if m.converged] or self.found
         return min(settled, key=lambda m: m.terms.energy)
 

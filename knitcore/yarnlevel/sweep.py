@@ -2,8 +2,9 @@
 
 At every size of the stretched direction the other one is free of force. The force is the partial
 derivative of the energy with respect to the size at the minimum, so no energies are differenced.
-Each point is met twice, on the way out and on the way back; the lower one is kept, and where the
-two differ, or where the energy changes by other than the work done, the sweep has jumped.
+Each point is met twice, on the way out and on the way back; the lower one is kept. Where
+that changes from one way to the other, or where the shape changes abruptly while the force falls or
+the energy changes by other than the work done, the sweep has jumped.
 """
 
 from __future__ import annotations
@@ -17,12 +18,13 @@ import numpy as np
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.grip import grips_at
+from knitcore.yarnlevel.published.sweep import find_jumps
 from knitcore.yarnlevel.relax import (
     Branch,
     RelaxedRepeat,
     relaxed_repeat,
 )
-from knitcore.yarnlevel.results import Sweep
+from knitcore.yarnlevel.results import MAX_POINTS, Sweep, check_stress_limit
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.topology import Guard
@@ -33,7 +35,9 @@ DEFAULT_POINTS = 25
 STRAIGHT = 0.97
 """A stitch is pulled straight when its size nears this part of its loop length."""
 _OFF_WORK = 0.1
-"""A change of energy that misses the work done by this part of it is a jump."""
+"""A change of energy that misses the work done by this part of it may be a jump."""
+_AT_REST = 1e-2
+"""Force times size, as a part of the energy, up to which a state counts as free of force."""
 
 
 def sweep(
@@ -67,11 +71,13 @@ def sweep(
     CancelledError
         If ``cancel`` says so.
     """
-    along = Direction(direction)
+    along = Direction.parse(direction)
     if not (np.isfinite(max_strain) and max_strain > 0.0):
         raise InputError("max_strain", f"{max_strain} is no stretch.", "Give a strain above 0.")
-    if not 2 <= points <= 1000:
-        raise InputError("points", f"{points} cannot be used.", "Give 2 to 1000.")
+    if not 2 <= points <= MAX_POINTS:
+        raise InputError("points", f"{points} cannot be used.", f"Give 2 to {MAX_POINTS}.")
+    check_stress_limit(max_stress_n_per_mm)
+    _check_rest(zero)
     rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
     strain = np.linspace(0.0, max_strain, points)
     notes = list(zero.notes)
@@ -95,7 +101,7 @@ def sweep(
         if max_stress_n_per_mm is not None and stress > max_stress_n_per_mm:
             break
     best = list(outward)
-    jumps: set[int] = set()
+    lower: set[int] = set()
     if back and len(outward) > 1:
         last = outward[-1]
         for i in range(len(outward) - 2, -1, -1):
@@ -106,12 +112,13 @@ def sweep(
                 break
             if last.energy_n_mm < outward[i].energy_n_mm * (1.0 - SAME_ENERGY):
                 best[i] = last
-                jumps.add(i + 1)
-    jumps.update(_off_work(best, along))
+                lower.add(i)
+    if 0 in lower:
+        notes.append("The way back ends in a state lower than that at rest.")
+    # the way back leaves the lower states before the first of them
+    jumps = {i for i in lower if i > 0 and i - 1 not in lower} | _abrupt(best, along)
     if jumps:
-        notes.append(
-            f"{len(jumps)} jump(s): the shape changes abruptly, or differs on the way back."
-        )
+        notes.append(f"{len(jumps)} jump(s): the shape changes abruptly, there or on the way back.")
     stress_n_per_mm = np.array([cell.force_n[along.axis] / width for cell in best])
     return Sweep(along, zero, tuple(best), stress_n_per_mm, tuple(sorted(jumps)), tuple(notes))
 
@@ -155,6 +162,30 @@ def _held(
         cell.chart, cell.energy, Branch(cell.branch), found,
         seconds=time.process_time() - began, evaluations=found.evaluations,
     )  # fmt: skip
+
+
+def _check_rest(zero: RelaxedRepeat) -> None:
+    """Refuse a state that is held: strain and stress would not start from rest."""
+    sizes = zero.cell_course_mm, zero.cell_wale_mm
+    work = max(abs(f) * size for f, size in zip(zero.force_n, sizes, strict=True))
+    if work > _AT_REST * zero.energy_n_mm:
+        raise InputError(
+            "zero",
+            f"its size is held by {zero.force_n[0]:.3g} and {zero.force_n[1]:.3g} N.",
+            "Relax it without a prescribed size.",
+        )
+
+
+def _abrupt(cells: list[RelaxedRepeat], along: Direction) -> set[int]:
+    """Steps whose shape changes far more than around them, and whose force says so too.
+
+    Where two states cross in energy the work balances, but the force falls; where a stretch is
+    coarse the work is missed, but the shape changes steadily.
+    """
+    changed = find_jumps([c.centre_lines for c in cells], float(np.mean(cells[0].loop_lengths_mm)))
+    force = [c.force_n[along.axis] for c in cells]
+    falls = {i for i in range(1, len(cells)) if force[i] < force[i - 1]}
+    return set(changed) & (falls | _off_work(cells, along))
 
 
 def _off_work(cells: list[RelaxedRepeat], along: Direction) -> set[int]:

@@ -39,9 +39,10 @@ def material_of(table: YarnTable, setting: str | None = None) -> Material:
         )
     left_out = [f"{f} (no law at this setting)" for f in rows if f not in fabrics]
     first = next(iter(rows.values())).yarn
+    top = min(rows[f].document["law_range"]["max_stress_n_per_mm"] for f in fabrics)
     note = (
         f"Simulated at the yarn level ({plan.branch} branch, {plan.convention} convention, without "
-        f"friction or set); laws hold from 0 to {plan.max_stress_n_per_mm:g} N/mm. Yarn: "
+        f"friction or set); laws hold from 0 to {top:.3g} N/mm. Yarn: "
         f"{plan.provenance}."
     )
     if left_out:

@@ -86,6 +86,7 @@ def test_what_is_held_is_the_same_on_the_command_line_and_over_rest(client: Test
         ({"loop_lengths_mm": [[15.0]] * 3}, "loop_lengths_mm"),
         ({"loop_lengths_mm": [[15.0, 15.0], [15.0]]}, "loop_lengths_mm"),
         ({"loop_lengths_mm": [[15.0], [15.0]], "loop_length_mm": 15.0}, "loop_lengths_mm"),
+        ({"loop_lengths_mm": []}, "loop_lengths_mm"),
         ({"branch": "published", "flat": True}, "branch"),
         ({"cell_wale_mm": 90.0}, "cell_wale_mm"),
     ],

@@ -40,7 +40,7 @@ def relax_published(
     loop_length_mm: float,
     cell_course_mm: float | None = None,
     cell_wale_mm: float | None = None,
-    convention: Convention = Convention.PUBLISHED,
+    convention: Convention | str = Convention.PUBLISHED,
     *,
     starts: int = STARTS,
     cancel: Callable[[], bool] | None = None,
@@ -68,7 +68,7 @@ def relax_published(
     CancelledError
         If ``cancel`` says so.
     """
-    stitch = Stitch(Fabric.parse(fabric), yarn, Convention(convention))
+    stitch = Stitch(Fabric.parse(fabric), yarn, Convention.parse(convention))
     check_loop(yarn, loop_length_mm)
     for name, size in (("cell_course_mm", cell_course_mm), ("cell_wale_mm", cell_wale_mm)):
         check_size(name, size, loop_length_mm)
@@ -159,7 +159,7 @@ def relaxed_cell(
         seconds=seconds,
         evaluations=evaluations,
         converged=minimum.converged,
-        centre_lines=stitch.centre_line(unknowns)[None],
+        centre_lines=stitch.centre_lines(unknowns),
         state=unknowns.copy(),
         notes=notes,
     )

@@ -77,6 +77,17 @@ class Stitch:
         line = np.einsum("tk,ckd->ctd", elastic.bernstein(t), controls).reshape(-1, 3)
         return np.vstack([line, controls[-1, -1]])
 
+    def centre_lines(self, unknowns: FloatArray) -> FloatArray:
+        """Centre lines of the fabric's repeat, mm, shape (courses, points, 3), bottom first."""
+        course_odd, wale_odd = self.fabric.course_odd, self.fabric.wale_odd
+        line = self.centre_line(unknowns)
+        course = line
+        if course_odd:
+            course = np.vstack([line[:-1], line * (1.0, 1.0, -1.0) + (unknowns[-2], 0.0, 0.0)])
+        if not wale_odd:
+            return course[None]
+        return np.stack([course, course * (1.0, 1.0, -1.0) + (0.0, unknowns[-1], 0.0)])
+
     def evaluate(self, unknowns: FloatArray) -> Evaluation:
         """Energy, lengths and their gradients."""
         course_odd, wale_odd = self.fabric.course_odd, self.fabric.wale_odd

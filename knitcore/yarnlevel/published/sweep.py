@@ -23,7 +23,13 @@ from knitcore.yarnlevel.published.relax import (
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.published.walk import Walk
-from knitcore.yarnlevel.results import FloatArray, RelaxedCell, Sweep
+from knitcore.yarnlevel.results import (
+    MAX_POINTS,
+    FloatArray,
+    RelaxedCell,
+    Sweep,
+    check_stress_limit,
+)
 from knitcore.yarnlevel.yarn import YarnModel
 
 _LOWER = 1e-6
@@ -41,7 +47,7 @@ def sweep_published(
     direction: Direction | str,
     max_strain: float,
     points: int = 25,
-    convention: Convention = Convention.PUBLISHED,
+    convention: Convention | str = Convention.PUBLISHED,
     *,
     slide_quenching: SlideQuenching | None = None,
     max_stress_n_per_mm: float | None = None,
@@ -76,16 +82,17 @@ def sweep_published(
     CancelledError
         If ``cancel`` says so.
     """
-    kind, along = Fabric.parse(fabric), Direction(direction)
+    kind, along = Fabric.parse(fabric), Direction.parse(direction)
     if not (math.isfinite(max_strain) and max_strain > 0):
         raise InputError("max_strain", f"{max_strain} is no stretch.", "Give a positive strain.")
-    if points < 2:
-        raise InputError("points", f"{points} make no sweep.", "Give 2 or more.")
+    if not 2 <= points <= MAX_POINTS:
+        raise InputError("points", f"{points} make no sweep.", f"Give 2 to {MAX_POINTS}.")
+    check_stress_limit(max_stress_n_per_mm)
     if zero is None:
         zero = relax_published(
             kind, yarn, loop_length_mm, convention=convention, starts=starts, cancel=cancel
         )
-    stitch = Stitch(kind, yarn, Convention(convention))
+    stitch = Stitch(kind, yarn, Convention.parse(convention))
     if slide_quenching is None:
         slide_quenching = SlideQuenching.default(kind, along)
     held = slide_quenching.weights
@@ -121,7 +128,7 @@ def sweep_published(
         notes.append(f"At {replaced} of {len(out)} points the way back was lower.")
     cells = [relaxed_cell(stitch, p.minimum, p.seconds, p.evaluations) for p in out]
     stress = np.array([p.minimum.force_n[along.axis] for p in out]) / width
-    jumps = find_jumps([cell.centre_lines for cell in cells], loop_length_mm)
+    jumps = find_jumps([stitch.centre_line(cell.state)[None] for cell in cells], loop_length_mm)
     return Sweep(along, zero, tuple(cells), stress, jumps, tuple(notes))
 
 

@@ -70,3 +70,10 @@ def test_a_stretch_that_leaves_no_initial_stiffness_has_no_law():
     unfolding = sweep(Direction.WALE, strain, -NU_XY * strain, stress)
     with pytest.raises(InputError, match="wale stretch stiffens faster"):
         fit_law(course, unfolding)
+
+
+def test_the_range_ends_where_the_stretches_do():
+    course, wale = stretches()
+    least = min(course.stress_n_per_mm[-1], wale.stress_n_per_mm[-1])
+    assert fit_law(course, wale, max_stress_n_per_mm=90.0).max_stress_n_per_mm == least
+    assert fit_law(course, wale, max_stress_n_per_mm=0.05).max_stress_n_per_mm == 0.05

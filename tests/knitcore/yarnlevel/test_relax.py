@@ -225,3 +225,58 @@ def test_rough_starts_end_in_the_same_stitch():
         for start in (Start("usual"), Start("rough", noise=0.1, seed=3))
     ]
     assert energies[1] == pytest.approx(energies[0], rel=1e-4)
+
+
+def test_centre_lines_of_the_free_branch_show_the_whole_cell():
+    """Neighbouring stitches of garter lean differently, so that one wale does not repeat."""
+    entry = sample("acrylic", "garter")
+    found = relax(
+        StitchChart.parse("P\nK"), entry.yarn, entry.loop_length_mm, branch="free",
+        convention="paper",
+    )  # fmt: skip
+    assert found.chart.purl.shape == (2, 2)
+    wide = 2 * found.cell_course_mm
+    for line in found.centre_lines:
+        gap = np.linalg.norm(line[0] + [wide, 0, 0] - line[-1])
+        length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum() + gap
+        assert gap < 0.4
+        assert length == pytest.approx(2 * entry.loop_length_mm, rel=5e-3)
+
+
+def test_names_that_are_not_known_are_refused():
+    chart = StitchChart.parse("K")
+    with pytest.raises(InputError, match="Use published, mirrored, free"):
+        relax(chart, STUDY_YARN, 11.28, branch="open")
+    with pytest.raises(InputError, match="Use published, paper, authors-code"):
+        relax(chart, STUDY_YARN, 11.28, convention="ours")
+
+
+@pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])
+def test_a_time_limit_that_is_no_time_is_refused(seconds):
+    with pytest.raises(InputError, match="time_limit_s"):
+        relax(StitchChart.parse("K"), STUDY_YARN, 11.28, time_limit_s=seconds)
+
+
+def test_no_starts_are_refused():
+    with pytest.raises(InputError, match="starts"):
+        relax(StitchChart.parse("K"), STUDY_YARN, 11.28, starts=())
+
+
+@pytest.mark.parametrize("size", [1.0, 6.0])
+def test_a_size_that_is_not_reached_is_refused_with_one_that_is(size):
+    with pytest.raises((ConvergenceError, UnravelledError), match="mm was reached"):
+        relax(StitchChart.parse("K"), STUDY_YARN, 11.28, cell_wale_mm=size, grid=SplineGrid(12, 4))
+
+
+def test_bending_may_press_weak_shells_together():
+    """Rib of a stiff yarn: its core has room, though less than a grown one usually has."""
+    yarn = YarnModel(0.15887, 4.746e-5, 2.223, 0.4866, 0.0944)
+    found = relax(StitchChart.parse("KP"), yarn, 6.4)
+    assert found.converged
+    assert found.min_distance_mm > 2.0 * yarn.core_radius_mm
+
+
+def test_strands_that_nothing_keeps_apart_are_refused_with_a_remedy():
+    yarn = YarnModel(0.0244, 1.62e-4, 1.914, 0.375, 0.0273)
+    with pytest.raises(UnravelledError, match=r"a core of \.25 to \.6 of the radius"):
+        relax(StitchChart.parse("KKP"), yarn, 9.583)

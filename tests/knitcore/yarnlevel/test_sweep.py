@@ -6,10 +6,12 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.yarnlevel.buckling import find_buckling
 from knitcore.yarnlevel.lawfit import fit_law
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.store import stored_stitch
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -79,3 +81,55 @@ def test_two_by_two_rib_stretches_more_than_one_by_one():
         curve = sweep(rest, "course", 3.0, points=40, max_stress_n_per_mm=0.06, back=False)
         strains.append(np.interp(0.05, curve.stress_n_per_mm, curve.strain))
     assert strains[1] > 1.05 * strains[0]
+
+
+def test_a_stretch_that_buckles_jumps_however_many_points_it_has():
+    """Acrylic seed pulled wale-wise leaves the plane (paper, Supplementary Fig. 8): both states
+    have the same energy there, so that the work balances."""
+    entry = sample("acrylic", "seed")
+    rest = relax(StitchChart.parse("KP\nPK"), entry.yarn, entry.loop_length_mm)
+    curve = sweep(rest, "wale", 1.46, points=61, max_stress_n_per_mm=0.1)
+    (event,) = find_buckling(curve)
+    assert curve.jumps == (event.index,)
+    assert event.stress_n_per_mm[1] < 0.7 * event.stress_n_per_mm[0]
+    assert event.thickness_mm[1] > event.thickness_mm[0]
+    coarse = sweep(rest, "wale", 1.46, points=25, max_stress_n_per_mm=0.1)
+    assert len(coarse.jumps) == 1
+
+
+def test_a_stretch_in_few_steps_has_no_jump_for_that():
+    entry = sample("acrylic", "rib")
+    rest = relax(StitchChart.parse("KP"), entry.yarn, entry.loop_length_mm)
+    assert sweep(rest, "course", 1.0, points=6).jumps == ()
+
+
+@pytest.mark.parametrize("stress", [0.0, -0.1, float("nan")])
+def test_a_stress_that_ends_no_stretch_is_refused(zero, stress):
+    with pytest.raises(InputError, match="max_stress_n_per_mm"):
+        sweep(zero, "course", 0.1, max_stress_n_per_mm=stress)
+
+
+def test_a_direction_that_is_not_known_is_refused(zero):
+    with pytest.raises(InputError, match="Use course or wale"):
+        sweep(zero, "across", 0.1)
+
+
+def test_a_state_that_is_held_is_no_rest():
+    entry = sample("cotton", "stockinette")
+    held = relax(
+        StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, cell_course_mm=3.6,
+        grid=SplineGrid(12, 4),
+    )  # fmt: skip
+    with pytest.raises(InputError, match="its size is held"):
+        sweep(held, "wale", 0.1)
+
+
+def test_a_stretch_that_opens_at_another_strain_than_it_folds_jumps_once():
+    entry = stored_stitch(StitchChart.parse("KK\nKP"), "cotton")
+    rest = relax(entry.chart, entry.yarn, entry.loop_length_mm)
+    there = sweep(rest, "course", 0.6, points=25, back=False)
+    curve = sweep(rest, "course", 0.6, points=25)
+    (opens,), (folds,) = there.jumps, curve.jumps
+    assert folds < opens
+    lower = curve.energy_n_mm < there.energy_n_mm * (1.0 - 1e-3)
+    assert np.flatnonzero(lower).tolist() == list(range(folds, opens))

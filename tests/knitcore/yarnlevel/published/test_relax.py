@@ -172,3 +172,27 @@ def test_all_starts_are_reported():
     assert [start.name for start in cell.starts] == ["start 1", "start 2", "start 3"]
     relaxed = [start.energy_n_mm for start in cell.starts if start.outcome == "relaxed"]
     assert min(relaxed) == cell.energy_n_mm
+
+
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_centre_lines_cover_the_repeat(fabric):
+    known = sample("cotton", fabric)
+    cell = relax_published(fabric, known.yarn, known.loop_length_mm, starts=1)
+    across, up = 1 + fabric.course_odd, 1 + fabric.wale_odd
+    assert len(cell.centre_lines) == up
+    for line in cell.centre_lines:
+        assert np.linalg.norm(np.diff(line, axis=0), axis=1).sum() == pytest.approx(
+            across * known.loop_length_mm, rel=5e-3
+        )
+        over = line[-1] - line[0]
+        np.testing.assert_allclose(over, [across * cell.cell_course_mm, 0.0, 0.0], atol=1e-9)
+        # the next repeat goes on in the same direction
+        ends = np.array([line[1] - line[0], line[-1] - line[-2]])
+        ends /= np.linalg.norm(ends, axis=1)[:, None]
+        assert ends[0] @ ends[1] > 0.95
+
+
+def test_an_unknown_convention_is_refused():
+    known = sample("cotton", "rib")
+    with pytest.raises(InputError, match="convention"):
+        relax_published("rib", known.yarn, known.loop_length_mm, convention="ours")
