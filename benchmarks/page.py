@@ -158,13 +158,13 @@ def main() -> None:
         service = Service(Path(folder))
         service.start().close()
         try:
-            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+            own = [flag for flag in FLAGS if flag != FORCED]
+            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=own)
             first_paint(browser, service.url)
             painting(browser, service.url)
             browser.close()
             print(f"made to draw whole frames ({FORCED})")
-            forced = [*FLAGS, FORCED]
-            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=forced)
+            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*own, FORCED])
             painting(browser, service.url)
             browser.close()
         finally:

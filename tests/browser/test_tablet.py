@@ -17,6 +17,15 @@ AXES: tuple[tuple[Literal["x", "y"], Literal["width", "height"]], ...] = (
 ROUNDING_PX = 0.5
 
 
+def comes_inside(page: Page, part: str, whole: str) -> bool:
+    """The same within a few seconds, for what is still being laid out."""
+    for _ in range(50):
+        if inside(page, part, whole):
+            return True
+        page.wait_for_timeout(100)
+    return False
+
+
 def inside(page: Page, part: str, whole: str) -> bool:
     """Whether a part lies within another on the screen, horizontally and vertically."""
     inner, outer = page.locator(part).bounding_box(), page.locator(whole).bounding_box()
@@ -48,14 +57,15 @@ def test_all_buttons_of_a_selection_fit(flat_studio: Page, width: int, dock: boo
 def test_the_plots_are_one_click_away(flat_studio: Page) -> None:
     flat_studio.set_viewport_size(TABLET)
     flat_studio.click("#open-regions")
-    assert inside(flat_studio, "#tab-rigidity", "#inspector")
+    expect(flat_studio.locator("#panel-regions")).to_be_visible()
+    assert comes_inside(flat_studio, "#tab-rigidity", "#inspector")
     assert not inside(flat_studio, "#plot-rigidity", "#inspector")
     flat_studio.click("#tab-rigidity")
-    assert inside(flat_studio, "#plot-rigidity", "#inspector")
+    assert comes_inside(flat_studio, "#plot-rigidity", "#inspector")
     flat_studio.click("#tab-curve")
-    assert inside(flat_studio, "#plot-curve", "#inspector")
-    assert inside(flat_studio, ".curve-pulls", "#plot-curve")
-    assert inside(flat_studio, "#tab-curve", "#inspector")
+    assert comes_inside(flat_studio, "#plot-curve", "#inspector")
+    assert comes_inside(flat_studio, ".curve-pulls", "#plot-curve")
+    assert comes_inside(flat_studio, "#tab-curve", "#inspector")
 
 
 def test_the_readout_is_whole_and_the_chart_keeps_still(flat_studio: Page) -> None:
