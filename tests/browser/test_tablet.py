@@ -17,15 +17,6 @@ AXES: tuple[tuple[Literal["x", "y"], Literal["width", "height"]], ...] = (
 ROUNDING_PX = 0.5
 
 
-def comes_inside(page: Page, part: str, whole: str) -> bool:
-    """The same within a few seconds, for what is still being laid out."""
-    for _ in range(50):
-        if inside(page, part, whole):
-            return True
-        page.wait_for_timeout(100)
-    return False
-
-
 def inside(page: Page, part: str, whole: str) -> bool:
     """Whether a part lies within another on the screen, horizontally and vertically."""
     inner, outer = page.locator(part).bounding_box(), page.locator(whole).bounding_box()
@@ -36,6 +27,15 @@ def inside(page: Page, part: str, whole: str) -> bool:
         and inner[at] + inner[size] <= outer[at] + outer[size] + ROUNDING_PX
         for at, size in AXES
     )
+
+
+def comes_inside(page: Page, part: str, whole: str) -> bool:
+    """The same within a few seconds, for what is still being laid out."""
+    for _ in range(50):
+        if inside(page, part, whole):
+            return True
+        page.wait_for_timeout(100)
+    return False
 
 
 @pytest.mark.parametrize("width", [1024, 1100, 1280, 1400, 1550])
