@@ -8,10 +8,11 @@
 const SLOW_MS = 45;
 /**
  * A sleeping viewer still draws after this time, for news that came late or from elsewhere; then
- * after twice as long and so on, as a frame may keep such a machine busy for seconds.
+ * after twice as long, as a frame may keep such a machine busy for seconds. Not more: on a busy
+ * machine the cloth itself comes late, and the view would stay empty.
  */
 const HEARTBEAT_MS = 2500;
-const LONGEST_HEARTBEAT_MS = 20_000;
+const LONGEST_HEARTBEAT_MS = 5000;
 
 export class FrameGovernor {
   /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */ #waiting = new Map();
