@@ -47,7 +47,7 @@ def test_all_buttons_of_a_selection_fit(flat_studio: Page, width: int, dock: boo
         expect(flat_studio.locator("#panel-regions")).to_be_visible()
     flat_studio.keyboard.press("Control+a")
     expect(flat_studio.locator("#selection-bar")).to_be_visible()
-    assert inside(flat_studio, "#selection-bar", "#chart-host")
+    assert comes_inside(flat_studio, "#selection-bar", "#chart-host")
     key = flat_studio.locator(".chart-key").bounding_box()
     bar = flat_studio.locator("#selection-bar").bounding_box()
     assert bar
@@ -85,7 +85,7 @@ def test_messages_do_not_cover_a_dock(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Control+a")
     flat_studio.click("#selection-make-repeat")
     expect(flat_studio.locator(".message")).to_be_visible()
-    assert inside(flat_studio, ".message", "#chart-host")
+    assert comes_inside(flat_studio, ".message", "#chart-host")
 
 
 def test_the_label_in_the_stiffness_map_stays_off_the_axis(flat_studio: Page) -> None:
