@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
+from typing import Self
 
-from knitcore.errors import InputError
+from knitcore.choice import Choice
 
 
-class Direction(StrEnum):
+class Direction(Choice):
     """A material direction: course = along rows (x), wale = along columns (y)."""
 
     COURSE = "course"
@@ -23,24 +23,8 @@ class Direction(StrEnum):
         """The transverse direction."""
         return Direction.WALE if self is Direction.COURSE else Direction.COURSE
 
-    @classmethod
-    def parse(cls, name: str) -> Direction:
-        """A direction by its name.
 
-        Raises
-        ------
-        InputError
-            If it is neither course nor wale.
-        """
-        try:
-            return cls(name)
-        except ValueError:
-            raise InputError(
-                "direction", f"{name!r} is no direction.", "Use course or wale."
-            ) from None
-
-
-class Fabric(StrEnum):
+class Fabric(Choice):
     """A fabric whose connecting segments are all alike course-wise and all alike wale-wise.
 
     The paper's Fig. 3c-j: stockinette has even segments both ways, garter odd ones wale-wise, rib
@@ -73,7 +57,7 @@ class Fabric(StrEnum):
         return PHASES[code]
 
     @classmethod
-    def parse(cls, name: str) -> Fabric:
+    def parse(cls, name: str) -> Self:
         """A fabric by its name, whatever the case.
 
         Raises
@@ -81,11 +65,7 @@ class Fabric(StrEnum):
         InputError
             If no pure fabric has this name.
         """
-        try:
-            return cls(name.strip().lower())
-        except ValueError:
-            known = ", ".join(f.value for f in cls)
-            raise InputError("fabric", f"{name!r} is not a pure fabric.", f"Use {known}.") from None
+        return super().parse(name.strip().lower())
 
 
 PHASES = (Fabric.STOCKINETTE, Fabric.GARTER, Fabric.RIB, Fabric.SEED)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
+from knitcore.choice import Choice
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials.material import Material
@@ -31,7 +31,7 @@ LOCK_UP_SHARE = 0.98
 """Share of the lock-up strain that a test may ask for."""
 
 
-class Clamps(StrEnum):
+class Clamps(Choice):
     """How the ends are held: gripped, or free to slide along the clamp."""
 
     CLAMPED = "clamped"
@@ -110,9 +110,9 @@ def strip_test(
     )
     return pull(
         sheet,
-        parse_direction(direction),
+        Direction.parse(direction),
         load_levels(strain, steps),
-        clamps=Clamps(clamps),
+        clamps=Clamps.parse(clamps),
         progress=progress,
         cancelled=cancelled,
     )
@@ -303,22 +303,6 @@ def stretched(grid: QuarterGrid, direction: Direction, strain: float) -> Array:
     corners = grid.corners.copy()
     corners[:, direction.axis] *= 1 + strain
     return corners
-
-
-def parse_direction(direction: Direction | str) -> Direction:
-    """A direction by name.
-
-    Raises
-    ------
-    InputError
-        If it is neither course nor wale.
-    """
-    try:
-        return Direction(direction)
-    except ValueError:
-        raise InputError(
-            "direction", f"{direction!r} is not known.", "Use course or wale."
-        ) from None
 
 
 def homogeneous_sheet(

@@ -13,36 +13,19 @@ Table 8 within 2 %), so it is the default, and the published core radii belong t
 
 from __future__ import annotations
 
-from enum import StrEnum
-
-from knitcore.errors import InputError
+from knitcore.choice import Choice
 
 REGULARISATION_N_MM4 = 0.002
 """C, N·mm⁴: weight of the rate of change of curvature (authors' configuration files; the paper's
 table leaves it out)."""
 
 
-class Convention(StrEnum):
+class Convention(Choice):
     """A reading of the paper's energy."""
 
     PUBLISHED = "published"
     PAPER = "paper"
     AUTHORS_CODE = "authors-code"
-
-    @classmethod
-    def parse(cls, name: str) -> Convention:
-        """A convention by its name.
-
-        Raises
-        ------
-        InputError
-            If there is none of this name.
-        """
-        try:
-            return cls(name)
-        except ValueError:
-            known = ", ".join(cls)
-            raise InputError("convention", f"{name!r} is not known.", f"Use {known}.") from None
 
     @property
     def bending_factor(self) -> float:

@@ -6,12 +6,12 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from knitcore.chart import StitchChart
+from knitcore.choice import Choice
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
@@ -64,27 +64,12 @@ _SHAKES = (7, 8)
 """Seeds of the displacements with which the mirrored state is left."""
 
 
-class Branch(StrEnum):
+class Branch(Choice):
     """Which shapes are admitted."""
 
     PUBLISHED = "published"
     MIRRORED = "mirrored"
     FREE = "free"
-
-    @classmethod
-    def parse(cls, name: str) -> Branch:
-        """A branch by its name.
-
-        Raises
-        ------
-        InputError
-            If there is none of this name.
-        """
-        try:
-            return cls(name)
-        except ValueError:
-            known = ", ".join(cls)
-            raise InputError("branch", f"{name!r} is not known.", f"Use {known}.") from None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -18,7 +18,7 @@ import numpy as np
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.grip import grips_at
-from knitcore.yarnlevel.published.sweep import find_jumps
+from knitcore.yarnlevel.jumps import find_jumps
 from knitcore.yarnlevel.relax import (
     Branch,
     RelaxedRepeat,

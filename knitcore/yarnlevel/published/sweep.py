@@ -6,13 +6,13 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.jumps import find_jumps
 from knitcore.yarnlevel.published.minimise import Minimum
 from knitcore.yarnlevel.published.relax import (
     STARTS,
@@ -34,10 +34,6 @@ from knitcore.yarnlevel.yarn import YarnModel
 
 _LOWER = 1e-6
 """How much lower, relatively, the way back must be to replace the way out."""
-_JUMP = 4.0
-"""A step whose shape changes this much more than the steps around it is a jump."""
-_JUMP_FLOOR = 0.004
-"""And by at least this much, root mean square over the stitch, in loop lengths."""
 
 
 def sweep_published(
@@ -132,24 +128,6 @@ def sweep_published(
     return Sweep(along, zero, tuple(cells), stress, jumps, tuple(notes))
 
 
-def find_jumps(centre_lines: list[FloatArray], loop_length_mm: float) -> tuple[int, ...]:
-    """Steps i at which the shape changes far more than at the steps around them.
-
-    The change is that of the centre line (root mean square, its mean and its affine part left out).
-    """
-    if len(centre_lines) < 4:
-        return ()
-    changes = np.array(
-        [_change(before, after) / loop_length_mm for before, after in pairwise(centre_lines)]
-    )
-    jumps = []
-    for i, change in enumerate(changes):
-        around = np.delete(changes[max(i - 4, 0) : i + 5], min(i, 4))
-        if change > _JUMP_FLOOR and change > _JUMP * float(np.median(around)):
-            jumps.append(i + 1)
-    return tuple(jumps)
-
-
 def stress_from_energies(sweep: Sweep) -> tuple[FloatArray, FloatArray]:
     """Strain and stress (N/mm) between the points, by the paper's midpoint derivative of energy.
 
@@ -179,10 +157,3 @@ def _go(walk: Walk, direction: Direction, path: list[_Point], size_mm: float) ->
     if found is None:
         return None
     return _Point(found[0], time.process_time() - began, found[1])
-
-
-def _change(before: FloatArray, after: FloatArray) -> float:
-    a, b = before.reshape(-1, 3), after.reshape(-1, 3)
-    a, b = a - a.mean(axis=0), b - b.mean(axis=0)
-    affine = np.linalg.lstsq(a, b, rcond=None)[0]
-    return float(np.sqrt(np.mean(np.sum((b - a @ affine) ** 2, axis=1))))

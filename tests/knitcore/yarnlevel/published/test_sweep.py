@@ -8,7 +8,7 @@ from knitcore.yarnlevel.lawfit import fit_law
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.published.sweep import find_jumps, stress_from_energies, sweep_published
+from knitcore.yarnlevel.published.sweep import stress_from_energies, sweep_published
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.shares import overtaking_strain
 
@@ -125,13 +125,3 @@ def test_impossible_stretches_are_refused():
         stretch("cotton", "rib", "course", 0.0, 5)
     with pytest.raises(InputError, match="2 to 1000"):
         stretch("cotton", "rib", "course", 0.5, 1)
-
-
-def test_jumps_are_found_where_the_shape_changes_abruptly():
-    line = np.linspace(0, 1, 50)
-    lines = [
-        np.stack([line, np.sin((3 + 0.05 * i + (2 if i > 5 else 0)) * line), 0 * line], 1)[None]
-        for i in range(12)
-    ]
-    assert find_jumps(lines, 3.0) == (6,)
-    assert find_jumps(lines[:5], 3.0) == ()
