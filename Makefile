@@ -56,7 +56,7 @@ test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are
 	KNITCORE_KILLS=50 $(BIN)/pytest -s tests/app/designs/test_durability.py
 
 test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, clients that vanish, workers that die
-	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/test_cluster.py
+	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
 
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test
@@ -93,7 +93,7 @@ examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API
 	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
-	$(BIN)/python -m knitcore.yarnlevel.store_build $(OPTIONS)
+	$(BIN)/python -m knitcore.yarnlibrary.build $(OPTIONS)
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-dev ## Pin the dependencies again

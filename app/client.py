@@ -30,9 +30,9 @@ from typing import Any, Self
 import httpx2 as httpx
 
 from app.designs.document import Design, DesignDocument, DesignSummary, Painted, Run, Strokes
+from app.http.problems import Problem
 from app.jobs.document import JobStatus
 from app.operations.predict import PredictRequest, PredictResult
-from app.problems import Problem
 
 ATTEMPTS = 3
 

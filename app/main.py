@@ -10,29 +10,30 @@ from collections.abc import AsyncIterator, Callable
 
 from fastapi import FastAPI
 
-from app import health, memory
 from app.api import routers
-from app.compute import Compute
+from app.compute import memory
+from app.compute.compute import Compute
+from app.compute.places import Place
+from app.compute.processes import processes
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
+from app.http import health
+from app.http.observing import Metrics, Observer
+from app.http.page import serve_page
+from app.http.problems import PROBLEM_RESPONSES, install_problem_handlers
+from app.http.reference import serve_reference
+from app.http.schema import install_schema
+from app.http.security import Guard
+from app.http.tokens import Login, Tokens
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.observing import Metrics, Observer
 from app.operations.stretch import warm_up
-from app.page import serve_page
-from app.problems import PROBLEM_RESPONSES, install_problem_handlers
-from app.processes import processes
-from app.recent import RecentResults
-from app.reference import serve_reference
-from app.schema import install_schema
-from app.security import Guard
+from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate
-from app.tokens import Login, Tokens
 from app.viewer import relay
 from app.viewer.views import Views
-from app.work import Place
 
 log = logging.getLogger("knitcore.app")
 
@@ -133,7 +134,7 @@ async def _close_idle_views(views: Views, idle_s: float) -> None:
 def _places(settings: Settings) -> list[Place]:
     """Where heavy work is done."""
     if settings.scheduler is not None:
-        from app.cluster import Cluster, ClusterPlace  # its library is needed here only
+        from app.compute.cluster import Cluster, ClusterPlace  # its library is needed here only
 
         cluster = Cluster(settings.scheduler)
         return [ClusterPlace(cluster) for _ in range(settings.workers)]

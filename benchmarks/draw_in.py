@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.composite import UNFOLDING_STRESS_N_PER_MM
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
-from knitcore.mechanics.composite import UNFOLDING_STRESS_N_PER_MM
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.sweep import sweep

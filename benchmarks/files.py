@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from knitcore.answer.prediction import predict
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.formats.chart_files import read_piece
@@ -26,7 +27,6 @@ from knitcore.formats.garment_design import design_of_plan
 from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import Hand, glove
 from knitcore.materials import material
-from knitcore.mechanics.prediction import predict
 
 WOOL = material("glove-wool:glove")
 READ_BACK = (

@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from knitcore.answer.prediction import predict
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import load_library, load_variants, material
 from knitcore.mechanics.homogenisation import homogenise
 from knitcore.mechanics.local import local_moduli
-from knitcore.mechanics.prediction import predict
 from knitcore.mechanics.reduced_symmetry import MATERIALS, rs_fabrics
 
 

@@ -19,13 +19,13 @@ import numpy as np
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials.library import material
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.lawfit import SimulatedLaw, fit_law
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.sweep import stress_from_energies, sweep_published
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.samples import Sample, load_samples
 from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.lawfit import SimulatedLaw, fit_law
 
 STEPS_MM = {  # along the course and the wale, as in the authors' code
     Fabric.STOCKINETTE: (0.09, 0.03),

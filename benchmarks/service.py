@@ -41,7 +41,7 @@ FOLDER = os.environ.get("FOLDER")
 SLICE_S = 15.0
 PROBE_S = 0.1
 WARM_UP_S, WARM_UP_TESTS, WARM_UP_SLICES = 10.0, 7, 12
-"""So many stretch tests fill what the service keeps of them in memory (`app/recent.py`)."""
+"""So many stretch tests fill what the service keeps of them in memory (`app/results/recent.py`)."""
 VIEWS, ROUNDS = 20, int(os.environ.get("ROUNDS", "10"))
 JOBS = "/api/v1/jobs"
 

@@ -14,15 +14,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from knitcore.answer.chart_curve import chart_curve
+from knitcore.answer.composite import layout_of
+from knitcore.answer.relaxed import RelaxedSize, SizeSource, carried_over, reference_fabric
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material, material
-from knitcore.mechanics.chart_curve import chart_curve
-from knitcore.mechanics.composite import layout_of
-from knitcore.mechanics.relaxed import RelaxedSize, SizeSource, carried_over, reference_fabric
-from knitcore.mechanics.uniaxial import free_strains_at_stress
-from knitcore.yarnlevel.store import StoredStitch, stored_charts, stored_stitch
+from knitcore.yarnlibrary.store import StoredStitch, stored_charts, stored_stitch
 
 STRESS = np.array([0.03, 0.05, 0.1, 0.2])
 YARNS = ("acrylic", "cotton")

@@ -18,8 +18,8 @@ import numpy as np
 
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import material
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, pull, strip_test
 from knitcore.swatch.strip import load_levels
 

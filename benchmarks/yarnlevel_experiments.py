@@ -16,11 +16,11 @@ import numpy as np
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
-from knitcore.yarnlevel.lawfit import fit_law
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.samples import Sample, load_samples
 from knitcore.yarnlevel.sweep import sweep
+from knitcore.yarnlibrary.lawfit import fit_law
 
 RANGE_N_PER_MM = {
     Fabric.STOCKINETTE: (0.445, 0.313),

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
+from knitcore.fabric import PHASES, Fabric
 from knitcore.segments import segment_map
 
 LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
@@ -69,6 +70,13 @@ def quarter_phases(
     codes = surroundings(chart, periodic=periodic, stitch=stitch)
     phases = QUARTERS_OF_CODE[codes]  # (rows, columns, 2, 2)
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
+
+
+def reference_fabric(chart: StitchChart) -> Fabric:
+    """The pure fabric with odd segments where the repeat has any."""
+    phases = quarter_phases(chart, periodic=True)
+    course_odd, wale_odd = bool((phases >= 2).any()), bool((phases % 2).any())
+    return PHASES[2 * course_odd + wale_odd]
 
 
 def _before_and_after(

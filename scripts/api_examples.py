@@ -14,8 +14,8 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
+from app.http.schema import EXAMPLES, operations
 from app.main import create_app
-from app.schema import EXAMPLES, operations
 from app.settings import Settings
 from tests.app.job_requests import job_requests
 

@@ -27,8 +27,8 @@ from app.designs.document import (
 from app.designs.idempotency import Retry
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
-from app.identity import asking
-from app.problems import Problem
+from app.http.identity import asking
+from app.http.problems import Problem
 from app.viewer.design_id import DesignId
 
 Responses = dict[int | str, dict[str, Any]]

@@ -12,12 +12,12 @@ from fastapi.responses import StreamingResponse
 
 from app.api.designs import Key, retry_of
 from app.designs.conditions import ConflictError
-from app.identity import asking
+from app.http.identity import asking
+from app.http.packed import json_response
+from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.jobs.kinds import JobRequest
 from app.jobs.runner import JobRunner
-from app.packed import json_response
-from app.problems import NotFoundError, Problem
 
 MISSING = {"model": Problem, "description": "No such thing, or it is not yours."}
 EVENT_PERIOD_S = 0.25

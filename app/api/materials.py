@@ -6,8 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
+from app.http.problems import NotFoundError, Problem
 from app.operations.materials import MaterialDetail, Materials, explain_material, list_materials
-from app.problems import NotFoundError, Problem
 from knitcore.errors import InputError
 
 MISSING = {"model": Problem, "description": "It is not in the library."}

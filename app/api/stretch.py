@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
+from app.http.packed import json_response
 from app.operations.stretch import (
     StretchRequest,
     StretchResult,
@@ -11,7 +12,6 @@ from app.operations.stretch import (
     run_stretch,
     stretch_key,
 )
-from app.packed import json_response
 
 router = APIRouter(tags=["stretch"])
 

@@ -12,10 +12,10 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.http.problems import NotFoundError, Problem
 from app.operations.share import ShareRequest, shared_page, shared_recording, shared_solid
 from app.operations.stretch import StretchRun
 from app.operations.view import ViewRequest, ViewResult, build_scene
-from app.problems import NotFoundError, Problem
 from app.viewer.camera import Side
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.fabric import Box

@@ -26,8 +26,8 @@ from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials.files import save_material_file
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.lawfit import MAX_STRESS_N_PER_MM
 from knitcore.yarnlevel.relax import Branch
+from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM
 
 Item = TypeVar("Item")
 

@@ -19,11 +19,11 @@ from app.operations.estimate import (
     model_report,
 )
 from knitcore.errors import InputError
+from knitcore.estimate.estimate import MeasuredSwatch
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import load_law
 from knitcore.materials import load_material_file, material
 from knitcore.materials.files import save_material_file
-from knitcore.mechanics.estimate import MeasuredSwatch
 
 
 @click.command("estimate")

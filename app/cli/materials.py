@@ -13,7 +13,7 @@ from app.operations.materials import (
     describe_material,
     list_materials,
 )
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.materials import Material
 from knitcore.materials.files import load_material_file
 

@@ -27,10 +27,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     _ = settings.store_url  # told in one line if there is no place for the data
     import uvicorn
 
-    from app import memory
-    from app.connections import Connection
+    from app.compute import memory
+    from app.http.connections import Connection
+    from app.http.observing import configure_logging
     from app.main import create_app
-    from app.observing import configure_logging
 
     memory.keep_no_large_blocks()
     configure_logging(settings.log_format)

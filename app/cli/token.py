@@ -12,14 +12,14 @@ from app.cli.common import emit, json_option
 from app.settings import Settings
 
 if TYPE_CHECKING:
-    from app.tokens import Tokens
+    from app.http.tokens import Tokens
 
 
 @contextlib.contextmanager
 def _tokens() -> Iterator[Tokens]:
+    from app.http.tokens import Tokens
     from app.store.database import Database
     from app.store.schema import migrate
-    from app.tokens import Tokens
 
     database = Database(Settings().store_url)
     try:

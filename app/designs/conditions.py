@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.problems import ServiceError
+from app.http.problems import ServiceError
 
 
 class StaleError(ServiceError):

@@ -17,7 +17,7 @@ from app.designs.document import (
 )
 from app.designs.idempotency import Retry
 from app.designs.store import add, copied, document_of, find, moment, now
-from app.problems import NotFoundError, ServiceError
+from app.http.problems import NotFoundError, ServiceError
 from app.store.database import Database
 from app.store.tables import designs, shares
 

@@ -25,7 +25,7 @@ from app.designs.document import (
 )
 from app.designs.idempotency import Retry
 from app.designs.painting import kinds_around, paint
-from app.problems import NotFoundError
+from app.http.problems import NotFoundError
 from app.store.database import Database
 from app.store.tables import design_versions, designs
 from knitcore.chart import StitchChart

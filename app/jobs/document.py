@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from pydantic import AwareDatetime, BaseModel, Field
 
-from app.problems import Problem
+from app.http.problems import Problem
 
 
 class JobState(StrEnum):

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.http.packed import packed
 from app.operations.atlas import AtlasRequest, AtlasResult, run_atlas
 from app.operations.characterise import (
     CharacteriseRequest,
@@ -41,7 +42,6 @@ from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
-from app.packed import packed
 
 DECIDING = frozenset({".py", ".csv", ".json", ".npz"})
 """Endings of program and data files."""

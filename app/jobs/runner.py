@@ -8,16 +8,16 @@ import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.compute import Compute
+from app.compute.compute import Compute
+from app.compute.places import AbandonedError
 from app.designs.idempotency import Retry
+from app.http.problems import Problem, ServiceError, problem_of
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, content_key
 from app.jobs.store import JobStore
 from app.operations.stretch import StretchRequest, stretch_key
-from app.problems import Problem, ServiceError, problem_of
-from app.recent import RecentResults
+from app.results.recent import RecentResults
 from app.store.database import StoreError
-from app.work import AbandonedError
 
 log = logging.getLogger("knitcore.jobs")
 

@@ -21,8 +21,8 @@ from sqlalchemy import (
 
 from app.designs.idempotency import Retry
 from app.designs.store import moment, now
+from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
-from app.problems import NotFoundError, Problem
 from app.store.database import Database, StoreError
 from app.store.tables import jobs, results
 from knitcore.errors import InputError

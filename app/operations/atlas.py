@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint

@@ -9,18 +9,18 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.batch import BatchProgress
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
 from knitcore.materials.document import MaterialDocument
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.lawfit import MAX_STRESS_N_PER_MM
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlevel.yarn_material import material_of
-from knitcore.yarnlevel.yarn_table import (
+from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM
+from knitcore.yarnlibrary.yarn_material import material_of
+from knitcore.yarnlibrary.yarn_table import (
     TENSIONS,
     YarnPlan,
     YarnRow,

@@ -11,14 +11,14 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
 from app.operations.predict import GaugeInput
-from app.own_materials import find_material
+from app.results.own_materials import find_material
+from knitcore.answer.chart_curve import DEFAULT_STRESS_N_PER_MM, ChartCurve, chart_curve
+from knitcore.answer.prediction import Provenance, predict
+from knitcore.answer.stored import known_repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material
-from knitcore.mechanics.chart_curve import DEFAULT_STRESS_N_PER_MM, ChartCurve, chart_curve
-from knitcore.mechanics.prediction import Provenance, predict
-from knitcore.mechanics.uniaxial import free_strains_at_stress
-from knitcore.yarnlevel.known import known_repeat
 
 Stress = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 

@@ -8,18 +8,18 @@ from collections.abc import Mapping
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.materials import LawResult
-from knitcore.fabric import Direction, Fabric
-from knitcore.formats.law_files import law_from_mapping
-from knitcore.materials import FabricRecord, Material, Origin, Yarn
-from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
-from knitcore.mechanics.estimate import (
+from knitcore.estimate.estimate import (
     Estimate,
     FabricEstimate,
     MeasuredSwatch,
     YarnEstimate,
     estimate_yarn,
 )
-from knitcore.mechanics.estimate_model import left_out, library_table
+from knitcore.estimate.model import left_out, library_table
+from knitcore.fabric import Direction, Fabric
+from knitcore.formats.law_files import law_from_mapping
+from knitcore.materials import FabricRecord, Material, Origin, Yarn
+from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
 
 MEASURED_LOG_SD = 0.1
 """Of the moduli of a measured swatch in a saved material: the paper's median."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import ChartInput, to_chart
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.export import (

@@ -9,15 +9,15 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.materials import LawResult
 from app.operations.uploads import UploadedFile, stored
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.formats.calibrated_files import load_calibrated, save_calibrated
 from knitcore.formats.law_files import LawFile
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.stretch_test import stated_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
-from knitcore.mechanics.constitutive import ConstitutiveLaw
-from knitcore.swatch.calibrated_files import load_calibrated, save_calibrated
 from knitcore.swatch.calibration import Calibration, ForceCurve, calibrate
 from knitcore.swatch.comparison import Comparison, Edges, compare
 from knitcore.swatch.measured import MeasuredField, load_field

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
 from app.operations.charts import MAX_TEXT, ChartText
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.wishes import Wish, wanted_maps

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.design import DesignFile
 from knitcore.formats.garment_design import design_of_plan

@@ -7,13 +7,13 @@ from functools import lru_cache
 import numpy as np
 from pydantic import BaseModel, Field
 
-from app.own_materials import find_material, own_materials
+from app.results.own_materials import find_material, own_materials
 from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import FabricRecord, Material, load_library, load_variants
 from knitcore.materials.document import CurveDocument
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.mechanics.local import StitchTable, stitch_table
-from knitcore.mechanics.uniaxial import uniaxial_response
 
 CURVE_POINTS = 60
 CURVE_END = 0.85

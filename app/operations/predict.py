@@ -5,16 +5,16 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.charts import MAX_TEXT, ChartInput, to_chart
-from app.own_materials import find_material
+from app.results.own_materials import find_material
+from knitcore.answer.prediction import predict
+from knitcore.answer.relaxed import RelaxedSize
+from knitcore.answer.stored import known_repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.materials import Interval, Material
-from knitcore.mechanics.prediction import predict
-from knitcore.mechanics.relaxed import RelaxedSize
 from knitcore.segments import segment_map
-from knitcore.yarnlevel.known import known_repeat
 
 IntervalResult = tuple[float, float]
 

@@ -7,14 +7,14 @@ from dataclasses import asdict
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE, log_deviation
 from knitcore.mechanics import pressure
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 
 class PressureOptions(BaseModel):

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.kept import KeptResults
 from app.operations.charts import ChartInput, to_chart, to_repeat
-from app.own_materials import find_material
+from app.results.on_disk import KeptResults
+from app.results.own_materials import find_material
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
@@ -22,7 +22,7 @@ from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax
 from knitcore.yarnlevel.results import RelaxedCell
-from knitcore.yarnlevel.yarns import ChartYarn, yarn_for
+from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
 
 Cancelled = Callable[[], bool]
 LoopLength = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from knitcore.design.shape import ShapedSwatch, fill_shape
 from knitcore.fabric import Direction
 

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 from scipy.ndimage import distance_transform_edt
 
+from app.http.packed import packed
 from app.operations.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
 from app.operations.stretch_margins import StretchMargins, sampled_steps, stretch_margins
-from app.own_materials import find_material
-from app.packed import packed
+from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import outline_marks
+from knitcore.law.stiffening import EXTENSION_START
 from knitcore.materials import Material
-from knitcore.mechanics.stiffening import EXTENSION_START
 from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
 
 Array = NDArray[np.float32]

@@ -13,7 +13,7 @@ from knitcore.errors import CancelledError
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.swatch import Clamps, StripTest
-from knitcore.swatch.spread import StripSpread
+from knitcore.swatch.uncertainty import StripSpread
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,6 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.kept import KeptResults
 from app.operations.charts import ChartInput
 from app.operations.relax import (
     Cancelled,
@@ -21,17 +20,18 @@ from app.operations.relax import (
     what_decides,
     yarn_result,
 )
-from app.own_materials import find_material
+from app.results.on_disk import KeptResults
+from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
-from knitcore.yarnlevel.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_law
 from knitcore.yarnlevel.published.sweep import sweep_published
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.sweep import sweep
-from knitcore.yarnlevel.yarns import ChartYarn
+from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_law
+from knitcore.yarnlibrary.yarns import ChartYarn
 
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
 """Where the stretch across, which the law needs too, ends unless its stress ends it before."""

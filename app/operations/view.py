@@ -17,7 +17,7 @@ from app.operations.view_colours import (
     region_labels,
     stitch_colours,
 )
-from app.own_materials import find_material
+from app.results.own_materials import find_material
 from app.viewer.fabric import FabricScene
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError

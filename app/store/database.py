@@ -16,7 +16,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
-from app.problems import NoRoomError, UnavailableError
+from app.http.problems import NoRoomError, UnavailableError
 
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from app.problems import UnavailableError
+from app.http.problems import UnavailableError
 from app.viewer.fabric import FabricScene
 from app.viewer.views import View, new_view
 from knitcore.geometry.instances import resampled

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import viser
 
-from app.problems import UnavailableError
+from app.http.problems import UnavailableError
 from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.fabric import FabricScene
 from app.viewer.private_port import private_server

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from knitcore.answer.composite import folded_repeat
+from knitcore.answer.relaxed import tabled_size
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import material
-from knitcore.mechanics.composite import folded_repeat
 from knitcore.mechanics.reduced_symmetry import MATERIALS, rs_fabrics
-from knitcore.mechanics.relaxed import tabled_size
-from knitcore.mechanics.uniaxial import free_strains_at_stress
 
 COLOURS = {"stockinette": "#2f6fb7", "garter": "#d9822b", "rib": "#3a9a5c", "seed": "#8a56b0"}
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT = 380, 296, 52, 44, 44, 12

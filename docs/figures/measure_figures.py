@@ -13,14 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
+from knitcore.estimate.mixed_model import leave_one_out
+from knitcore.estimate.model import library_table, mask_of
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import material
 from knitcore.measure.elastica import heavy_elastica
 from knitcore.measure.law_fit import fit_direction
-from knitcore.mechanics.estimate_model import library_table, mask_of
-from knitcore.mechanics.mixed_model import leave_one_out
 from knitcore.mechanics.pressure import limb_pressure
-from knitcore.mechanics.uniaxial import uniaxial_response
 
 HERE = Path(__file__).parent
 WIDTH, HEIGHT, MARGIN = 560, 360, 56

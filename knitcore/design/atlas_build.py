@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from knitcore.answer.prediction import Prediction, Provenance, predict
+from knitcore.answer.stored import STORED_MATERIALS, KnownRepeat, known_repeat
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
@@ -22,8 +24,6 @@ from knitcore.design.repeats import repeat_key, repeat_of_key
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
-from knitcore.mechanics.prediction import Prediction, Provenance, predict
-from knitcore.yarnlevel.known import STORED_MATERIALS, KnownRepeat, known_repeat
 
 AT_ONCE = 16
 """Repeats in one task of a batch: half a second of work."""
@@ -159,7 +159,7 @@ def material_fingerprint(material: Material) -> str:
     text = json.dumps([material.identifier, content], sort_keys=True, default=str)
     digest = hashlib.sha256(text.encode())
     if material.identifier in STORED_MATERIALS:
-        digest.update(files("knitcore.yarnlevel").joinpath("data/stitches.json").read_bytes())
+        digest.update(files("knitcore.yarnlibrary").joinpath("data/stitches.json").read_bytes())
     return digest.hexdigest()[:24]
 
 

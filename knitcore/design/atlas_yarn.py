@@ -3,7 +3,7 @@
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
 in a folder beside the atlas, and the run can be stopped at any point and taken up again. Laws and
 sizes are carried to the measured material by the pure fabrics of the same yarn-level model
-(:mod:`knitcore.mechanics.carry`). Ribs and welts stay with the corrected composite.
+(:mod:`knitcore.answer.carry`). Ribs and welts stay with the corrected composite.
 """
 
 from __future__ import annotations
@@ -13,6 +13,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from knitcore.answer.carry import carried_law
+from knitcore.answer.composite import layout_of
+from knitcore.answer.prediction import Provenance
+from knitcore.answer.relaxed import RelaxedSize, SizeSource
+from knitcore.answer.stored import KnownRepeat
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
@@ -21,13 +26,9 @@ from knitcore.design.curves import CurveMaker
 from knitcore.design.repeats import canonical, repeat_of_key
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.mechanics.carry import carried_law
-from knitcore.mechanics.composite import layout_of
-from knitcore.mechanics.prediction import Provenance
-from knitcore.mechanics.relaxed import RelaxedSize, SizeSource, reference_fabric
-from knitcore.yarnlevel.characterise import RepeatTask, characterise_repeat, law_of
-from knitcore.yarnlevel.known import KnownRepeat
-from knitcore.yarnlevel.yarns import yarn_for
+from knitcore.phases import reference_fabric
+from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat, law_of
+from knitcore.yarnlibrary.yarns import yarn_for
 
 Progress = Callable[[int, int], None]
 Document = dict[str, Any]

@@ -1,7 +1,7 @@
 """How far a repeat stretches at a load, fast enough for thousands of repeats.
 
 A pure fabric, a repeat with a yarn-level law, and a rib or welt with a known relaxed size have the
-curve of :mod:`knitcore.mechanics.chart_curve`. Any other repeat is taken as lines of quarter cells
+curve of :mod:`knitcore.answer.chart_curve`. Any other repeat is taken as lines of quarter cells
 along the pull: in a line the phases are in series at one force, and all lines are strained alike.
 Its stresses are scaled so that the first slope is the homogenised modulus. Beside the full
 nonlinear solution of the periodic cell, which takes some hundred times longer, the strains of
@@ -13,15 +13,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.composite import folded_repeat
+from knitcore.answer.prediction import Prediction, Provenance
+from knitcore.answer.relaxed import tabled_size
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material
-from knitcore.mechanics.composite import folded_repeat
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.mechanics.homogenisation import phase_grid
-from knitcore.mechanics.prediction import Prediction, Provenance
-from knitcore.mechanics.relaxed import tabled_size
-from knitcore.mechanics.uniaxial import free_strains_at_stress
 from knitcore.phases import quarter_phases
 
 Array = NDArray[np.float64]

@@ -24,9 +24,9 @@ from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import patches_of, smooth, unevenness, wanted_labels
 from knitcore.design.placing import placed
+from knitcore.design.progress import Telling
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.design.repeats import repeat_key
-from knitcore.design.telling import Telling
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material

@@ -15,12 +15,12 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.prediction import Provenance
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
-from knitcore.mechanics.prediction import Provenance
 from knitcore.phases import quarter_phases
 
 Array = NDArray[np.float64]

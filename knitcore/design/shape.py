@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from knitcore.answer.prediction import Provenance
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
 from knitcore.design.curves import STRESS_N_PER_MM
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
-from knitcore.mechanics.prediction import Provenance
 from knitcore.swatch import strip_test
 
 Array = NDArray[np.float64]

@@ -23,9 +23,9 @@ from pydantic import BaseModel, ValidationError
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.document import CurveDocument, LawDocument
 from knitcore.materials.measured import MeasuredCurve
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 FORMAT = "knitcore-law"
 MAXIMUM_BYTES = 10_000_000

@@ -9,6 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.chart_curve import ChartCurve, chart_curve
+from knitcore.answer.prediction import Prediction, predict
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -19,9 +21,7 @@ from knitcore.formats.extensibility_drawing import field_shapes, region_fields
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.piece import Piece
 from knitcore.materials import Interval, Material
-from knitcore.mechanics.chart_curve import ChartCurve, chart_curve
 from knitcore.mechanics.local import local_moduli
-from knitcore.mechanics.prediction import Prediction, predict
 from knitcore.segments import segment_map
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from knitcore.fabric import PHASES, Fabric
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.materials import Material
 from knitcore.yarnlevel.spline import SUPPORT, quintic_basis
-from knitcore.yarnlevel.store import StoredStitch, stored_stitch
+from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
 
 Array = NDArray[np.float64]
 

@@ -32,9 +32,16 @@ from knitcore.geometry.fabrics import (
 )
 from knitcore.geometry.lattice import Lattice, flat_lattice
 from knitcore.materials import Material
-from knitcore.mechanics.relaxed import reference_fabric
-from knitcore.phases import ABOVE, BELOW, LEFT, RIGHT, quarter_phases, surroundings
-from knitcore.yarnlevel.store import StoredStitch, stored_stitch
+from knitcore.phases import (
+    ABOVE,
+    BELOW,
+    LEFT,
+    RIGHT,
+    quarter_phases,
+    reference_fabric,
+    surroundings,
+)
+from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
 
 Array = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.materials.consistency import check_stated_constants
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.measured import MOST_POINTS, MeasuredCurve
 from knitcore.materials.uncertainty import LawUncertainty, log_deviation
-from knitcore.mechanics.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 
 _DEFAULT_RELATIVE_SD = 0.10
 """Assumed where a file gives no standard deviation: the paper's median."""

@@ -10,11 +10,11 @@ from types import MappingProxyType
 
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.consistency import LAW_QUANTITIES, consistent_law
 from knitcore.materials.figures import Figure, paper_figures, read_packaged
 from knitcore.materials.material import MM_PER_INCH, FabricRecord, Material, Origin, Yarn
 from knitcore.materials.uncertainty import LawUncertainty, log_deviation
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 SIMULATION = "simulation"
 NEEDLE_2_MM = "needle-2.0mm"

@@ -10,10 +10,10 @@ from types import MappingProxyType
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.figures import Figure
 from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import LawUncertainty
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 MM_PER_INCH = 25.4
 

@@ -19,6 +19,14 @@ COVERAGE = 0.90
 Z_SCORE = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
 """Half width of such an interval in standard deviations."""
 
+MODEL_POISSON_SD = 0.05
+"""Standard deviation of a Poisson ratio that a model gives."""
+
+YARN_LEVEL_LOG_SD = 0.37
+"""Standard deviation of the logarithm of a yarn-level modulus. The yarn level misses the measured
+pure fabrics by a factor of 2.1 (rms); scaling a law by what the pure fabrics need takes away what
+its phases have in common, and half of the rest, in logarithms, is kept."""
+
 
 @dataclass(frozen=True)
 class Interval:

@@ -26,12 +26,12 @@ from numpy.typing import NDArray
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.measured import MeasuredCurve
 from knitcore.measure.law_fit import ALPHA_SHARE_LIMIT, DirectionFit, fit_direction
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 Array = NDArray[np.float64]
 

@@ -21,8 +21,8 @@ from scipy.optimize import brentq
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.mechanics.constitutive import ConstitutiveLaw, Transverse
-from knitcore.mechanics.uniaxial import uniaxial_response
+from knitcore.law.constitutive import ConstitutiveLaw, Transverse
+from knitcore.law.uniaxial import uniaxial_response
 
 MMHG_PER_KPA = 760.0 / 101.325
 NEAR_LOCK_UP = 0.8

@@ -4,7 +4,7 @@ The same unknowns as in :mod:`knitcore.mechanics.homogenisation` (periodic displ
 strains), with the full law of every phase. The strain along the pull is given; the transverse
 strain and the shear come out free of stress, as in a wide strip. Strains are engineering strains
 and stress is force per relaxed width, as in the law itself. This is the response of the flat
-composite: what a folded rib does before it lies flat is in :mod:`knitcore.mechanics.composite`.
+composite: what a folded rib does before it lies flat is in :mod:`knitcore.answer.composite`.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from scipy.sparse.linalg import splu
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, ConvergenceError, InputError
 from knitcore.fabric import PHASES, Direction
+from knitcore.law.stiffening import EXTENSION_START, StiffeningForm, stiffening
+from knitcore.law.uniaxial import UniaxialCurve
 from knitcore.materials import Material
 from knitcore.mechanics.homogenisation import phase_grid, poisson_asymmetry, stiffness_form
 from knitcore.mechanics.periodic_mesh import PeriodicMesh
-from knitcore.mechanics.stiffening import EXTENSION_START, StiffeningForm, stiffening
-from knitcore.mechanics.uniaxial import UniaxialCurve
 
 Array = NDArray[np.float64]
 

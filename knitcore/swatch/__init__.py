@@ -1,8 +1,8 @@
 """The finite swatch: a chart of any stitches as a nonlinear sheet, pulled, sheared or relaxed."""
 
 from knitcore.swatch.fields import Fields
-from knitcore.swatch.gauge import Misfit, misfit, relaxed_shape
 from knitcore.swatch.grid import QuarterGrid
+from knitcore.swatch.misfit import Misfit, misfit, relaxed_shape
 from knitcore.swatch.models import Coupling, EnergyModel, SheetModel
 from knitcore.swatch.other_tests import biaxial_test, pull_with_force, trellis_test
 from knitcore.swatch.results import BiaxialTest, LockUp, StripTest, SwatchTest, TrellisTest

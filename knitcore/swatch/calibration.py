@@ -21,8 +21,8 @@ from scipy.optimize import least_squares
 
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.stretch_test import StretchTest
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.swatch.comparison import Edges, field_differences, field_sheet
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.measured import MeasuredField

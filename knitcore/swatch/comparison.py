@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 
 from knitcore.fabric import Direction
-from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.measured import Frame, MeasuredField
 from knitcore.swatch.models import SheetModel

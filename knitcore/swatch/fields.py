@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.mechanics.stiffening import StiffeningForm, stiffening
+from knitcore.law.stiffening import StiffeningForm, stiffening
 from knitcore.swatch.grid import QuarterGrid, sums_at_corners
 from knitcore.swatch.models import EnergyModel
 from knitcore.swatch.sheet import Sheet, State

@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from knitcore.mechanics.stiffening import EXTENSION_START
+from knitcore.law.stiffening import EXTENSION_START
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ _INWARD = (1.0, -1.0, -1.0, 1.0)
 
 @njit(cache=True)
 def _stiffening(s: float) -> tuple[float, float, float]:
-    """w, w', w'' of the full law; see knitcore.mechanics.stiffening."""
+    """w, w', w'' of the full law; see knitcore.law.stiffening."""
     if s <= 0.0:
         return 0.0, 0.0, 0.0
     inside = min(s, EXTENSION_START)

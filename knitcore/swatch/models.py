@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
-from knitcore.mechanics.constitutive import ConstitutiveLaw, Symmetrisation
+from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation
 
 
 class EnergyModel(StrEnum):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.fabric import PHASES, Direction
-from knitcore.mechanics.stiffening import EXTENSION_START
+from knitcore.law.stiffening import EXTENSION_START
 from knitcore.swatch.fields import (
     Fields,
     cell_strains,

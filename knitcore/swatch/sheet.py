@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
-from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch import kernel
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.models import SheetModel

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.errors import CancelledError
-from knitcore.swatch.dissection import GridFactor, IndefiniteTangentError
+from knitcore.gridsolver.dissection import GridFactor, IndefiniteTangentError
 from knitcore.swatch.sheet import Linearisation, Sheet, State
 
 Array = NDArray[np.float64]

@@ -12,10 +12,10 @@ from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.material import Material
-from knitcore.mechanics.constitutive import ConstitutiveLaw
-from knitcore.swatch.gauge import draw_in as draw_in_path
 from knitcore.swatch.grid import QuarterGrid
+from knitcore.swatch.misfit import draw_in as draw_in_path
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.run import Path, Progress, run_path

@@ -14,8 +14,8 @@ from app.operations.curve import CurveRequest, run_curve
 from app.settings import Settings
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
-from knitcore.mechanics.uniaxial import strain_at_stress
 
 
 def test_a_pure_fabric_has_its_law(client: TestClient) -> None:

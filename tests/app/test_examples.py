@@ -9,8 +9,8 @@ import jsonschema_rs
 import pytest
 from fastapi.testclient import TestClient
 
+from app.http.schema import EXAMPLES, operations
 from app.main import create_app
-from app.schema import EXAMPLES, operations
 
 SCHEMA = create_app().openapi()
 NAMES = operations(create_app())

@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
-from app.compute import Compute
+from app.compute.compute import Compute
+from app.compute.processes import processes
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.processes import processes
-from app.recent import RecentResults
+from app.results.recent import RecentResults
 from app.store.database import Database
 from app.store.schema import migrate
 from tests.app.job_requests import job_requests

@@ -14,8 +14,10 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app import compute as compute_module
-from app.compute import Compute
+from app.compute import compute as compute_module
+from app.compute.compute import Compute
+from app.compute.processes import processes
+from app.http.problems import NotFoundError, UnavailableError
 from app.jobs import kinds as kinds_module
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
@@ -23,9 +25,7 @@ from app.jobs.kinds import KINDS, JobKind
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.main import create_app
-from app.problems import NotFoundError, UnavailableError
-from app.processes import processes
-from app.recent import RecentResults
+from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from app.compute import Compute
+from app.compute.compute import Compute
+from app.compute.processes import processes
 from app.jobs import runner as runner_module
 from app.jobs import store as store_module
 from app.jobs.document import JobState
 from app.jobs.kinds import KINDS, JobKind
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.processes import processes
-from app.recent import RecentResults
+from app.results.recent import RecentResults
 from app.store.database import Database, StoreError
 from tests.app.jobs import Answer, Wish, work
 

@@ -16,9 +16,9 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
-from app import health
+from app.http import health
+from app.http.observing import JsonLines, TextLines, configure_logging
 from app.main import create_app
-from app.observing import JsonLines, TextLines, configure_logging
 from app.settings import Settings
 from knitcore.errors import InputError
 from tests.app.service import Service

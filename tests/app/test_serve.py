@@ -44,7 +44,7 @@ def test_it_starts_on_a_free_port_and_stops_when_told() -> None:
 def test_killed_it_leaves_no_worker_behind() -> None:
     code = (
         "import os, asyncio; from tests.app import jobs\n"
-        "from app.compute import Compute; from app.processes import processes\n"
+        "from app.compute.compute import Compute; from app.compute.processes import processes\n"
         "async def never(): return False\n"
         "pool = Compute(processes(1), timeout_s=60)\n"
         "print(asyncio.run(pool.run(never, jobs.process_id)), flush=True)\n"

@@ -8,7 +8,7 @@ from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
 from app.cli.main import main
-from app.cluster import ClusterPlace
+from app.compute.cluster import ClusterPlace
 from app.main import create_app
 from app.settings import Settings
 

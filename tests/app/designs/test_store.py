@@ -13,7 +13,7 @@ from app.designs.document import DesignDocument, DesignPatch, Run, ShareMode, St
 from app.designs.idempotency import KEPT_S, Retry, ReusedKeyError, forget_old_keys
 from app.designs.sharing import NotAllowedError, Sharing
 from app.designs.store import DesignStore
-from app.problems import NotFoundError
+from app.http.problems import NotFoundError
 from app.store.database import Database
 from knitcore.errors import InputError
 

@@ -11,6 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart
+from knitcore.answer.chart_curve import chart_curve
+from knitcore.answer.prediction import predict
+from knitcore.answer.stored import known_repeat
 from knitcore.batch import run_batch
 from knitcore.design.atlas import VALUES, Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
@@ -20,12 +23,9 @@ from knitcore.design.find import Limb, Quantity, Target, find_fabric
 from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
+from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
-from knitcore.mechanics.chart_curve import chart_curve
-from knitcore.mechanics.prediction import predict
 from knitcore.mechanics.pressure import limb_pressure
-from knitcore.mechanics.uniaxial import strain_at_stress
-from knitcore.yarnlevel.known import known_repeat
 
 ACRYLIC = material("acrylic")
 REPEATS = repeats_up_to(2, 3)

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from knitcore import Fabric, InputError
+from knitcore.answer.composite import layout_of
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import (
@@ -18,9 +19,8 @@ from knitcore.design.atlas_yarn import (
 from knitcore.design.repeats import repeat_of_key, repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.materials import material
-from knitcore.mechanics.composite import layout_of
-from knitcore.yarnlevel.characterise import RepeatTask
-from knitcore.yarnlevel.store import stored_stitch
+from knitcore.yarnlibrary.characterise import RepeatTask
+from knitcore.yarnlibrary.store import stored_stitch
 
 WOOL = material("glove-wool")
 """Not in the packaged store, so its atlas is a composite to begin with."""

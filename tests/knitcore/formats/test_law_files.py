@@ -11,8 +11,8 @@ import pytest
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law, save_law
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import MeasuredCurve
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 
 LAW = ConstitutiveLaw(0.24, 0.06, 0.036, 0.029, 1.17, 0.8, 0.022, 0.02, shear_modulus=0.02)
 

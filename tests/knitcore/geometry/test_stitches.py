@@ -13,7 +13,7 @@ from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.placing import DEPTH, at_rest, carried, placed_lines
 from knitcore.geometry.stitches import StitchShapes, stitch_shapes
 from knitcore.materials import load_library, material
-from knitcore.yarnlevel.store import stored_stitch
+from knitcore.yarnlibrary.store import stored_stitch
 from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic")

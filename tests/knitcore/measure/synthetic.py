@@ -11,9 +11,9 @@ from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.measure.elastica import heavy_elastica
-from knitcore.mechanics.constitutive import ConstitutiveLaw
-from knitcore.mechanics.uniaxial import uniaxial_response
 
 Array = NDArray[np.float64]
 

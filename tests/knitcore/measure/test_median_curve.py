@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import MeasuredCurve
 from knitcore.materials.measured import MOST_POINTS
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest
 from knitcore.measure.uniaxial import fit_files
-from knitcore.mechanics.uniaxial import uniaxial_response
 from tests.knitcore.measure.synthetic import LAW, write_csv
 
 

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.law_fit import fit_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 from tests.knitcore.measure.synthetic import LAW, pull, write_csv, write_h5
 
 X, Y = Direction.COURSE, Direction.WALE

@@ -9,11 +9,11 @@ from hypothesis.extra import numpy as hnp
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import load_library, material
 from knitcore.mechanics.homogenisation import MOST_CELLS, homogenise, modulus_of, phase_grid
 from knitcore.mechanics.lamination import SheetGrid, coarsened
 from knitcore.mechanics.repeat_curve import repeat_curve
-from knitcore.mechanics.uniaxial import uniaxial_response
 
 repeats = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=5))
 

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw, Transverse
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import material
-from knitcore.mechanics.constitutive import ConstitutiveLaw, Transverse
 from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure, rest_circumference
-from knitcore.mechanics.uniaxial import uniaxial_response
 
 LINEAR = ConstitutiveLaw(0.2, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Without coupling and stiffening: sigma = 0.2 N/mm times the strain."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import griddata
 
 from knitcore.fabric import Direction
-from knitcore.mechanics.constitutive import ConstitutiveLaw
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch import QuarterGrid, Sheet, SheetModel, pull
 
 PITCH_PX = 8.0

@@ -8,8 +8,8 @@ import scipy.sparse as sp
 from skfem import Basis, BilinearForm, ElementTriP1, ElementVector, Functional, LinearForm
 from skfem.helpers import grad
 
-from knitcore.mechanics.constitutive import ConstitutiveLaw
-from knitcore.mechanics.stiffening import StiffeningForm
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.stiffening import StiffeningForm
 from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, State
 
 LAWS = (
@@ -88,7 +88,7 @@ def skfem_assembly(sheet: Sheet, state: State) -> tuple[float, np.ndarray, np.nd
             dd[2][o, o] = sign * 2 * v[0] * v[1] / length**4
             dd[2][o + 1, o + 1] = -dd[2][o, o]
             dd[2][o, o + 1] = dd[2][o + 1, o] = sign * (v[1] ** 2 - v[0] ** 2) / length**4
-    from knitcore.mechanics.stiffening import stiffening
+    from knitcore.law.stiffening import stiffening
 
     form = StiffeningForm(sheet.model.energy.value)
     wx, wx1, wx2 = stiffening(law["alpha_xx"] * ex, form)

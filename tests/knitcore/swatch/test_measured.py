@@ -10,13 +10,13 @@ import pytest
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.formats.calibrated_files import load_calibrated, save_calibrated
 from knitcore.formats.law_files import LawFile
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import material
 from knitcore.measure.uniaxial import fit_files
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
-from knitcore.mechanics.constitutive import ConstitutiveLaw
 from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, pull
-from knitcore.swatch.calibrated_files import load_calibrated, save_calibrated
 from knitcore.swatch.calibration import ForceCurve, calibrate
 from knitcore.swatch.comparison import Edges, compare
 from knitcore.swatch.measured import MeasuredField, load_field, measured_field

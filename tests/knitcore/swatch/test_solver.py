@@ -9,9 +9,10 @@ from scipy.sparse.linalg import spsolve
 
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
+from knitcore.gridsolver.dissection import GridFactor, IndefiniteTangentError
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import load_library
-from knitcore.mechanics.constitutive import ConstitutiveLaw
-from knitcore.mechanics.uniaxial import uniaxial_response
 from knitcore.swatch import (
     Clamps,
     EnergyModel,
@@ -25,7 +26,6 @@ from knitcore.swatch import (
     solver,
     trellis_test,
 )
-from knitcore.swatch.dissection import GridFactor, IndefiniteTangentError
 from knitcore.swatch.run import run_path
 from knitcore.swatch.strip import load_levels
 

@@ -17,7 +17,7 @@ from knitcore.yarnlevel.solver import COURSE, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import tiled_state
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlevel.yarns import yarn_for
+from knitcore.yarnlibrary.yarns import yarn_for
 
 STUDY_YARN = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.30)
 

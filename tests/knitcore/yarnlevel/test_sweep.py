@@ -7,13 +7,13 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.buckling import find_buckling
-from knitcore.yarnlevel.lawfit import fit_law
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.store import stored_stitch
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.lawfit import fit_law
+from knitcore.yarnlibrary.store import stored_stitch
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,13 @@ import pytest
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.buckling import find_buckling
-from knitcore.yarnlevel.lawfit import fit_law
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.published.sweep import stress_from_energies, sweep_published
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.shares import overtaking_strain
+from knitcore.yarnlibrary.lawfit import fit_law
 
 
 def stretch(yarn_id, fabric, direction, max_strain, points, **options):

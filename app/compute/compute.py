@@ -1,0 +1,146 @@
+"""Heavy work elsewhere: the event loop stays free, and what nobody waits for is stopped."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Sequence
+from concurrent.futures.process import BrokenProcessPool
+from functools import partial
+from typing import Any, TypeVar
+
+from app.compute.places import AbandonedError, Place, TimeLimitError, WorkerDiedError
+from app.compute.turns import Turns
+from app.http.identity import current_user
+
+log = logging.getLogger("knitcore.compute")
+T = TypeVar("T")
+
+POLL_S = 0.25
+GRACE_S = 3.0
+"""How long a job may take to notice that it was cancelled before its process is stopped."""
+WAITING_EACH = 100
+
+
+class Compute:
+    """Places for heavy work and whose turn it is.
+
+    Parameters
+    ----------
+    places : where jobs are done. Four times as many may wait in the foreground.
+    timeout_s : longest run of one job, unless it is given another.
+    """
+
+    def __init__(self, places: Sequence[Place], timeout_s: float) -> None:
+        self._timeout_s = timeout_s
+        self._places = list(places)
+        self.turns = Turns(
+            self._places,
+            most_background=max(1, len(places) - 1),
+            most_waiting=4 * len(places),
+            most_waiting_each=WAITING_EACH,
+        )
+
+    async def run(
+        self,
+        abandoned: Callable[[], Awaitable[bool]],
+        job: Callable[..., T],
+        *args: Any,
+        owner: str | None = None,
+        background: bool = False,
+        timeout_s: float | None = None,
+        told: Callable[[float], Awaitable[None]] | None = None,
+    ) -> T:
+        """Run a job; stop it when ``abandoned`` says that nobody waits any more.
+
+        Parameters
+        ----------
+        owner : in whose turn; by default whoever asks.
+        background : whether it may wait behind those who look at a page.
+        timeout_s : longest run, from its start.
+        told : awaited with the share done, with 0 when the job starts.
+
+        Raises
+        ------
+        AbandonedError, TimeLimitError, WorkerDiedError, MemoryLimitError
+        UnavailableError
+            If too many wait already, or the cluster cannot be reached.
+        """
+        limit = self._timeout_s if timeout_s is None else timeout_s
+        ticket = self.turns.enter(owner or current_user.get(), background=background)
+        try:
+            while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
+                if await abandoned():
+                    raise AbandonedError("The computation was abandoned.")
+            place = ticket.place.result()
+            future = await place.submit(partial(job, *args))
+            return await self._watch(place, future, abandoned, limit, told)
+        finally:
+            self.turns.leave(ticket)
+
+    async def _watch(
+        self,
+        place: Place,
+        future: asyncio.Future[T],
+        abandoned: Callable[[], Awaitable[bool]],
+        limit_s: float,
+        told: Callable[[float], Awaitable[None]] | None,
+    ) -> T:
+        loop = asyncio.get_running_loop()
+        deadline, share = None, -1.0
+        try:
+            while not (await asyncio.wait([future], timeout=POLL_S))[0]:
+                if await abandoned():
+                    raise AbandonedError("The computation was abandoned.")
+                if (now := place.share) is None:
+                    continue
+                deadline = deadline or loop.time() + limit_s
+                if loop.time() > deadline:
+                    raise TimeLimitError(f"The computation took longer than {limit_s:g} s.")
+                if told is not None and now != share:
+                    share = now
+                    await told(share)
+        except (AbandonedError, TimeLimitError):
+            await _stop(place, future)
+            raise
+        except BaseException:
+            future.add_done_callback(_forget)
+            place.replace()  # nobody is left who could wait for the process to notice
+            raise
+        try:
+            return future.result()
+        except BrokenProcessPool as error:
+            log.warning("a worker process died")
+            place.replace()
+            raise WorkerDiedError("The process of this computation died.") from error
+
+    def check_room(self, owner: str) -> None:
+        """Refuse a job of the background that could not even wait.
+
+        Raises
+        ------
+        UnavailableError
+            If too many of this owner wait already.
+        """
+        self.turns.check_room(owner, background=True)
+
+    def close(self) -> None:
+        """Let go of all places."""
+        for place in self._places:
+            place.close()
+
+
+def _forget(future: asyncio.Future[Any]) -> None:
+    """Retrieve what came of a job that was stopped on purpose."""
+    if not future.cancelled():
+        future.exception()
+
+
+async def _stop(place: Place, future: asyncio.Future[Any]) -> None:
+    future.add_done_callback(_forget)
+    place.cancel()
+    done, _ = await asyncio.wait([future], timeout=GRACE_S)
+    if not done:
+        log.warning("a cancelled computation did not stop; its process is replaced")
+        place.replace()
+        await asyncio.wait([future], timeout=GRACE_S)

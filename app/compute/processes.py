@@ -1,0 +1,151 @@
+"""Places on this machine: a process each, so that one that dies, hangs or grows costs one job."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import multiprocessing
+import os
+import resource
+import threading
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from enum import IntEnum
+from typing import Any, TypeVar
+
+from app.compute.places import call
+
+T = TypeVar("T")
+
+MEMORY_BYTES = 4_000_000_000
+NICENESS = 10
+"""About a tenth of a core that something else wants."""
+
+
+class Cell(IntEnum):
+    """Places in the memory that a worker shares with the service."""
+
+    CANCELLED = 0
+    STARTED = 1
+    DONE = 2
+    OF = 3
+
+
+class ProcessPlace:
+    """One process, replaced when it is lost.
+
+    Parameters
+    ----------
+    memory_bytes : most memory of the process.
+    idle : whether it takes only what nothing else wants, where the system knows that (Linux).
+    """
+
+    def __init__(self, memory_bytes: int, *, idle: bool = False) -> None:
+        self._context = multiprocessing.get_context("spawn")
+        self._memory_bytes = memory_bytes
+        self._idle = idle
+        self._cells = self._context.Array("d", len(Cell), lock=False)
+        self._executor = self._new()
+
+    async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
+        """Begin a job."""
+        self._cells[:] = [0.0] * len(Cell)
+        try:
+            return asyncio.wrap_future(self._executor.submit(_run, job))
+        except BrokenProcessPool:  # it died while it had nothing to do
+            self.replace()
+            return asyncio.wrap_future(self._executor.submit(_run, job))
+
+    def warm_up(self, job: Callable[..., Any]) -> None:
+        """Start the process and let it load what the first user would wait for."""
+        self._executor.submit(_run, job)
+
+    @property
+    def share(self) -> float | None:
+        """How much of the job is done."""
+        if not self._cells[Cell.STARTED]:
+            return None
+        return float(self._cells[Cell.DONE] / max(self._cells[Cell.OF], 1.0))
+
+    def cancel(self) -> None:
+        """Ask the job to stop."""
+        self._cells[Cell.CANCELLED] = 1.0
+
+    def replace(self) -> None:
+        """Kill the process and have a new one for the next job."""
+        lost, self._executor = self._executor, self._new()
+        _kill(lost)
+
+    def close(self) -> None:
+        """End the process."""
+        _kill(self._executor)
+
+    def _new(self) -> ProcessPoolExecutor:
+        return ProcessPoolExecutor(
+            1,
+            mp_context=self._context,
+            initializer=_adopt,
+            initargs=(self._cells, self._memory_bytes, self._idle),
+        )
+
+
+def processes(
+    count: int, memory_bytes: int = MEMORY_BYTES, *, idle: bool = False
+) -> list[ProcessPlace]:
+    """Several places, each with at most so much memory."""
+    return [ProcessPlace(memory_bytes, idle=idle) for _ in range(count)]
+
+
+def _kill(executor: ProcessPoolExecutor) -> None:
+    for process in list((executor._processes or {}).values()):
+        process.kill()
+    executor.shutdown(wait=False, cancel_futures=True)
+
+
+_cells: Any = None
+_memory_bytes = 0
+
+
+def _adopt(cells: Any, memory_bytes: int, idle: bool) -> None:
+    """In a worker: remember the shared memory, and take no more of anything than allowed."""
+    global _cells, _memory_bytes
+    _cells, _memory_bytes = cells, memory_bytes
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _stand_back(idle)
+    resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))
+
+
+def _stand_back(idle: bool) -> None:
+    """Pages come before computations.
+
+    A process that is only nice keeps a core to the end of its turn, some milliseconds, while a
+    stroke waits; an idle one gives it up at once.
+    """
+    if idle and hasattr(os, "SCHED_IDLE"):
+        with contextlib.suppress(PermissionError):  # a sandbox may forbid it
+            os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+            return
+    os.nice(NICENESS)
+
+
+def _end_with_parent() -> None:
+    """A killed service cannot tell its workers to stop; they would wait for work for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _run(job: Callable[..., T]) -> T:
+    cells = _cells
+    cells[Cell.STARTED] = 1.0
+
+    def cancelled() -> bool:
+        return bool(cells[Cell.CANCELLED])
+
+    def progress(done: float, of: float) -> None:
+        cells[Cell.OF] = of
+        cells[Cell.DONE] = done
+
+    return call(job, cancelled, progress, f"the {_memory_bytes / 1e9:g} GB it may use")

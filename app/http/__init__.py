@@ -1,0 +1,1 @@
+"""The HTTP border: who may ask, how often, and what errors and addresses look like."""

@@ -1,0 +1,271 @@
+"""What keeps strangers out: host and origin checks, the token, size limits, response headers.
+
+A browser carries its user's network position to any page it shows, so even a service on loopback
+must refuse requests that another site's page makes it send.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qs, urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocketClose
+
+from app.http.identity import current_user
+from app.http.problems import Problem, problem_response, unexpected
+from app.http.rate import RateLimit
+from app.http.tokens import SESSION_S, Login
+from app.settings import Settings
+from app.store.database import StoreError
+
+SESSION_COOKIE = "knitcore_session"
+LOGIN_FAILURES = 20
+"""Wrong tokens that one address may try before no token of it is looked at; one more every ten
+seconds."""
+LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
+HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
+OPEN_PATHS = frozenset({"/healthz", "/readyz"})
+
+PAGE_POLICY = "; ".join(
+    [
+        "default-src 'self'",
+        "script-src 'self'",
+        "style-src 'self' 'unsafe-inline'",  # plotly sets style elements of its own
+        "img-src 'self' data: blob:",
+        "connect-src 'self'",
+        "frame-src 'self'",
+        "frame-ancestors 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "object-src 'none'",
+    ]
+)
+VIEW_POLICY = "; ".join(
+    [
+        "default-src 'self' data: blob:",
+        # viser's client is one file with inline script and WebAssembly workers
+        "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' data: blob:",
+        "style-src 'self' 'unsafe-inline'",
+        "worker-src blob: data: 'self'",
+        "connect-src 'self' data: blob:",  # so ?websocket=ws://elsewhere cannot be obeyed
+        "frame-ancestors 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "object-src 'none'",
+    ]
+)
+
+
+class Guard:
+    """ASGI middleware that refuses what must not reach the application.
+
+    Parameters
+    ----------
+    app : the application behind.
+    settings : hosts, token and size limit.
+    """
+
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        self.app = app
+        self.settings = settings
+        self.hosts = LOOPBACK_NAMES | {h.lower() for h in settings.allowed_hosts}
+        if settings.host not in ("0.0.0.0", "::"):  # noqa: S104 - a comparison, not a bind
+            self.hosts |= {settings.host.lower()}
+        self.rate = RateLimit(settings.requests_per_s, int(4 * settings.requests_per_s))
+        self.failures = RateLimit(0.1, LOGIN_FAILURES)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Check one connection and pass it on."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        limits: dict[str, str] = {}
+        refusal = self._refusal(scope)
+        if refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
+            refusal = await self._login(scope, limits)
+        if scope["type"] == "websocket":
+            if refusal is not None:
+                await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
+            else:
+                await self.app(scope, receive, send)
+            return
+
+        started = False
+
+        async def send_with_headers(message: Message) -> None:
+            nonlocal started
+            if message["type"] == "http.response.start":
+                started = True
+                headers = MutableHeaders(scope=message)
+                view = scope["path"].startswith("/view/")
+                headers["Content-Security-Policy"] = VIEW_POLICY if view else PAGE_POLICY
+                headers["X-Content-Type-Options"] = "nosniff"
+                headers["Referrer-Policy"] = "no-referrer"
+                headers["Cross-Origin-Opener-Policy"] = "same-origin"
+                headers["Cross-Origin-Resource-Policy"] = "same-origin"
+                headers.setdefault("Cache-Control", "private, no-cache")
+                headers.update(limits)
+            await send(message)
+
+        if refusal is not None:
+            await refusal(scope, receive, send_with_headers)
+            return
+        try:
+            limited = _limited(receive, self.settings.max_body_bytes)
+            await self.app(scope, limited, send_with_headers)
+        except Exception as error:  # answered here, so that its answer has the headers, too
+            if started:
+                raise
+            await unexpected(error)(scope, receive, send_with_headers)
+
+    def _refusal(self, scope: Scope) -> Response | None:
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        if not self._knows(host):
+            return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
+        origin = headers.get("origin")
+        changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
+        if changes and origin is not None and _place_of(origin) != host.lower():
+            return _refused("origin", "The request comes from a page of another site.", "", 403)
+        length = headers.get("content-length", "0")
+        if not length.isdigit() or int(length) > self.settings.max_body_bytes:
+            return _refused(
+                "body",
+                "The request is too large.",
+                f"Send at most {self.settings.max_body_bytes} bytes.",
+                413,
+            )
+        return None
+
+    def _knows(self, host: str) -> bool:
+        try:
+            name = urlsplit(f"//{host}").hostname
+        except ValueError:
+            return False
+        return name is not None and (name in self.hosts or f"[{name}]" in self.hosts)
+
+    async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
+        """Let a known user in, within their rate, and note who it is."""
+        address = (scope.get("client") or ("unknown", 0))[0]
+        slowed = self.failures.left(address) < 1
+        login: Login = scope["app"].state.login
+        headers = Headers(scope=scope)
+        token, cookie = _bearer(headers), _cookie(headers)
+        link = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
+        tried = "" if slowed else token or link  # a session is no guess: it still opens
+        try:
+            identifier, user = await asyncio.to_thread(_who, login, tried, cookie)
+        except StoreError as error:
+            return problem_response(error.problem)
+        if not user:
+            if slowed:
+                return _too_many("Too many wrong tokens came from this address.", 10.0)
+            if tried:
+                self.failures.take(address)
+            return _refused(
+                "token",
+                "This service asks for a token.",
+                "Open the page as /?token=…, or send the header Authorization: Bearer ….",
+                403,
+            )
+        left, wait = self.rate.take(user)
+        limits["RateLimit-Limit"] = str(self.rate.burst)
+        limits["RateLimit-Remaining"] = str(left)
+        if wait:
+            return _too_many("You are asking too often.", wait)
+        current_user.set(user)
+        if link and not token and scope["type"] == "http" and scope["method"] == "GET":
+            # the link with the token: keep a session in a cookie, and the token out of the address
+            response = RedirectResponse(_own_path(scope["path"]), 303)
+            response.set_cookie(
+                SESSION_COOKIE,
+                login.session(identifier),
+                max_age=SESSION_S,
+                httponly=True,
+                samesite="strict",
+                secure=scope["scheme"] == "https",
+            )
+            return response
+        return None
+
+
+def _who(login: Login, token: str, cookie: str) -> tuple[str, str]:
+    found = login.by_token(token) if token else ("", "")
+    return found if found[1] or not cookie else login.by_session(cookie)
+
+
+def _place_of(origin: str) -> str | None:
+    """Host and port of an origin, or None if it is none."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return None
+
+
+def _own_path(path: str) -> str:
+    """A path of this service: ``//evil.example`` would lead to another."""
+    return "/" + path.lstrip("/\\")
+
+
+def _bearer(headers: Headers) -> str:
+    scheme, _, value = headers.get("authorization", "").partition(" ")
+    return value.strip() if scheme.lower() == "bearer" else ""
+
+
+def _cookie(headers: Headers) -> str:
+    try:
+        found = SimpleCookie(headers.get("cookie", "")).get(SESSION_COOKIE)
+    except CookieError:
+        return ""
+    return found.value if found is not None else ""
+
+
+def _too_many(detail: str, wait_s: float) -> Response:
+    wait = math.ceil(wait_s)
+    return problem_response(
+        Problem(
+            type="too many",
+            title="Too many requests",
+            status=429,
+            detail=detail,
+            remedy=f"Try again in {wait} s.",
+        ),
+        {"Retry-After": str(wait)},
+    )
+
+
+def _refused(field: str, detail: str, remedy: str, status: int) -> Response:
+    return problem_response(
+        Problem(
+            type="refused",
+            title="Refused",
+            status=status,
+            detail=detail,
+            field=field,
+            remedy=remedy or None,
+        )
+    )
+
+
+class BodyTooLargeError(Exception):
+    """A body without an honest Content-Length grew beyond the limit."""
+
+
+def _limited(receive: Receive, limit: int) -> Receive:
+    seen = 0
+
+    async def limited() -> Message:
+        nonlocal seen
+        message = await receive()
+        if message["type"] == "http.request":
+            seen += len(message.get("body", b""))
+            if seen > limit:
+                raise BodyTooLargeError
+        return message
+
+    return limited

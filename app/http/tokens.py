@@ -1,0 +1,195 @@
+"""Who may use the service: tokens made by a command, kept as hashes; sessions in signed cookies."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import re
+import secrets
+import time
+from typing import Any
+
+from itsdangerous import BadSignature, URLSafeTimedSerializer
+from pydantic import AwareDatetime, BaseModel
+from sqlalchemy import Connection, insert, select, update
+
+from app.designs.store import moment, now
+from app.http.identity import LOCAL_USER
+from app.store.database import Database
+from app.store.tables import access_tokens, service_keys
+from knitcore.errors import InputError
+
+USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
+REMEMBERED_S = 5.0
+"""How long an answer of the database is trusted: a revoked token works no longer than this."""
+MOST_REMEMBERED = 10_000
+SESSION_S = 30 * 86_400
+ENVIRONMENT = "environment"
+"""Stands for the one token that is a setting."""
+
+
+class TokenSummary(BaseModel):
+    """A token without its secret."""
+
+    id: str
+    user: str
+    label: str
+    created_at: AwareDatetime
+    expires_at: AwareDatetime | None
+    revoked_at: AwareDatetime | None
+
+
+class NewToken(TokenSummary):
+    """A new token; its secret is told this once."""
+
+    token: str
+
+
+class TokenList(BaseModel):
+    """All tokens, oldest first."""
+
+    tokens: list[TokenSummary]
+
+
+class Tokens:
+    """Tokens in the database."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def create(self, user: str, label: str = "", days: float | None = None) -> NewToken:
+        """A new token of a user.
+
+        Raises
+        ------
+        InputError
+            If the name cannot be one of a user.
+        """
+        if not USER.fullmatch(user) or user == LOCAL_USER:
+            raise InputError(
+                "user",
+                f"{user!r} cannot be a user's name.",
+                "Use letters, digits, and . _ @ - inside; not “local”.",
+            )
+        token, at = secrets.token_urlsafe(32), now()
+        values = {
+            "id": secrets.token_hex(4),
+            "user": user,
+            "token_hash": _hash(token),
+            "label": label[:200],
+            "created_at": at,
+            "expires_at": None if days is None else at + 86_400 * days,
+        }
+        self._database.write(lambda c: c.execute(insert(access_tokens).values(values)))
+        return NewToken(**_summary(values | {"revoked_at": None}), token=token)
+
+    def all(self) -> TokenList:
+        """Every token, also those that do not work any more."""
+        with self._database.read() as connection:
+            rows = connection.execute(select(access_tokens).order_by(access_tokens.c.created_at))
+            return TokenList(tokens=[TokenSummary(**_summary(dict(r._mapping))) for r in rows])
+
+    def revoke(self, token: str) -> None:
+        """Close a token, by its id.
+
+        Raises
+        ------
+        InputError
+            If there is none that is open.
+        """
+        change = (
+            update(access_tokens)
+            .where(access_tokens.c.id == token, access_tokens.c.revoked_at.is_(None))
+            .values(revoked_at=now())
+        )
+        if not self._database.write(lambda c: c.execute(change).rowcount):
+            raise InputError("id", f"there is no open token {token}.", "See `knitcore token list`.")
+
+    def find(self, *, hashed: str | None = None, identifier: str | None = None) -> tuple[str, str]:
+        """(id, user) of an open token by its hash or id; empty texts if there is none."""
+        which = (
+            access_tokens.c.token_hash == hashed
+            if hashed is not None
+            else access_tokens.c.id == identifier
+        )
+        with self._database.read() as connection:
+            row = connection.execute(select(access_tokens).where(which)).one_or_none()
+        if row is None or row.revoked_at is not None:
+            return "", ""
+        if row.expires_at is not None and row.expires_at <= now():
+            return "", ""
+        return row.id, row.user
+
+    def session_key(self) -> str:
+        """The key that signs sessions, made when it is first needed."""
+
+        def action(connection: Connection) -> str:
+            wanted = select(service_keys.c.value).where(service_keys.c.name == "session")
+            known = connection.execute(wanted).scalar_one_or_none()
+            if known is None:
+                known = secrets.token_urlsafe(32)
+                connection.execute(insert(service_keys).values(name="session", value=known))
+            return str(known)
+
+        return self._database.write(action)
+
+
+class Login:
+    """Finds the user behind a token or a session, and remembers it for a moment.
+
+    Parameters
+    ----------
+    tokens : of users.
+    environment : the token of the settings, if there is one; it stands for the local user.
+    """
+
+    def __init__(self, tokens: Tokens, environment: str | None) -> None:
+        self._tokens = tokens
+        self._environment = None if environment is None else _hash(environment)
+        self._signer = URLSafeTimedSerializer(tokens.session_key(), salt="knitcore session")
+        self._remembered: dict[tuple[str, str], tuple[float, tuple[str, str]]] = {}
+
+    def by_token(self, token: str) -> tuple[str, str]:
+        """(id, user) of whoever has this token; empty texts if nobody has."""
+        hashed = _hash(token)
+        if self._environment is not None and hmac.compare_digest(hashed, self._environment):
+            return ENVIRONMENT, LOCAL_USER
+        return self._ask("hashed", hashed)
+
+    def by_session(self, cookie: str) -> tuple[str, str]:
+        """(id, user) of whoever holds this session; empty texts if it is none of ours."""
+        try:
+            identifier, proof = self._signer.loads(cookie, max_age=SESSION_S)
+        except (BadSignature, ValueError, TypeError):
+            return "", ""
+        if identifier == ENVIRONMENT:  # ends when the token in the settings is changed
+            known = self._environment is not None and proof == self._environment[:16]
+            return (ENVIRONMENT, LOCAL_USER) if known else ("", "")
+        return self._ask("identifier", str(identifier))
+
+    def session(self, identifier: str) -> str:
+        """The cookie of a new session."""
+        proof = (self._environment or "")[:16] if identifier == ENVIRONMENT else ""
+        return str(self._signer.dumps([identifier, proof]))
+
+    def _ask(self, by: str, value: str) -> tuple[str, str]:
+        at = time.monotonic()
+        known = self._remembered.get((by, value))
+        if known is not None and at - known[0] < REMEMBERED_S:
+            return known[1]
+        found = self._tokens.find(**{by: value})
+        if len(self._remembered) >= MOST_REMEMBERED:
+            self._remembered.clear()
+        self._remembered[by, value] = (at, found)
+        return found
+
+
+def _hash(token: str) -> str:
+    """Tokens are 256 random bits, so a plain hash cannot be turned back."""
+    return hashlib.sha256(token.encode()).hexdigest()
+
+
+def _summary(values: dict[str, Any]) -> dict[str, Any]:
+    times = ("created_at", "expires_at", "revoked_at")
+    kept = {name: values[name] for name in ("id", "user", "label")}
+    return kept | {n: None if values[n] is None else moment(values[n]) for n in times}

@@ -1,0 +1,1 @@
+"""Results and materials that the service keeps."""

@@ -1,0 +1,119 @@
+"""Results kept by what decides them, in files of the data folder, for commands and for the service.
+
+A name is the digest of all inputs and of the solver (:mod:`knitcore.yarnlibrary.fingerprint`), so a
+result is never found for other inputs, nor after the solver has changed. Files appear as a whole or
+not at all, so any number of processes may share the folder.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from app.settings import Settings
+from knitcore.yarnlibrary.fingerprint import content_key
+
+log = logging.getLogger("knitcore.kept")
+
+MAX_BYTES = 200_000_000
+"""Room for all results; those not asked for longest go first."""
+
+Result = TypeVar("Result", bound=BaseModel)
+
+
+class KeptResults:
+    """A folder of results.
+
+    Parameters
+    ----------
+    folder : made when the first result is kept.
+    max_bytes : room for all of them.
+    """
+
+    def __init__(self, folder: Path, max_bytes: int = MAX_BYTES) -> None:
+        self.folder = folder
+        self.max_bytes = max_bytes
+
+    @classmethod
+    def of_user(cls) -> KeptResults:
+        """The folder in the data folder of the settings."""
+        return cls(Settings().data_dir.expanduser() / "yarn-level")
+
+    def get_or_make(
+        self,
+        kind: type[Result],
+        inputs: Mapping[str, Any],
+        make: Callable[[], Result],
+        *,
+        fresh: bool = False,
+    ) -> tuple[Result, bool]:
+        """The kept result of these inputs, or a new one.
+
+        Parameters
+        ----------
+        kind : model of the result.
+        inputs : all that decides it, JSON-able.
+        make : computes it.
+        fresh : compute it although it may be there, and keep the new one.
+
+        Returns
+        -------
+        The result, and whether it had been kept.
+        """
+        file = self.folder / f"{content_key({'kind': kind.__name__, **inputs})}.json"
+        if not fresh and (found := self._read(kind, file)) is not None:
+            return found, True
+        result = make()
+        self._write(file, result.model_dump_json().encode())
+        return result, False
+
+    def _read(self, kind: type[Result], file: Path) -> Result | None:
+        try:
+            found = kind.model_validate_json(file.read_bytes())
+            os.utime(file)  # for which to let go first
+        except FileNotFoundError:
+            return None
+        except ValidationError:
+            log.warning("%s is damaged and is computed again", file)
+            return None
+        except OSError as error:
+            log.warning("%s cannot be read (%s): it is computed again", file, error)
+            return None
+        return found
+
+    def _write(self, file: Path, content: bytes) -> None:
+        """Keep a result; where there is no room for it, it is still told."""
+        if len(content) > self.max_bytes:
+            return
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            handle, name = tempfile.mkstemp(dir=self.folder, suffix=".part")
+            try:
+                with os.fdopen(handle, "wb") as stream:
+                    stream.write(content)
+                Path(name).replace(file)
+            finally:
+                Path(name).unlink(missing_ok=True)
+            self._make_room()
+        except OSError as error:
+            log.warning("a result cannot be kept in %s: %s", self.folder, error)
+
+    def _make_room(self) -> None:
+        found = []
+        for entry in os.scandir(self.folder):
+            try:
+                found.append((entry.stat().st_mtime_ns, entry.stat().st_size, Path(entry.path)))
+            except FileNotFoundError:  # another process made room
+                continue
+        excess = sum(size for _, size, _ in found) - self.max_bytes
+        for _, size, file in sorted(found):
+            if excess <= 0:
+                return
+            file.unlink(missing_ok=True)
+            excess -= size

@@ -1,0 +1,1 @@
+"""One question: what will this chart, knitted in this material, do?"""

@@ -1,0 +1,83 @@
+"""A yarn-level law of a repeat, carried over to a measured material by ratio.
+
+The yarn level has no friction and an idealised yarn: its moduli of the pure fabrics miss the
+measured ones by up to a factor of two. Set beside measured fabrics, a repeat's law from there would
+then compare the models, not the stitches. So each constant is multiplied by what the pure fabrics
+of the same yarn-level model need to meet the measurement: the geometric mean over the repeat's
+phases, weighted by their shares. A pure fabric gets its measured moduli back.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.materials import Material
+from knitcore.phases import quarter_phases
+
+
+def carried_law(
+    law: ConstitutiveLaw,
+    pure: Mapping[Fabric, ConstitutiveLaw],
+    repeat: StitchChart,
+    material: Material,
+) -> ConstitutiveLaw:
+    """The law of a repeat as the measured material would have it.
+
+    Parameters
+    ----------
+    law : fitted to a yarn-level sweep of the repeat.
+    pure : laws of the pure fabrics from the same yarn-level model and yarn; at least the repeat's
+        phases.
+    repeat : the repeat.
+    material : whose measured laws the pure fabrics have to meet.
+
+    Raises
+    ------
+    InputError
+        If a phase of the repeat is missing in ``pure`` or in the material.
+
+    Examples
+    --------
+    >>> from knitcore.materials import material
+    >>> simulated, measured = material("acrylic:simulation"), material("acrylic")
+    >>> laws = {fabric: simulated.law(fabric) for fabric in Fabric}
+    >>> rib = StitchChart.of_fabric("rib", rows=1, columns=2)
+    >>> round(carried_law(laws[Fabric.RIB], laws, rib, measured).modulus_wale, 3)
+    0.119
+    """
+    counts = np.bincount(quarter_phases(repeat, periodic=True).ravel(), minlength=4)
+    logs = dict.fromkeys(("modulus_course", "modulus_wale", *_STIFFENING), 0.0)
+    for phase in np.flatnonzero(counts):
+        fabric = PHASES[phase]
+        if fabric not in pure:
+            raise InputError(
+                "pure", f"lacks {fabric}, a phase of the repeat.", "Sweep that pure fabric too."
+            )
+        measured, modelled = material.law(fabric), pure[fabric]
+        share = float(counts[phase] / counts.sum())
+        for name in logs:
+            have, need = getattr(modelled, name), getattr(measured, name)
+            # A constant that is 0 in either (no stiffening) has no ratio: it is left as it is.
+            if have > 0 and need > 0:
+                logs[name] += share * math.log(need / have)
+    course, wale = math.exp(logs["modulus_course"]), math.exp(logs["modulus_wale"])
+    coupling = math.sqrt(course * wale)
+    return replace(
+        law,
+        stiffness_xxxx=law.stiffness_xxxx * course,
+        stiffness_yyyy=law.stiffness_yyyy * wale,
+        stiffness_xxyy=law.stiffness_xxyy * coupling,
+        stiffness_yyxx=law.stiffness_yyxx * coupling,
+        **{name: getattr(law, name) * math.exp(logs[name]) for name in _STIFFENING},
+    )
+
+
+_STIFFENING = ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy")

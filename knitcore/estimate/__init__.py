@@ -1,0 +1,1 @@
+"""Laws of a yarn that the library does not hold."""

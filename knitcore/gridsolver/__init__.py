@@ -1,0 +1,1 @@
+"""A sparse Cholesky factorisation for quarter grids, by nested dissection."""

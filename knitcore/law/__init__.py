@@ -1,0 +1,1 @@
+"""The constitutive law of a fabric, its stiffening, and pulls along one direction."""

@@ -1,0 +1,239 @@
+"""The constitutive law of a knitted fabric as a sheet (the paper's Notes 6 and 7).
+
+    sigma_xx = C_xxxx e_xx + C_xxyy e_yy
+               + beta_xx (1 / (1 - alpha_xx e_xx)**2 - 1 - 2 alpha_xx e_xx)
+
+and likewise for y. x is the course direction, y the wale direction. Stress is force per width.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.law.stiffening import StiffeningForm, stiffening
+
+Array = NDArray[np.float64]
+
+DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01
+"""C_xyxy assumed by the paper (Note 9); never measured there, so it is an assumption."""
+
+
+class Symmetrisation(StrEnum):
+    """How the two measured coupling constants become one (an energy needs C_xxyy = C_yyxx).
+
+    ``geometric`` keeps both Young's moduli and the product of the Poisson ratios exactly;
+    ``arithmetic`` is the paper's text (Note 9); ``none`` keeps the measured asymmetry.
+    """
+
+    GEOMETRIC = "geometric"
+    ARITHMETIC = "arithmetic"
+    NONE = "none"
+
+
+class Transverse(StrEnum):
+    """What happens across the pull in a uniaxial test: free to contract, or held at its width."""
+
+    FREE = "free"
+    FIXED = "fixed"
+
+
+@dataclass(frozen=True)
+class ConstitutiveLaw:
+    """Eight measured constants and an assumed shear modulus.
+
+    Parameters
+    ----------
+    stiffness_xxxx, stiffness_yyyy, stiffness_xxyy, stiffness_yyxx : N/mm
+        C0, the rigidity tensor at zero strain. stiffness_xxyy is d sigma_xx / d e_yy.
+    alpha_xx, alpha_yy : dimensionless
+        Inverse of the lock-up strain course-wise and wale-wise.
+    beta_xx, beta_yy : N/mm
+        Stress scale of the stiffening.
+    shear_modulus : N/mm
+        C_xyxy, stress per engineering shear angle.
+
+    Raises
+    ------
+    InputError
+        If a constant is not finite or negative where it must not be, or if the stiffness is not
+        positive definite.
+    """
+
+    stiffness_xxxx: float
+    stiffness_yyyy: float
+    stiffness_xxyy: float
+    stiffness_yyxx: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx: float
+    beta_yy: float
+    shear_modulus: float = DEFAULT_SHEAR_MODULUS_N_PER_MM
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise InputError(field.name, f"{value} is not a number.", "Give a finite number.")
+        for name in ("stiffness_xxxx", "stiffness_yyyy", "shear_modulus"):
+            if getattr(self, name) <= 0:
+                raise InputError(name, "must be above 0 N/mm.", "Give a positive stiffness.")
+        for name in ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy"):
+            if getattr(self, name) < 0:
+                raise InputError(name, "must not be negative.", "Give 0 or a positive number.")
+        if (self.stiffness_xxyy < 0) != (self.stiffness_yyxx < 0):
+            raise InputError(
+                "stiffness_yyxx",
+                "has the opposite sign of stiffness_xxyy.",
+                "Give both couplings one sign.",
+            )
+        if self.stiffness_xxxx * self.stiffness_yyyy <= self.stiffness_xxyy * self.stiffness_yyxx:
+            raise InputError(
+                "stiffness_xxyy",
+                "the stiffness is not positive definite.",
+                "stiffness_xxyy * stiffness_yyxx must stay below stiffness_xxxx * stiffness_yyyy.",
+            )
+
+    # -- linear constants -------------------------------------------------------------------
+
+    @property
+    def modulus_course(self) -> float:
+        """Y_x (N/mm), with the wale direction free."""
+        return (1 - self.poisson_xy * self.poisson_yx) * self.stiffness_xxxx
+
+    @property
+    def modulus_wale(self) -> float:
+        """Y_y (N/mm), with the course direction free."""
+        return (1 - self.poisson_xy * self.poisson_yx) * self.stiffness_yyyy
+
+    @property
+    def poisson_yx(self) -> float:
+        """-e_yy / e_xx when pulled course-wise, C_yyxx / C_yyyy."""
+        return self.stiffness_yyxx / self.stiffness_yyyy
+
+    @property
+    def poisson_xy(self) -> float:
+        """-e_xx / e_yy when pulled wale-wise, C_xxyy / C_xxxx."""
+        return self.stiffness_xxyy / self.stiffness_xxxx
+
+    def modulus(self, direction: Direction) -> float:
+        """Young's modulus (N/mm) in a direction."""
+        return self.modulus_course if direction is Direction.COURSE else self.modulus_wale
+
+    def lock_up_strain(self, direction: Direction) -> float:
+        """Strain at which the stress diverges, 1 / alpha (infinite if alpha is 0)."""
+        alpha = self.alpha_xx if direction is Direction.COURSE else self.alpha_yy
+        return 1.0 / alpha if alpha > 0 else math.inf
+
+    @property
+    def stiffness(self) -> Array:
+        """C0 as a (3, 3) matrix in N/mm; order xx, yy, xy (engineering shear)."""
+        return np.array(
+            [
+                [self.stiffness_xxxx, self.stiffness_xxyy, 0.0],
+                [self.stiffness_yyxx, self.stiffness_yyyy, 0.0],
+                [0.0, 0.0, self.shear_modulus],
+            ]
+        )
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether C_xxyy equals C_yyxx, so that an energy exists."""
+        return math.isclose(self.stiffness_xxyy, self.stiffness_yyxx, rel_tol=1e-12, abs_tol=1e-15)
+
+    def symmetrised(self, rule: Symmetrisation = Symmetrisation.GEOMETRIC) -> ConstitutiveLaw:
+        """The law with one coupling constant.
+
+        Raises
+        ------
+        InputError
+            If the rule makes the stiffness indefinite (``arithmetic`` on lace bamboo stockinette).
+        """
+        if rule is Symmetrisation.NONE:
+            return self
+        a, b = self.stiffness_xxyy, self.stiffness_yyxx
+        if rule is Symmetrisation.ARITHMETIC:
+            coupling = (a + b) / 2
+        else:
+            coupling = math.copysign(math.sqrt(a * b), a)
+        return replace(self, stiffness_xxyy=coupling, stiffness_yyxx=coupling)
+
+    # -- response ---------------------------------------------------------------------------
+
+    def stress(
+        self,
+        strain_xx: ArrayLike,
+        strain_yy: ArrayLike,
+        form: StiffeningForm = StiffeningForm.FULL,
+    ) -> tuple[Array, Array]:
+        """(sigma_xx, sigma_yy) in N/mm at the given strains (arrays that broadcast)."""
+        ex, ey = np.broadcast_arrays(
+            np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
+        )
+        _, slope_x, _ = stiffening(self.alpha_xx * ex, form)
+        _, slope_y, _ = stiffening(self.alpha_yy * ey, form)
+        return (
+            self.stiffness_xxxx * ex + self.stiffness_xxyy * ey + self.beta_xx * slope_x,
+            self.stiffness_yyyy * ey + self.stiffness_yyxx * ex + self.beta_yy * slope_y,
+        )
+
+    def energy_density(
+        self,
+        strain_xx: ArrayLike,
+        strain_yy: ArrayLike,
+        strain_xy: ArrayLike = 0.0,
+        form: StiffeningForm = StiffeningForm.FULL,
+    ) -> Array:
+        """Stored energy per area (N·mm/mm² = N/mm); strain_xy is the tensor component.
+
+        Raises
+        ------
+        InputError
+            If the law is not symmetric, because then no energy exists.
+        """
+        if not self.is_symmetric:
+            raise InputError(
+                "law",
+                "C_xxyy differs from C_yyxx, so the law has no energy.",
+                "Call symmetrised() first.",
+            )
+        ex, ey, exy = (np.asarray(e, dtype=float) for e in (strain_xx, strain_yy, strain_xy))
+        energy_x, _, _ = stiffening(self.alpha_xx * ex, form)
+        energy_y, _, _ = stiffening(self.alpha_yy * ey, form)
+        total: Array = (
+            0.5 * self.stiffness_xxxx * ex**2
+            + 0.5 * self.stiffness_yyyy * ey**2
+            + self.stiffness_xxyy * ex * ey
+            + 2.0 * self.shear_modulus * exy**2
+            + _over(self.beta_xx, self.alpha_xx) * energy_x
+            + _over(self.beta_yy, self.alpha_yy) * energy_y
+        )
+        return total
+
+    def tangent(
+        self,
+        strain_xx: ArrayLike,
+        strain_yy: ArrayLike,
+        form: StiffeningForm = StiffeningForm.FULL,
+    ) -> Array:
+        """d stress / d strain in N/mm, shape (..., 3, 3) in the order xx, yy, xy (engineering)."""
+        ex, ey = np.broadcast_arrays(
+            np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
+        )
+        _, _, curvature_x = stiffening(self.alpha_xx * ex, form)
+        _, _, curvature_y = stiffening(self.alpha_yy * ey, form)
+        tangent = np.broadcast_to(self.stiffness, (*ex.shape, 3, 3)).copy()
+        tangent[..., 0, 0] += self.alpha_xx * self.beta_xx * curvature_x
+        tangent[..., 1, 1] += self.alpha_yy * self.beta_yy * curvature_y
+        return tangent
+
+
+def _over(beta: float, alpha: float) -> float:
+    """beta / alpha, and 0 where alpha = 0 (a law that never stiffens)."""
+    return beta / alpha if alpha > 0 else 0.0

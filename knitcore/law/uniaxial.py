@@ -1,0 +1,171 @@
+"""A uniaxial test of a homogeneous sheet: stress and transverse strain at given axial strains."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw, Transverse
+from knitcore.law.stiffening import StiffeningForm, stiffening
+
+Array = NDArray[np.float64]
+
+_BISECTIONS = 52
+"""Halvings that bring an interval to the rounding of a double."""
+
+
+@dataclass(frozen=True, eq=False)
+class UniaxialCurve:
+    """Response of a sheet pulled in one direction; arrays of one length.
+
+    Attributes
+    ----------
+    strain : axial engineering strain.
+    transverse_strain : strain across the pull.
+    stress : N/mm, axial force per initial width.
+    """
+
+    strain: Array
+    transverse_strain: Array
+    stress: Array
+
+
+def uniaxial_response(
+    law: ConstitutiveLaw,
+    direction: Direction,
+    strain: ArrayLike,
+    *,
+    transverse: Transverse = Transverse.FREE,
+    form: StiffeningForm = StiffeningForm.FULL,
+) -> UniaxialCurve:
+    """Pull a sheet to the given strains (an array of any length).
+
+    Raises
+    ------
+    InputError
+        If a strain reaches the lock-up of the full law, or leaves no free transverse equilibrium.
+    """
+    axial = np.atleast_1d(np.asarray(strain, dtype=float))
+    if not np.all(np.isfinite(axial)):
+        raise InputError("strain", "has values that are not numbers.", "Give finite strains.")
+    check_below_lock_up(law, direction, float(axial.max(initial=0.0)), form)
+    across = (
+        np.zeros_like(axial)
+        if transverse is Transverse.FIXED
+        else np.array([_free_strain(law, direction, e, form) for e in axial])
+    )
+    pair = (axial, across) if direction is Direction.COURSE else (across, axial)
+    stress = law.stress(*pair, form=form)[direction.axis]
+    return UniaxialCurve(strain=axial, transverse_strain=across, stress=stress)
+
+
+def strain_at_stress(
+    law: ConstitutiveLaw,
+    direction: Direction,
+    stress: float,
+    *,
+    transverse: Transverse = Transverse.FREE,
+) -> float:
+    """Axial strain at which the full law carries a stress (N/mm) of at least 0.
+
+    Raises
+    ------
+    InputError
+        If the stress is negative or not a number.
+    """
+    if not (np.isfinite(stress) and stress >= 0):
+        raise InputError("stress", f"{stress} N/mm cannot be used.", "Give 0 N/mm or more.")
+    if stress == 0:
+        return 0.0
+
+    def excess(e: float) -> float:
+        curve = uniaxial_response(law, direction, e, transverse=transverse)
+        return float(curve.stress[0]) - stress
+
+    lock_up = law.lock_up_strain(direction)
+    # Without coupling the linear part alone bounds the strain; free contraction only softens it.
+    upper = min(stress / law.modulus(direction), lock_up * (1 - 1e-12))
+    return upper if excess(upper) <= 0 else float(brentq(excess, 0.0, upper, xtol=1e-12))
+
+
+def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
+    """Axial strains of the full law at many stresses (N/mm, at least 0), transversely free.
+
+    The same as :func:`strain_at_stress`, all at once.
+
+    Raises
+    ------
+    InputError
+        If a stress is negative or not a number.
+    """
+    wanted = np.asarray(stress, dtype=float)
+    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
+        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+    if min(law.poisson_yx, law.poisson_xy) < 0:
+        # The transverse direction widens and stiffens too: no closed form.
+        flat = [strain_at_stress(law, direction, float(s)) for s in wanted.ravel()]
+        return np.array(flat).reshape(wanted.shape)
+    modulus, course = law.modulus(direction), direction is Direction.COURSE
+    alpha, beta = (law.alpha_xx, law.beta_xx) if course else (law.alpha_yy, law.beta_yy)
+    low = np.zeros_like(wanted)
+    high = np.minimum(wanted / modulus, law.lock_up_strain(direction))
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        _, slope, _ = stiffening(alpha * middle)
+        carried = modulus * middle + beta * slope
+        low, high = (
+            np.where(carried < wanted, middle, low),
+            np.where(carried < wanted, high, middle),
+        )
+    result: Array = (low + high) / 2
+    return result
+
+
+def check_below_lock_up(
+    law: ConstitutiveLaw,
+    direction: Direction,
+    strain: float,
+    form: StiffeningForm = StiffeningForm.FULL,
+) -> None:
+    """Refuse a strain at or beyond the lock-up of the full law.
+
+    Raises
+    ------
+    InputError
+        Naming the largest strain that is accepted.
+    """
+    lock_up = law.lock_up_strain(direction)
+    if form is StiffeningForm.FULL and strain >= lock_up:
+        raise InputError(
+            "strain",
+            f"{strain:.3g} is at or beyond the lock-up of this fabric {direction}-wise.",
+            f"Use a strain below {lock_up:.3f}.",
+        )
+
+
+def _free_strain(
+    law: ConstitutiveLaw, direction: Direction, axial: float, form: StiffeningForm
+) -> float:
+    """Transverse strain at which the transverse stress vanishes."""
+    ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
+    linear = -ratio * axial
+    if linear <= 0 and form is StiffeningForm.FULL:
+        return linear  # slack yarn does not stiffen: the linear answer is exact
+
+    def residual(across: float) -> float:
+        pair = (axial, across) if direction is Direction.COURSE else (across, axial)
+        return float(law.stress(*pair, form=form)[direction.other.axis])
+
+    try:
+        return float(brentq(residual, min(linear * 2, 0.0), max(linear * 2, 0.0), xtol=1e-14))
+    except ValueError:
+        raise InputError(
+            "strain",
+            f"at {axial:.3g} the {form} law has no free transverse equilibrium.",
+            "Use a smaller strain or the full law.",
+        ) from None

@@ -1,0 +1,1 @@
+"""Results of the yarn level: packaged relaxed repeats, their build, and tables of yarns."""

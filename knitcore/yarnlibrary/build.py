@@ -1,0 +1,213 @@
+"""Make the packaged store of relaxed stitches: ``python -m knitcore.yarnlibrary.build``.
+
+Relaxes and stretches the repeats of :mod:`knitcore.yarnlibrary.catalogue` for each yarn and writes
+``data/stitches.json`` (sizes, energies, laws) and ``data/stitches.npz`` (control points). What is
+finished is kept in a folder, so a build that was stopped goes on where it was.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.batch import BatchProgress, BatchResult, run_batch
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.materials import material
+from knitcore.phases import reference_fabric
+from knitcore.yarnlevel.relax import Branch
+from knitcore.yarnlibrary.catalogue import COMMON, canonical, distinct_repeats
+from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
+from knitcore.yarnlibrary.store import MATERIALS, key_of
+from knitcore.yarnlibrary.yarns import yarn_for
+
+_SIZES_FILE = Path(__file__).parents[1] / "answer" / "data" / "stored_sizes.csv"
+MOST_STITCHES = 8
+SQUARE = 3
+"""Repeats of so many rows and columns are in the store too, though they have more stitches."""
+
+
+def charts_of_the_store(most_stitches: int = MOST_STITCHES) -> dict[StitchChart, str]:
+    """The repeats to make, representatives of their fabrics, with the names of known ones."""
+    names = {canonical(StitchChart.parse(text)): name for name, text in COMMON.items()}
+    square = [c for c in distinct_repeats(SQUARE**2) if (c.rows, c.columns) == (SQUARE, SQUARE)]
+    some = [*names, *distinct_repeats(most_stitches), *(square if most_stitches >= 8 else [])]
+    return {chart: names.get(chart, "") for chart in some}
+
+
+def build(
+    folder: Path,
+    *,
+    keep: Path,
+    sizes_file: Path,
+    most_stitches: int = MOST_STITCHES,
+    scheduler: str | None = None,
+    workers: int | None = None,
+) -> None:
+    """Make all entries that `keep` does not hold, then write the store into `folder`.
+
+    The relaxed sizes go to `sizes_file` too, where the composite looks for them.
+
+    Raises
+    ------
+    KnitcoreError
+        As :func:`knitcore.batch.run_batch`.
+    """
+    tasks = _tasks(most_stitches)
+    named = {f"{name}.{task.key}": task for name, task in tasks.items()}
+    found = run_batch(
+        characterise_repeat, named, scheduler=scheduler, workers=workers, keep=keep,
+        on_progress=_tell,
+    )  # fmt: skip
+    entries: dict[str, Any] = {}
+    controls: dict[str, NDArray[np.float32]] = {}
+    names = charts_of_the_store(most_stitches)
+    for material_id in MATERIALS:
+        for chart, name in names.items():
+            label = _label(material_id, chart, Branch.MIRRORED)
+            key = f"{material_id}/{key_of(chart)}"
+            document = _found(found, label, tasks[label])
+            provenance = yarn_for(material(material_id), chart).provenance
+            entries[key] = _entry(document, tasks[label], provenance, name)
+            free = _label(material_id, chart, Branch.FREE)
+            if free in tasks:
+                entries[key]["free"] = _free(_found(found, free, tasks[free]))
+            if "controls" in document:
+                controls[key] = np.asarray(document["controls"], dtype=np.float32)
+    write_store(folder, entries, controls)
+    _write_sizes(sizes_file, entries)
+
+
+def write_store(
+    folder: Path, entries: dict[str, Any], controls: dict[str, NDArray[np.float32]]
+) -> None:
+    """Write both files, the same bytes for the same entries."""
+    lines = ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in entries.items())
+    text = f'{{"stitches": {{\n{lines}\n}}}}\n'
+    (folder / "stitches.json").write_text(text, encoding="utf-8")
+    np.savez_compressed(folder / "stitches.npz", **controls)  # type: ignore[arg-type]
+
+
+def _write_sizes(file: Path, entries: dict[str, Any]) -> None:
+    """Sizes over those of the pure fabric that each repeat resembles, at equal loop length."""
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["chart", "yarn", "course_ratio", "wale_ratio"])
+        for key, entry in entries.items():
+            material_id, _, text = key.partition("/")
+            chart = StitchChart.parse(text.replace("/", "\n"))
+            pure = StitchChart.of_fabric(reference_fabric(chart), 2, 2)
+            like = entries[f"{material_id}/{key_of(canonical(pure))}"]
+            if chart == canonical(pure) or not (_settled(entry) and _settled(like)):
+                continue
+            shorter = like["loop_length_mm"] / entry["loop_length_mm"]
+            ratios = [
+                f"{entry[size] / like[size] * shorter:.4f}"
+                for size in ("cell_course_mm", "cell_wale_mm")
+            ]
+            writer.writerow([text, material_id, *ratios])
+
+
+def _settled(entry: dict[str, Any]) -> bool:
+    return bool(entry.get("converged", False))
+
+
+def _tasks(most_stitches: int) -> dict[str, RepeatTask]:
+    """Every repeat in the mirrored branch, then those with a name in the free one."""
+    charts = charts_of_the_store(most_stitches)
+    tasks = {}
+    for branch in (Branch.MIRRORED, Branch.FREE):
+        for chart, name in charts.items():
+            if branch is Branch.FREE and not name:
+                continue
+            for material_id in MATERIALS:
+                used = yarn_for(material(material_id), chart)
+                tasks[_label(material_id, chart, branch)] = RepeatTask(
+                    key_of(chart), used.yarn, used.loop_length_mm, branch=branch
+                )
+    return tasks
+
+
+def _label(material_id: str, chart: StitchChart, branch: Branch) -> str:
+    return f"{material_id}.{key_of(chart).replace('/', '-')}.{branch}"
+
+
+def _found(found: BatchResult, label: str, task: RepeatTask) -> Document:
+    key = f"{label}.{task.key}"
+    return found.results.get(key) or {"failure": found.failures[key]}
+
+
+def _entry(document: Document, task: RepeatTask, provenance: str, name: str) -> dict[str, Any]:
+    head: dict[str, Any] = {"name": name} if name else {}
+    head |= {
+        "yarn": asdict(task.yarn),
+        "loop_length_mm": task.loop_length_mm,
+        "yarn_provenance": provenance,
+        "branch": task.branch.value,
+        "convention": task.convention.value,
+    }
+    if "failure" in document:
+        return {**head, "failure": document["failure"]}
+    kept = {name: document[name] for name in _SIZE + _SHARES + _LAW}
+    return {
+        **head,
+        **kept,
+        "law_max_stress_n_per_mm": task.max_stress_n_per_mm,
+        "law_jumps": [_jumps(document, direction, task) for direction in Direction],
+    }
+
+
+def _jumps(document: Document, direction: Direction, task: RepeatTask) -> int:
+    """How often the shape changes abruptly below the fitted stress."""
+    curve = document["curves"].get(str(direction))
+    if curve is None:
+        return 0
+    stress = curve["stress_n_per_mm"]
+    return sum(stress[i] <= task.max_stress_n_per_mm for i in curve["jumps"])
+
+
+def _free(document: Document) -> dict[str, Any]:
+    if "failure" in document:
+        return {"failure": document["failure"]}
+    return {name: document[name] for name in (*_SIZE, "law")}
+
+
+_SIZE = ("cell_course_mm", "cell_wale_mm", "energy_n_mm", "converged")
+_SHARES = ("bending_share", "contact_share")
+_LAW = ("law", "law_failure")
+
+
+def _tell(progress: BatchProgress) -> None:
+    sys.stderr.write(
+        f"{progress.done}/{progress.total} {progress.key.rpartition('.')[0]}"
+        f"{f', {progress.failed} failed' if progress.failed else ''}\n"
+    )
+    sys.stderr.flush()
+
+
+def main() -> None:
+    """Entry of ``python -m knitcore.yarnlibrary.build``."""
+    parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.build")
+    parser.add_argument("--most-stitches", type=int, default=MOST_STITCHES)
+    parser.add_argument("--folder", type=Path, default=Path(__file__).parent / "data")
+    parser.add_argument("--sizes-file", type=Path, default=_SIZES_FILE)
+    parser.add_argument("--keep", type=Path, default=Path("build/stitches"))
+    parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
+    parser.add_argument("--workers", type=int, help="processes here; all cores if left out")
+    chosen = parser.parse_args()
+    build(
+        chosen.folder, keep=chosen.keep, sizes_file=chosen.sizes_file,
+        most_stitches=chosen.most_stitches, scheduler=chosen.scheduler, workers=chosen.workers,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

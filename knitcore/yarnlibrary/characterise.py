@@ -1,0 +1,156 @@
+"""Everything the yarn level says of one repeat: its rest, both stretches, and the law fitted.
+
+One call is one task of a batch (:mod:`knitcore.batch`): it takes what can be pickled and gives what
+JSON can hold, so that it runs the same in this process, in another, or on a cluster.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError, KnitcoreError
+from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax
+from knitcore.yarnlevel.results import FloatArray, Sweep
+from knitcore.yarnlevel.shares import overtaking_strain
+from knitcore.yarnlevel.sweep import sweep
+from knitcore.yarnlevel.tiling import tiled_controls
+from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.fingerprint import content_key
+from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, fit_law
+
+Document = dict[str, Any]
+
+_FAR_STRAIN = {Direction.COURSE: 3.0, Direction.WALE: 2.0}
+"""A stretch ends here unless its stress ends it before."""
+_POINTS = 36
+_FEW_IN_RANGE = 12
+"""A stretch with fewer points below the fitted stress is made again in smaller steps."""
+_BEYOND = 1.1
+"""How far past the fitted stress a stretch goes."""
+
+
+@dataclass(frozen=True)
+class RepeatTask:
+    """A repeat to relax and to stretch both ways.
+
+    Parameters
+    ----------
+    chart : rows from the top, separated by ``/``.
+    yarn, loop_length_mm : what it is knitted of.
+    branch : ``mirrored`` or ``free``.
+    convention : factors of the energy.
+    max_stress_n_per_mm : the law is fitted from 0 to this.
+    """
+
+    chart: str
+    yarn: YarnModel
+    loop_length_mm: float
+    branch: Branch = Branch.MIRRORED
+    convention: Convention = Convention.PUBLISHED
+    max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM
+
+    def __post_init__(self) -> None:
+        if self.branch is Branch.PUBLISHED:
+            raise InputError(
+                "branch", "the published ansatz is not a spline.", "Use mirrored or free."
+            )
+
+    @property
+    def key(self) -> str:
+        """A name made of everything that decides the result."""
+        return content_key(asdict(self))
+
+
+def characterise_repeat(task: RepeatTask) -> Document:
+    """Relax a repeat, stretch it along the course and the wale, and fit its law.
+
+    Returns
+    -------
+    A JSON document. Where the repeat does not relax it holds ``failure``, the reason, alone: the
+    same inputs would fail again. Otherwise sizes (mm), energy (N·mm) and shares of a mean stitch,
+    ``curves`` by direction, ``law`` with ``law_range`` (or None, and ``law_failure``), and
+    ``controls``, the control points of the repeat without the drift (mm).
+    """
+    chart = StitchChart.parse(task.chart.replace("/", "\n"))
+    try:
+        rest = relax(
+            chart, task.yarn, task.loop_length_mm, branch=task.branch, convention=task.convention
+        )
+    except KnitcoreError as error:
+        return {"failure": str(error)}
+    stretches: dict[Direction, Sweep] = {}
+    law: dict[str, float] | None = None
+    law_range: dict[str, float] | None = None
+    reason = ""
+    try:
+        for direction in Direction:
+            stretches[direction] = _stretch(rest, direction, task.max_stress_n_per_mm)
+        found = fit_law(
+            stretches[Direction.COURSE], stretches[Direction.WALE], task.max_stress_n_per_mm
+        )
+        fields = asdict(found)
+        law = {name: _round(value) for name, value in fields.pop("law").items()}
+        law_range = {name: _round(value) for name, value in fields.items()}
+    except KnitcoreError as error:
+        reason = str(error)
+    points = tiled_controls(rest.cell, rest.state, rest.chart.rows, rest.chart.columns)
+    return {
+        "cell_course_mm": _round(rest.cell_course_mm),
+        "cell_wale_mm": _round(rest.cell_wale_mm),
+        "energy_n_mm": _round(rest.energy_n_mm),
+        "bending_share": _round(rest.bending_share),
+        "contact_share": _round(rest.contact_share),
+        "converged": rest.converged,
+        "notes": list(rest.notes),
+        "curves": {str(d): _curve(stretch) for d, stretch in stretches.items()},
+        "law": law,
+        "law_range": law_range,
+        "law_failure": reason,
+        "controls": np.round(points, 5).tolist(),
+    }
+
+
+def law_of(document: Document) -> ConstitutiveLaw | None:
+    """The fitted law of a characterised repeat, None where there is none."""
+    law = document.get("law")
+    return None if law is None else ConstitutiveLaw(**law)
+
+
+def _stretch(rest: RelaxedRepeat, direction: Direction, max_stress: float) -> Sweep:
+    end = _BEYOND * max_stress
+    far, points = _FAR_STRAIN[direction], _POINTS
+    curve = sweep(rest, direction, far, points=points, max_stress_n_per_mm=end, back=False)
+    if np.count_nonzero(curve.stress_n_per_mm <= max_stress) < _FEW_IN_RANGE:
+        # a stiff direction leaves the range within a few of these steps
+        far = float(curve.strain[-1]) if len(curve.strain) > 1 else far / points
+        curve = sweep(rest, direction, far, points=points, max_stress_n_per_mm=end, back=False)
+    return curve
+
+
+def _curve(stretch: Sweep) -> Document:
+    return {
+        "strain": _rounded(stretch.strain),
+        "transverse_strain": _rounded(stretch.transverse_strain),
+        "stress_n_per_mm": _rounded(stretch.stress_n_per_mm),
+        "bending_share": _rounded(stretch.bending_share),
+        "contact_share": _rounded(stretch.contact_share),
+        "contact_overtakes_at_strain": overtaking_strain(stretch),
+        "jumps": list(stretch.jumps),
+        "notes": [note for note in stretch.notes if note not in stretch.zero.notes],
+    }
+
+
+def _round(value: float) -> float:
+    """To seven significant digits: beyond them the solver's tolerance speaks."""
+    return float(f"{value:.7g}")
+
+
+def _rounded(values: FloatArray) -> list[float]:
+    return [_round(float(value)) for value in values]

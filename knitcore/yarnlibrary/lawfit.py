@@ -1,0 +1,126 @@
+"""The constitutive law of a pair of simulated stretches (the paper's Note 7).
+
+Poisson ratios are the slopes of straight lines through transverse over axial strain. They tie the
+couplings to the two stiffnesses, so the joint least squares of both stretches falls apart into one
+problem a direction, solved by non-negative least squares in stiffness and beta over a scan of alpha
+(:mod:`knitcore.measure.law_fit`). The result depends on the range of stress: knits stiffen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
+from knitcore.measure.law_fit import LINEAR_FLOOR, DirectionFit, fit_direction
+from knitcore.yarnlevel.results import FloatArray, Sweep
+
+MAX_STRESS_N_PER_MM = 0.3
+"""Upper end of the range that is fitted unless another is asked for."""
+_LEAST_POINTS = 5
+
+
+@dataclass(frozen=True)
+class SimulatedLaw:
+    """A fitted law and how it was fitted.
+
+    Parameters
+    ----------
+    law : the eight constants.
+    max_stress_n_per_mm : the range of stress that was fitted starts at 0 and ends here: where it
+        was asked to, or where the first of the stretches ends.
+    largest_strain_course, largest_strain_wale : largest strains fitted.
+    rms_course_n_per_mm, rms_wale_n_per_mm : residuals, root mean square.
+    """
+
+    law: ConstitutiveLaw
+    max_stress_n_per_mm: float
+    largest_strain_course: float
+    largest_strain_wale: float
+    rms_course_n_per_mm: float
+    rms_wale_n_per_mm: float
+
+
+def fit_law(
+    course: Sweep,
+    wale: Sweep,
+    max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM,
+    shear_modulus_n_per_mm: float = DEFAULT_SHEAR_MODULUS_N_PER_MM,
+) -> SimulatedLaw:
+    """Fit the eight constants to a stretch along the course and one along the wale.
+
+    Parameters
+    ----------
+    course, wale : the stretches.
+    max_stress_n_per_mm : points above this stress are left out.
+    shear_modulus_n_per_mm : no stretch measures it, so it is taken as given.
+
+    Raises
+    ------
+    InputError
+        If a stretch has the wrong direction or fewer than five points in the range, if the points
+        leave no positive initial stiffness, or if the constants make no stable law.
+    """
+    points = {}
+    for direction, sweep in ((Direction.COURSE, course), (Direction.WALE, wale)):
+        if sweep.direction is not direction:
+            raise InputError(
+                str(direction), f"is a stretch along the {sweep.direction}.", "Swap the two."
+            )
+        points[direction] = _in_range(sweep, max_stress_n_per_mm)
+    poisson_yx = _slope(*points[Direction.COURSE][:2])
+    poisson_xy = _slope(*points[Direction.WALE][:2])
+    x = _fit(Direction.COURSE, points[Direction.COURSE], poisson_xy)
+    y = _fit(Direction.WALE, points[Direction.WALE], poisson_yx)
+    law = ConstitutiveLaw(
+        stiffness_xxxx=x.stiffness,
+        stiffness_yyyy=y.stiffness,
+        stiffness_xxyy=poisson_xy * x.stiffness,
+        stiffness_yyxx=poisson_yx * y.stiffness,
+        alpha_xx=x.alpha,
+        alpha_yy=y.alpha,
+        beta_xx=x.beta,
+        beta_yy=y.beta,
+        shear_modulus=shear_modulus_n_per_mm,
+    )
+    top = min(max_stress_n_per_mm, *(float(c.stress_n_per_mm.max()) for c in (course, wale)))
+    return SimulatedLaw(law, top, x.largest_strain, y.largest_strain, x.rms, y.rms)
+
+
+def _in_range(sweep: Sweep, max_stress: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    inside = sweep.stress_n_per_mm <= max_stress
+    beyond = np.flatnonzero(~inside)
+    if len(beyond):  # the first excess ends the range, whatever a jump brings back
+        inside[beyond[0] :] = False
+    if np.count_nonzero(inside) < _LEAST_POINTS:
+        raise InputError(
+            "max_stress_n_per_mm",
+            f"only {np.count_nonzero(inside)} points of the {sweep.direction} stretch lie below "
+            f"{max_stress:g} N/mm.",
+            "Stretch in smaller steps, or raise the stress.",
+        )
+    return sweep.strain[inside], sweep.transverse_strain[inside], sweep.stress_n_per_mm[inside]
+
+
+def _slope(along: FloatArray, across: FloatArray) -> float:
+    return -float(np.polyfit(along, across, 1)[0])
+
+
+def _fit(
+    direction: Direction, points: tuple[FloatArray, FloatArray, FloatArray], coupling: float
+) -> DirectionFit:
+    along, across, stress = points
+    found = fit_direction(along, across, stress, np.ones_like(stress), coupling)
+    floor = LINEAR_FLOOR * float(stress.max()) / found.largest_strain
+    if found.stiffness <= floor * (1.0 + 1e-6):
+        # at its bound it says nothing of the fabric, and the modulus made of it would be nonsense
+        raise InputError(
+            "max_stress_n_per_mm",
+            f"up to {stress.max():.3g} N/mm the {direction} stretch stiffens faster than the law "
+            "can, and leaves no positive initial stiffness.",
+            "Fit a smaller range of stress.",
+        )
+    return found

@@ -1,0 +1,182 @@
+"""Relaxed stitches that come with the package.
+
+``data/stitches.json`` holds sizes, energies and laws, ``data/stitches.npz`` control points;
+:mod:`knitcore.yarnlibrary.build` makes both.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.kernels import sample_curve
+from knitcore.yarnlevel.relax import Branch
+from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.catalogue import canonical, place
+
+Array = NDArray[np.float64]
+
+MATERIALS = ("acrylic", "cotton")
+_DATA = "knitcore.yarnlibrary"
+
+
+@dataclass(frozen=True)
+class FreeStitch:
+    """What the ``free`` branch makes of a repeat: size (mm) and energy (N·mm) of a stitch, law."""
+
+    cell_course_mm: float
+    cell_wale_mm: float
+    energy_n_mm: float
+    converged: bool
+    law: ConstitutiveLaw | None
+
+
+@dataclass(frozen=True, eq=False)
+class StoredStitch:
+    """A relaxed repeat from the store.
+
+    Parameters
+    ----------
+    chart : the repeat that was asked for.
+    material : ``acrylic`` or ``cotton``.
+    yarn, loop_length_mm, yarn_provenance : what it was relaxed with.
+    branch, convention : of the relaxation.
+    cell_course_mm, cell_wale_mm : size of one stitch, mm.
+    energy_n_mm, bending_share, contact_share : per stitch.
+    converged : whether the solver reached its tolerance.
+    law : fitted to stretches in both directions up to ``law_max_stress_n_per_mm``; None where none
+        could be fitted, for the reason in ``law_failure``.
+    law_jumps : abrupt changes of shape within what was fitted, course-wise and wale-wise.
+    controls : (rows, columns * N, 3) control points over the repeat without the drift, mm.
+    free : the repeat without imposed symmetry, for repeats of a known name.
+    """
+
+    chart: StitchChart
+    material: str
+    yarn: YarnModel
+    loop_length_mm: float
+    yarn_provenance: str
+    branch: Branch
+    convention: Convention
+    cell_course_mm: float
+    cell_wale_mm: float
+    energy_n_mm: float
+    bending_share: float
+    contact_share: float
+    converged: bool
+    law: ConstitutiveLaw | None
+    law_max_stress_n_per_mm: float
+    law_failure: str
+    law_jumps: tuple[int, int]
+    controls: Array
+    free: FreeStitch | None = None
+
+    def centre_lines(self, per_span: int = 2) -> Array:
+        """(rows, points, 3): centre lines across the repeat, mm, bottom course first."""
+        per_stitch = self.controls.shape[1] // self.chart.columns
+        grid = SplineGrid(per_stitch, per_span)
+        curve = sample_curve(self.controls, self.cell_course_mm, 1, grid.basis)
+        lines = np.array(curve[:, :, 0])
+        lines[..., 0] += self.cell_course_mm * (np.arange(lines.shape[1]) + 0.5) / grid.samples
+        lines[..., 1] += self.cell_wale_mm * np.arange(len(lines))[:, None]
+        return lines
+
+
+def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
+    """The packaged relaxation of a chart's repeat, turned and moved to fit; None if there is none.
+
+    Examples
+    --------
+    >>> stored = stored_stitch(StitchChart.parse("PK"), "acrylic")
+    >>> stored.chart.text
+    'PK'
+    """
+    repeat = chart.repeat()
+    representative = canonical(repeat)
+    entry = _entries().get(f"{material_id}/{key_of(representative)}")
+    if entry is None or "failure" in entry:
+        return None
+    placement = place(repeat, representative)
+    if placement is None:
+        return None
+    points = np.asarray(_controls()[f"{material_id}/{key_of(representative)}"], dtype=float)
+    per_stitch = points.shape[1] // repeat.columns
+    if placement.mirror:
+        # t -> columns - t turns control c into control -c, and stitch i into columns - 1 - i
+        points = np.roll(points[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
+    if placement.swap:
+        points = points * (1.0, 1.0, -1.0)
+    points = np.roll(points, (placement.up, placement.right * per_stitch), axis=(0, 1))
+    free = entry.get("free", {"failure": "not relaxed freely"})
+    return StoredStitch(
+        chart=repeat,
+        material=material_id,
+        yarn=YarnModel(**entry["yarn"]),
+        loop_length_mm=entry["loop_length_mm"],
+        yarn_provenance=entry["yarn_provenance"],
+        branch=Branch(entry["branch"]),
+        convention=Convention(entry["convention"]),
+        cell_course_mm=entry["cell_course_mm"],
+        cell_wale_mm=entry["cell_wale_mm"],
+        energy_n_mm=entry["energy_n_mm"],
+        bending_share=entry["bending_share"],
+        contact_share=entry["contact_share"],
+        converged=entry["converged"],
+        law=_law(entry),
+        law_max_stress_n_per_mm=entry["law_max_stress_n_per_mm"],
+        law_failure=entry["law_failure"],
+        law_jumps=(entry["law_jumps"][0], entry["law_jumps"][1]),
+        controls=points,
+        free=None if "failure" in free else FreeStitch(**{**free, "law": _law(free)}),
+    )
+
+
+def stored_failure(chart: StitchChart, material_id: str) -> str | None:
+    """Why a repeat of the store has no relaxed shape; None if it has one or is not in the store."""
+    entry = _entries().get(f"{material_id}/{key_of(canonical(chart))}", {})
+    failure: str | None = entry.get("failure")
+    return failure
+
+
+def stored_charts(material_id: str) -> list[StitchChart]:
+    """The relaxed repeats in the store, one of each fabric."""
+    prefix = f"{material_id}/"
+    return [
+        StitchChart.parse(key.removeprefix(prefix).replace("/", "\n"))
+        for key, entry in _entries().items()
+        if key.startswith(prefix) and "failure" not in entry
+    ]
+
+
+def _law(entry: dict[str, Any]) -> ConstitutiveLaw | None:
+    return None if entry["law"] is None else ConstitutiveLaw(**entry["law"])
+
+
+@cache
+def _entries() -> dict[str, Any]:
+    path = files(_DATA) / "data" / "stitches.json"
+    if not path.is_file():
+        return {}
+    entries: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["stitches"]
+    return entries
+
+
+@cache
+def _controls() -> dict[str, NDArray[np.float32]]:
+    with (files(_DATA) / "data" / "stitches.npz").open("rb") as stream, np.load(stream) as found:
+        return {name: found[name] for name in found.files}
+
+
+def key_of(chart: StitchChart) -> str:
+    """Rows from the top, separated by ``/``."""
+    return chart.text.replace("\n", "/")

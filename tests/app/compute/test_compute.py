@@ -1,0 +1,148 @@
+"""Work in processes: results, errors, cancelling, limits, dying workers and turns."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.compute import compute as compute_module
+from app.compute.compute import Compute
+from app.compute.places import AbandonedError, MemoryLimitError, TimeLimitError, WorkerDiedError
+from app.compute.processes import ProcessPlace, processes
+from app.http.problems import UnavailableError
+from knitcore import InputError
+from tests.app import jobs
+
+
+@pytest.fixture
+def compute() -> Iterator[Compute]:
+    pool = Compute(processes(1), timeout_s=30.0)
+    yield pool
+    pool.close()
+
+
+async def never() -> bool:
+    return False
+
+
+async def at_once() -> bool:
+    return True
+
+
+def test_results_and_errors_come_back(compute: Compute) -> None:
+    assert asyncio.run(compute.run(never, jobs.add, 2, 3)) == 5
+    with pytest.raises(InputError, match="Use less"):
+        asyncio.run(compute.run(never, jobs.refuse))
+
+
+def test_an_abandoned_job_is_stopped_and_the_next_one_runs(
+    compute: Compute, tmp_path: Path
+) -> None:
+    mark = tmp_path / "mark"
+    asyncio.run(compute.run(never, jobs.add, 1, 1))  # its process takes a while to start
+    with pytest.raises(AbandonedError):
+        asyncio.run(compute.run(at_once, jobs.until_cancelled, str(mark)))
+    assert mark.read_text() == "stopped"
+    assert asyncio.run(compute.run(never, jobs.add, 1, 1)) == 2
+
+
+def test_a_job_beyond_its_time_is_stopped(compute: Compute) -> None:
+    asyncio.run(compute.run(never, jobs.add, 1, 1))
+    with pytest.raises(TimeLimitError, match=r"longer than 0\.1 s"):
+        asyncio.run(compute.run(never, jobs.until_cancelled, "/dev/null", timeout_s=0.1))
+
+
+def test_a_stubborn_job_costs_its_process_only(
+    compute: Compute, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compute_module, "GRACE_S", 0.2)
+    with pytest.raises(AbandonedError):
+        asyncio.run(compute.run(at_once, jobs.stubborn, 60.0))
+    assert asyncio.run(compute.run(never, jobs.add, 4, 4)) == 8
+
+
+def test_a_job_may_not_eat_the_machine() -> None:
+    compute = Compute(processes(1, memory_bytes=1_000_000_000), timeout_s=30.0)
+    try:
+        with pytest.raises(MemoryLimitError, match="1 GB"):
+            asyncio.run(compute.run(never, jobs.eat, 2_000_000_000))
+        assert asyncio.run(compute.run(never, jobs.eat, 1_000)) == 1_000
+    finally:
+        compute.close()
+
+
+def test_a_worker_that_dies_costs_its_own_job_only(tmp_path: Path) -> None:
+    compute = Compute(processes(2), timeout_s=30.0)
+    mark = tmp_path / "mark"
+
+    async def both() -> str:
+        other = asyncio.create_task(compute.run(never, jobs.until_told, str(mark), "alive"))
+        with pytest.raises(WorkerDiedError, match="died"):
+            await compute.run(never, jobs.die)
+        assert await compute.run(never, jobs.add, 20, 22) == 42
+        mark.touch()
+        return await other
+
+    try:
+        assert asyncio.run(both()) == "alive"
+    finally:
+        compute.close()
+
+
+def test_a_worker_that_is_killed_while_idle_costs_nothing() -> None:
+    place = ProcessPlace(4_000_000_000)
+    compute = Compute([place], timeout_s=30.0)
+    asyncio.run(compute.run(never, jobs.add, 1, 1))
+    executor = place._executor
+    (process,) = executor._processes.values()
+    os.kill(process.pid, signal.SIGKILL)
+    process.join(10)
+    while not executor._broken:
+        pass
+    assert asyncio.run(compute.run(never, jobs.add, 1, 2)) == 3
+    compute.close()
+
+
+def test_progress_is_told_from_zero_upwards(compute: Compute) -> None:
+    shares: list[float] = []
+
+    async def told(share: float) -> None:
+        shares.append(share)
+
+    assert asyncio.run(compute.run(never, jobs.climb, 8, 0.15, told=told)) == 8
+    assert shares == sorted(shares)
+    assert len(set(shares)) >= 3
+    assert 0 <= shares[0] < shares[-1] <= 1
+
+
+def test_too_many_waiting_jobs_are_refused(compute: Compute, tmp_path: Path) -> None:
+    mark = str(tmp_path / "mark")
+
+    async def crowd() -> list[str | BaseException]:
+        tasks = [
+            asyncio.create_task(compute.run(never, jobs.until_told, mark, str(n))) for n in range(6)
+        ]
+        refused, _ = await asyncio.wait(tasks, timeout=10, return_when=asyncio.FIRST_COMPLETED)
+        assert [type(t.exception()) for t in refused] == [UnavailableError]
+        Path(mark).touch()
+        return await asyncio.gather(*tasks, return_exceptions=True)
+
+    outcome = asyncio.run(crowd())
+    assert [o for o in outcome if isinstance(o, str)] == ["0", "1", "2", "3", "4"]
+
+
+@pytest.mark.skipif(not hasattr(os, "SCHED_IDLE"), reason="only Linux knows idle processes")
+@pytest.mark.parametrize("idle", [True, False])
+def test_workers_stand_back(idle: bool) -> None:
+    compute = Compute(processes(1, idle=idle), timeout_s=30.0)
+    try:
+        policy, niceness = asyncio.run(compute.run(never, jobs.priority))
+    finally:
+        compute.close()
+    assert (policy == os.SCHED_IDLE) is idle
+    assert niceness == (os.nice(0) if idle else min(os.nice(0) + 10, 19))

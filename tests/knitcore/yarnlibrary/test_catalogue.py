@@ -1,0 +1,51 @@
+"""Repeats up to symmetry."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from knitcore.chart import StitchChart
+from knitcore.yarnlibrary.catalogue import COMMON, canonical, distinct_repeats, place, placements
+
+charts = arrays(bool, st.tuples(st.integers(1, 3), st.integers(1, 4))).map(StitchChart)
+
+
+@pytest.mark.parametrize("shape", [(1, 8), (8, 1), (2, 4), (4, 2), (2, 3), (3, 3)])
+def test_no_fabric_is_missing_or_counted_twice(shape):
+    """Burnside: the number of fabrics is the mean number of grids that a symmetry leaves alone."""
+    rows, columns = shape
+    grids = ((np.arange(2 ** (rows * columns))[:, None] >> np.arange(rows * columns)) & 1) == 1
+    charts = [StitchChart(grid) for grid in grids.reshape(-1, rows, columns)]
+    alone = sum(
+        np.array_equal(chart.purl, turned)
+        for chart in charts
+        if chart.repeat() == chart
+        for _, turned in placements(chart.purl)
+    )
+    found = [c for c in distinct_repeats(rows * columns) if (c.rows, c.columns) == shape]
+    assert len(found) == alone / (4 * rows * columns)
+
+
+def test_the_counts_are_those_of_the_composite_study():
+    """36 repeats up to 3x3, 53 of at most 8 stitches and four a side."""
+    repeats = distinct_repeats(9)
+    assert sum(c.rows <= 3 and c.columns <= 3 for c in repeats) == 36
+    assert sum(max(c.rows, c.columns) <= 4 and c.purl.size <= 8 for c in repeats) == 53
+
+
+def test_common_repeats_are_primitive_and_different():
+    found = [StitchChart.parse(text) for text in COMMON.values()]
+    assert all(chart.repeat() == chart for chart in found)
+    assert len({canonical(chart) for chart in found}) == len(found)
+
+
+@settings(deadline=None, max_examples=40)
+@given(charts, st.integers(0, 5), st.integers(0, 5), st.booleans(), st.booleans())
+def test_symmetric_charts_have_one_representative(chart, up, right, mirror, swap):
+    other = chart.mirror() if mirror else chart
+    other = other.swap() if swap else other
+    other = StitchChart(np.roll(other.purl, (up, right), axis=(0, 1)))
+    assert canonical(other) == canonical(chart)
+    assert place(other, canonical(chart)) is not None

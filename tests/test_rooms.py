@@ -1,0 +1,69 @@
+"""The import contract: every package of the house imports from the floors below it only."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+FLOORS = (
+    {"errors", "threads"},
+    {"choice", "batch"},
+    {"fabric"},
+    {"chart"},
+    {"segments", "patterns", "worked"},
+    {"phases"},
+    {"law", "gridsolver"},
+    {"materials"},
+    {"mechanics", "measure", "estimate"},
+    {"yarnlevel"},
+    {"yarnlibrary"},
+    {"answer"},
+    {"swatch", "shell", "garment", "geometry"},
+    {"formats", "design"},
+)
+"""Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""
+
+
+def imports(file: Path) -> set[str]:
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module} | {f"{node.module}.{name.name}" for name in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {name.name for name in node.names}
+    return found
+
+
+def rooms_imported(room: Path) -> set[str]:
+    """Rooms that the modules of a room import."""
+    files = room.rglob("*.py") if room.is_dir() else [room]
+    modules = [module.split(".") for file in files for module in imports(file)]
+    known = {name for floor in FLOORS for name in floor}
+    return {parts[1] for parts in modules if parts[0] == "knitcore" and len(parts) > 1} & known
+
+
+ROOMS = sorted(
+    path
+    for path in (ROOT / "knitcore").iterdir()
+    if path.suffix == ".py" or (path / "__init__.py").exists()
+)
+
+
+@pytest.mark.parametrize("room", ROOMS, ids=lambda path: path.stem)
+def test_a_room_imports_from_lower_floors_only(room: Path) -> None:
+    if room.stem == "__init__":
+        return
+    floor = next((i for i, names in enumerate(FLOORS) if room.stem in names), None)
+    assert floor is not None, f"{room.stem} has no floor yet: add it to FLOORS"
+    below = {name for names in FLOORS[:floor] for name in names} | {room.stem}
+    assert rooms_imported(room) <= below
+
+
+def test_the_library_knows_no_service() -> None:
+    outside = {"app", "fastapi", "starlette", "uvicorn", "sqlalchemy", "viser"}
+    for file in (ROOT / "knitcore").rglob("*.py"):
+        assert not {module.split(".")[0] for module in imports(file)} & outside, file
