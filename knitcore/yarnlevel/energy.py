@@ -264,6 +264,26 @@ class CellEnergy:
             matrix += force_of_grip * grip.hessian()
         return Slope(gradient, lengths, matrix)
 
+    def along_yarn(
+        self, curve: Array, tension: Array, weight_slope: Array
+    ) -> tuple[float, float, Array]:
+        """What the yarn has by itself: rod and gauge energy, and slopes (n, 3, 3) by d1, d2, d3.
+
+        The slopes include the tensions and ``weight_slope``, that of the contact by |d1|.
+        """
+        slopes = np.zeros((len(curve), 3, 3))
+        rod, gauge = kernels.rod(
+            curve, self._rod_parameters, self._speeds, tension[self.stretch_of], weight_slope, 1,
+            slopes, np.zeros((0, 9, 9)),
+        )  # fmt: skip
+        return rod, gauge, slopes
+
+    def gathered(self, force: Array, slopes: Array) -> Array:
+        """(unknowns,) gradient from slopes (n, 3) by the positions and (n, 3, 3) by d1, d2, d3."""
+        out = np.zeros(self.cell.unknowns)
+        kernels.scatter_gradient(force, slopes, *self._layout, out)
+        return out
+
     def length_gradients(self, curve: Array) -> Array:
         """(m, unknowns): gradient of each prescribed length."""
         cell = self.cell
