@@ -28,12 +28,15 @@ There is no friction in this; fabric that has not been shaken out is stiffer.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, lu_factor, lu_solve
 
+from knitcore.choice import Choice
 from knitcore.errors import ConvergenceError, InputError
 from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel import kernels
@@ -61,10 +64,10 @@ _SETTLED = 1e-7
 """Step, in radii, after which the state counts as settled."""
 _COURSE, _WALE = -2, -1
 """Places of the sizes of a stitch among the unknowns."""
+ROLLS_FROM = 0.5
+"""Half thickness times natural curvature from which free edges roll up."""
 OBLIQUE = np.pi / 4.0
 """Angle of the third bending, from the course, rad."""
-
-
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,14 @@ class _Deformation:
     angle: float = 0.0
     curvature_per_mm: float = 0.0
     skew: float = 0.0
+
+
+class Curl(Choice):
+    """Where the free edges across a direction go."""
+
+    FLAT = "flat"
+    FRONT = "front"
+    BACK = "back"
 
 
 @dataclass(frozen=True)
@@ -125,6 +136,30 @@ class FabricBending:
     minimum: bool
 
     @property
+    def curl_course(self) -> Curl:
+        """Where the sides go."""
+        return self._curl(self.course)
+
+    @property
+    def curl_wale(self) -> Curl:
+        """Where top and bottom go."""
+        return self._curl(self.wale)
+
+    @property
+    def curl(self) -> str:
+        """What the free edges do, in words."""
+        edges = (("the sides roll", self.curl_course), ("top and bottom roll", self.curl_wale))
+        rolling = [f"{edge} to the {where}" for edge, where in edges if where is not Curl.FLAT]
+        return ", ".join(rolling) or "lies flat"
+
+    def _curl(self, response: BendingResponse) -> Curl:
+        """Cloth rolls up where its curvature would bring its surfaces together: κ t / 2 ~ 1."""
+        tightness = 0.5 * self.thickness_mm * response.curvature_per_mm
+        if abs(tightness) < ROLLS_FROM:
+            return Curl.FLAT
+        return Curl.BACK if tightness > 0.0 else Curl.FRONT
+
+    @property
     def twist_n_mm(self) -> float | None:
         """What bending at 45° adds to the mean of the two rigidities: D₁ + 2 D₆₆, N·mm.
 
@@ -135,6 +170,17 @@ class FabricBending:
             return None
         straight = 0.25 * (self.course.rigidity_n_mm + self.wale.rigidity_n_mm)
         return 2.0 * (self.oblique.rigidity_n_mm - straight)
+
+
+def scroll_radius_mm(length_mm: float, thickness_mm: float) -> float:
+    """Outer radius of a strip of cloth that is rolled up as tight as it can be: π R² = length · t.
+
+    Examples
+    --------
+    >>> round(scroll_radius_mm(30.0, 2.5), 1)
+    4.9
+    """
+    return math.sqrt(length_mm * thickness_mm / math.pi)
 
 
 def bending(relaxed: RelaxedRepeat) -> FabricBending:
@@ -275,7 +321,9 @@ class _Cell:
 
     def sheared(self) -> float:
         """Shear modulus, N/mm."""
-        _, second, by_state, by_length = self._differences(lambda q: _Deformation(skew=q), _SKEW_STEP)
+        _, second, by_state, by_length = self._differences(
+            lambda q: _Deformation(skew=q), _SKEW_STEP
+        )
         stiffness, _ = self._stiffness(second, by_state, by_length, None)
         return stiffness / self.area_mm2
 

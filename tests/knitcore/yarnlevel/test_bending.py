@@ -132,3 +132,9 @@ def test_a_repeat_that_is_held_flat_is_refused() -> None:
     held = relax(StitchChart.parse("K"), sample.yarn, sample.loop_length_mm, flat=True)
     with pytest.raises(InputError, match="flat"):
         bending(held)
+
+
+def test_stockinette_curls_as_every_knitter_knows() -> None:
+    found = _bending("K")
+    assert found.curl == "the sides roll to the back, top and bottom roll to the front"
+    assert _bending(REPEATS["garter"], "garter").curl == "lies flat"
