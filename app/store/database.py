@@ -5,18 +5,23 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import os
 import queue
+import sqlite3
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi.concurrency import run_in_threadpool
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
+from sqlalchemy.pool import QueuePool
 
 from app.http.problems import NoRoomError, UnavailableError
+from knitcore.errors import InputError
 
 log = logging.getLogger("knitcore.store")
 T = TypeVar("T")
@@ -38,6 +43,12 @@ class StoreFullError(StoreError, NoRoomError):
     """The disk of the database is full."""
 
 
+class VanishedError(StoreError):
+    """The database's file is gone, or another one is in its place."""
+
+    default_remedy = "Put the file back, or stop the service, restore a backup and start again."
+
+
 class Database:
     """A database with one way to read and one to write.
 
@@ -50,12 +61,21 @@ class Database:
     Parameters
     ----------
     url : SQLAlchemy URL, ``sqlite:///…`` or ``postgresql+psycopg://…``.
+
+    Raises
+    ------
+    InputError
+        If an SQLite file can be neither opened nor made.
     """
 
     def __init__(self, url: str) -> None:
         self.url = make_url(url)
         self.is_sqlite = self.url.get_backend_name() == "sqlite"
-        self.engine = _sqlite_engine(url) if self.is_sqlite else _server_engine(url)
+        self.engine = (
+            _sqlite_engine(_File(Path(self.url.database or "")))
+            if self.is_sqlite
+            else _server_engine(url)
+        )
         self._waiting: queue.SimpleQueue[tuple[Action, Future[Any]] | None] = queue.SimpleQueue()
         self._writer: threading.Thread | None = None
         if self.is_sqlite:
@@ -201,8 +221,54 @@ def _public(reason: str) -> str:
     return "the database does not answer"
 
 
-def _sqlite_engine(url: str) -> Engine:
-    engine = create_engine(url, connect_args={"check_same_thread": False})
+class _File:
+    """The one SQLite file of a database, made here if it is not there, and never again.
+
+    SQLite would put an empty database in the place of a lost one, and would go on writing into a
+    file that was deleted.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+        except OSError as error:
+            raise InputError(
+                "database_url",
+                f"{path} cannot be opened ({error.strerror}).",
+                "Name a file that can be written, in a folder that exists.",
+            ) from error
+        facts = os.fstat(handle)
+        os.close(handle)
+        self._identity = facts.st_dev, facts.st_ino
+
+    def check(self) -> None:
+        """Refuse to go on without the file.
+
+        Raises
+        ------
+        VanishedError
+        """
+        try:
+            facts = self.path.stat()
+        except OSError:
+            found = None
+        else:
+            found = facts.st_dev, facts.st_ino
+        if found != self._identity:
+            what = "is gone" if found is None else "was replaced by another"
+            raise VanishedError(f"The file of the designs {what}; nothing was changed.")
+
+    def connect(self) -> sqlite3.Connection:
+        """A connection to the file, which is not made anew."""
+        self.check()
+        # threads take turns with a connection; the pool sees to that
+        address = f"{self.path.absolute().as_uri()}?mode=rw"
+        return sqlite3.connect(address, uri=True, check_same_thread=False)
+
+
+def _sqlite_engine(file: _File) -> Engine:
+    engine = create_engine("sqlite://", creator=file.connect, poolclass=QueuePool)
 
     @event.listens_for(engine, "connect")
     def _(connection: Any, _record: Any) -> None:
@@ -217,6 +283,7 @@ def _sqlite_engine(url: str) -> Engine:
 
     @event.listens_for(engine, "begin")
     def _(connection: Connection) -> None:
+        file.check()
         write = connection.get_execution_options().get("knitcore_write")
         connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
 

@@ -111,18 +111,24 @@ def test_ready_means_that_database_and_disk_are(
 def test_a_database_that_went_away_is_told_and_found_again(tmp_path: Path) -> None:
     app = create_app(Settings(workers=1, data_dir=tmp_path))
     design = {"name": "a", "material": "acrylic", "chart": "KP"}
+    file, away = tmp_path / "knitcore.sqlite3", tmp_path / "away"
     with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
-        file = tmp_path / "knitcore.sqlite3"
-        app.state.database.engine.dispose()
-        away = tmp_path / "away"
+
+        def unavailable(words: str) -> None:
+            for answer in (client.get("/readyz"), client.post("/api/v1/designs", json=design)):
+                assert answer.status_code == 503
+                assert words in answer.json()["detail"]
+                assert answer.json()["remedy"]
+
         file.rename(away)
-        file.mkdir()  # nothing that could be opened as a database
-        for answer in (client.get("/readyz"), client.post("/api/v1/designs", json=design)):
-            assert answer.status_code == 503
-            assert answer.json()["remedy"]
+        unavailable("is gone")
         assert client.get("/healthz").status_code == 200
         assert client.get("/api/v1/patterns").status_code == 200
-        file.rmdir()
+        assert not file.exists()  # no empty database in the place of the lost one
+        file.touch()
+        unavailable("was replaced")
+        assert file.stat().st_size == 0
+        file.unlink()
         away.rename(file)
         assert client.get("/readyz").status_code == 200
         assert client.post("/api/v1/designs", json=design).status_code == 201
