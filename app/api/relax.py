@@ -9,6 +9,7 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel
 
+from app.operations.bend import BendRequest, BendResult, run_bend
 from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
 
@@ -31,6 +32,12 @@ async def post_sweep(body: SweepRequest, request: Request) -> Response:
     A stretch that was run a short while ago is answered from memory.
     """
     return await _answer(body, request, run_sweep)
+
+
+@router.post("/bend", summary="Bending, curl and shear of a repeat", response_model=BendResult)
+async def post_bend(body: BendRequest, request: Request) -> Response:
+    """Linear response of the relaxed repeat, without friction; stops when the caller goes away."""
+    return await _answer(body, request, run_bend)
 
 
 async def _answer(body: BaseModel, request: Request, run: Callable[..., BaseModel]) -> Response:

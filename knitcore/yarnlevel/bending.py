@@ -56,6 +56,8 @@ _REACH = 1.05
 """Pairs are listed to this many diameters, so that none is missed in the bent cell."""
 GRID = SplineGrid(controls=24, per_span=5)
 """On this grid rigidities are within 2 % of those on finer ones (garter is the worst)."""
+MAX_STITCHES = 36
+"""Largest repeat; the unknowns fill a dense matrix."""
 _STEPS = 20
 """Most Newton steps from the relaxed state to the bottom of its valley."""
 _STRIDE = 0.5
@@ -183,6 +185,19 @@ def scroll_radius_mm(length_mm: float, thickness_mm: float) -> float:
     return math.sqrt(length_mm * thickness_mm / math.pi)
 
 
+def bending_length_mm(rigidity_n_mm: float, weight_n_per_mm2: float) -> float:
+    """Peirce's bending length, (D / w)^(1/3): half the length that hangs over an edge at 41.5°.
+
+    Peirce, "The handle of cloth as a measurable quantity", J. Text. Inst. 21 (1930) T377.
+
+    Examples
+    --------
+    >>> round(bending_length_mm(0.033, 250e-6 * 9.81e-3))  # 250 g/m²
+    24
+    """
+    return math.cbrt(rigidity_n_mm / weight_n_per_mm2)
+
+
 def bending(relaxed: RelaxedRepeat) -> FabricBending:
     """Moments, bending rigidities and shear modulus of a relaxed repeat.
 
@@ -193,11 +208,17 @@ def bending(relaxed: RelaxedRepeat) -> FabricBending:
     Raises
     ------
     InputError
-        If the repeat was held.
+        If the repeat was held, or is too large.
     ConvergenceError
         If the repeat does not stay where it is without its symmetries, or folds by itself: a
         rigidity along rows or columns is not positive.
     """
+    if relaxed.chart.rows * relaxed.chart.columns > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"its repeat has {relaxed.chart.rows * relaxed.chart.columns} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+        )
     if relaxed.flat or relaxed.grips:
         raise InputError("flat", "a repeat that is held flat does not bend.", "Relax it without.")
     cell = _settled(relaxed)

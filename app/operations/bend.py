@@ -1,0 +1,192 @@
+"""Bending, curl and shear of a repeat at the yarn level."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict, Field
+from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
+
+from app.operations.charts import ChartInput, to_repeat
+from app.operations.relax import Cancelled, YarnResult, yarn_result
+from app.results.own_materials import find_material
+from knitcore.chart import StitchChart
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.materials import Material
+from knitcore.yarnlevel.bending import (
+    MAX_STITCHES,
+    BendingResponse,
+    Curl,
+    FabricBending,
+    bending,
+    bending_length_mm,
+)
+from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax
+from knitcore.yarnlibrary.yarns import yarn_for
+
+COMPARED_UP_TO = 9
+"""Repeats of so many stitches are relaxed without symmetry too, to compare."""
+FAR_APART = 1.5
+"""Ratio of the two states from which a note is made."""
+_FRICTIONLESS = (
+    "Without friction and set, so qualitative: measured knits of 187 to 284 g/m² have rigidities "
+    "of .007 to .10 N·mm."
+)
+
+
+class BendOptions(BaseModel):
+    """The yarn in the stitches."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    loop_length_mm: float | None = Field(
+        None, gt=0, le=1000, allow_inf_nan=False, description="Yarn per stitch; the material's."
+    )
+    linear_density_g_per_m: float | None = Field(
+        None, gt=0, le=100, allow_inf_nan=False, description="Of the yarn; gives bending lengths."
+    )
+
+
+class BendRequest(BendOptions):
+    """A repeat and its yarn."""
+
+    chart: ChartInput
+    material: str = Field(max_length=80, examples=["acrylic"])
+
+
+class BendResult(BaseModel):
+    """Linear response of the relaxed repeat; course: bent along the rows."""
+
+    moment_course_n: float = Field(
+        description="Derivative of the energy per area by the curvature, N·mm per mm of width. "
+        "Negative: left alone, the fabric curves with its face outside."
+    )
+    moment_wale_n: float
+    bending_course_n_mm: float = Field(description="Bending rigidity, the other size free.")
+    bending_wale_n_mm: float
+    bending_held_course_n_mm: float = Field(description="The same, the other size held.")
+    bending_held_wale_n_mm: float
+    strain_across_course_mm: float = Field(
+        description="Strain across per curvature, bent along the rows."
+    )
+    strain_across_wale_mm: float
+    shear_modulus_n_per_mm: float | None = Field(
+        description="Null where no stable state was found."
+    )
+    twist_n_mm: float | None = Field(description="D1 + 2 D66, from bending at 45°.")
+    thickness_mm: float
+    curl: str = Field(description="What free edges do.")
+    curl_course: Curl = Field(description="Where the sides go.")
+    curl_wale: Curl = Field(description="Where top and bottom go.")
+    bending_length_course_mm: float | None = Field(
+        description="Peirce's, of a strip cut along the rows; null where the weight is not known."
+    )
+    bending_length_wale_mm: float | None
+    stable: bool = Field(description="Whether the state is a minimum without its symmetries.")
+    provenance: str
+    yarn: YarnResult
+    notes: list[str]
+
+
+def run_bend(request: BendRequest, *, cancelled: Cancelled) -> BendResult:
+    """Bend for the service."""
+    material = find_material(request.material)
+    return bend_chart(to_repeat(request.chart), material, request, cancelled=cancelled)
+
+
+def bend_chart(
+    chart: StitchChart,
+    material: Material,
+    options: BendOptions,
+    *,
+    cancelled: Cancelled | None = None,
+) -> BendResult:
+    """Bending of a chart's repeat, relaxed with its symmetries and compared with it free of them.
+
+    Raises
+    ------
+    InputError
+        If the repeat is too large.
+    ConvergenceError
+        If no state of it bears bending.
+    """
+    repeat = chart.repeat()
+    if repeat.rows * repeat.columns > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"its repeat has {repeat.rows * repeat.columns} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+        )
+    used = yarn_for(material, repeat, options.loop_length_mm)
+    loop = options.loop_length_mm or used.loop_length_mm
+
+    def relaxed(branch: Branch) -> RelaxedRepeat:
+        return relax(repeat, used.yarn, loop, branch=branch, cancel=cancelled)
+
+    mirrored = relaxed(Branch.MIRRORED)
+    notes = [_FRICTIONLESS]
+    found = free = None
+    try:
+        found = bending(mirrored)
+    except ConvergenceError as error:
+        notes.append(f"With the symmetries of the chart: {error}")
+    if found is None or (not found.minimum and repeat.rows * repeat.columns <= COMPARED_UP_TO):
+        try:
+            free = bending(relaxed(Branch.FREE))
+        except (ConvergenceError, UnravelledError) as error:
+            notes.append(f"Without them: {error}")
+    shown = found or free
+    if shown is None:
+        raise ConvergenceError(" ".join(notes[1:]))
+    branch = "mirrored" if shown is found else "free"
+    notes += _compared(found, free)
+    stable = free if free is not None and not shown.minimum else shown
+    density = options.linear_density_g_per_m
+    area = mirrored.cell_course_mm * mirrored.cell_wale_mm
+    weight = None if density is None else 1e-6 * STANDARD_GRAVITY * density * loop / area  # N/mm²
+    shear, twist = stable.shear_modulus_n_per_mm, stable.twist_n_mm
+    if shear is not None and shear <= 0.0:
+        notes.append("The courses slide over each other freely: the shear modulus is not positive.")
+    return BendResult(
+        moment_course_n=shown.course.moment_n,
+        moment_wale_n=shown.wale.moment_n,
+        bending_course_n_mm=shown.course.rigidity_n_mm,
+        bending_wale_n_mm=shown.wale.rigidity_n_mm,
+        bending_held_course_n_mm=shown.course.held_n_mm,
+        bending_held_wale_n_mm=shown.wale.held_n_mm,
+        strain_across_course_mm=shown.course.strain_across_mm,
+        strain_across_wale_mm=shown.wale.strain_across_mm,
+        shear_modulus_n_per_mm=shear,
+        twist_n_mm=twist,
+        thickness_mm=shown.thickness_mm,
+        curl=shown.curl,
+        curl_course=shown.curl_course,
+        curl_wale=shown.curl_wale,
+        bending_length_course_mm=_hanging(shown.course, weight),
+        bending_length_wale_mm=_hanging(shown.wale, weight),
+        stable=shown.minimum,
+        provenance=f"yarn level, linear response of the relaxed repeat ({branch} branch); yarn: "
+        f"{used.provenance}",
+        yarn=yarn_result(used),
+        notes=notes,
+    )
+
+
+def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float | None:
+    if weight_n_per_mm2 is None:
+        return None
+    return bending_length_mm(response.rigidity_n_mm, weight_n_per_mm2)
+
+
+def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> list[str]:
+    """What the state without symmetries does otherwise."""
+    if mirrored is None or free is None:
+        return []
+    both = {
+        "along the rows": (mirrored.course.rigidity_n_mm, free.course.rigidity_n_mm),
+        "along the columns": (mirrored.wale.rigidity_n_mm, free.wale.rigidity_n_mm),
+    }
+    return [
+        f"Bent {way}, the rigidity is {second:.3g} N·mm without the symmetries of the chart, "
+        f"{max(first / second, second / first):.1f} times apart: a range, not a figure."
+        for way, (first, second) in both.items()
+        if max(first / second, second / first) > FAR_APART
+    ]

@@ -1,0 +1,51 @@
+"""``bend`` on the command line and over REST."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from app.operations.bend import BendOptions, bend_chart
+from knitcore.chart import StitchChart
+from knitcore.materials import material
+
+
+def test_bend_says_what_the_edges_do(client: TestClient) -> None:
+    answer = client.post("/api/v1/bend", json={"chart": "K", "material": "acrylic"})
+    assert answer.status_code == 200, answer.text
+    bent = answer.json()
+    assert bent["moment_course_n"] < 0.0 < bent["moment_wale_n"]
+    assert (bent["curl_course"], bent["curl_wale"]) == ("back", "front")
+    assert bent["bending_length_course_mm"] is None
+    assert "yarn level" in bent["provenance"]
+
+
+def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
+    options = BendOptions(linear_density_g_per_m=0.3)
+    bent = bend_chart(StitchChart.parse("K"), material("acrylic"), options)
+    assert bent.bending_length_course_mm == pytest.approx(18.0, rel=0.02)
+
+
+def test_states_that_differ_much_are_told() -> None:
+    bent = bend_chart(StitchChart.parse("P\nK"), material("cotton"), BendOptions())
+    assert not bent.stable
+    assert any("a range, not a figure" in note for note in bent.notes)
+
+
+def test_a_repeat_too_large_to_bend_is_refused(client: TestClient) -> None:
+    chart = "\n".join("K" * row + "P" * (40 - row) for row in range(1, 9))
+    answer = client.post("/api/v1/bend", json={"chart": chart, "material": "acrylic"})
+    assert answer.status_code == 422
+    assert answer.json()["field"] == "chart"
+
+
+def test_bend_on_the_command_line() -> None:
+    result = CliRunner().invoke(main, ["bend", "garter", "--material", "acrylic", "--json"])
+    assert result.exit_code == 0, result.stderr
+    bent = json.loads(result.stdout)
+    assert bent["curl"] == "lies flat"
+    assert bent["bending_course_n_mm"] == pytest.approx(0.0055, rel=0.03)
