@@ -1,6 +1,6 @@
 """Many computations that do not need each other: on this machine, or unchanged on a Dask cluster.
 
-A batch is a function and named tasks for it. What is finished is kept, one JSON document a task, so
+A batch is a function and named tasks for it. Results are kept as one JSON document a task, so
 a batch that was stopped, however hard, goes on where it was.
 """
 
@@ -87,13 +87,13 @@ def run_batch(
     scheduler : address of a Dask cluster (``"tcp://host:port"``); processes here if left out.
     workers : processes here, all cores if left out; 1 works in this process.
     keep : folder of finished results. Tasks that failed are tried again by the next run.
-    on_progress : told after every task.
+    on_progress : called after every task.
     should_stop : asked about twice a second, in this process between tasks.
 
     Raises
     ------
     CancelledError
-        If it was asked to stop; what was finished is in `keep`.
+        If it was asked to stop; finished results are in `keep`.
     InputError
         If a key cannot name a file, or the cluster does not answer.
     """
@@ -137,7 +137,7 @@ def _check(tasks: Mapping[str, Any], scheduler: str | None, workers: int | None)
         raise InputError("workers", f"{workers} cannot work.", "Give at least 1.")
     if scheduler is not None and not re.fullmatch(r"(tcp|tls)://[^\s/]+:\d+", scheduler):
         raise InputError(
-            "scheduler", f"{scheduler!r} is no address.", "Give one like tcp://127.0.0.1:8786."
+            "scheduler", f"{scheduler!r} is not an address.", "Give one like tcp://127.0.0.1:8786."
         )
 
 
@@ -204,7 +204,7 @@ def _executor(scheduler: str | None, workers: int | None) -> Iterator[tuple[Exec
         yield executor, 2 * count
     except BaseException:
         for process in list(executor._processes.values()):
-            process.terminate()  # nobody waits for what they do any more
+            process.terminate()  # their results are not needed any more
         raise
     finally:
         executor.shutdown(cancel_futures=True)

@@ -1,4 +1,4 @@
-"""What can go wrong.
+"""Errors.
 
 KnitcoreError
 ├── InputError (also ValueError)   something the caller gave cannot be used; names field and remedy
@@ -20,7 +20,7 @@ class InputError(KnitcoreError, ValueError):
     Parameters
     ----------
     field : the name of the offending input, as the caller knows it (``"chart"``, ``"strain"``).
-    problem : one sentence that says what is wrong with it.
+    problem : one sentence that says what is wrong.
     remedy : one sentence that says what would be accepted.
     """
 
@@ -39,7 +39,7 @@ class ConvergenceError(KnitcoreError):
 
 
 class UnravelledError(KnitcoreError):
-    """Yarn passed through yarn, or a loop slipped off: the result is no fabric any more."""
+    """Yarn passed through yarn, or a loop slipped off: the result is not a fabric any more."""
 
 
 class CancelledError(KnitcoreError):

@@ -9,7 +9,7 @@ from knitcore.chart import StitchChart
 
 @dataclass(frozen=True)
 class Pattern:
-    """A repeat with a name and a word on what it does."""
+    """A named repeat with a short description."""
 
     identifier: str
     name: str

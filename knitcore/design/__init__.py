@@ -1,1 +1,1 @@
-"""From wishes to fabrics: all repeats, their laws, and the ones that do what is wanted."""
+"""From wishes to fabrics: all small repeats, their laws, and a search among them."""

@@ -65,8 +65,8 @@ def build_atlas(
     ----------
     material : with all four fabrics.
     repeats : in the order in which they are computed.
-    file : where the atlas is kept. What it holds of this material is not computed again, and while
-        it is built, finished parts wait in a folder beside it: it can be stopped at any point.
+    file : where the atlas is kept. Entries of this material are not computed again. While it is
+        built, finished parts are kept in a folder next to it, so it can be stopped at any point.
     workers, scheduler : as :func:`knitcore.batch.run_batch`; by default in this process.
     progress : called with the number of repeats done and in all.
     cancelled : asked now and then.
@@ -121,7 +121,7 @@ def predict_repeats(task: AtlasTask) -> dict[str, Any]:
 
 
 def predict_repeat(repeat: StitchChart, material: Material) -> Prediction:
-    """What a large cloth of a repeat does, with its yarn-level law where the store has one."""
+    """Entry of a repeat, with its yarn-level law where the store has one."""
     return _prediction(repeat, material, known_repeat(repeat.tile(2, 2), material))
 
 
@@ -164,7 +164,7 @@ def material_fingerprint(material: Material) -> str:
 
 
 def known_entries(file: Path | None, fingerprint: str) -> dict[str, Entry]:
-    """What a file holds already.
+    """Entries that a file already holds.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def _entry(document: dict[str, Any]) -> Entry:
 
 
 def _prediction(repeat: StitchChart, material: Material, known: KnownRepeat | None) -> Prediction:
-    cloth = repeat.tile(2, 2)  # twice, so that nobody takes its edges for those of a swatch
+    cloth = repeat.tile(2, 2)  # twice, so that its edges do not count as those of a swatch
     flat = predict(cloth, material)
     if known is None:
         return flat

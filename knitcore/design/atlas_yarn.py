@@ -61,7 +61,7 @@ def improve_atlas(
     CancelledError
         If it was asked to stop.
     InputError
-        If the file is no atlas of this material, or the yarn's parameters are not known.
+        If the file is not an atlas of this material, or the yarn's parameters are unknown.
     """
     load_atlas(file)  # a missing one is named before anything is computed
     entries = known_entries(file, material_fingerprint(material))
@@ -96,7 +96,7 @@ def yarn_level_folder(file: Path) -> Path:
 def yarn_level_tasks(
     material: Material, entries: Mapping[str, Entry], most_stitches: int
 ) -> dict[str, RepeatTask]:
-    """What is still to be computed, by repeat: the pure fabrics, then small repeats first."""
+    """Tasks left, by repeat: the pure fabrics, then small repeats first."""
     pure = {key_of_pure(fabric) for fabric in Fabric}
     mixed = [
         key

@@ -1,4 +1,4 @@
-"""What a repeat asks of machine, hands and cloth."""
+"""The cost of knitting a repeat: transfers, crossings and curl."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from knitcore.segments import segment_map
 
 @dataclass(frozen=True)
 class KnittingCost:
-    """What a repeat asks of machine and cloth.
+    """The cost of knitting a repeat.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class KnittingCost:
 
 @dataclass(frozen=True)
 class CostLimits:
-    """The most that a fabric may ask; None is no limit.
+    """Limits on the cost of a fabric; None for no limit.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a filled chart reaches, patch by patch, and what would work where it does not."""
+"""Which wishes a filled chart meets, patch by patch, and alternatives to the others."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ class Patch:
 
 
 def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) -> list[str]:
-    """What was not reached, and what would work.
+    """Messages about wishes that were not met, with alternatives.
 
     Parameters
     ----------
     regions : the patches.
-    wishes : (patches, 2) logarithms of the wanted moduli, NaN is no wish.
+    wishes : (patches, 2) logarithms of the wanted moduli, NaN where there is no wish.
     off : (patches, 2) relative deviations.
     have : (repeats, 2) logarithms of the moduli of all repeats.
     """
@@ -81,7 +81,7 @@ def _reach(wish: Array, direction: Direction, have: Array) -> str:
         if near.any():
             part = np.exp(have[near, own])
             text += (
-                f", beside the wanted {np.exp(wish[other]):.3g} {direction.other}-wise "
+                f", with the wanted {np.exp(wish[other]):.3g} {direction.other}-wise "
                 f"{part.min():.3g} to {part.max():.3g}"
             )
         else:

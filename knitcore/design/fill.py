@@ -24,7 +24,7 @@ from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import patches_of, smooth, unevenness, wanted_labels
 from knitcore.design.placing import placed
-from knitcore.design.progress import Telling
+from knitcore.design.progress import Progress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.design.repeats import repeat_key
 from knitcore.errors import InputError
@@ -68,7 +68,7 @@ class FilledField:
         direction: of patches by their effective moduli in the swatch beside the wish at each stitch
         (of a single patch in a large cloth: the edges of its swatch are none of its own), of a
         chart that was read back by its local moduli.
-    messages : what was not reached.
+    messages : wishes that were not met.
     """
 
     chart: StitchChart
@@ -101,8 +101,8 @@ def fill_field(
         where nothing is wanted.
     material : one yarn for the whole chart.
     atlas : of that material.
-    kept : what the stitches without any wish stay as; the others are fitted to them, and judged
-        beside them. Without it they are filled, too, as their neighbours suit.
+    kept : the chart whose stitches without a wish stay as they are; the others are fitted to them
+        and judged among them. Without it they are filled to match their neighbours.
     stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere nothing is wanted,
         and nothing stands beside the others. All by default.
     smallest_patch : smallest side of a patch in stitches.
@@ -134,7 +134,7 @@ def fill_field(
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    fill = _Fill(wanted, kept, stitch, material, atlas, seed, Telling(progress, cancelled))
+    fill = _Fill(wanted, kept, stitch, material, atlas, seed, Progress(progress, cancelled))
     return fill.run(smallest_patch, check=check and wanted[0].size <= MOST_CHECKED)
 
 
@@ -167,7 +167,7 @@ class _Fill:
         material: Material,
         atlas: Atlas,
         seed: int,
-        telling: Telling,
+        progress: Progress,
     ) -> None:
         inside = np.ones(wanted.shape[1:], dtype=bool) if stitch is None else stitch
         self._wanted = np.where(inside, wanted, np.nan)
@@ -177,13 +177,13 @@ class _Fill:
         around = np.zeros_like(inside) if kept is None else kept.purl
         self._kept = StitchChart(around & inside)
         self._has_wish = ~no_wish
-        self._seed, self._telling = seed, telling
+        self._seed, self._progress = seed, progress
         self._table = stitch_table(material)
         self._have = np.log(np.stack([atlas.modulus(d) for d in Direction], axis=1))
         self._mixer: Mixer | None = None
 
     def run(self, smallest_patch: int, *, check: bool) -> FilledField:
-        self._telling.look(0.01)
+        self._progress.look(0.01)
         own = self._beside_kept(nearest_chart(self._wanted, self._table))
         exact = float(np.nanmax(np.abs(deviation(own, self._wanted, self._table))))
         if exact <= EXACT:
@@ -231,7 +231,7 @@ class _Fill:
         known: dict[tuple[float, ...], _Choice | None] = {}
         found = list(choices)
         for count, patch in enumerate(poor):
-            self._telling.look(0.45 * count / len(poor))
+            self._progress.look(0.45 * count / len(poor))
             rows, columns = _extent(patches == patch)
             key = (*np.nan_to_num(wishes[patch].round(3)).tolist(), rows, columns)
             if key not in known:
@@ -246,7 +246,7 @@ class _Fill:
             *np.exp(wish).tolist(),
             most_rows=min(rows, 12),
             most_columns=min(columns, 12),
-            look=self._telling.stop_if_asked,
+            look=self._progress.stop_if_asked,
         )
         if mixture is None or mixture.off > 0.8 * off:
             return None
@@ -279,7 +279,7 @@ class _Fill:
             kept=self._kept,
             stitch=self._stitch,
             seed=self._seed,
-            look=lambda share: self._telling.look(start + 0.15 * share),
+            look=lambda share: self._progress.look(start + 0.15 * share),
         )
         factors = np.zeros((len(choices), 2))
         if check:
@@ -290,7 +290,7 @@ class _Fill:
                     patches,
                     repeats,
                     stitch=self._stitch,
-                    cancelled=self._telling.cancelled,
+                    cancelled=self._progress.cancelled,
                 )
             )
         off = _spread(self._judged(choices, factors), patches) - self._wanted
@@ -310,7 +310,7 @@ class _Fill:
         return float(np.sqrt(np.nanmean(off**2)))
 
     def _read_back(self, chart: StitchChart, message: str) -> FilledField:
-        self._telling.look(1.0)
+        self._progress.look(1.0)
         off = deviation(chart, self._wanted, self._table)
         return FilledField(
             chart,
@@ -334,7 +334,7 @@ class _Fill:
             place = int(cells.sum()), row, column
             regions.append(Patch(repeat_key(choice.repeat), *place, *off[patch], *there[patch]))
         judged = self._judged(trial.choices, trial.factors)
-        self._telling.look(1.0)
+        self._progress.look(1.0)
         return FilledField(
             trial.chart,
             patches,
@@ -345,7 +345,7 @@ class _Fill:
         )
 
     def _beside_kept(self, chart: StitchChart) -> StitchChart:
-        """The chart, or all of it swapped, where there are wishes; what is kept elsewhere."""
+        """The chart or its K/P exchange where there are wishes; the kept chart elsewhere."""
         if not self._fixed.any():
             return chart
         charts = [
@@ -360,7 +360,7 @@ class _Fill:
         return float(np.mean(missed, where=self._has_wish))
 
     def _is_alone(self, choices: Sequence[_Choice]) -> bool:
-        """Whether there is one patch and nothing beside it."""
+        """Whether there is one patch without neighbours."""
         return len(choices) == 1 and not self._fixed.any()
 
     def _judged(self, choices: Sequence[_Choice], factors: Array) -> Array:
@@ -392,6 +392,6 @@ def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
     if not (np.isfinite(given).all() and (given > 0).all()):
         raise InputError("target", "a wanted modulus is not positive.", "Give N/mm above 0.")
     if not 1 <= smallest_patch <= 100:
-        raise InputError("smallest_patch", f"{smallest_patch} is no size.", "Give 1 to 100.")
+        raise InputError("smallest_patch", f"{smallest_patch} is not a size.", "Give 1 to 100.")
     logarithms: Array = np.log(both)
     return logarithms

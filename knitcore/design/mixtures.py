@@ -2,7 +2,7 @@
 
 The moduli of two sheets side by side follow from theirs (stress common across the joint, strain
 along it; docs/composite.md). That ranks all stripes at once; the best are then predicted as the
-repeats that they are, and what the ranking missed at the joints is learnt on the way. If none is
+repeats that they are, and errors of the ranking at the joints are corrected on the way. If none is
 near, single stitches, rows and columns of the nearest charts are turned.
 """
 

@@ -1,4 +1,4 @@
-"""What patches of a chart do in a finite swatch, beside what their repeats do in a large cloth.
+"""Moduli of patches of a chart in a finite swatch, compared with large cloths of their repeats.
 
 A patch is small, its repeat may be cut off, and its neighbours hold it. The swatch is pulled a
 little along the course and along the wale; the mean stresses and strains of a patch in both pulls

@@ -51,7 +51,7 @@ def wanted_labels(
     ----------
     atlas : repeats to choose from.
     uneven : see :func:`unevenness`; of repeats that are about as near the evener one is taken.
-    log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN is no wish.
+    log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN for no wish.
 
     Returns
     -------

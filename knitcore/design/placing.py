@@ -41,12 +41,12 @@ def placed(
     patches : (rows, columns) number of each stitch's patch; a number without a repeat means that
         the stitch stays as it is in ``kept``.
     repeats : of each patch.
-    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN is no wish.
+    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN where there is no wish.
     table : of the material.
-    kept : what the stitches without a repeat are.
+    kept : stitches of the chart where there is no repeat.
     stitch : (rows, columns), where there are stitches at all.
     seed : of the order in which patches and stitches are tried.
-    look : told the share done, now and then; may raise to stop.
+    look : called now and then with the share done; may raise to stop.
     """
     rng = np.random.default_rng(seed)
     local = _LocalCost(wanted, table, stitch)

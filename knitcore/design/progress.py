@@ -9,7 +9,7 @@ from knitcore.errors import CancelledError
 
 
 @dataclass
-class Telling:
+class Progress:
     """Progress that never falls back, and the wish to stop."""
 
     progress: Callable[[float], None] | None
@@ -17,7 +17,7 @@ class Telling:
     done: float = 0.0
 
     def look(self, done: float) -> None:
-        """Tell the progress, and stop if asked to."""
+        """Report progress, and stop if asked to."""
         self.stop_if_asked()
         self.done = max(self.done, min(done, 1.0))
         if self.progress is not None:

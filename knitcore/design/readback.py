@@ -36,7 +36,7 @@ def nearest_chart(wanted: Array, table: StitchTable) -> StitchChart:
 
     Parameters
     ----------
-    wanted : (2, rows, columns) logarithms; NaN is no wish.
+    wanted : (2, rows, columns) logarithms; NaN where there is no wish.
     table : of the material.
     """
     have = _log_moduli(table)

@@ -4,7 +4,7 @@ The swatch is pulled between two clamps, and its width is wanted line by line: r
 wale-wise pull, column by column under a course-wise one. It is made of bands across the pull, each
 of one repeat of the atlas. All bands carry one force, so each stretches by its own curve and
 narrows by its Poisson ratio: that gives the first choice. The finite swatch is then pulled, the
-wish of each band is shifted by what the swatch misses there, and the bands are chosen again; at
+wish of each band is shifted by its error in the swatch, and the bands are chosen again; at
 last single bands are changed where that helps. What counts is the outline of the swatch, never the
 estimate.
 """
@@ -40,7 +40,7 @@ _PALETTE = 40
 _DAMPING = 0.8
 _MOST_STITCHES = 10_000
 OFF = 0.03
-"""Error of a width, as a part of the width at rest, that is told."""
+"""Error of a width, relative to the width at rest, from which a message says so."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class ShapedSwatch:
     rms, largest : of the differences.
     force_n : at the clamps.
     pulls : how many swatches were pulled.
-    messages : what was not reached.
+    messages : wishes that were not met.
     """
 
     chart: StitchChart
@@ -367,7 +367,7 @@ def _checked(
 ) -> Array:
     wanted = np.asarray(width, dtype=float)
     if wanted.ndim != 1 or len(wanted) < 3 or np.isnan(wanted).all():
-        raise InputError("width", "is no profile.", "Give the width of at least three lines.")
+        raise InputError("width", "is not a profile.", "Give the width of at least three lines.")
     given = wanted[~np.isnan(wanted)]
     if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
         raise InputError(
@@ -382,7 +382,9 @@ def _checked(
             f"Use at least 3 across and at most {_MOST_STITCHES} stitches.",
         )
     if not 0 < strain <= 5:
-        raise InputError("strain", f"{strain:g} is no stretch.", "Give a strain above 0, like 0.3.")
+        raise InputError(
+            "strain", f"{strain:g} is not a stretch.", "Give a strain above 0, like 0.3."
+        )
     if not 1 <= smallest_band <= len(wanted):
         raise InputError(
             "smallest_band", f"{smallest_band} lines do not fit.", f"Give 1 to {len(wanted)}."

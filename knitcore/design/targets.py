@@ -1,4 +1,4 @@
-"""What can be asked of a fabric, and what the repeats of an atlas have of it."""
+"""Quantities that a fabric can be searched for, and their values for the repeats of an atlas."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_LOAD_N_PER_MM = 0.5
 
 
 class Quantity(StrEnum):
-    """What can be asked of a fabric."""
+    """A quantity that a fabric can be searched for."""
 
     MODULUS_COURSE = "modulus_course_n_per_mm"
     MODULUS_WALE = "modulus_wale_n_per_mm"
@@ -94,7 +94,7 @@ class Target:
     value : wanted; above 0 but for Poisson's ratios.
     tolerance : relative deviation that still counts as reached (0.1 = 10 %); for Poisson's ratios
         the difference.
-    weight : beside other wishes.
+    weight : relative to the other wishes.
     load_n_per_mm : of a stretch.
     limb : of a pressure.
     """
@@ -147,7 +147,7 @@ class Target:
         return value - self.value if self.quantity.is_poisson else value / self.value - 1
 
     def off(self, values: Array) -> Array:
-        """How many tolerances values are away; infinite where there is no value."""
+        """Distance of values in tolerances; infinite where there is no value."""
         if self.quantity.is_poisson:
             away = np.abs(values - self.value) / self.tolerance
         else:

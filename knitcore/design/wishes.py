@@ -23,7 +23,7 @@ class Wish:
     ----------
     name : for messages.
     runs : (row, first column, length) of its stitches, row 0 at the bottom; of any shape.
-    course_n_per_mm, wale_n_per_mm : wanted moduli; None is no wish.
+    course_n_per_mm, wale_n_per_mm : wanted moduli; None for no wish.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """A yarn that is not in the library: laws from measured swatches of it, or from none.
 
 The model is :mod:`knitcore.estimate.model`; its intervals cover 90 % of the values of
-yarns left out. What they do not cover is another tightness: swatch and product share the needle or
+yarns left out. They do not cover another tightness: swatch and product share the needle or
 stitch setting. Eight yarns only, five of them from one machine. The extension under load is what is
 predicted best, so it comes first.
 """
@@ -194,7 +194,7 @@ def _intervals(
     return found
 
 
-# -- what is given -------------------------------------------------------------------------------
+# -- inputs -------------------------------------------------------------------------------------
 
 
 def _measured_mask(swatches: Sequence[MeasuredSwatch]) -> Mask:

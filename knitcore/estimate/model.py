@@ -1,4 +1,4 @@
-"""What the library says about yarns in general, and how well that predicts a yarn left out.
+"""Statistics of the yarns in the library, and how well they predict a yarn left out.
 
 Young's moduli are scaled by B / L³ (bending modulus over the cube of the loop length) and predicted
 by the mixed model of :mod:`knitcore.estimate.mixed_model`, fitted to the packaged tables; alpha

@@ -30,7 +30,7 @@ def read_chart(path: str | Path) -> StitchChart:
     Raises
     ------
     InputError
-        As :func:`read_piece`, but for an outline that falls apart.
+        As :func:`read_piece`, but for an outline in several parts.
     """
     file = Path(path)
     if file.suffix.lower() == ".json":

@@ -23,7 +23,7 @@ INK, GRID, HEAVY, NO_STITCH = "#222222", "#b5b0a8", "#b3322b", "#d9d5ce"
 
 @dataclass(frozen=True)
 class RepeatMark:
-    """A linked repeat: what the key says of it, and its copies as (row, column, rows, columns)."""
+    """A linked repeat: its entry in the key, and its copies as (row, column, rows, columns)."""
 
     words: str
     places: tuple[tuple[int, int, int, int], ...]
@@ -38,7 +38,7 @@ class ChartStyle:
     construction : flat (numbers on both sides) or round (numbers at the right).
     first_side : the side of row 1 in flat knitting.
     aspect : height over width of a stitch, from the gauge.
-    yarn_facts : of each yarn, what the key says beside its name, such as its length.
+    yarn_facts : of each yarn, printed after its name in the key, such as its length.
     repeats : linked repeats of the chart; without them the chart's own smallest repeat is marked.
     note : printed below the key.
     """
@@ -53,12 +53,12 @@ class ChartStyle:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
             raise InputError(
-                "aspect", f"{self.aspect:g} is no shape of a stitch.", "Give 0.2 to 5."
+                "aspect", f"{self.aspect:g} is not an aspect of a stitch.", "Give 0.2 to 5."
             )
 
 
 def is_coloured(piece: Piece) -> bool:
-    """Whether its yarns are told apart by colour."""
+    """Whether its yarns are distinguished by colour."""
     return len(piece.yarns) > 1
 
 

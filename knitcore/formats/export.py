@@ -37,7 +37,7 @@ from knitcore.worked import Construction, Side
 
 
 class ExportKind(StrEnum):
-    """What a chart can be exported to."""
+    """Formats for export."""
 
     KNITOUT = "knitout"
     KNITSPEAK = "knitspeak"
@@ -106,13 +106,13 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class ExportedFile:
-    """A file's content, and what was checked.
+    """The content of a file, and the checks made.
 
     Attributes
     ----------
     kind : which format.
     content : the bytes.
-    notes : what a user should know.
+    notes : for the user.
     transfers : loops moved between beds, of a knitout program.
     carriers : yarn carriers, of a knitout program.
     """

@@ -45,7 +45,7 @@ def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) 
 
 
 def _notes(plan: GarmentPlan) -> Iterator[str]:
-    """What a knitter needs beside the chart."""
+    """Notes for the knitter."""
     if plan.around is Direction.COURSE:
         yield "Knit from the bottom row up; the rows run around the limb."
     else:

@@ -2,7 +2,7 @@
 
 Loops are those of the package ``knitout-interpreter``. A stitch of the chart is a loop that was
 pulled through others; loops that were pulled through none are cast on, or tucks that tie two yarns
-together. A bind-off chain along an edge is told from stitches by its yarn: the next loop that the
+together. A bind-off chain along an edge differs from stitches by its yarn: the next loop that the
 machine makes is pulled through the chained one, on the next needle.
 """
 

@@ -47,7 +47,7 @@ class Finish(StrEnum):
 
 @dataclass(frozen=True)
 class KnitoutProgram:
-    """A program and what a technician asks of it.
+    """A program and its figures for a technician.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a knitout program knits: interpreted on a virtual machine, read back as a chart.
+"""Knitout programs executed on a virtual machine and read back as charts.
 
 The one place that runs the package ``knitout-interpreter``. The interpreter checks every
 instruction against a machine's state and links the loops to a knit graph; the chart is read from
@@ -32,12 +32,12 @@ class KnitoutMismatchError(KnitcoreError):
 
 @dataclass(frozen=True)
 class KnittedChart:
-    """What a program knits.
+    """The piece that a program knits.
 
     Attributes
     ----------
     piece : the face, its outline and its yarns, without cast-on, bind-off and waste.
-    notes : what was left out, and what the machine warned of.
+    notes : omissions, and warnings of the machine.
     """
 
     piece: Piece

@@ -128,7 +128,7 @@ def read_knitspeak(text: str) -> StitchChart:
     Raises
     ------
     InputError
-        Naming the line, what is wrong with it, and what would be read.
+        Naming the line, the problem and an accepted form.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def read_knitspeak(text: str) -> StitchChart:
     for number, line in _sentences(text):
         match = _LINE.fullmatch(line)
         if match is None:
-            raise _wrong(number, f"{line[:60]!r} is no row.", 'Write "Row 1 (RS): k1, p1."')
+            raise _wrong(number, f"{line[:60]!r} is not a row.", 'Write "Row 1 (RS): k1, p1."')
         name, numbers, side, words = match.groups()
         is_round = not name.lower().startswith("row")
         if rounds is not None and rounds != is_round:
@@ -256,7 +256,7 @@ def _stitches(line: int, words: str) -> Purls:
         if times is not None and len(stack) > 1:
             inside = stack.pop()
             often = 2 if times[1] else int(times[2])
-            # more than a row can hold is told below; it need not be written out for that
+            # more than a row can hold is refused below without being written out
             stack[-1] += inside * min(often, MAX_STITCHES_PER_SIDE + 1)
             rest = rest[times.end() :]
         elif run is not None and run[2] != "0":

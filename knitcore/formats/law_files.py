@@ -34,7 +34,7 @@ _UNIT = "_n_per_mm"
 
 @dataclass(frozen=True)
 class LawFile:
-    """A law and what is known about it.
+    """A law and its provenance.
 
     Attributes
     ----------

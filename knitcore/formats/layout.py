@@ -1,4 +1,4 @@
-"""What a design holds beside its chart: outline, regions, linked repeats, and patterns of its own.
+"""Parts of a design other than its chart: outline, regions, linked repeats and patterns.
 
 The same fields are in the project file, in the service's designs and in the page.
 """
@@ -53,7 +53,7 @@ class DesignRegion(_Part):
     fill: Motif | None = Field(None, description="Repeat that fills it, from the chart's corner.")
     runs: list[tuple[Place, Place, Length]] = Field(
         max_length=MAX_RUNS,
-        description="[row, column, length] of stitches beside each other; row 0 is the bottom.",
+        description="[row, column, length] of adjacent stitches; row 0 is the bottom.",
     )
     locked: bool = False
     hidden: bool = False
@@ -80,7 +80,7 @@ class DesignRepeat(_Part):
 
 
 class ShelfPattern(_Part):
-    """A pattern of one's own."""
+    """A pattern of the user's."""
 
     name: ItemName
     motif: Motif
@@ -156,12 +156,12 @@ def runs_of(cells: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
 
 
 def piece_of(chart: StitchChart, layout: DesignLayout) -> Piece:
-    """What a design knits: regions with a yarn colour their stitches, the later ones on top.
+    """The piece of a design: regions with a yarn colour their stitches, later ones on top.
 
     Raises
     ------
     InputError
-        If the outline falls apart, or the layout does not belong to the chart.
+        If the outline is in several parts, or the layout does not belong to the chart.
     """
     check_layout(chart, layout)
     shaped = ShapedChart.rectangle(chart)
@@ -203,7 +203,7 @@ def check_layout(chart: StitchChart, layout: DesignLayout) -> None:
     Raises
     ------
     InputError
-        Naming the region, repeat or outline, what is wrong with it, and what would do.
+        Naming the region, repeat or outline, the problem and the remedy.
     """
     if layout.outline is not None:
         marks = outline_marks(layout.outline)
@@ -247,7 +247,7 @@ def _check_motif(field: str, name: str, motif: str) -> None:
 
 
 def layout_notes(chart: StitchChart, layout: DesignLayout) -> tuple[str, ...]:
-    """What may not be as meant: lost regions, contradictions, an outline that falls apart."""
+    """Warnings: hidden regions, contradictions, an outline in several parts."""
     stitch = np.ones(chart.purl.shape, dtype=bool)
     if layout.outline is not None:
         stitch = outline_marks(layout.outline)

@@ -79,7 +79,7 @@ def read_png(file: Path) -> StitchChart:
     Raises
     ------
     InputError
-        If it is no PNG, or over-large.
+        If it is not a PNG, or too large.
     """
     return read_png_piece(file).chart
 

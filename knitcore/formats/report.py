@@ -45,7 +45,7 @@ def design_report(
 ) -> bytes:
     """A PDF: mechanics, then the extensibility field if there are regions, then the chart.
 
-    A piece that is no rectangle has no modulus of its own, so its regions speak for it.
+    A piece that is not a rectangle has no modulus of its own; those of its regions are given.
 
     Raises
     ------

@@ -29,7 +29,7 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
         Naming the line that cannot be read.
     """
     if not file.is_file() or file.stat().st_size > MAXIMUM_BYTES:
-        raise InputError("target", f"{file} is no CSV file of use.", "Check the path and size.")
+        raise InputError("target", f"{file} is not a usable CSV file.", "Check the path and size.")
     try:
         with file.open(newline="", encoding="utf-8-sig") as stream:
             table = csv.DictReader(stream)
@@ -42,7 +42,7 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
                 )
             entries = [_entry(line, table.line_num) for line in table]
     except (UnicodeDecodeError, csv.Error):
-        raise InputError("target", f"{file.name} is no CSV text.", "Save it as CSV.") from None
+        raise InputError("target", f"{file.name} is not CSV text.", "Save it as CSV.") from None
     if not entries:
         raise InputError("target", f"{file.name} holds no stitch.", "Give one line a stitch.")
     rows, columns = max(entry[0] for entry in entries), max(entry[1] for entry in entries)

@@ -148,7 +148,7 @@ def piece_row_words(row: PieceRow, *, several: bool) -> str:
 
 
 def _edge_forms(row: PieceRow) -> tuple[list[str], list[str], list[str]]:
-    """How each stitch is made ("" if it is just worked), and what is said before and after."""
+    """How each stitch is made ("" if simply worked), and the words before and after."""
     count = len(row.purls)
     forms = [""] * count
     before: list[str] = []

@@ -1,4 +1,4 @@
-"""Reading written rows: a strict dialect, so that what is read is what was meant.
+"""Reading written rows: a strict dialect without ambiguity.
 
 See :mod:`knitcore.formats.written` for an example. Every row names its number; rows follow each
 other without gaps. ``K3``, ``p2``, ``knit`` and ``purl`` (to the end of the row), brackets with
@@ -42,7 +42,7 @@ def read_rows(text: str) -> StitchChart:
     Raises
     ------
     InputError
-        Naming the line, what is wrong with it, and what would be read.
+        Naming the line, the problem and an accepted form.
 
     Examples
     --------
@@ -103,7 +103,7 @@ class _Reader:
 
     def piece(self) -> Piece:
         if not self._rows:
-            raise InputError("rows", "there is no row.", 'Write rows such as "Row 1: Knit."')
+            raise InputError("rows", "there are no rows.", 'Write rows such as "Row 1: Knit."')
         rows = [
             PieceRow(
                 self._side(index),
@@ -129,7 +129,7 @@ class _Reader:
         match = _ROW.fullmatch(line.text)
         if match is None:
             raise line.wrong(
-                f"{line.text[:60]!r} is no row.", 'Write "Row 1 (RS): …" or "Rows 3-8: …".'
+                f"{line.text[:60]!r} is not a row.", 'Write "Row 1 (RS): …" or "Rows 3-8: …".'
             )
         name, first, last, side, body = match.groups()
         start, stop = int(first), int(last or first)

@@ -59,7 +59,7 @@ class Stitch:
 
 @dataclass(frozen=True)
 class Work:
-    """What a line says of a row, wherever it stands."""
+    """Words of a row, independent of its place."""
 
     first: int
     last: int
@@ -75,12 +75,12 @@ def taken(stitches: Stitches) -> int:
 
 
 def read_row(line: Line, body: str, needle: int, yarns: int) -> Work:
-    """What a row says, with ``needle`` stitches on the needle and so many yarns.
+    """The words of a row, with ``needle`` stitches on the needle and so many yarns.
 
     Raises
     ------
     InputError
-        Naming the line and what is wrong with it.
+        Naming the line and the problem.
     """
     if len(body) > MAX_CHARACTERS:
         raise line.wrong(f"it has {len(body)} characters.", "Split it, or write it with repeats.")
@@ -195,7 +195,7 @@ def _items(line: Line, words: str, worked: int) -> Stitches:
         elif bracket is not None:
             inside = _items(line, bracket[1], worked)
             times = 2 if bracket[2] else int(bracket[3])
-            # More than a row can hold is told below; it need not be written out for that.
+            # More than a row can hold is refused below without being written out.
             found = inside * min(times, MAX_STITCHES_PER_SIDE + 1)
             used = bracket.end()
         elif shaped is not None:

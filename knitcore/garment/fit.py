@@ -24,7 +24,7 @@ class TubeFit:
     count : stitches if courses run around the limb, rows if wales do.
     rest_mm : circumference of the unworn tube.
     ease : rest over worn circumference, minus one.
-    pressure : what it presses, as an interval.
+    pressure : as an interval.
     rest_range_mm : rest circumferences that may reach the target, from axially free to fixed.
     """
 
@@ -48,7 +48,7 @@ def fit_tube(
 
     Parameters
     ----------
-    material, fabric : what is knitted.
+    material, fabric : of the tube.
     direction : which material direction runs around the limb.
     worn_mm : circumference of the limb.
     mmhg : target pressure.

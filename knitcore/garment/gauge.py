@@ -40,7 +40,7 @@ class Gauge:
             if not (math.isfinite(value) and 0.1 <= value <= 100):
                 raise InputError(
                     "gauge",
-                    f"a stitch of {value:g} mm is no gauge.",
+                    f"{value:g} mm is not a stitch size.",
                     "Count stitches and rows over a ruler, and give both counts and the length.",
                 )
 
@@ -135,7 +135,7 @@ class GaugeSet:
         if swatch is None:
             return cls(found, material.identifier)
         if fabric not in found:
-            Gauge.of_material(material, fabric)  # tells what is missing
+            Gauge.of_material(material, fabric)  # raises if something is missing
         own = found[fabric]
         across = swatch.stitch_course_mm / own.stitch_course_mm
         along = swatch.stitch_wale_mm / own.stitch_wale_mm

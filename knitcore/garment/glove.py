@@ -52,7 +52,7 @@ class Hand:
     thumb_crotch_mm : from the support to the crotch of the thumb.
     palm_circumference_mm : around the knuckles, without the thumb.
     gusset_mm : height of the thumb's gusset above its crotch; 0 for none.
-    gusset_girth_mm : what the gusset adds to the thumb's girth at the crotch.
+    gusset_girth_mm : added to the thumb's girth by the gusset, at the crotch.
     thumb : from its crotch.
     fingers : index, middle, ring and little finger.
     """
@@ -85,7 +85,9 @@ class Hand:
         }
         for name, value in lengths.items():
             if not (math.isfinite(value) and 5 <= value <= 600):
-                raise InputError(name, f"{value:g} mm is no part of a hand.", "Give 5 to 600 mm.")
+                raise InputError(
+                    name, f"{value:g} mm is not a size of a hand.", "Give 5 to 600 mm."
+                )
         if not (0 <= self.gusset_mm < self.thumb.length_mm and 0 <= self.gusset_girth_mm <= 100):
             raise InputError(
                 "gusset_mm",
@@ -128,8 +130,8 @@ def glove(
     Notes
     -----
     Stitches along the hand come from the gauge of each part's own fabric, rows around it from the
-    fingers' (rib) and the thumb's (seed); what does not fit is told as misfits, and the pressure on
-    the wrist is that of the rows which come out.
+    fingers' (rib) and the thumb's (seed); misfits are reported, and the pressure
+    on the wrist is that of the resulting rows.
 
     Raises
     ------
@@ -138,7 +140,7 @@ def glove(
     """
     if not (math.isfinite(ease) and LEAST_EASE <= ease <= MOST_EASE):
         raise InputError(
-            "ease", f"{ease:g} is no ease of a glove.", f"Give {LEAST_EASE} to {MOST_EASE}."
+            "ease", f"{ease:g} is not an ease for a glove.", f"Give {LEAST_EASE} to {MOST_EASE}."
         )
     gauges = gauges or GaugeSet.of_material(material)
     palm, seed, rib = (gauges[f] for f in (Fabric.GARTER, Fabric.SEED, Fabric.RIB))

@@ -28,7 +28,7 @@ MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
 
 @dataclass(frozen=True)
 class Stretch:
-    """Stitches beside each other in one row, of one yarn: columns ``start`` … ``stop - 1``."""
+    """Adjacent stitches of one yarn in a row: columns ``start`` … ``stop - 1``."""
 
     start: int
     stop: int
@@ -37,7 +37,7 @@ class Stretch:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """What is knitted.
+    """A piece to be knitted.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class GarmentPlan:
     notes : of shaping and assumptions.
     misfits : where regions of unlike gauge meet.
     numbers : extensibility by region.
-    yarn : what it takes.
+    yarn : length and mass needed.
     """
 
     name: str
@@ -97,7 +97,7 @@ def make_plan(
     notes: tuple[str, ...] = (),
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
-    """Fill an outline and compute what is known of it.
+    """Fill an outline and compute its numbers.
 
     Raises
     ------

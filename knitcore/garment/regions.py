@@ -49,7 +49,7 @@ class Misfit:
     first, second : the regions.
     stitches : how many pairs of stitches meet there.
     difference : of the size that both should have in common, relative to the smaller.
-    text : what it means.
+    text : the misfit in words.
     """
 
     first: str
@@ -61,7 +61,7 @@ class Misfit:
 
 @dataclass(frozen=True)
 class RegionNumbers:
-    """What a region does, stitch by stitch on the average."""
+    """Mean stitch-level numbers of a region."""
 
     name: str
     stitches: int
@@ -212,7 +212,9 @@ def yarn_use(
         return YarnUse(metres, None)
     if not 0 < linear_density_tex < 1e5:
         raise InputError(
-            "linear_density_tex", f"{linear_density_tex:g} tex is no yarn.", "Give g per km."
+            "linear_density_tex",
+            f"{linear_density_tex:g} tex is not a linear density.",
+            "Give g per km.",
         )
     return YarnUse(metres, metres * linear_density_tex / 1000)
 

@@ -1,4 +1,4 @@
-"""Charts whose outline is no rectangle: stitches outside it are "no stitch"."""
+"""Charts with an outline; cells outside it are "no stitch"."""
 
 from __future__ import annotations
 
@@ -109,16 +109,16 @@ def outline_marks(outline: str) -> NDArray[np.bool_]:
     Raises
     ------
     InputError
-        If it is no grid of ``x`` and ``.``.
+        If it is not a grid of ``x`` and ``.``.
     """
     marks = [line.strip() for line in outline.splitlines() if line.strip()]
     if not marks or len({len(line) for line in marks}) > 1 or set("".join(marks)) - set("x."):
-        raise InputError("outline", "it is no grid of x and dots.", "Write x or . per stitch.")
+        raise InputError("outline", "it is not a grid of x and dots.", "Write x or . per stitch.")
     return np.array([[mark == INSIDE for mark in line] for line in marks[::-1]])
 
 
 def check_outline(stitch: NDArray[np.bool_]) -> None:
-    """Refuse an outline that falls apart, naming the row."""
+    """Refuse an outline in several parts, naming the row."""
     spans = []
     for row, inside in enumerate(stitch, start=1):
         columns = np.flatnonzero(inside)
@@ -137,6 +137,6 @@ def check_outline(stitch: NDArray[np.bool_]) -> None:
         if above[0] > below[1] or above[1] < below[0]:
             raise InputError(
                 "outline",
-                f"row {row + 1} does not stand on row {row}: the outline falls apart.",
+                f"row {row + 1} does not stand on row {row}: the outline is in several parts.",
                 "Let neighbouring rows overlap by at least one stitch.",
             )

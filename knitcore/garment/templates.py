@@ -20,7 +20,7 @@ LARGEST_CHANGE = 2
 """Stitches that a row may gain or lose: one at each edge."""
 SNUG = Fit()
 PLACES = 5
-"""Places along a limb where the pressure is told, beside those that were measured."""
+"""Positions along a limb at which the pressure is given, besides those measured."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def limb_tube(
     fit : ease, or a wanted pressure of the body.
     gauges : the knitter's; the material's own if left out. Sizes follow the body's fabric.
     body, hem : fabrics of the middle, and of the first and last ``hem_mm``.
-    notes : said beside the plan's own.
+    notes : added to the plan's own.
     linear_density_tex : for the mass of yarn.
 
     Raises

@@ -1,4 +1,4 @@
-"""Rows of a piece as they are worked, with what they gain and lose at their edges.
+"""Rows of a piece as they are worked, with increases and decreases at their edges.
 
 It does for outlines and yarns what :mod:`knitcore.worked` does for charts, and uses its rules.
 """
@@ -90,7 +90,7 @@ def piece_from_rows(rows: Sequence[PieceRow], yarns: Sequence[PieceYarn]) -> Pie
     Raises
     ------
     InputError
-        If rows do not follow each other, or the outline falls apart.
+        If rows do not follow each other, or the outline is in several parts.
     """
     spans: list[tuple[int, int]] = []
     left, right = 0, len(rows[0].purls)

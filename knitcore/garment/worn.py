@@ -20,7 +20,7 @@ class Worn:
     at_mm : along the limb, from where the garment begins.
     part : of the garment there.
     rest_mm, worn_mm : circumferences of the garment unworn, and of the limb.
-    pressure : what it presses; None if it cannot.
+    pressure : None where the piece does not press.
     problem : why it cannot, such as a loose fit, or a strain beyond the lock-up; else empty.
     """
 
@@ -70,7 +70,9 @@ class Fit:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.ease) and -0.6 <= self.ease <= 1):
-            raise InputError("ease", f"{self.ease:g} is no ease.", "Give -0.6 (tight) to 1 (wide).")
+            raise InputError(
+                "ease", f"{self.ease:g} is not an ease.", "Give -0.6 (tight) to 1 (wide)."
+            )
 
     def rest_mm(
         self, worn_mm: float, material: Material, fabric: Fabric, around: Direction

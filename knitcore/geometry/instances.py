@@ -1,4 +1,4 @@
-"""A fabric as a few meshes and where each is repeated: what a renderer with instancing takes."""
+"""A fabric as a few meshes and the places of their copies, for renderers with instancing."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def extensibility_rectangles(
     """Corners of one rectangle for each group of stitches, (groups, 4, 2), mm.
 
     Sides are proportional to the square root of the mean extensibility 1/Y of the group, so that
-    stiff fabrics stay visible beside ribs; the largest extensibility that the material has fills
+    stiff fabrics stay visible next to ribs; the largest extensibility that the material has fills
     the group.
 
     Parameters

@@ -34,7 +34,9 @@ def tube(centre_line: NDArray[np.float64], radius_mm: float, sides: int = 8) -> 
     """
     line = np.asarray(centre_line, dtype=float)
     if line.ndim != 2 or line.shape[0] < 2 or line.shape[1] != 3:
-        raise InputError("centre_line", "is no line in space.", "Give an array (points >= 2, 3).")
+        raise InputError(
+            "centre_line", "is not a line in space.", "Give an array (points >= 2, 3)."
+        )
     return TriangleMesh(
         tube_vertices(line[None], radius_mm, sides)[0], tube_faces(len(line), sides)
     )

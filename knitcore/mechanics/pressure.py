@@ -94,7 +94,7 @@ def limb_pressure(
         if not (math.isfinite(value) and 0 < value <= MAXIMUM_CIRCUMFERENCE_MM):
             raise InputError(
                 name,
-                f"{value:g} mm is no circumference.",
+                f"{value:g} mm is not a circumference.",
                 f"Give up to {MAXIMUM_CIRCUMFERENCE_MM:g} mm.",
             )
     strain = worn_mm / rest_mm - 1
@@ -148,7 +148,7 @@ def rest_circumference(
     if not (math.isfinite(mmhg) and 0 < mmhg <= 300):
         raise InputError("mmhg", f"{mmhg:g} mmHg cannot be used.", "Give above 0 to 300 mmHg.")
     if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAXIMUM_CIRCUMFERENCE_MM):
-        raise InputError("worn_mm", f"{worn_mm:g} mm is no circumference.", "Give it in mm.")
+        raise InputError("worn_mm", f"{worn_mm:g} mm is not a circumference.", "Give it in mm.")
     tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
     found = []
     for transverse in Transverse:

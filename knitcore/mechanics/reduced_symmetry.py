@@ -18,7 +18,7 @@ A stitch has two segments in series course-wise and two pairs side by side wale-
 
 All eight published even values come out of this. The paper's text has a factor 1 wale-wise and
 delta_odd = 1 - L sin phi / lambda; its published values contradict the first, its own formula for
-Y_odd the second. No formula reproduces its eight odd values: ours stand beside them (within a
+Y_odd the second. No formula reproduces its eight odd values: ours are given next to them (within a
 factor of 1.6).
 """
 
@@ -73,7 +73,7 @@ class SegmentGeometry:
         for name in ("separation_mm", "length_mm"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
-                raise InputError(name, f"{value} mm is no length.", "Give a positive length.")
+                raise InputError(name, f"{value} mm is not a length.", "Give a positive length.")
         if not math.isfinite(self.slope) or (self.parity is Parity.EVEN and self.slope == 0):
             raise InputError("slope", f"{self.slope} leaves it rigid.", "Give v above 0.")
         if self.parity is Parity.ODD and not (
@@ -167,7 +167,7 @@ class SegmentResult:
     ----------
     geometry, rigidity_n_per_mm : the segment and its spring constant.
     modulus_n_per_mm : of the stitch.
-    published_n_per_mm : the paper's value, None for geometry of one's own.
+    published_n_per_mm : the paper's value, None for your own geometry.
     """
 
     geometry: SegmentGeometry

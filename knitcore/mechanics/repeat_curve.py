@@ -4,7 +4,7 @@ The same unknowns as in :mod:`knitcore.mechanics.homogenisation` (periodic displ
 strains), with the full law of every phase. The strain along the pull is given; the transverse
 strain and the shear come out free of stress, as in a wide strip. Strains are engineering strains
 and stress is force per relaxed width, as in the law itself. This is the response of the flat
-composite: what a folded rib does before it lies flat is in :mod:`knitcore.answer.composite`.
+composite: the unfolding of a rib is in :mod:`knitcore.answer.composite`.
 """
 
 from __future__ import annotations

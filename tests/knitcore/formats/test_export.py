@@ -114,7 +114,7 @@ def test_what_a_format_cannot_hold_is_told() -> None:
     for kind in COLOURLESS_KINDS:
         assert "no colours" in export_chart(chart, kind, ACRYLIC, coloured).notes[-1]
     apart = ExportOptions(layout=DesignLayout(outline="xx..\n..xx\nxxxx"))
-    with pytest.raises(InputError, match="the outline falls apart"):
+    with pytest.raises(InputError, match="the outline is in several parts"):
         export_chart(chart, ExportKind.SVG, ACRYLIC, apart)
 
 

@@ -76,7 +76,7 @@ def test_patterns_of_other_hands(text: str, chart: str) -> None:
         ("Row 1: [k999] 999 times.", "too many"),
         ("Row 9999: k1.", "cannot be made"),
         ("Row 1: " + "[" * 1_000_000, "characters"),
-        ("k1, p1", "is no row"),
+        ("k1, p1", "is not a row"),
     ],
 )
 def test_mistakes_are_named(text: str, says: str) -> None:

@@ -97,10 +97,10 @@ def test_brackets_and_words_of_other_hands() -> None:
         ("Row 1: (k99, p99) 9999 times.", "too many"),
         ("Rows 1-2: Repeat rows 1-2.", "not all written"),
         ("Rows 1-5000: Knit.", "too large"),
-        ("knit on", "is no row"),
+        ("knit on", "is not a row"),
         ("Row 1: .", "empty"),
         ("Row 1: " + "k1, " * 100_000, "characters"),
-        ("Bind off.", "there is no row"),
+        ("Bind off.", "there are no rows"),
     ],
 )
 def test_mistakes_are_named(rows: str, says: str) -> None:

@@ -224,7 +224,7 @@ def test_yarn_of_a_pure_fabric_is_its_loop_length(fabric: Fabric) -> None:
     use = yarn_use(shaped, WOOL, linear_density_tex=500)
     assert use.length_m == pytest.approx(0.2 * (WOOL.record(fabric).loop_length_mm or 0))
     assert use.mass_g == pytest.approx(use.length_m / 2)
-    with pytest.raises(InputError, match="no yarn"):
+    with pytest.raises(InputError, match="not a linear density"):
         yarn_use(shaped, WOOL, linear_density_tex=0)
 
 

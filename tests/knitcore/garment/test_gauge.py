@@ -40,7 +40,7 @@ def test_sizes_are_whole_repeats_next_to_the_width(width: float, multiple: int, 
 
 @pytest.mark.parametrize("bad", [(0.0, 3.0), (3.0, float("nan")), (3.0, 500.0)])
 def test_impossible_gauges(bad: tuple[float, float]) -> None:
-    with pytest.raises(InputError, match="no gauge"):
+    with pytest.raises(InputError, match="not a stitch size"):
         Gauge(*bad)
 
 

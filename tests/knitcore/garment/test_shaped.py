@@ -67,8 +67,8 @@ def test_what_stands_outside_means_nothing() -> None:
         ("xxx\nx.x\nxxx", "row 2 is in two parts"),
         ("..x\nx..\nxxx", "row 3 does not stand on row 2"),
         ("xx\nxx", "the chart 3x3"),
-        ("xyz\nxxx\nxxx", "no grid of x and dots"),
-        ("xxx\nxx\nxxx", "no grid"),
+        ("xyz\nxxx\nxxx", "not a grid of x and dots"),
+        ("xxx\nxx\nxxx", "not a grid"),
     ],
 )
 def test_outlines_that_cannot_be_knitted(outline: str, says: str) -> None:
