@@ -295,7 +295,8 @@ class CellEnergy:
             return rows
         every = np.zeros(cell.unknowns)
         self._scatter(tangent, every)
-        for row, own in zip(rows, cell.dof, strict=True):  # no unknown belongs to two courses
+        for row, dof, sign in zip(rows, cell.dof, cell.sign, strict=True):
+            own = dof[sign != 0.0]  # no unknown belongs to two courses
             row[own] = every[own]
         rows[:, -2] = tangent[:, 0].reshape(cell.rows, -1).sum(axis=1)
         return rows

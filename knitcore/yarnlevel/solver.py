@@ -6,6 +6,9 @@ length of each course is a constraint: a step and the change of the tensions fol
 (Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the merit that must
 fall. The valley that inextensible yarn makes is narrow and curved, so a step along it leaves it;
 steps with the factor of the last Hessian lead back into it at a fraction of the price.
+
+Where it converges the Hessian tells a minimum from a saddle, as which a state keeps a symmetry that
+the first shape had; a saddle is left along its direction of most negative curvature.
 """
 
 from __future__ import annotations
@@ -43,6 +46,11 @@ _TRIALS = 60
 _WORTH = 0.2
 """A step with an old factor that gains less than this part of the step before is the last."""
 _NO_STEP = 1e-9
+_STABLE = 0.02
+"""Damping, relative to the first, below which the factor of a minimum exists (rigid motions of the
+sheet have no stiffness)."""
+_POWER_STEPS = 40
+_NUDGES = 6
 
 
 @dataclass(frozen=True)
@@ -79,6 +87,7 @@ class Minimum:
     force : (2,) dE/d(size of a stitch), N, course-wise and wale-wise, for the whole cell.
     min_distance_mm : smallest distance of centre lines.
     converged : whether the tolerance was reached.
+    stable : whether it is a minimum among the shapes of its cell, and no saddle.
     steps, evaluations : Newton steps taken, energies evaluated.
     """
 
@@ -88,6 +97,7 @@ class Minimum:
     force: Array
     min_distance_mm: float
     converged: bool
+    stable: bool
     steps: int
     evaluations: int
 
@@ -150,7 +160,7 @@ class _Descent:
         self.damping = self.first_damping
         self.single = energy.cell.unknowns >= _SINGLE_FROM
         self.steps, self.evaluations = 0, 1
-        self.converged = False
+        self.converged = self.stable = False
 
     def step(self) -> bool:
         """One Newton step and its followers; False where there is none."""
@@ -189,6 +199,7 @@ class _Descent:
             if blocked:
                 raise UnravelledError("No step from here keeps the strands apart.")
             return False
+        damping = self.damping
         if ratio > 0.5 and not indefinite:
             self._damp(1.0 / self.options.relief)
         elif ratio < 0.2 and not moving:
@@ -208,7 +219,29 @@ class _Descent:
             and predicted < self.options.tolerance * abs(terms.energy)
             and np.abs(terms.excess_mm).max() < slack * energy.mean_loop_mm
         )
+        if self.converged:
+            least = _STABLE * self.first_damping
+            self.stable = damping <= least or system.factorise(least)
+            self.converged = self.stable or not self._leave_saddle(system)
         return True
+
+    def _leave_saddle(self, system: _System) -> bool:
+        """Go down along the most negative curvature; False where that leads nowhere."""
+        energy, walker = self.energy, self.walker
+        here = walker.place
+        self.damping = 2.0 * _STABLE * self.first_damping
+        while not system.factorise(self.damping):  # the nearer it is, the faster is the iteration
+            self._damp(2.0)
+        step = system.softest() * energy.yarn.radius_mm
+        before = energy.merit(here.terms, self.tension)
+        for _ in range(_NUDGES):
+            leg = walker.leg(step)
+            self.evaluations += 1
+            if leg.fraction > _NO_STEP and energy.merit(leg.to.terms, self.tension) < before:
+                walker.go(leg)
+                return True
+            step = 0.25 * step
+        return False
 
     def _follow(self, system: _System, gain: float) -> None:
         """Steps with the factor of the last Hessian, as long as they are worth it."""
@@ -244,7 +277,7 @@ class _Descent:
         slope = self.walker.slope(self.tension, hessian=False)
         return Minimum(
             place.state, self.tension, place.terms, slope.gradient[-2:].copy(),
-            self.walker.min_distance_mm, self.converged, self.steps, self.evaluations,
+            self.walker.min_distance_mm, self.converged, self.stable, self.steps, self.evaluations,
         )  # fmt: skip
 
 
@@ -300,6 +333,17 @@ class _System:
                 return np.asarray(scaled * self._scale[:, None])
             found, _ = lapack.dpotrs(self._factor, right, lower=0)
         return np.asarray(found)
+
+    def softest(self) -> Array:
+        """Step of greatest component 1 along which the matrix that was factorised is least stiff:
+        inverse iteration from a shape without symmetry."""
+        v = np.cos(np.arange(np.count_nonzero(self._free)) ** 2.0)[:, None]
+        for _ in range(_POWER_STEPS):
+            v = self._through_factor(v)
+            v /= np.abs(v).max()
+        step = np.zeros(len(self._free))
+        step[self._free] = v[:, 0]
+        return step
 
     def solve(self, slope: Slope, excess: Array, remaining: Array) -> tuple[Array, Array]:
         """Step that takes the lengths to what they should be, and the change of the tensions."""

@@ -19,6 +19,7 @@ CASES = [
     ("KP", mirrored_cell),
     ("PK\nKP", mirrored_cell),
     ("KKP\nPKK", plain_cell),
+    ("P\nK\nK", mirrored_cell),
     ("KKPP\nKPPK", mirrored_cell),
 ]
 

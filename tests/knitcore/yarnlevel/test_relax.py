@@ -81,7 +81,7 @@ def test_one_stitch_with_mirrors_is_at_rest_in_the_whole_repeat_too(fabric):
     assert np.abs(slope.gradient).max() < 1e-4
 
 
-def test_the_general_cell_relaxes_to_the_same_stitch():
+def test_the_general_cell_relaxes_to_the_same_stitch_or_a_little_lower():
     entry = sample("cotton", "stockinette")
     energies = []
     for kind, text in ((mirrored_cell, "K"), (plain_cell, "KK\nKK")):
@@ -91,7 +91,8 @@ def test_the_general_cell_relaxes_to_the_same_stitch():
             Start("usual"), options=Options(),
         )  # fmt: skip
         energies.append(found.terms.energy / cell.stitches)
-    assert energies[1] == pytest.approx(energies[0], rel=1e-5)
+    assert energies[1] == pytest.approx(energies[0], rel=1e-4)
+    assert energies[1] < energies[0] * (1.0 + 1e-9)
 
 
 def test_two_by_two_rib_is_narrower_than_one_by_one():

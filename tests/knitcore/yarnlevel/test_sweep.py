@@ -110,7 +110,7 @@ def test_a_stress_that_ends_no_stretch_is_refused(zero, stress):
 
 
 def test_a_direction_that_is_not_known_is_refused(zero):
-    with pytest.raises(InputError, match="Use course or wale"):
+    with pytest.raises(InputError, match="Use course, wale"):
         sweep(zero, "across", 0.1)
 
 
