@@ -61,7 +61,7 @@ test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, client
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test
 
-lint: $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --strict, tsc
+lint: $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --strict; tsc, eslint, prettier
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -76,9 +76,10 @@ audit: .audit/.installed ## Risky code (bandit) and known holes in pinned packag
 	.audit/bin/bandit --quiet -c pyproject.toml -r app knitcore
 	.audit/bin/pip-audit --strict --disable-pip --require-hashes -r requirements.lock
 
-format: $(VENV)/.installed-dev ## Format the code
+format: $(VENV)/.installed-dev frontend/node_modules/.installed ## Format the code
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	cd frontend && npm run --silent format
 
 bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
 	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done

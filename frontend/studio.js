@@ -2,9 +2,10 @@
  * The state that the panels share: the chart, how it is shown and painted, what the service says of
  * it. Panels watch the signals and change them; none knows another.
  *
+ * @import {ChartDocument} from "./core/document.js"
  * @import {Selection} from "./core/selection.js"
  * @import {History} from "./core/history.js"
- * @import {Symmetry} from "./core/ink.js"
+ * @import {Ink, Symmetry} from "./core/ink.js"
  * @import {Overlay} from "./chart/overlays.js"
  * @import {Tool} from "./tools/tool.js"
  * @import {DesignDocument, Direction, Material, MaterialSummary, Prediction, Problem, StitchKind,
@@ -17,10 +18,9 @@
  */
 
 import { Grid } from "./core/grid.js";
-import { FLIP, Ink } from "./core/ink.js";
+import { FLIP } from "./core/ink.js";
 import { Signal } from "./core/signal.js";
 import { loadSettings, saveSettings } from "./core/store.js";
-import { ChartDocument } from "./core/document.js";
 import { Editing } from "./chart/editing.js";
 import { OVERLAYS } from "./chart/overlays.js";
 import { Seeing } from "./chart/seeing.js";

@@ -3,14 +3,13 @@
  * design.
  *
  * @import {ChartDocument} from "../core/document.js"
- * @import {Clip} from "../core/floating.js"
+ * @import {Clip, Floating} from "../core/floating.js"
  * @import {Selection} from "../core/selection.js"
  *
  * @typedef {"both" | "colours" | "symbols" | "loops"} Look colours with symbols, either, or stitches as
  *   they look in the cloth
  */
 
-import { Floating } from "../core/floating.js";
 import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../core/store.js";
 

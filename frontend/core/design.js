@@ -216,7 +216,7 @@ function items(value, what) {
  * @param {number} most
  */
 function text(value, what, most) {
-  if (typeof value !== "string" || !value || /[\x00-\x1f]/.test(value)) {
+  if (typeof value !== "string" || !value || /\p{Cc}/u.test(value)) {
     throw new DesignError(`The ${what} is no text of one line.`);
   }
   return value.slice(0, most);

@@ -3,12 +3,13 @@
  *
  * @import {ActionContext} from "../actions/action.js"
  * @import {Palette} from "../chart/palette.js"
+ * @import {Ink} from "../core/ink.js"
  * @import {Studio} from "../studio.js"
  */
 
 import { action } from "../actions/registry.js";
 import { readPalette } from "../chart/palette.js";
-import { FLIP, Ink, KNIT, NO_STITCH, PURL } from "../core/ink.js";
+import { FLIP, KNIT, NO_STITCH, PURL } from "../core/ink.js";
 import { motifText } from "../core/motif.js";
 import { QUARTERS, surroundings } from "../core/segments.js";
 import { ownInk, ownPatterns } from "../core/shelf.js";

@@ -1,9 +1,6 @@
 /**
  * The page in two minutes: what each part is for, one after the other. Arrow keys go on and back,
  * Escape ends it.
- *
- * @import {ActionContext} from "../actions/action.js"
- * @import {Studio} from "../studio.js"
  */
 
 import { saveSettings } from "../core/store.js";
@@ -53,8 +50,8 @@ const STOPS = [
   },
 ];
 
-/** @param {Studio} _studio @param {ActionContext} _context */
-export function create(_studio, _context) {
+/** Makes the tour; returns what starts it. */
+export function create() {
   let at = 0;
   const title = h("h2", { id: "tour-title" });
   const text = h("p", { id: "tour-text" });

@@ -10,21 +10,9 @@ import { paste } from "../actions/selection.js";
 import { ApiError, api } from "../api.js";
 import { DesignError, readDesign } from "../core/design.js";
 import { Grid, MAX_SIDE, isChartText } from "../core/grid.js";
+import { refusal } from "./refusal.js";
 
 const MAX_FILE_BYTES = 12_000_000;
-
-/**
- * @param {string} detail
- * @param {string} remedy
- * @returns {Problem}
- */
-export const refusal = (detail, remedy) => ({
-  type: "input",
-  title: "This chart cannot be imported",
-  status: 422,
-  detail,
-  remedy,
-});
 
 /**
  * @param {ActionContext} context

@@ -1,6 +1,7 @@
 /**
  * What the numbers are of: the whole chart, the selection, or a region.
  *
+ * @import {Grid} from "../core/grid.js"
  * @import {Studio} from "../studio.js"
  *
  * @typedef {object} Scope
@@ -10,7 +11,6 @@
  * @property {string} note how the grid stands for stitches that are no rectangle; "" where it is them
  */
 
-import { Grid } from "../core/grid.js";
 import { largestRectangle } from "../core/inscribed.js";
 import { selectionOf } from "../core/selection.js";
 

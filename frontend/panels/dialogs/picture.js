@@ -9,7 +9,7 @@ import { pixel, readPalette } from "../../chart/palette.js";
 import { MAX_SIDE } from "../../core/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/picture.js";
 import { h } from "../../dom.js";
-import { refusal } from "../../services/importer.js";
+import { refusal } from "../../services/refusal.js";
 import { dialog } from "./dialog.js";
 
 /** Larger pictures are made smaller before they are looked at. */

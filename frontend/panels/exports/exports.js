@@ -1,7 +1,6 @@
 /**
  * The export panel: all formats with their options, and what was checked of the file that came out.
  *
- * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
  * @import {ExportKind, Option} from "./kinds.js"
  *
@@ -21,8 +20,8 @@ import { KINDS } from "./kinds.js";
 /** Characters of a text file that are shown. */
 const MOST_SHOWN = 6000;
 
-/** @param {Studio} studio @param {ActionContext} _ */
-export function create(studio, _) {
+/** @param {Studio} studio */
+export function create(studio) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
   const tex = h("input", { type: "number", class: "number figures", min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
@@ -69,9 +68,10 @@ export function create(studio, _) {
   );
 
   async function run() {
-    const { format: _format, version: _version, ...design } = studio.toDocument();
     const body = {
-      ...design,
+      ...studio.toDocument(),
+      format: undefined,
+      version: undefined,
       ...chosen,
       to: kind.to,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,

@@ -1,0 +1,31 @@
+/** Formatting is prettier's and types are tsc's; eslint looks for slips and for circles of modules. */
+
+import js from "@eslint/js";
+import { importX } from "eslint-plugin-import-x";
+import globals from "globals";
+
+export default [
+  { ignores: ["dist/"] },
+  js.configs.recommended,
+  {
+    languageOptions: { globals: globals.browser },
+    linterOptions: { reportUnusedDisableDirectives: "error" },
+    plugins: { "import-x": importX },
+    rules: {
+      eqeqeq: "error",
+      "no-var": "error",
+      "prefer-const": "error",
+      "object-shorthand": "error",
+      "no-console": "error",
+      "import-x/first": "error",
+      "import-x/no-cycle": "error",
+      "import-x/no-duplicates": "error",
+      "import-x/no-unresolved": "error",
+    },
+  },
+  {
+    files: ["build.mjs", "eslint.config.mjs", "tests/**"],
+    languageOptions: { globals: globals.node },
+    rules: { "no-console": "off" },
+  },
+];
