@@ -134,8 +134,7 @@ export const api = {
    * @param {ViewRequest} body
    * @returns {Promise<View>}
    */
-  view: (design, body) =>
-    call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
+  view: (design, body) => call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
 
   /**
    * Outline stitches in the 3D view, or none.
@@ -144,16 +143,14 @@ export const api = {
    * @param {import("./core/grid.js").Box | null} box
    * @returns {Promise<void>}
    */
-  mark: (design, box) =>
-    call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body: { box } }),
+  mark: (design, box) => call(`/views/${encodeURIComponent(design)}/mark`, { method: "PUT", body: { box } }),
 
   /**
    * @param {string} design
    * @param {import("./types.js").Side} side
    * @returns {Promise<void>}
    */
-  look: (design, side) =>
-    call(`/views/${encodeURIComponent(design)}/camera`, { method: "PUT", body: { side } }),
+  look: (design, side) => call(`/views/${encodeURIComponent(design)}/camera`, { method: "PUT", body: { side } }),
 
   /**
    * @param {import("./types.js").CurveRequest} body

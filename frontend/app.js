@@ -35,13 +35,8 @@ const FIRST_MATERIAL = "acrylic";
 const FIRST_STRAIN = 0.3;
 
 const kept = loadDesign();
-const chart = kept
-  ? ChartDocument.read(kept, loadHistory())
-  : new ChartDocument(exampleGrid());
-const studio = new Studio(
-  chart,
-  kept ?? { id: newIdentifier(), name: "First swatch", material: FIRST_MATERIAL },
-);
+const chart = kept ? ChartDocument.read(kept, loadHistory()) : new ChartDocument(exampleGrid());
+const studio = new Studio(chart, kept ?? { id: newIdentifier(), name: "First swatch", material: FIRST_MATERIAL });
 
 const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"), studio);
 new Painter(view, studio);
@@ -79,10 +74,7 @@ rail(byId("rail"), studio, context);
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);
 messages(byId("messages"), byId("offline"), studio);
-themed.push(
-  overlaybar(byId("overlays"), studio, view),
-  shelf(byId("shelf"), studio, context),
-);
+themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));
 stretchdrawer(byId("stretch"), studio, stretcher);
 split(byId("split-columns"), "--side-width", {
   axis: "x",

@@ -62,16 +62,21 @@ const bundle = await rollup({
     },
   ],
 }).catch(failed);
-const { output } = await bundle.generate({
-  format: "es",
-  sourcemap: true,
-  entryFileNames: "[name]-[hash].js",
-  chunkFileNames: "[name]-[hash].js",
-  manualChunks: (id) => (atOnce.has(id) ? "app" : undefined),
-  experimentalMinChunkSize: 4000,
-}).catch(failed);
+const { output } = await bundle
+  .generate({
+    format: "es",
+    sourcemap: true,
+    entryFileNames: "[name]-[hash].js",
+    chunkFileNames: "[name]-[hash].js",
+    manualChunks: (id) => (atOnce.has(id) ? "app" : undefined),
+    experimentalMinChunkSize: 4000,
+  })
+  .catch(failed);
 const [theme, styles] = await Promise.all(
-  [["theme.js", "es2022"], ["styles/index.css", "chrome110"]].map(([entry, target]) =>
+  [
+    ["theme.js", "es2022"],
+    ["styles/index.css", "chrome110"],
+  ].map(([entry, target]) =>
     build({
       absWorkingDir: ROOT,
       entryPoints: [entry],
@@ -109,7 +114,7 @@ const swap = (html, tag, with_) => {
 };
 const css = styles.outputFiles.find(({ path }) => path.endsWith(".css")).text.trim();
 let page = await readFile(join(ROOT, "index.html"), "utf8");
-page = swap(page, '<link rel="stylesheet" href="/static/styles/index.css">', `<style>${css}</style>`);
+page = swap(page, '<link rel="stylesheet" href="/static/styles/index.css" />', `<style>${css}</style>`);
 page = swap(page, '<script src="/static/theme.js"></script>', `<script src="/static/${themeName}"></script>`);
 page = swap(
   page,

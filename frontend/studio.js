@@ -60,9 +60,7 @@ export class Studio {
     this.editing = new Editing(document, this.selection);
 
     /** @type {Signal<Overlay>} */
-    this.overlay = new Signal(
-      OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1],
-    );
+    this.overlay = new Signal(OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1]);
     this.rectangles = new Signal(settings.rectangles);
     this.seeing = new Seeing();
 

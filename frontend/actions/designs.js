@@ -35,8 +35,12 @@ export const DESIGNS = [
     studio.tell("This is the copy now; the design itself is among your designs.");
   }),
   action("exports", "Export, all formats …", "Mod+E", "export", ({ open }) => open("exports")),
-  action("project-file", "Save as a project file", "Mod+Shift+E", "export", ({ studio }) =>
-    void import("../services/exporter.js").then(({ exportProject }) => exportProject(studio)),
+  action(
+    "project-file",
+    "Save as a project file",
+    "Mod+Shift+E",
+    "export",
+    ({ studio }) => void import("../services/exporter.js").then(({ exportProject }) => exportProject(studio)),
   ),
   action("tour", "Tour of the page", "", "tour", ({ open }) => open("tour")),
 ];

@@ -61,9 +61,15 @@ export const LOOK = [
   action("rectangles", "Extensibility rectangles", ["E"], ({ studio }) => {
     studio.rectangles.value = !studio.rectangles.value;
   }),
-  action("face", "Face or back of the cloth", ["K"], ({ studio: { editing } }) => {
-    editing.back.value = !editing.back.value;
-  }, { icon: "turn" }),
+  action(
+    "face",
+    "Face or back of the cloth",
+    ["K"],
+    ({ studio: { editing } }) => {
+      editing.back.value = !editing.back.value;
+    },
+    { icon: "turn" },
+  ),
   action("round", "Knitted flat or in the round", ["Shift+R"], ({ studio: { editing } }) => {
     editing.round.value = !editing.round.value;
   }),

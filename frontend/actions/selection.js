@@ -31,7 +31,10 @@ function copyPart({ document, editing, selection }) {
 /** @param {Studio} studio @param {string} label */
 function clearPart({ document, selection }, label) {
   if (!selection.value) return;
-  document.set(selectedCells(selection.value, document.grid).map((i) => [i, 0]), label);
+  document.set(
+    selectedCells(selection.value, document.grid).map((i) => [i, 0]),
+    label,
+  );
 }
 
 /** @type {Action} */
@@ -243,7 +246,11 @@ const cutOutline = {
   perform: ({ studio: { document, selection } }) => {
     if (!selection.value) return;
     const kept = new Set(selectedCells(selection.value, document.grid));
-    document.set(Array.from(document.outline, (_, i) => [i, kept.has(i) ? 1 : 0]), "Outline", "outline");
+    document.set(
+      Array.from(document.outline, (_, i) => [i, kept.has(i) ? 1 : 0]),
+      "Outline",
+      "outline",
+    );
   },
 };
 
@@ -255,7 +262,11 @@ const fullOutline = {
   keys: [],
   enabled: ({ document }) => document.shaped,
   perform: ({ studio: { document } }) =>
-    void document.set(Array.from(document.outline, (_, i) => [i, 1]), "Outline", "outline"),
+    void document.set(
+      Array.from(document.outline, (_, i) => [i, 1]),
+      "Outline",
+      "outline",
+    ),
 };
 
 /** @type {Action[]} */

@@ -100,7 +100,10 @@ const insertion = (id, label, keys, axis, side) => ({
       return;
     }
     const box = selection.value;
-    document.reshape(label, inserted(grid, axis, side === "before" ? from : to, to - from, side === "before" ? "after" : "before"));
+    document.reshape(
+      label,
+      inserted(grid, axis, side === "before" ? from : to, to - from, side === "before" ? "after" : "before"),
+    );
     if (!box) return;
     // What was selected stays selected.
     const by = side === "before" ? to - from : 0;

@@ -30,8 +30,7 @@ function colourMap(stops) {
     const i = Math.min(last - 1, Math.floor(x));
     const f = x - i;
     /** @param {number} shift */
-    const mix = (shift) =>
-      Math.round(((table[i] >> shift) & 255) * (1 - f) + ((table[i + 1] >> shift) & 255) * f);
+    const mix = (shift) => Math.round(((table[i] >> shift) & 255) * (1 - f) + ((table[i + 1] >> shift) & 255) * f);
     return [mix(16), mix(8), mix(0)];
   };
   return { at, css: (t) => `rgb(${at(t).join(" ")})` };

@@ -72,9 +72,7 @@ const fabrics = {
   view: "fabric",
   available: always,
   colouring: (_, palette) =>
-    byKind((code, quarter, p) =>
-      pixel(palette.fabrics[QUARTERS[code][quarter]], p ? PURL_SHADE : 1),
-    ),
+    byKind((code, quarter, p) => pixel(palette.fabrics[QUARTERS[code][quarter]], p ? PURL_SHADE : 1)),
   legend: (_, palette) => ({
     kind: "swatches",
     items: [

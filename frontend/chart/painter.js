@@ -144,7 +144,7 @@ export class Painter {
     if (this.#placed) return true;
     this.#floating = copy
       ? Floating.lift(chart.grid, selection.value, true)
-      : studio.editing.floating ?? Floating.lift(chart.grid, selection.value, false);
+      : (studio.editing.floating ?? Floating.lift(chart.grid, selection.value, false));
     chart.begin();
     return true;
   }
@@ -165,7 +165,7 @@ export class Painter {
     this.#hover(cell);
     const { mode } = this.studio.tool.value;
     const freehand = mode === "stroke" || mode === "select";
-    const between = freehand ? event.getCoalescedEvents?.() ?? [] : [];
+    const between = freehand ? (event.getCoalescedEvents?.() ?? []) : [];
     for (const each of between.length ? between : [event]) this.#follow(view.cellAt(each), event.shiftKey);
     view.flush();
   }
@@ -332,10 +332,7 @@ export class Painter {
     }
     if (step) {
       const row = Math.min(grid.rows - 1, Math.max(0, cell[0] + (view.hover.value ? step[0] : 0)));
-      const column = Math.min(
-        grid.columns - 1,
-        Math.max(0, cell[1] + (view.hover.value ? step[1] : 0)),
-      );
+      const column = Math.min(grid.columns - 1, Math.max(0, cell[1] + (view.hover.value ? step[1] : 0)));
       if (event.shiftKey && mode === "select") {
         this.#anchor ??= cell;
         this.#begin(this.#anchor, false, { shiftKey: false, altKey: false });

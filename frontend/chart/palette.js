@@ -50,11 +50,7 @@ export function channels(hex) {
  */
 export function pixel([red, green, blue], shade = 1) {
   return (
-    ((255 << 24) |
-      (Math.round(blue * shade) << 16) |
-      (Math.round(green * shade) << 8) |
-      Math.round(red * shade)) >>>
-    0
+    ((255 << 24) | (Math.round(blue * shade) << 16) | (Math.round(green * shade) << 8) | Math.round(red * shade)) >>> 0
   );
 }
 
@@ -67,16 +63,7 @@ export function lightness(value) {
 }
 
 /** For regions: apart from the fabrics' colours, and from each other also for the colour-blind. */
-export const REGION_COLOURS = [
-  "#c2185b",
-  "#b58900",
-  "#00838f",
-  "#6d4c41",
-  "#0072b2",
-  "#d55e00",
-  "#7f7f7f",
-  "#009e73",
-];
+export const REGION_COLOURS = ["#c2185b", "#b58900", "#00838f", "#6d4c41", "#0072b2", "#d55e00", "#7f7f7f", "#009e73"];
 
 /** The one that is used least. @param {readonly {colour: string}[]} regions */
 export function nextRegionColour(regions) {

@@ -109,7 +109,12 @@ function* groups(studio, box, side) {
  * @returns {Group}
  */
 function blockGroup({ document: { grid } }, row0, column0, size) {
-  const box = { row0, column0, row1: Math.min(row0 + size, grid.rows), column1: Math.min(column0 + size, grid.columns) };
+  const box = {
+    row0,
+    column0,
+    row1: Math.min(row0 + size, grid.rows),
+    column1: Math.min(column0 + size, grid.columns),
+  };
   const cells = [];
   for (let row = row0; row < box.row1; row++) {
     for (let column = column0; column < box.column1; column++) cells.push(grid.index(row, column));

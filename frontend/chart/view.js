@@ -50,9 +50,7 @@ export class ChartView {
     this.canvas = canvas;
     this.top = top;
     this.studio = studio;
-    this.context = /** @type {CanvasRenderingContext2D} */ (
-      canvas.getContext("2d", CONTEXT)
-    );
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", CONTEXT));
     this.topContext = /** @type {CanvasRenderingContext2D} */ (top.getContext("2d", TOP_CONTEXT));
 
     new ResizeObserver(() => this.#resize(host)).observe(host);
@@ -304,7 +302,12 @@ export class ChartView {
     context.setTransform(viewport.dpr, 0, 0, viewport.dpr, 0, 0);
     context.clearRect(0, 0, viewport.width, viewport.height);
     context.beginPath();
-    context.rect(MARGIN.left - 3, MARGIN.top - 3, viewport.width - MARGIN.left - MARGIN.right + 6, viewport.height - MARGIN.top - MARGIN.bottom + 6);
+    context.rect(
+      MARGIN.left - 3,
+      MARGIN.top - 3,
+      viewport.width - MARGIN.left - MARGIN.right + 6,
+      viewport.height - MARGIN.top - MARGIN.bottom + 6,
+    );
     context.save();
     context.clip();
     const symmetry = studio.symmetry.value;

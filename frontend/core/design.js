@@ -178,8 +178,12 @@ function readRepeat(item, rows, columns) {
   const placements = items(item.placements, `placements of ${name}`).map((place) => {
     const { row, column, rows: high, columns: wide } = place;
     if (
-      !isCount(row, 0) || !isCount(column, 0) || !isCount(high, 1) || !isCount(wide, 1) ||
-      row + high > rows || column + wide > columns
+      !isCount(row, 0) ||
+      !isCount(column, 0) ||
+      !isCount(high, 1) ||
+      !isCount(wide, 1) ||
+      row + high > rows ||
+      column + wide > columns
     ) {
       throw new DesignError(`A placement of repeat ${name} leaves the chart of ${columns} × ${rows}.`);
     }

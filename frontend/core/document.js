@@ -279,7 +279,11 @@ export class ChartDocument extends ChartState {
 
   /** Its stitches stay. @param {string} id */
   removeRegion(id) {
-    this.#arrange("Remove region", "regions", this.regions.filter((region) => region.id !== id));
+    this.#arrange(
+      "Remove region",
+      "regions",
+      this.regions.filter((region) => region.id !== id),
+    );
   }
 
   /**
@@ -323,7 +327,11 @@ export class ChartDocument extends ChartState {
 
   /** Its copies stay as they are, linked no more. @param {string} id */
   removeRepeat(id) {
-    this.#arrange("Remove repeat", "repeats", this.repeats.filter((repeat) => repeat.id !== id));
+    this.#arrange(
+      "Remove repeat",
+      "repeats",
+      this.repeats.filter((repeat) => repeat.id !== id),
+    );
   }
 
   /** @param {readonly ShelfItem[]} shelf @param {string} label */

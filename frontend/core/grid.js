@@ -87,8 +87,10 @@ export class Grid {
 
   /** @param {Box} box */
   region({ row0, column0, row1, column1 }) {
-    return Grid.build(row1 - row0, column1 - column0, (row, column) =>
-      this.purl[this.index(row0 + row, column0 + column)],
+    return Grid.build(
+      row1 - row0,
+      column1 - column0,
+      (row, column) => this.purl[this.index(row0 + row, column0 + column)],
     );
   }
 
@@ -113,9 +115,7 @@ export class Grid {
    * @param {number} columns
    */
   resized(rows, columns) {
-    return Grid.build(rows, columns, (row, column) =>
-      this.has(row, column) ? this.purl[this.index(row, column)] : 0,
-    );
+    return Grid.build(rows, columns, (row, column) => (this.has(row, column) ? this.purl[this.index(row, column)] : 0));
   }
 
   /**
@@ -125,23 +125,17 @@ export class Grid {
    * @param {number} columns
    */
   tiled(rows, columns) {
-    return Grid.build(rows, columns, (row, column) =>
-      this.purl[this.index(row % this.rows, column % this.columns)],
-    );
+    return Grid.build(rows, columns, (row, column) => this.purl[this.index(row % this.rows, column % this.columns)]);
   }
 
   /** Left and right exchanged; knits stay knits. */
   mirrored() {
-    return Grid.build(this.rows, this.columns, (row, column) =>
-      this.purl[this.index(row, this.columns - 1 - column)],
-    );
+    return Grid.build(this.rows, this.columns, (row, column) => this.purl[this.index(row, this.columns - 1 - column)]);
   }
 
   /** Top and bottom exchanged. */
   flipped() {
-    return Grid.build(this.rows, this.columns, (row, column) =>
-      this.purl[this.index(this.rows - 1 - row, column)],
-    );
+    return Grid.build(this.rows, this.columns, (row, column) => this.purl[this.index(this.rows - 1 - row, column)]);
   }
 
   /** Turned by half a turn in its plane. */
@@ -151,7 +145,11 @@ export class Grid {
 
   /** Every knit a purl and every purl a knit. */
   swapped() {
-    return new Grid(this.rows, this.columns, this.purl.map((p) => 1 - p));
+    return new Grid(
+      this.rows,
+      this.columns,
+      this.purl.map((p) => 1 - p),
+    );
   }
 
   /** The back of the same cloth. */
@@ -161,11 +159,7 @@ export class Grid {
 
   /** @param {Grid} other */
   equals(other) {
-    return (
-      this.rows === other.rows &&
-      this.columns === other.columns &&
-      this.purl.every((p, i) => p === other.purl[i])
-    );
+    return this.rows === other.rows && this.columns === other.columns && this.purl.every((p, i) => p === other.purl[i]);
   }
 }
 

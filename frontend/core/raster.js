@@ -77,10 +77,7 @@ export function ellipse(a, b) {
 export function thick(path, size) {
   const before = Math.floor((size - 1) / 2);
   return path.flatMap(([row, column]) =>
-    rectangle(
-      [row - before, column - before],
-      [row - before + size - 1, column - before + size - 1],
-    ),
+    rectangle([row - before, column - before], [row - before + size - 1, column - before + size - 1]),
   );
 }
 

@@ -44,11 +44,7 @@ export function updateSurroundings(grid, codes, box = grid.box, outline = null) 
       const left = column > 0 && outline?.[i - 1] !== 0 ? purl[i - 1] ^ own : Math.max(right, 0);
       const above = row + 1 < rows && outline?.[i + columns] !== 0 ? purl[i + columns] ^ own : -1;
       const below = row > 0 && outline?.[i - columns] !== 0 ? purl[i - columns] ^ own : Math.max(above, 0);
-      codes[i] =
-        left * LEFT +
-        (right < 0 ? left : right) * RIGHT +
-        below * BELOW +
-        (above < 0 ? below : above) * ABOVE;
+      codes[i] = left * LEFT + (right < 0 ? left : right) * RIGHT + below * BELOW + (above < 0 ? below : above) * ABOVE;
     }
   }
 }

@@ -38,8 +38,7 @@ export const designs = {
     call(`/designs?limit=60&deleted=${deleted}${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ""}`),
 
   /** @type {(document: DesignDocument, key: string) => Promise<Kept>} */
-  create: (document, key) =>
-    call("/designs", { method: "POST", body: document, headers: { "Idempotency-Key": key } }),
+  create: (document, key) => call("/designs", { method: "POST", body: document, headers: { "Idempotency-Key": key } }),
 
   /** @type {(id: string) => Promise<Kept>} */
   read: (id) => call(at(id)),
@@ -52,8 +51,7 @@ export const designs = {
   newer: (id, revision) => call(at(id), { headers: { "If-None-Match": `"${revision}"` } }),
 
   /** @type {(id: string, document: DesignDocument, revision: number) => Promise<Kept>} */
-  replace: (id, document, revision) =>
-    call(at(id), { method: "PUT", body: document, headers: made(revision) }),
+  replace: (id, document, revision) => call(at(id), { method: "PUT", body: document, headers: made(revision) }),
 
   /** @type {(id: string, strokes: object) => Promise<{revision: number}>} */
   paint: (id, strokes) =>
@@ -64,8 +62,7 @@ export const designs = {
     }),
 
   /** @type {(id: string, name: string, revision: number) => Promise<Kept>} */
-  rename: (id, name, revision) =>
-    call(at(id), { method: "PATCH", body: { name }, headers: made(revision) }),
+  rename: (id, name, revision) => call(at(id), { method: "PATCH", body: { name }, headers: made(revision) }),
 
   /** @type {(id: string) => Promise<Kept>} */
   duplicate: (id) => call(at(id, "/duplicate"), { method: "POST" }),

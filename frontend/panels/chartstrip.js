@@ -31,7 +31,12 @@ export function chartstrip(host, context) {
     const drawn = look === "loops" ? "loops" : look === "colours" ? "plain" : "dots";
     /** @param {string} kind @param {string} label */
     const entry = (kind, label) =>
-      h("span", { class: "legend-item" }, h("span", { class: `key-cell ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }), label);
+      h(
+        "span",
+        { class: "legend-item" },
+        h("span", { class: `key-cell ${kind} ${drawn}${look === "symbols" ? " paper" : ""}` }),
+        label,
+      );
     key.replaceChildren(
       entry("knit", "knit"),
       entry("purl", "purl"),
@@ -68,13 +73,22 @@ export function chartstrip(host, context) {
   const small = (id) => actionButton(action(id), context, "strip-button");
 
   host.append(
-    h("div", { class: "chart-strip" },
+    h(
+      "div",
+      { class: "chart-strip" },
       key,
       h("span", { class: "spacer" }),
-      choice("Side of the cloth", "K", editing.back, [[false, "Face"], [true, "Back"]]),
-      choice("Knitted", "Shift+R", editing.round, [[false, "Flat"], [true, "Round"]]),
+      choice("Side of the cloth", "K", editing.back, [
+        [false, "Face"],
+        [true, "Back"],
+      ]),
+      choice("Knitted", "Shift+R", editing.round, [
+        [false, "Flat"],
+        [true, "Round"],
+      ]),
       look,
-      h("div", { class: "group" }, small("zoom-out"), small("zoom-in"), small("fit"))),
+      h("div", { class: "group" }, small("zoom-out"), small("zoom-in"), small("fit")),
+    ),
   );
 }
 
@@ -88,10 +102,18 @@ export function chartstrip(host, context) {
  */
 function choice(label, key, signal, options) {
   const buttons = options.map(([value, text]) =>
-    h("button", { class: "segment", role: "radio", id: `choose-${text.toLowerCase()}`, onclick: () => (signal.value = value) }, text),
+    h(
+      "button",
+      { class: "segment", role: "radio", id: `choose-${text.toLowerCase()}`, onclick: () => (signal.value = value) },
+      text,
+    ),
   );
   signal.watch((now) =>
     buttons.forEach((button, k) => button.setAttribute("aria-checked", String(options[k][0] === now))),
   );
-  return h("div", { class: "segmented small", role: "radiogroup", "aria-label": label, title: `${label} (${key})` }, ...buttons);
+  return h(
+    "div",
+    { class: "segmented small", role: "radiogroup", "aria-label": label, title: `${label} (${key})` },
+    ...buttons,
+  );
 }

@@ -34,12 +34,16 @@ export function docked(studio, name, title, ...content) {
         close();
       },
     },
-    h("header", {},
+    h(
+      "header",
+      {},
       h("h2", { id: `panel-${name}-title`, tabIndex: -1 }, title),
-      iconButton("close", `Close ${title.toLowerCase()}`, close)),
+      iconButton("close", `Close ${title.toLowerCase()}`, close),
+    ),
     ...content,
   );
-  const dock = document.getElementById("dock") ?? h("aside", { id: "dock", class: "dock", "aria-label": "Parts of the chart" });
+  const dock =
+    document.getElementById("dock") ?? h("aside", { id: "dock", class: "dock", "aria-label": "Parts of the chart" });
   if (!dock.isConnected) byId("chart-host").before(dock);
   dock.append(section);
   panel.watch((open) => {

@@ -81,7 +81,12 @@ export function fabricview(host, studio, view) {
   let timer;
 
   const wish = () => wanted(studio, view);
-  host.append(frame, caption, toolbar(studio, (side) => void look(side), wish), status);
+  host.append(
+    frame,
+    caption,
+    toolbar(studio, (side) => void look(side), wish),
+    status,
+  );
 
   const send = async () => {
     if (sending) {

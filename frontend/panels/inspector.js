@@ -62,9 +62,24 @@ export function inspector(host, studio) {
       label,
     );
   const tabs = { rigidity: tab("rigidity", "Stiffness map"), curve: tab("curve", "Stress–strain") };
-  const pulls = h("div", { class: "segmented small curve-pulls", role: "radiogroup", "aria-label": "Direction of the curves" });
-  const ways = (/** @type {Direction[]} */ (["course", "wale"])).map((way) => {
-    const button = h("button", { class: "segment", role: "radio", id: `curve-${way}`, title: `Pulled ${way}-wise`, "aria-label": way, onclick: () => (studio.seeing.pull.value = way) }, icon(way));
+  const pulls = h("div", {
+    class: "segmented small curve-pulls",
+    role: "radiogroup",
+    "aria-label": "Direction of the curves",
+  });
+  const ways = /** @type {Direction[]} */ (["course", "wale"]).map((way) => {
+    const button = h(
+      "button",
+      {
+        class: "segment",
+        role: "radio",
+        id: `curve-${way}`,
+        title: `Pulled ${way}-wise`,
+        "aria-label": way,
+        onclick: () => (studio.seeing.pull.value = way),
+      },
+      icon(way),
+    );
     studio.seeing.pull.watch((chosen) => button.setAttribute("aria-checked", String(chosen === way)));
     return button;
   });
@@ -81,16 +96,22 @@ export function inspector(host, studio) {
   };
 
   host.append(
-    h("div", { class: "inspector-numbers" },
+    h(
+      "div",
+      { class: "inspector-numbers" },
       h("div", { class: "inspector-head" }, h("div", { class: "inspector-title" }, title, scopes), source),
       problem,
       table,
-      shares),
-    h("div", { class: "inspector-plots" },
+      shares,
+    ),
+    h(
+      "div",
+      { class: "inspector-plots" },
       h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, tabs.rigidity, tabs.curve),
       pulls,
       rigidity,
-      curve),
+      curve,
+    ),
   );
   choose("rigidity");
 
@@ -131,9 +152,13 @@ export function inspector(host, studio) {
     shares.replaceChildren(
       shareBar(
         "share-fabrics",
-        FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${percent(mix[i])}` })),
+        FABRICS.map((fabric, i) => ({
+          share: mix[i],
+          colour: `var(--${fabric})`,
+          text: `${fabric} ${percent(mix[i])}`,
+        })),
       ),
-      ...(/** @type {Direction[]} */ (["course", "wale"])).map((direction) => {
+      .../** @type {Direction[]} */ (["course", "wale"]).map((direction) => {
         const { even, odd } = segments[direction];
         const all = even + odd || 1;
         return shareBar(
@@ -203,20 +228,49 @@ function fill(table, value) {
   /** @param {string} label @param {string} hint @param {HTMLElement[]} cells */
   const row = (label, hint, ...cells) => h("tr", {}, h("th", { scope: "row", title: hint }, label), ...cells);
   table.replaceChildren(
-    h("thead", {}, h("tr", {},
-      h("td", {}),
-      h("th", { scope: "col" }, icon("course"), "Course"),
-      h("th", { scope: "col" }, icon("wale"), "Wale"))),
-    h("tbody", {},
-      row("Modulus", "Initial Young's modulus: force per width",
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("td", {}),
+        h("th", { scope: "col" }, icon("course"), "Course"),
+        h("th", { scope: "col" }, icon("wale"), "Wale"),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      row(
+        "Modulus",
+        "Initial Young's modulus: force per width",
         cell("modulus-course", value?.modulus_course_n_per_mm, "N/mm", range(value?.modulus_course_interval_n_per_mm)),
-        cell("modulus-wale", value?.modulus_wale_n_per_mm, "N/mm", range(value?.modulus_wale_interval_n_per_mm))),
-      row("Gives", "Extensibility: one over the modulus",
-        cell("extensibility-course", value?.extensibility_course_mm_per_n, "mm/N", range(inverse(value?.modulus_course_interval_n_per_mm))),
-        cell("extensibility-wale", value?.extensibility_wale_mm_per_n, "mm/N", range(inverse(value?.modulus_wale_interval_n_per_mm)))),
-      row("Poisson", "Contraction across when pulled along",
+        cell("modulus-wale", value?.modulus_wale_n_per_mm, "N/mm", range(value?.modulus_wale_interval_n_per_mm)),
+      ),
+      row(
+        "Gives",
+        "Extensibility: one over the modulus",
+        cell(
+          "extensibility-course",
+          value?.extensibility_course_mm_per_n,
+          "mm/N",
+          range(inverse(value?.modulus_course_interval_n_per_mm)),
+        ),
+        cell(
+          "extensibility-wale",
+          value?.extensibility_wale_mm_per_n,
+          "mm/N",
+          range(inverse(value?.modulus_wale_interval_n_per_mm)),
+        ),
+      ),
+      row(
+        "Poisson",
+        "Contraction across when pulled along",
         cell("poisson-yx", value?.poisson_yx, "", range(value?.poisson_yx_interval)),
-        cell("poisson-xy", value?.poisson_xy, "", range(value?.poisson_xy_interval)))),
+        cell("poisson-xy", value?.poisson_xy, "", range(value?.poisson_xy_interval)),
+      ),
+    ),
   );
 }
 

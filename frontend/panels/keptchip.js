@@ -17,7 +17,11 @@ const LOOKS = {
   waiting: { label: "Saving …", icon: "saving", title: "Kept in this browser; on its way to the service" },
   sending: { label: "Saving …", icon: "saving", title: "Kept in this browser; on its way to the service" },
   kept: { label: "Saved", icon: "check", title: "Kept at the service. Click for versions." },
-  offline: { label: "Kept here", icon: "offline", title: "The service cannot be reached: kept in this browser, and delivered when it is back" },
+  offline: {
+    label: "Kept here",
+    icon: "offline",
+    title: "The service cannot be reached: kept in this browser, and delivered when it is back",
+  },
   refused: { label: "Not saved", icon: "warning", title: "The service does not keep this; it is kept in this browser" },
   conflict: { label: "Choose …", icon: "warning", title: "Changed elsewhere, too: choose what stays" },
   shared: { label: "Shared", icon: "share", title: "Opened by a link; changes are not kept" },
@@ -66,7 +70,14 @@ export function sharedbanner(host, { keeper, studio }) {
       h("span", { class: "spacer" }),
     );
     if (state.mode === "copy") {
-      host.append(h("button", { class: "button", id: "shared-copy", onclick: () => void copy(state.token) }, icon("copy"), "Make my copy"));
+      host.append(
+        h(
+          "button",
+          { class: "button", id: "shared-copy", onclick: () => void copy(state.token) },
+          icon("copy"),
+          "Make my copy",
+        ),
+      );
     }
   });
 

@@ -57,23 +57,25 @@ export function menu({ id, label, content, class: style }) {
   const setItems = (items) => {
     list.replaceChildren(
       ...items.map((item) =>
-        item === null ? h("hr", {}) : h(
-          "button",
-          {
-            class: "menu-item",
-            id: item.id,
-            role: item.checked === undefined ? "menuitem" : "menuitemradio",
-            "aria-checked": item.checked === undefined ? undefined : String(item.checked),
-            disabled: item.disabled,
-            onclick: () => {
-              list.hidePopover();
-              button.focus();
-              item.perform();
-            },
-          },
-          h("span", { class: "menu-tick" }, item.checked && icon("check")),
-          item.content,
-        ),
+        item === null
+          ? h("hr", {})
+          : h(
+              "button",
+              {
+                class: "menu-item",
+                id: item.id,
+                role: item.checked === undefined ? "menuitem" : "menuitemradio",
+                "aria-checked": item.checked === undefined ? undefined : String(item.checked),
+                disabled: item.disabled,
+                onclick: () => {
+                  list.hidePopover();
+                  button.focus();
+                  item.perform();
+                },
+              },
+              h("span", { class: "menu-tick" }, item.checked && icon("check")),
+              item.content,
+            ),
       ),
     );
   };

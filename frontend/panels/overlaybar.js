@@ -92,7 +92,13 @@ export function overlaybar(host, studio, view) {
     );
     if (studio.rectangles.value) {
       legend.append(
-        h("label", { class: "legend-item" }, h("span", { class: "chip-rectangle" }), h("span", { class: "wide" }, "give (√ scale) of"), grouping),
+        h(
+          "label",
+          { class: "legend-item" },
+          h("span", { class: "chip-rectangle" }),
+          h("span", { class: "wide" }, "give (√ scale) of"),
+          grouping,
+        ),
       );
     }
   };
@@ -112,14 +118,20 @@ export function overlaybar(host, studio, view) {
   });
 
   host.append(
-    h("div", { class: "chips" },
-      h("div", { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
+    h(
+      "div",
+      { class: "chips" },
+      h(
+        "div",
+        { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
         ...chips.slice(0, 3),
         h("span", { class: "chip-heading", "aria-hidden": "true" }, "Moduli"),
         ...chips.slice(3, 6),
         h("span", { class: "chip-divider", "aria-hidden": "true" }),
-        ...chips.slice(6)),
-      rectangles),
+        ...chips.slice(6),
+      ),
+      rectangles,
+    ),
     legend,
     readout,
   );
@@ -150,9 +162,7 @@ function describe(studio, cell) {
   const [row, column] = cell;
   const i = grid.index(row, column);
   const side = studio.editing.round.value || row % 2 === 0 ? "RS" : "WS";
-  const parts = [
-    `Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`,
-  ];
+  const parts = [`Row ${row + 1} ${side}, stitch ${grid.columns - column}: ${grid.purl[i] ? "purl" : "knit"}`];
   if (studio.rectangles.value && studio.kinds().length) {
     parts.push(give(studio, row, column));
     return parts.join(" · ");

@@ -7,5 +7,12 @@ import { h } from "../dom.js";
  * @param {...import("../dom.js").Child} more
  */
 export function problemText({ title, detail, remedy }, ...more) {
-  return h("div", {}, h("strong", {}, title), detail && detail !== title && h("p", {}, detail), remedy && h("p", {}, remedy), ...more);
+  return h(
+    "div",
+    {},
+    h("strong", {}, title),
+    detail && detail !== title && h("p", {}, detail),
+    remedy && h("p", {}, remedy),
+    ...more,
+  );
 }

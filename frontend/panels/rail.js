@@ -61,7 +61,10 @@ export function rail(host, studio, context) {
     symmetry.setAttribute("aria-pressed", String(value !== "none"));
     symmetry.setAttribute("aria-label", `Symmetry: ${SYMMETRY_NAMES[value]}`);
     symmetry.title = `Symmetry: ${SYMMETRY_NAMES[value]} (Y)`;
-    symmetry.replaceChildren(icon(value === "up" ? "flip" : "mirror"), value === "both" ? h("span", { class: "badge" }, "2") : "");
+    symmetry.replaceChildren(
+      icon(value === "up" ? "flip" : "mirror"),
+      value === "both" ? h("span", { class: "badge" }, "2") : "",
+    );
   });
 
   /** @param {"regions" | "repeats"} name @param {string} label */

@@ -30,7 +30,12 @@ export function create(studio, context) {
   const list = h("ol", { class: "part-list", reversed: true });
   let chosen = chart.regions.at(-1)?.id ?? "";
 
-  const fromSelection = h("button", { class: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) }, icon("select"), "From selection");
+  const fromSelection = h(
+    "button",
+    { class: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) },
+    icon("select"),
+    "From selection",
+  );
   const empty = h(
     "button",
     {
@@ -67,40 +72,131 @@ export function create(studio, context) {
     /** @param {number} value */
     const selected = (value) => {
       if (!selection.value) return;
-      chart.set(selectedCells(selection.value, chart.grid).map((i) => [i, value]), name, `region:${id}`);
+      chart.set(
+        selectedCells(selection.value, chart.grid).map((i) => [i, value]),
+        name,
+        `region:${id}`,
+      );
     };
     const count = region.count;
     const painting = ink.value.target === `region:${id}`;
     return h(
       "li",
       { class: open ? "part open" : "part" },
-      h("div", { class: "part-head" },
-        h("input", { type: "color", id: `${id}-colour`, value: colour, title: "Colour", "aria-label": `Colour of ${name}`, onchange: (/** @type {Event} */ { target }) => chart.changeRegion(id, { colour: /** @type {HTMLInputElement} */ (target).value }, "Recolour a region") }),
-        h("button", { class: "part-name", id: `${id}-open`, "aria-expanded": String(open), onclick: () => ((chosen = open ? "" : id), show()) },
+      h(
+        "div",
+        { class: "part-head" },
+        h("input", {
+          type: "color",
+          id: `${id}-colour`,
+          value: colour,
+          title: "Colour",
+          "aria-label": `Colour of ${name}`,
+          onchange: (/** @type {Event} */ { target }) =>
+            chart.changeRegion(id, { colour: /** @type {HTMLInputElement} */ (target).value }, "Recolour a region"),
+        }),
+        h(
+          "button",
+          {
+            class: "part-name",
+            id: `${id}-open`,
+            "aria-expanded": String(open),
+            onclick: () => ((chosen = open ? "" : id), show()),
+          },
           h("span", { class: "ellipsis" }, name),
-          h("span", { class: "muted figures" }, `${count} sts`)),
-        small("hide", hidden ? "hidden" : "eye", hidden ? "Show" : "Hide", () => chart.changeRegion(id, { hidden: !hidden }, "Hide or show a region"), { "aria-pressed": String(hidden) }),
-        small("lock", locked ? "lock" : "unlock", locked ? "Unlock" : "Lock", () => chart.changeRegion(id, { locked: !locked }, "Lock or unlock a region"), { "aria-pressed": String(locked) })),
-      open && h("div", { class: "part-body" },
-        h("label", { class: "line-field" }, h("span", {}, "Name"),
-          h("input", { type: "text", class: "text", id: `${id}-name`, value: name, maxLength: 80, onchange: (/** @type {Event} */ { target }) => chart.changeRegion(id, { name: /** @type {HTMLInputElement} */ (target).value.trim() || name }, "Rename a region") })),
-        h("label", { class: "line-field" }, h("span", {}, "Fill"), fills(region)),
-        h("label", { class: "line-field" }, h("span", {}, "Yarn"),
-          h("input", { type: "text", class: "text", id: `${id}-yarn`, value: yarn ?? "", placeholder: "main yarn", maxLength: 80, onchange: (/** @type {Event} */ { target }) => chart.changeRegion(id, { yarn: /** @type {HTMLInputElement} */ (target).value.trim() || null }, "Yarn of a region") })),
-        h("div", { class: "part-buttons" },
-          wide("paint", "pencil", painting ? "Painting it" : "Paint it", () => (painting ? (ink.value = KNIT) : paint(region)), { "aria-pressed": String(painting), title: "With any tool; the right button takes stitches out" }),
-          wide("select", "select", "Select it", () => (selection.value = selectionOf(region.cells, chart.grid)), { disabled: !count }),
-          wide("add", "plus", "Add selection", () => selected(1), { disabled: !selection.value || locked }),
-          wide("take", "minus", "Take out", () => selected(0), { disabled: !selection.value || locked, title: "Take the selected stitches out" }),
-          fill && wide("refill", "fill", "Fill again", () => chart.fillRegion(id), { disabled: locked })),
-        h("div", { class: "part-foot" },
-          small("up", "up", "Further up", () => chart.orderRegion(id, at + 1), { disabled: at === chart.regions.length - 1 }),
-          small("down", "down", "Further down", () => chart.orderRegion(id, at - 1), { disabled: at === 0 }),
-          h("span", { class: "spacer" }),
-          small("remove", "trash", "Remove; its stitches stay", () => {
-            if (painting) ink.value = KNIT;
-            chart.removeRegion(id);
-          }))),
+          h("span", { class: "muted figures" }, `${count} sts`),
+        ),
+        small(
+          "hide",
+          hidden ? "hidden" : "eye",
+          hidden ? "Show" : "Hide",
+          () => chart.changeRegion(id, { hidden: !hidden }, "Hide or show a region"),
+          { "aria-pressed": String(hidden) },
+        ),
+        small(
+          "lock",
+          locked ? "lock" : "unlock",
+          locked ? "Unlock" : "Lock",
+          () => chart.changeRegion(id, { locked: !locked }, "Lock or unlock a region"),
+          { "aria-pressed": String(locked) },
+        ),
+      ),
+      open &&
+        h(
+          "div",
+          { class: "part-body" },
+          h(
+            "label",
+            { class: "line-field" },
+            h("span", {}, "Name"),
+            h("input", {
+              type: "text",
+              class: "text",
+              id: `${id}-name`,
+              value: name,
+              maxLength: 80,
+              onchange: (/** @type {Event} */ { target }) =>
+                chart.changeRegion(
+                  id,
+                  { name: /** @type {HTMLInputElement} */ (target).value.trim() || name },
+                  "Rename a region",
+                ),
+            }),
+          ),
+          h("label", { class: "line-field" }, h("span", {}, "Fill"), fills(region)),
+          h(
+            "label",
+            { class: "line-field" },
+            h("span", {}, "Yarn"),
+            h("input", {
+              type: "text",
+              class: "text",
+              id: `${id}-yarn`,
+              value: yarn ?? "",
+              placeholder: "main yarn",
+              maxLength: 80,
+              onchange: (/** @type {Event} */ { target }) =>
+                chart.changeRegion(
+                  id,
+                  { yarn: /** @type {HTMLInputElement} */ (target).value.trim() || null },
+                  "Yarn of a region",
+                ),
+            }),
+          ),
+          h(
+            "div",
+            { class: "part-buttons" },
+            wide(
+              "paint",
+              "pencil",
+              painting ? "Painting it" : "Paint it",
+              () => (painting ? (ink.value = KNIT) : paint(region)),
+              { "aria-pressed": String(painting), title: "With any tool; the right button takes stitches out" },
+            ),
+            wide("select", "select", "Select it", () => (selection.value = selectionOf(region.cells, chart.grid)), {
+              disabled: !count,
+            }),
+            wide("add", "plus", "Add selection", () => selected(1), { disabled: !selection.value || locked }),
+            wide("take", "minus", "Take out", () => selected(0), {
+              disabled: !selection.value || locked,
+              title: "Take the selected stitches out",
+            }),
+            fill && wide("refill", "fill", "Fill again", () => chart.fillRegion(id), { disabled: locked }),
+          ),
+          h(
+            "div",
+            { class: "part-foot" },
+            small("up", "up", "Further up", () => chart.orderRegion(id, at + 1), {
+              disabled: at === chart.regions.length - 1,
+            }),
+            small("down", "down", "Further down", () => chart.orderRegion(id, at - 1), { disabled: at === 0 }),
+            h("span", { class: "spacer" }),
+            small("remove", "trash", "Remove; its stitches stay", () => {
+              if (painting) ink.value = KNIT;
+              chart.removeRegion(id);
+            }),
+          ),
+        ),
     );
   };
 
@@ -138,7 +234,13 @@ export function create(studio, context) {
     refreshed(list, () =>
       chart.regions.length
         ? chart.regions.map(item).reverse()
-        : [h("li", { class: "muted part-empty" }, "Regions name parts of the chart, such as a cuff or a heel: select some stitches (M, Q or W) and press “From selection”, or paint a new one.")],
+        : [
+            h(
+              "li",
+              { class: "muted part-empty" },
+              "Regions name parts of the chart, such as a cuff or a heel: select some stitches (M, Q or W) and press “From selection”, or paint a new one.",
+            ),
+          ],
     );
   };
   const soon = () => {

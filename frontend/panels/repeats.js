@@ -25,7 +25,12 @@ import { thumbnail } from "./thumbnail.js";
 export function create(studio, context) {
   const { document: chart, selection, editing } = studio;
   const list = h("ol", { class: "part-list" });
-  const fromSelection = h("button", { class: "button", id: "repeat-from-selection", onclick: () => action("make-repeat").perform(context) }, icon("select"), "New from the selection");
+  const fromSelection = h(
+    "button",
+    { class: "button", id: "repeat-from-selection", onclick: () => action("make-repeat").perform(context) },
+    icon("select"),
+    "New from the selection",
+  );
   let closed = false;
 
   /** @param {Repeat} repeat */
@@ -37,48 +42,121 @@ export function create(studio, context) {
       h("button", { class: "button", id: `${id}-${what}`, onclick: perform, ...more }, icon(picture), label);
     /** @param {"edgeColumns" | "edgeRows"} field @param {string} label @param {number} value */
     const edge = (field, label, value) =>
-      h("label", { class: "edge-field" }, label,
-        h("input", { type: "number", class: "number figures", id: `${id}-${field}`, min: 0, max: 400, value, "aria-label": `${label} beyond whole motifs of ${name}`, onchange: (/** @type {Event} */ { target }) => {
-          const number = /** @type {HTMLInputElement} */ (target).valueAsNumber;
-          if (!Number.isInteger(number) || number < 0) return show();
-          const next = repeat.with({ [field]: number });
-          chart.changeRepeat(id, { [field]: number, placements: placements.map((place) => fitted(next, place)) }, "Edge of a repeat");
-        } }));
+      h(
+        "label",
+        { class: "edge-field" },
+        label,
+        h("input", {
+          type: "number",
+          class: "number figures",
+          id: `${id}-${field}`,
+          min: 0,
+          max: 400,
+          value,
+          "aria-label": `${label} beyond whole motifs of ${name}`,
+          onchange: (/** @type {Event} */ { target }) => {
+            const number = /** @type {HTMLInputElement} */ (target).valueAsNumber;
+            if (!Number.isInteger(number) || number < 0) return show();
+            const next = repeat.with({ [field]: number });
+            chart.changeRepeat(
+              id,
+              { [field]: number, placements: placements.map((place) => fitted(next, place)) },
+              "Edge of a repeat",
+            );
+          },
+        }),
+      );
     return h(
       "li",
       { class: open ? "part open" : "part" },
-      h("div", { class: "part-head" },
+      h(
+        "div",
+        { class: "part-head" },
         thumbnail({ chart: motif.tiled(Math.max(6, motif.rows), Math.max(6, motif.columns)).text }, { side: 34 }),
-        h("button", { class: "part-name", id: `${id}-open`, "aria-expanded": String(open), onclick: () => ((closed = open), (editing.repeatId.value = id), show()) },
+        h(
+          "button",
+          {
+            class: "part-name",
+            id: `${id}-open`,
+            "aria-expanded": String(open),
+            onclick: () => ((closed = open), (editing.repeatId.value = id), show()),
+          },
           h("span", { class: "ellipsis" }, name),
-          h("span", { class: "muted figures" }, `${motif.columns} × ${motif.rows}`)),
+          h("span", { class: "muted figures" }, `${motif.columns} × ${motif.rows}`),
+        ),
       ),
-      open && h("div", { class: "part-body" },
-        h("label", { class: "line-field" }, h("span", {}, "Name"),
-          h("input", { type: "text", class: "text", id: `${id}-name`, value: name, maxLength: 80, onchange: (/** @type {Event} */ { target }) => chart.changeRepeat(id, { name: /** @type {HTMLInputElement} */ (target).value.trim() || name }, "Rename a repeat") })),
-        h("p", { class: "muted figures" }, repeat.rule[0].toUpperCase() + repeat.rule.slice(1)),
-        h("div", { class: "edge-fields" }, h("span", {}, "Edge"), edge("edgeColumns", "sts", edgeColumns), edge("edgeRows", "rows", edgeRows)),
-        h("div", { class: "part-buttons" },
-          wide("place", "repeat", "Place", () => {
-            editing.repeatId.value = id;
-            studio.tool.value = placeTool;
-          }, { "aria-pressed": String(studio.tool.value === placeTool), title: "Then drag in the chart (P)" }),
-          wide("fill", "fill", selection.value ? "Fill selection" : "Fill chart", () => {
-            const box = filledBox(repeat, selection.value ?? chart.grid.box);
-            if (!box) {
-              studio.tell(`${name} does not fit: it is a ${repeat.rule}.`);
-              return;
-            }
-            const place = { row: box.row0, column: box.column0, rows: box.row1 - box.row0, columns: box.column1 - box.column0 };
-            lay(repeat, [...placements, place], "Place a repeat");
-          })),
-        placements.length
-          ? h("ul", { class: "copies" }, ...placements.map((place, at) => copy(repeat, place, at)))
-          : h("p", { class: "muted" }, "Not placed yet."),
-        h("p", { class: "muted" }, "Paint any copy: all follow."),
-        h("div", { class: "part-foot" },
-          h("span", { class: "spacer" }),
-          iconButton("trash", `Remove ${name}; its stitches stay`, () => chart.removeRepeat(id), { id: `${id}-remove`, title: "Remove; its stitches stay" }))),
+      open &&
+        h(
+          "div",
+          { class: "part-body" },
+          h(
+            "label",
+            { class: "line-field" },
+            h("span", {}, "Name"),
+            h("input", {
+              type: "text",
+              class: "text",
+              id: `${id}-name`,
+              value: name,
+              maxLength: 80,
+              onchange: (/** @type {Event} */ { target }) =>
+                chart.changeRepeat(
+                  id,
+                  { name: /** @type {HTMLInputElement} */ (target).value.trim() || name },
+                  "Rename a repeat",
+                ),
+            }),
+          ),
+          h("p", { class: "muted figures" }, repeat.rule[0].toUpperCase() + repeat.rule.slice(1)),
+          h(
+            "div",
+            { class: "edge-fields" },
+            h("span", {}, "Edge"),
+            edge("edgeColumns", "sts", edgeColumns),
+            edge("edgeRows", "rows", edgeRows),
+          ),
+          h(
+            "div",
+            { class: "part-buttons" },
+            wide(
+              "place",
+              "repeat",
+              "Place",
+              () => {
+                editing.repeatId.value = id;
+                studio.tool.value = placeTool;
+              },
+              { "aria-pressed": String(studio.tool.value === placeTool), title: "Then drag in the chart (P)" },
+            ),
+            wide("fill", "fill", selection.value ? "Fill selection" : "Fill chart", () => {
+              const box = filledBox(repeat, selection.value ?? chart.grid.box);
+              if (!box) {
+                studio.tell(`${name} does not fit: it is a ${repeat.rule}.`);
+                return;
+              }
+              const place = {
+                row: box.row0,
+                column: box.column0,
+                rows: box.row1 - box.row0,
+                columns: box.column1 - box.column0,
+              };
+              lay(repeat, [...placements, place], "Place a repeat");
+            }),
+          ),
+          placements.length
+            ? h("ul", { class: "copies" }, ...placements.map((place, at) => copy(repeat, place, at)))
+            : h("p", { class: "muted" }, "Not placed yet."),
+          h("p", { class: "muted" }, "Paint any copy: all follow."),
+          h(
+            "div",
+            { class: "part-foot" },
+            h("span", { class: "spacer" }),
+            iconButton("trash", `Remove ${name}; its stitches stay`, () => chart.removeRepeat(id), {
+              id: `${id}-remove`,
+              title: "Remove; its stitches stay",
+            }),
+          ),
+        ),
     );
   };
 
@@ -104,19 +182,53 @@ export function create(studio, context) {
     };
     /** @param {"rows" | "columns"} axis @param {string} word */
     const stepper = (axis, word) =>
-      h("span", { class: "stepper", role: "group", "aria-label": `Motifs ${word}` },
-        h("button", { class: "step", id: `${id}-${at}-${axis}-less`, "aria-label": `One motif less ${word}`, onclick: () => resize(axis, -1) }, "−"),
+      h(
+        "span",
+        { class: "stepper", role: "group", "aria-label": `Motifs ${word}` },
+        h(
+          "button",
+          {
+            class: "step",
+            id: `${id}-${at}-${axis}-less`,
+            "aria-label": `One motif less ${word}`,
+            onclick: () => resize(axis, -1),
+          },
+          "−",
+        ),
         h("span", { class: "figures" }, Math.floor(place[axis] / motif[axis])),
-        h("button", { class: "step", id: `${id}-${at}-${axis}-more`, "aria-label": `One motif more ${word}`, onclick: () => resize(axis, 1) }, "+"));
+        h(
+          "button",
+          {
+            class: "step",
+            id: `${id}-${at}-${axis}-more`,
+            "aria-label": `One motif more ${word}`,
+            onclick: () => resize(axis, 1),
+          },
+          "+",
+        ),
+      );
     return h(
       "li",
       { class: "copy" },
-      h("button", { class: "copy-name figures", title: "Select this copy", id: `${id}-${at}-select`, onclick: () => (selection.value = boxOf(place)) },
-        `Row ${place.row + 1}, st ${chart.grid.columns - place.column - place.columns + 1}`),
+      h(
+        "button",
+        {
+          class: "copy-name figures",
+          title: "Select this copy",
+          id: `${id}-${at}-select`,
+          onclick: () => (selection.value = boxOf(place)),
+        },
+        `Row ${place.row + 1}, st ${chart.grid.columns - place.column - place.columns + 1}`,
+      ),
       stepper("columns", "across"),
       "×",
       stepper("rows", "up"),
-      iconButton("unlink", "Unlink this copy; its stitches stay", () => lay(repeat, placements.toSpliced(at, 1), "Unlink a copy"), { id: `${id}-${at}-unlink`, title: "Unlink this copy; its stitches stay" }),
+      iconButton(
+        "unlink",
+        "Unlink this copy; its stitches stay",
+        () => lay(repeat, placements.toSpliced(at, 1), "Unlink a copy"),
+        { id: `${id}-${at}-unlink`, title: "Unlink this copy; its stitches stay" },
+      ),
     );
   };
 
@@ -125,7 +237,13 @@ export function create(studio, context) {
     refreshed(list, () =>
       chart.repeats.length
         ? chart.repeats.map(item)
-        : [h("li", { class: "muted part-empty" }, "A linked repeat is one motif in many places: change one copy and all follow. Select a motif (M) and press “New from the selection”.")],
+        : [
+            h(
+              "li",
+              { class: "muted part-empty" },
+              "A linked repeat is one motif in many places: change one copy and all follow. Select a motif (M) and press “New from the selection”.",
+            ),
+          ],
     );
   };
   const soon = () => {

@@ -44,13 +44,21 @@ export function shelf(host, studio, context) {
     h("span", {}, "Fill chart"),
   );
   const removeLabel = "Take this pattern off the shelf";
-  const removeButton = iconButton("trash", removeLabel, () => {
-    const motif = studio.ink.value.repeat ? motifText(studio.ink.value.repeat) : "";
-    saveShelf(loadShelf().filter((item) => item.motif !== motif));
-    chart.changeShelf(chart.shelf.filter((item) => item.motif !== motif), "Remove a pattern");
-    studio.ink.value = FLIP;
-    show();
-  }, { id: "shelf-remove", title: removeLabel });
+  const removeButton = iconButton(
+    "trash",
+    removeLabel,
+    () => {
+      const motif = studio.ink.value.repeat ? motifText(studio.ink.value.repeat) : "";
+      saveShelf(loadShelf().filter((item) => item.motif !== motif));
+      chart.changeShelf(
+        chart.shelf.filter((item) => item.motif !== motif),
+        "Remove a pattern",
+      );
+      studio.ink.value = FLIP;
+      show();
+    },
+    { id: "shelf-remove", title: removeLabel },
+  );
   studio.selection.watch((box) => {
     const text = fillButton.querySelector("span");
     if (text) text.textContent = box ? "Fill selection" : "Fill chart";
@@ -121,9 +129,7 @@ export function shelf(host, studio, context) {
 function thumbnail(ink, palette, colour) {
   const side = 2 * SIDE;
   const canvas = h("canvas", { width: side, height: side });
-  drawThumbnail(
-    /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")), side, ink, palette, colour,
-  );
+  drawThumbnail(/** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")), side, ink, palette, colour);
   return h("img", { src: canvas.toDataURL(), class: "thumbnail", alt: "" });
 }
 

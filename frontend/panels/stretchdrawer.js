@@ -72,9 +72,17 @@ export function stretchdrawer(host, studio, stretcher) {
       shear_modulus_n_per_mm: shear > 0 ? shear : null,
     });
   };
-  const run = h("button", { class: "button primary", id: "stretch-run", onclick: () => (studio.stretch.value.busy ? stretcher.cancel() : start()) });
+  const run = h("button", {
+    class: "button primary",
+    id: "stretch-run",
+    onclick: () => (studio.stretch.value.busy ? stretcher.cancel() : start()),
+  });
   const done = h("span");
-  const progress = h("div", { class: "progress", role: "progressbar", "aria-label": "Stretch test", hidden: true }, done);
+  const progress = h(
+    "div",
+    { class: "progress", role: "progressbar", "aria-label": "Stretch test", hidden: true },
+    done,
+  );
   const options = stretchOptions();
   const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
 
@@ -100,12 +108,20 @@ export function stretchdrawer(host, studio, stretcher) {
   const player = h("div", { class: "player" }, play, slider, figures);
 
   host.append(
-    h("div", { class: "stretch-set" },
+    h(
+      "div",
+      { class: "stretch-set" },
       h("h2", {}, "Stretch test"),
-      h("div", { class: "segmented", role: "radiogroup", "aria-label": "Direction of the pull" }, choices.course, choices.wale),
+      h(
+        "div",
+        { class: "segmented", role: "radiogroup", "aria-label": "Direction of the pull" },
+        choices.course,
+        choices.wale,
+      ),
       h("label", { class: "amount" }, h("span", { class: "muted" }, "by"), amount, h("span", { class: "muted" }, "%")),
       options.element,
-      run),
+      run,
+    ),
     progress,
     note,
     player,
@@ -120,13 +136,28 @@ export function stretchdrawer(host, studio, stretcher) {
     const [low = NaN, high = NaN] = [value.force_low_n?.[i], value.force_high_n?.[i]];
     const widths = value.stress_n_per_mm[i] / value.force_n[i];
     /** @param {string} term @param {string} text @param {string} hint @param {string} [interval] */
-    const pair = (term, text, hint, interval) => h("div", { title: hint }, h("dt", {}, term),
-      h("dd", {}, text, interval && h("span", { class: "interval", title: "90 % interval" }, interval)));
+    const pair = (term, text, hint, interval) =>
+      h(
+        "div",
+        { title: hint },
+        h("dt", {}, term),
+        h("dd", {}, text, interval && h("span", { class: "interval", title: "90 % interval" }, interval)),
+      );
     figures.replaceChildren(
       pair("Strain", percent(value.strain[i]), "Clamp to clamp, along the pull"),
       pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches", range([low, high])),
-      pair("Stress", `${figure(value.stress_n_per_mm[i])} N/mm`, "Force per relaxed width", range([widths * low, widths * high])),
-      pair("Waist", percent(value.waist_strain[i], 1), "Change of width half way between the clamps", percentRange(value.waist_strain[i], value.waist_margin?.[i], 1)),
+      pair(
+        "Stress",
+        `${figure(value.stress_n_per_mm[i])} N/mm`,
+        "Force per relaxed width",
+        range([widths * low, widths * high]),
+      ),
+      pair(
+        "Waist",
+        percent(value.waist_strain[i], 1),
+        "Change of width half way between the clamps",
+        percentRange(value.waist_strain[i], value.waist_margin?.[i], 1),
+      ),
     );
   };
   const show = () => {
@@ -185,25 +216,46 @@ function stretchOptions() {
     ["full", "with lock-up"],
     ["published", "as published, without lock-up"],
   ]);
-  const shear = h("input", { type: "number", class: "number figures", id: "stretch-shear", min: "0.0001", max: "10", step: "0.001", placeholder: "assumed" });
+  const shear = h("input", {
+    type: "number",
+    class: "number figures",
+    id: "stretch-shear",
+    min: "0.0001",
+    max: "10",
+    step: "0.001",
+    placeholder: "assumed",
+  });
   /** @param {string} text @param {HTMLElement} field */
-  const row = (text, field, unit = "") => h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
-  const panel = h("div", { class: "stretch-options", id: "stretch-options", popover: "auto" },
+  const row = (text, field, unit = "") =>
+    h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
+  const panel = h(
+    "div",
+    { class: "stretch-options", id: "stretch-options", popover: "auto" },
     row("Ends", clamps),
     row("Law", model),
     row("Shear modulus", shear, "N/mm"),
-    h("p", { class: "muted" }, "Nobody measured the shear modulus; where none is given, the paper's assumption is taken."));
-  const button = h("button", {
-    class: "button quiet",
-    id: "stretch-more",
-    title: "Ends, law and shear modulus",
-    popoverTargetElement: panel,
-    onclick: () => {
-      const { left, top } = button.getBoundingClientRect();
-      panel.style.left = `${left}px`;
-      panel.style.bottom = `${innerHeight - top + 6}px`;
+    h(
+      "p",
+      { class: "muted" },
+      "Nobody measured the shear modulus; where none is given, the paper's assumption is taken.",
+    ),
+  );
+  const button = h(
+    "button",
+    {
+      class: "button quiet",
+      id: "stretch-more",
+      title: "Ends, law and shear modulus",
+      popoverTargetElement: panel,
+      onclick: () => {
+        const { left, top } = button.getBoundingClientRect();
+        panel.style.left = `${left}px`;
+        panel.style.bottom = `${innerHeight - top + 6}px`;
+      },
     },
-  }, "Options", icon("down"));
+    "Options",
+    icon("down"),
+  );
   return { clamps, model, shear, element: h("div", {}, button, panel) };
 }
 

@@ -68,7 +68,12 @@ export function topbar(host, studio, context) {
   });
   const showSize = () => {
     const { columns, rows } = studio.document.grid;
-    size.replaceChildren(icon("resize"), h("span", {}, `${columns} × ${rows}`), h("span", { class: "label" }, "sts"), h("span", { class: "visually-hidden" }, "change size"));
+    size.replaceChildren(
+      icon("resize"),
+      h("span", {}, `${columns} × ${rows}`),
+      h("span", { class: "label" }, "sts"),
+      h("span", { class: "visually-hidden" }, "change size"),
+    );
   };
   studio.document.onChange(({ resized }) => resized && showSize());
   showSize();
@@ -95,10 +100,18 @@ export function topbar(host, studio, context) {
  * @param {ActionContext} context
  */
 export function offerTour(host, { open }) {
-  const offer = h("div", { class: "tour-offer", id: "tour-offer" },
-    h("button", { class: "button quiet", onclick: () => (offer.remove(), open("tour")) },
-      icon("tour"), h("span", { class: "wide" }, "New here?"), "Take the tour"),
-    iconButton("close", "No tour", () => offer.remove()));
+  const offer = h(
+    "div",
+    { class: "tour-offer", id: "tour-offer" },
+    h(
+      "button",
+      { class: "button quiet", onclick: () => (offer.remove(), open("tour")) },
+      icon("tour"),
+      h("span", { class: "wide" }, "New here?"),
+      "Take the tour",
+    ),
+    iconButton("close", "No tour", () => offer.remove()),
+  );
   host.querySelector(".spacer")?.before(offer);
 }
 
@@ -209,7 +222,11 @@ function designsMenu(context) {
   const { root, setItems } = menu({
     id: "designs",
     label: "Designs",
-    content: [h("img", { src: "/static/icon.svg", alt: "", width: 26, height: 26 }), h("span", { class: "visually-hidden" }, "Knitcore: designs and help"), icon("down")],
+    content: [
+      h("img", { src: "/static/icon.svg", alt: "", width: 26, height: 26 }),
+      h("span", { class: "visually-hidden" }, "Knitcore: designs and help"),
+      icon("down"),
+    ],
     class: "button quiet brand",
   });
   /** @param {string} id */

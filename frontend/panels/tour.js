@@ -59,28 +59,39 @@ export function create() {
   const back = h("button", { class: "button", id: "tour-back", onclick: () => go(at - 1) }, "Back");
   const next = h("button", { class: "button primary", id: "tour-next", onclick: () => go(at + 1) }, "Next");
   const ring = h("div", { class: "tour-ring" });
-  const box = h("div", { class: "tour-box" },
+  const box = h(
+    "div",
+    { class: "tour-box" },
     title,
     text,
-    h("div", { class: "dialog-buttons" },
+    h(
+      "div",
+      { class: "dialog-buttons" },
       place,
       h("span", { class: "spacer" }),
       h("button", { class: "button quiet", id: "tour-end", onclick: () => element.close() }, "End the tour"),
       back,
-      next));
-  const element = h("dialog", {
-    class: "tour",
-    id: "tour",
-    "aria-labelledby": "tour-title",
-    "aria-describedby": "tour-text",
-    onkeydown: (/** @type {KeyboardEvent} */ event) => {
-      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-      if (!step) return;
-      event.preventDefault();
-      go(at + step);
+      next,
+    ),
+  );
+  const element = h(
+    "dialog",
+    {
+      class: "tour",
+      id: "tour",
+      "aria-labelledby": "tour-title",
+      "aria-describedby": "tour-text",
+      onkeydown: (/** @type {KeyboardEvent} */ event) => {
+        const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+        if (!step) return;
+        event.preventDefault();
+        go(at + step);
+      },
+      onclose: () => saveSettings({ tour: "seen" }),
     },
-    onclose: () => saveSettings({ tour: "seen" }),
-  }, ring, box);
+    ring,
+    box,
+  );
   document.body.append(element);
   window.addEventListener("resize", () => element.open && go(at));
 
@@ -115,7 +126,8 @@ export function create() {
     const beside = Math.max(room.right, room.left) > width + 24;
     const over = Math.max(room.below, room.above) > height + 24;
     let [x, y] = [part.left + (part.width - width) / 2, part.top + (part.height - height) / 2];
-    if (over && (!beside || part.width > part.height)) y = room.below > room.above ? part.bottom + 12 : part.top - height - 12;
+    if (over && (!beside || part.width > part.height))
+      y = room.below > room.above ? part.bottom + 12 : part.top - height - 12;
     else if (beside) x = room.right > room.left ? part.right + 12 : part.left - width - 12;
     box.style.left = within(x, innerWidth - width);
     box.style.top = within(y, innerHeight - height);

@@ -92,11 +92,9 @@ export function curvePlot(host, studio) {
     const stretch = shownStretch(studio);
     if (host.hidden || !drawn || !plotly || !stretch) return;
     const { step } = studio;
-    void plotly.restyle(
-      host,
-      { x: [[100 * stretch.strain[step.value]]], y: [[stretch.stress_n_per_mm[step.value]]] },
-      [FABRICS.length + 3],
-    );
+    void plotly.restyle(host, { x: [[100 * stretch.strain[step.value]]], y: [[stretch.stress_n_per_mm[step.value]]] }, [
+      FABRICS.length + 3,
+    ]);
   });
   new ResizeObserver(() => {
     if (drawn && (host.clientWidth !== width || host.clientHeight !== height)) void draw();

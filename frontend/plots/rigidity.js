@@ -42,17 +42,23 @@ export function rigidityPlot(host, studio) {
     const points = studio.materials.value.flatMap(({ id, name, fabrics }) =>
       FABRICS.flatMap((fabric) => {
         const one = fabrics[fabric];
-        return one
-          ? [{ id, name, fabric, x: one.modulus_course_n_per_mm, y: one.modulus_wale_n_per_mm }]
-          : [];
+        return one ? [{ id, name, fabric, x: one.modulus_course_n_per_mm, y: one.modulus_wale_n_per_mm }] : [];
       }),
     );
     const { value, scope } = studio.prediction.value;
     const own = value && { x: value.modulus_course_n_per_mm, y: value.modulus_wale_n_per_mm };
     const all = own ? [...points, own] : points;
     if (!all.length) return;
-    const x = axis(all.map((p) => p.x), PAD.left, width - PAD.right);
-    const y = axis(all.map((p) => p.y), height - PAD.bottom, PAD.top);
+    const x = axis(
+      all.map((p) => p.x),
+      PAD.left,
+      width - PAD.right,
+    );
+    const y = axis(
+      all.map((p) => p.y),
+      height - PAD.bottom,
+      PAD.top,
+    );
 
     for (const tick of x.ticks) {
       add("line", { x1: x.at(tick), x2: x.at(tick), y1: PAD.top, y2: height - PAD.bottom, class: "grid-line" });
@@ -62,8 +68,16 @@ export function rigidityPlot(host, studio) {
       add("line", { x1: PAD.left, x2: width - PAD.right, y1: y.at(tick), y2: y.at(tick), class: "grid-line" });
       add("text", { x: PAD.left - 6, y: y.at(tick) + 4, class: "tick end" }, String(tick));
     }
-    add("text", { x: (PAD.left + width - PAD.right) / 2, y: height - 6, class: "axis middle" }, "Course modulus (N/mm)");
-    add("text", { transform: `translate(11 ${(PAD.top + height - PAD.bottom) / 2}) rotate(-90)`, class: "axis middle" }, "Wale modulus (N/mm)");
+    add(
+      "text",
+      { x: (PAD.left + width - PAD.right) / 2, y: height - 6, class: "axis middle" },
+      "Course modulus (N/mm)",
+    );
+    add(
+      "text",
+      { transform: `translate(11 ${(PAD.top + height - PAD.bottom) / 2}) rotate(-90)`, class: "axis middle" },
+      "Wale modulus (N/mm)",
+    );
     for (const point of points) {
       const chosen = point.id === studio.materialId.value;
       const dot = add("circle", {
@@ -84,7 +98,13 @@ export function rigidityPlot(host, studio) {
       /** @param {number} v */
       const clampY = (v) => Math.min(height - PAD.bottom, Math.max(PAD.top, y.at(v)));
       if (across && across[0] > 0) {
-        add("line", { x1: clampX(across[0]), x2: clampX(across[1]), y1: y.at(own.y), y2: y.at(own.y), class: "own-interval" });
+        add("line", {
+          x1: clampX(across[0]),
+          x2: clampX(across[1]),
+          y1: y.at(own.y),
+          y2: y.at(own.y),
+          class: "own-interval",
+        });
       }
       if (up && up[0] > 0) {
         add("line", { x1: x.at(own.x), x2: x.at(own.x), y1: clampY(up[0]), y2: clampY(up[1]), class: "own-interval" });

@@ -35,7 +35,10 @@ export async function exportPixels(studio) {
 
 /** @param {Studio} studio */
 export const fileName = ({ name }) =>
-  name.value.replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "").toLowerCase() || "chart";
+  name.value
+    .replace(/[^\p{L}\p{N}]+/gu, "-")
+    .replace(/^-|-$/g, "")
+    .toLowerCase() || "chart";
 
 /**
  * @param {string} name

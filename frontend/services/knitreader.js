@@ -17,7 +17,8 @@ const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
  * @param {string} name of the file
  * @param {string} text
  */
-export const isKnitting = (name, text) => /\.(k|ks|knitout)$/i.test(name) || text.startsWith(";!knitout") || WRITTEN.test(text);
+export const isKnitting = (name, text) =>
+  /\.(k|ks|knitout)$/i.test(name) || text.startsWith(";!knitout") || WRITTEN.test(text);
 
 /**
  * @param {ActionContext} context
@@ -42,7 +43,9 @@ export async function importKnitting({ studio, keeper }, name, text) {
       regions: found.regions,
     });
     keeper.openNew(design);
-    studio.tell(`Opened ${found.columns} stitches × ${found.rows} rows from ${name}. The design before it is still among your designs.`);
+    studio.tell(
+      `Opened ${found.columns} stitches × ${found.rows} rows from ${name}. The design before it is still among your designs.`,
+    );
     return null;
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;

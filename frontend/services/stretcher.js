@@ -67,16 +67,12 @@ export class Stretcher {
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
       /** @type {Stretch} */
-      const value = await runJob(
-        "stretch",
-        request,
-        {
-          signal: controller.signal,
-          onProgress: ({ state, progress }) => {
-            this.progress.value = state === "waiting" ? null : progress;
-          },
+      const value = await runJob("stretch", request, {
+        signal: controller.signal,
+        onProgress: ({ state, progress }) => {
+          this.progress.value = state === "waiting" ? null : progress;
         },
-      );
+      });
       if (controller.signal.aborted) return;
       this.#request = request;
       studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };

@@ -17,10 +17,29 @@ const WHOLE = {
   chart: "KPKP\nPKPK\nKKKK",
   outline: "xxx.\nxxxx\nxxxx",
   regions: [
-    { id: "r", name: "Rib", colour: "#3b6fb6", yarn: null, fill: "KP", runs: [[0, 1, 2], [2, 0, 1]], locked: false, hidden: true },
+    {
+      id: "r",
+      name: "Rib",
+      colour: "#3b6fb6",
+      yarn: null,
+      fill: "KP",
+      runs: [
+        [0, 1, 2],
+        [2, 0, 1],
+      ],
+      locked: false,
+      hidden: true,
+    },
   ],
   repeats: [
-    { id: "seed", name: "Seed", motif: "KP/PK", edge_columns: 0, edge_rows: 0, placements: [{ row: 1, column: 0, rows: 2, columns: 4 }] },
+    {
+      id: "seed",
+      name: "Seed",
+      motif: "KP/PK",
+      edge_columns: 0,
+      edge_rows: 0,
+      placements: [{ row: 1, column: 0, rows: 2, columns: 4 }],
+    },
   ],
   shelf: [{ name: "Mine", motif: "KKP" }],
 };
@@ -56,7 +75,10 @@ test("what is wrong with a file is said in words", () => {
     [{ ...WHOLE, regions: [{ ...WHOLE.regions[0], colour: "red" }] }, /colour of region Rib/],
     [{ ...WHOLE, regions: [WHOLE.regions[0], WHOLE.regions[0]] }, /one id/],
     [{ ...WHOLE, repeats: [{ ...WHOLE.repeats[0], motif: "KP/P" }] }, /motif of repeat Seed/],
-    [{ ...WHOLE, repeats: [{ ...WHOLE.repeats[0], placements: [{ row: 2, column: 0, rows: 2, columns: 4 }] }] }, /leaves the chart/],
+    [
+      { ...WHOLE, repeats: [{ ...WHOLE.repeats[0], placements: [{ row: 2, column: 0, rows: 2, columns: 4 }] }] },
+      /leaves the chart/,
+    ],
     [{ ...WHOLE, shelf: "none" }, /no list/],
   ];
   for (const [value, message] of wrong) assert.throws(() => readDesign(value), message);
@@ -73,10 +95,23 @@ test("a damaged design in the browser keeps its chart and all that is readable",
 
 test("no stitch: it cannot be painted, and is an edge for its neighbours", () => {
   const chart = new ChartDocument(Grid.fromText("KKP\nKKP"));
-  chart.set([[2, 0], [5, 0]], "Outline", "outline");
+  chart.set(
+    [
+      [2, 0],
+      [5, 0],
+    ],
+    "Outline",
+    "outline",
+  );
   assert.equal(chart.content.outline, "xx.\nxx.");
   assert.deepEqual([...chart.codes.filter((_, i) => i % 3 < 2)], [0, 0, 0, 0]);
-  chart.set([[2, 0], [1, 1]], "Pencil");
+  chart.set(
+    [
+      [2, 0],
+      [1, 1],
+    ],
+    "Pencil",
+  );
   assert.equal(chart.grid.text, "KKP\nKPP");
   chart.undo();
   chart.undo();
@@ -92,20 +127,42 @@ test("a region is painted, filled, locked, ordered, renamed and removed, and all
   assert.equal(chart.grid.text, "KKKK\nKKKK\nKPKP");
   const high = chart.addRegion({ name: "High", colour: "#993333" }, [1, 5]);
   assert.equal(chart.regionAt(1)?.id, high);
-  chart.set([[4, 1], [6, 1], [1, 0]], "Brush", `region:${low}`);
-  assert.deepEqual(chart.region(low)?.written(4).runs, [[0, 0, 1], [0, 2, 2], [1, 0, 1], [1, 2, 1]]);
+  chart.set(
+    [
+      [4, 1],
+      [6, 1],
+      [1, 0],
+    ],
+    "Brush",
+    `region:${low}`,
+  );
+  assert.deepEqual(chart.region(low)?.written(4).runs, [
+    [0, 0, 1],
+    [0, 2, 2],
+    [1, 0, 1],
+    [1, 2, 1],
+  ]);
   assert.equal(chart.grid.text, "KKKK\nKKKK\nKPKP", "the fill has knits there");
   chart.changeRegion(low, { locked: true }, "Lock");
   /** @type {string[][]} */
   const refused = [];
   chart.onRefuse((names) => refused.push(names));
-  chart.set([[0, 1], [11, 1]], "Pencil");
+  chart.set(
+    [
+      [0, 1],
+      [11, 1],
+    ],
+    "Pencil",
+  );
   assert.equal(chart.grid.text, "KKKP\nKKKK\nKPKP");
   assert.deepEqual(refused, [["Low"]]);
   chart.set([[5, 1]], "Brush", `region:${low}`);
   assert.equal(chart.region(low)?.cells[5], 0);
   chart.orderRegion(low, 1);
-  assert.deepEqual(chart.regions.map(({ name }) => name), ["High", "Low"]);
+  assert.deepEqual(
+    chart.regions.map(({ name }) => name),
+    ["High", "Low"],
+  );
   chart.changeRegion(low, { locked: false, name: "Cuff", fill: Grid.fromText("P") }, "Fill");
   assert.equal(chart.grid.text, "KKKP\nPKPK\nPPPP");
   chart.removeRegion(high);
@@ -131,7 +188,13 @@ test("a filled region that is put above another one covers it, and only there", 
   const chart = new ChartDocument(new Grid(1, 5));
   const low = chart.addRegion({ name: "Low", colour: "#336699", fill: Grid.fromText("P") }, [0, 1, 2]);
   const high = chart.addRegion({ name: "High", colour: "#993333", fill: Grid.fromText("K") }, [2, 3]);
-  chart.set([[0, 0], [3, 1]], "Pencil");
+  chart.set(
+    [
+      [0, 0],
+      [3, 1],
+    ],
+    "Pencil",
+  );
   assert.equal(chart.grid.text, "KPKPK");
   chart.orderRegion(low, 1);
   assert.equal(chart.grid.text, "KPPPK", "what was painted on the fills stays");
@@ -150,10 +213,19 @@ test("painting one copy of a repeat paints all, and the motif follows", () => {
     name: "Rib",
     motif: Grid.fromText("KKP"),
     edgeColumns: 1,
-    placements: [{ row: 0, column: 0, rows: 2, columns: 7 }, { row: 3, column: 3, rows: 1, columns: 4 }],
+    placements: [
+      { row: 0, column: 0, rows: 2, columns: 7 },
+      { row: 3, column: 3, rows: 1, columns: 4 },
+    ],
   });
   assert.equal(chart.grid.text, "KKKKKPK\nKKKKKKK\nKKPKKPK\nKKPKKPK");
-  chart.set([[1, 1], [14, 1]], "Pencil");
+  chart.set(
+    [
+      [1, 1],
+      [14, 1],
+    ],
+    "Pencil",
+  );
   assert.equal(chart.grid.text, "KKKKPPK\nPKKKKKK\nKPPKPPK\nKPPKPPK");
   assert.equal(chart.content.repeats[0].motif, "KPP");
   chart.changeRepeat(id, { motif: Grid.fromText("PKK") }, "Motif");
@@ -174,7 +246,13 @@ test("a locked region keeps all copies of what is linked to it", () => {
   chart.addRepeat({ name: "A", motif: Grid.fromText("KK"), placements: [{ row: 0, column: 0, rows: 1, columns: 6 }] });
   const region = chart.addRegion({ name: "Locked", colour: "#336699" }, [0]);
   chart.changeRegion(region, { locked: true }, "Lock");
-  chart.set([[2, 1], [3, 1]], "Pencil");
+  chart.set(
+    [
+      [2, 1],
+      [3, 1],
+    ],
+    "Pencil",
+  );
   assert.equal(chart.grid.text, "KPKPKP");
 });
 
@@ -192,7 +270,12 @@ test("rows, columns and turns carry outline, regions and repeats along, and are 
   const start = chart.content;
   chart.reshape("Insert", inserted(chart.grid, "rows", 1, 2, "before"));
   assert.equal(chart.grid.text, "KPKP\nPKPK\nKKKK\nKKKK\nKKKK");
-  assert.deepEqual(chart.content.regions[0].runs, [[0, 1, 2], [1, 1, 2], [2, 1, 2], [4, 0, 1]]);
+  assert.deepEqual(chart.content.regions[0].runs, [
+    [0, 1, 2],
+    [1, 1, 2],
+    [2, 1, 2],
+    [4, 0, 1],
+  ]);
   assert.equal(chart.content.outline, "xxx.\nxxxx\nxxxx\nxxxx\nxxxx");
   assert.deepEqual(chart.content.repeats[0].placements, [{ row: 3, column: 0, rows: 2, columns: 4 }]);
   chart.reshape("Delete", deleted(chart.grid, "rows", 1, 3));
@@ -223,8 +306,17 @@ test("a mirrored repeat with an edge stays a repeat", () => {
     chart.reshape("Turn", turned(chart.grid, how));
     assert.equal(chart.repeats[0].placements.length, 1, how);
     chart.set([[3, 1 - chart.grid.purl[3]]], "Pencil");
-    assert.ok(chart.grid.region({ row0: 0, row1: 5, column0: chart.repeats[0].placements[0].column, column1: chart.repeats[0].placements[0].column + 7 })
-      .equals(chart.repeats[0].laid({ rows: 5, columns: 7 })), how);
+    assert.ok(
+      chart.grid
+        .region({
+          row0: 0,
+          row1: 5,
+          column0: chart.repeats[0].placements[0].column,
+          column1: chart.repeats[0].placements[0].column + 7,
+        })
+        .equals(chart.repeats[0].laid({ rows: 5, columns: 7 })),
+      how,
+    );
   }
 });
 
@@ -254,7 +346,13 @@ test("a new chart keeps regions of the same size, unlinks what no longer repeats
 });
 
 test("steps of earlier pages can still be undone", () => {
-  const kept = JSON.stringify({ done: [{ label: "New", before: "KK", after: "K" }, { label: "Pencil", runs: [0, 1] }], undone: [] });
+  const kept = JSON.stringify({
+    done: [
+      { label: "New", before: "KK", after: "K" },
+      { label: "Pencil", runs: [0, 1] },
+    ],
+    undone: [],
+  });
   const chart = ChartDocument.read(contentOf("P"), History.parse(kept));
   chart.undo();
   assert.equal(chart.grid.text, "K");

@@ -25,7 +25,10 @@ test("runs and packed text hold a bitmap", () => {
 
 test("a stroke is one step; undo and redo go to and fro", () => {
   const chart = new ChartDocument(new Grid(2, 3));
-  stroke(chart, [[0, 1], [4, 1]]);
+  stroke(chart, [
+    [0, 1],
+    [4, 1],
+  ]);
   stroke(chart, [[4, 0]]);
   assert.equal(chart.grid.text, "KKK\nPKK");
   assert.equal(chart.undo(), "Pencil");
@@ -42,9 +45,22 @@ test("a stroke is one step; undo and redo go to and fro", () => {
 test("a shape being dragged leaves only its last form", () => {
   const chart = new ChartDocument(Grid.fromText("PKK"));
   chart.begin();
-  chart.paint(Brush.of(3, [[0, 1], [1, 1], [2, 1]]), true);
+  chart.paint(
+    Brush.of(3, [
+      [0, 1],
+      [1, 1],
+      [2, 1],
+    ]),
+    true,
+  );
   assert.equal(chart.grid.text, "PPP");
-  chart.paint(Brush.of(3, [[0, 0], [1, 1]]), true);
+  chart.paint(
+    Brush.of(3, [
+      [0, 0],
+      [1, 1],
+    ]),
+    true,
+  );
   assert.equal(chart.grid.text, "KPK");
   chart.commit("Rectangle");
   chart.undo();

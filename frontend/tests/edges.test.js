@@ -4,8 +4,7 @@ import { edgesOf } from "../chart/edges.js";
 import { random } from "./random.js";
 
 /** @param {Int16Array} edges */
-const pieces = (edges) =>
-  Array.from({ length: edges.length / 6 }, (_, k) => [...edges.subarray(6 * k, 6 * k + 6)]);
+const pieces = (edges) => Array.from({ length: edges.length / 6 }, (_, k) => [...edges.subarray(6 * k, 6 * k + 6)]);
 
 test("a box has four edges, all of its corners outer ones", () => {
   const cells = Uint8Array.of(0, 0, 0, 0, 1, 1, 0, 1, 1);

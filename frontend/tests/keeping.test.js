@@ -23,8 +23,7 @@ const design = (chart, more = {}) => ({
 });
 
 /** @param {number} status @param {string} [field] */
-const refusal = (status, field) =>
-  new ApiError({ type: "test", title: "Refused", status, detail: "", field });
+const refusal = (status, field) => new ApiError({ type: "test", title: "Refused", status, detail: "", field });
 
 /** A service that keeps one design as the real one does. */
 class OneDesign {
@@ -130,22 +129,36 @@ test("what both changed differently is a conflict and keeps ours", () => {
 
 test("lists merge item by item", () => {
   /** @param {string} id @param {string} colour */
-  const region = (id, colour) =>
-    ({ id, name: id, colour, yarn: null, fill: null, runs: [], locked: false, hidden: false });
+  const region = (id, colour) => ({
+    id,
+    name: id,
+    colour,
+    yarn: null,
+    fill: null,
+    runs: [],
+    locked: false,
+    hidden: false,
+  });
   const [a, b, c] = [region("a", "#111111"), region("b", "#222222"), region("c", "#333333")];
   const base = design("K", { regions: /** @type {any} */ ([a, b]) });
   const mine = { ...base, regions: /** @type {any} */ ([{ ...a, colour: "#999999" }, b]) };
   const theirs = { ...base, regions: /** @type {any} */ ([a, c]) };
   const { document, conflicts } = merge(base, mine, theirs);
   assert.deepEqual(conflicts, []);
-  assert.deepEqual(document.regions.map(({ id, colour }) => [id, colour]), [
-    ["a", "#999999"],
-    ["c", "#333333"],
-  ]);
+  assert.deepEqual(
+    document.regions.map(({ id, colour }) => [id, colour]),
+    [
+      ["a", "#999999"],
+      ["c", "#333333"],
+    ],
+  );
 });
 
 test("the order of fields is no difference", () => {
-  const [one, other] = [{ name: "Mine", motif: "KP" }, { motif: "KP", name: "Mine" }];
+  const [one, other] = [
+    { name: "Mine", motif: "KP" },
+    { motif: "KP", name: "Mine" },
+  ];
   assert.ok(same(design("K", { shelf: [one] }), design("K", { shelf: [other] })));
 });
 

@@ -38,7 +38,11 @@ test("one pixel a stitch", () => {
 
 test("larger cells are found and read, with and without lines", () => {
   const grid = Grid.build(9, 14, (row, column) => (row * 7 + column * column * 3) % 5 < 2);
-  for (const [wide, high, lines] of /** @type {[number, number, boolean][]} */ ([[8, 6, false], [11, 9, true], [20, 20, true]])) {
+  for (const [wide, high, lines] of /** @type {[number, number, boolean][]} */ ([
+    [8, 6, false],
+    [11, 9, true],
+    [20, 20, true],
+  ])) {
     const { values, width, height } = drawn(grid, wide, high, lines);
     const found = detectedGrid(values, width, height);
     assert.deepEqual(found, { columns: 14, rows: 9 }, `${wide} x ${high}`);
@@ -56,5 +60,8 @@ test("no grid is seen where there is none", () => {
 test("the threshold lies between two greys, and transparency is paper", () => {
   const threshold = bestThreshold(Uint8Array.of(20, 25, 22, 190, 200, 195));
   assert.equal(threshold, 108);
-  assert.deepEqual(greys({ data: Uint8Array.of(0, 0, 0, 255, 0, 0, 0, 0), width: 2, height: 1 }), Uint8Array.of(0, 255));
+  assert.deepEqual(
+    greys({ data: Uint8Array.of(0, 0, 0, 255, 0, 0, 0, 0), width: 2, height: 1 }),
+    Uint8Array.of(0, 255),
+  );
 });

@@ -32,7 +32,13 @@ function draw(id, grid, start, end, { ink = PURL, size = 1, constrain = false, s
 }
 
 test("a line has no gaps and both its ends", () => {
-  for (const [row, column] of /** @type {[number, number][]} */ ([[7, 3], [-4, 9], [0, -5], [6, 6], [0, 0]])) {
+  for (const [row, column] of /** @type {[number, number][]} */ ([
+    [7, 3],
+    [-4, 9],
+    [0, -5],
+    [6, 6],
+    [0, 0],
+  ])) {
     const cells = line([0, 0], [row, column]);
     assert.deepEqual(cells[0], [0, 0]);
     assert.deepEqual(cells.at(-1), [row, column]);
@@ -67,7 +73,12 @@ test("a flood is every stitch that can be reached", () => {
     const reached = new Set(["0,0"]);
     for (const at of reached) {
       const [row, column] = at.split(",").map(Number);
-      for (const [r, c] of [[row - 1, column], [row + 1, column], [row, column - 1], [row, column + 1]]) {
+      for (const [r, c] of [
+        [row - 1, column],
+        [row + 1, column],
+        [row, column - 1],
+        [row, column + 1],
+      ]) {
         const inside = r >= 0 && c >= 0 && r < rows && c < columns;
         if (inside && purl[r * columns + c] === purl[0]) reached.add(`${r},${c}`);
       }
@@ -77,8 +88,27 @@ test("a flood is every stitch that can be reached", () => {
 });
 
 test("a lasso selects what it goes around, and its own stitches", () => {
-  assert.equal(cellsOf(enclosed([[0, 0], [0, 4], [4, 4], [4, 0]])).size, 25);
-  assert.equal(cellsOf(enclosed([[0, 0], [4, 4], [0, 4]])).size, 15);
+  assert.equal(
+    cellsOf(
+      enclosed([
+        [0, 0],
+        [0, 4],
+        [4, 4],
+        [4, 0],
+      ]),
+    ).size,
+    25,
+  );
+  assert.equal(
+    cellsOf(
+      enclosed([
+        [0, 0],
+        [4, 4],
+        [0, 4],
+      ]),
+    ).size,
+    15,
+  );
   assert.equal(cellsOf(enclosed([[2, 3]])).size, 1);
 });
 
@@ -90,7 +120,10 @@ test("selections are added, subtracted, intersected and mirrored", () => {
   assert.ok(added?.mask);
   assert.equal(added && selectedCells(added, grid).length, 7);
   assert.deepEqual(combined(added, rectangle([3, 5], [3, 5]), grid, "subtract"), box);
-  assert.deepEqual(combined(added, rectangle([1, 1], [3, 5]), grid, "intersect")?.mask?.reduce((a, b) => a + b, 0), 3);
+  assert.deepEqual(
+    combined(added, rectangle([1, 1], [3, 5]), grid, "intersect")?.mask?.reduce((a, b) => a + b, 0),
+    3,
+  );
   assert.equal(combined(box, rectangle([0, 0], [3, 5]), grid, "subtract"), null);
   const both = combined(null, [[0, 0, 2]], grid, "replace", "both");
   assert.equal(both && selectedCells(both, grid).length, 8);
@@ -111,8 +144,18 @@ test("what is in the hand is put down, and what lay under it comes back", () => 
 test("a change of a selection keeps to its shape", () => {
   const grid = Grid.fromText("KPP\nKKP");
   const corner = { row0: 0, column0: 1, row1: 2, column1: 3, mask: Uint8Array.of(0, 1, 1, 1) };
-  const cells = changed(grid, corner, (part) => part.mirrored(), (mask) => mask.mirrored());
-  assert.deepEqual([...cells].sort(), [[1, 1], [2, 0], [4, 1], [5, 1]]);
+  const cells = changed(
+    grid,
+    corner,
+    (part) => part.mirrored(),
+    (mask) => mask.mirrored(),
+  );
+  assert.deepEqual([...cells].sort(), [
+    [1, 1],
+    [2, 0],
+    [4, 1],
+    [5, 1],
+  ]);
 });
 
 test("each tool draws what it says", () => {

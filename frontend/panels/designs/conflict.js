@@ -22,30 +22,37 @@ export function create(studio, { keeper }) {
 
   /** @param {"mine" | "theirs" | "both"} choice @param {string} label @param {string} note @param {string} style */
   const option = (choice, label, note, style = "button") =>
-    h("div", { class: "option" },
-      h("button", {
-        class: style,
-        id: `conflict-${choice}`,
-        onclick: async () => {
-          if ((await attempt(status, () => keeper.resolve(choice).then(() => true))) !== null) element.close();
+    h(
+      "div",
+      { class: "option" },
+      h(
+        "button",
+        {
+          class: style,
+          id: `conflict-${choice}`,
+          onclick: async () => {
+            if ((await attempt(status, () => keeper.resolve(choice).then(() => true))) !== null) element.close();
+          },
         },
-      }, label),
-      h("span", { class: "muted" }, note));
+        label,
+      ),
+      h("span", { class: "muted" }, note),
+    );
   element.append(
-    h("div", { class: "options" },
+    h(
+      "div",
+      { class: "options" },
       option("both", "Keep both", "Mine becomes a design of its own.", "button primary"),
       option("mine", "Keep mine", "Theirs stays as a version."),
-      option("theirs", "Take theirs", "Mine can be brought back from Deleted for 30 days.")),
+      option("theirs", "Take theirs", "Mine can be brought back from Deleted for 30 days."),
+    ),
   );
   return () => {
     const { value } = keeper.state;
     if (value.kind !== "conflict") return;
     const { theirs, parts } = value.conflict;
     text.textContent = `Both changed the ${parts.join(", the ")}, and not in a way that can be put together. Nothing is lost whatever you choose.`;
-    sides.replaceChildren(
-      side("Mine", studio.toDocument()),
-      side("Theirs", theirs.document),
-    );
+    sides.replaceChildren(side("Mine", studio.toDocument()), side("Theirs", theirs.document));
     status.replaceChildren();
     if (!element.open) element.showModal();
   };
@@ -53,6 +60,9 @@ export function create(studio, { keeper }) {
 
 /** @param {string} title @param {import("../../types.js").DesignDocument} design */
 const side = (title, design) =>
-  h("figure", { class: "side-picture" },
+  h(
+    "figure",
+    { class: "side-picture" },
     thumbnail(design, { side: 150, label: `${title}: ${design.name}` }),
-    h("figcaption", {}, h("strong", {}, title), h("span", { class: "muted" }, ` ${design.name}`)));
+    h("figcaption", {}, h("strong", {}, title), h("span", { class: "muted" }, ` ${design.name}`)),
+  );

@@ -37,29 +37,49 @@ export function create(studio, context) {
   const more = h("button", { class: "button", onclick: () => void load() }, "Show more");
   /** @param {boolean} which @param {string} label @param {string} id */
   const tab = (which, label, id) =>
-    h("button", {
-      class: "segment",
-      role: "radio",
-      id,
-      "aria-checked": String(which === deleted),
-      onclick: (/** @type {MouseEvent} */ { currentTarget }) => {
-        deleted = which;
-        for (const one of tabs.children) one.setAttribute("aria-checked", String(one === currentTarget));
-        void reload();
+    h(
+      "button",
+      {
+        class: "segment",
+        role: "radio",
+        id,
+        "aria-checked": String(which === deleted),
+        onclick: (/** @type {MouseEvent} */ { currentTarget }) => {
+          deleted = which;
+          for (const one of tabs.children) one.setAttribute("aria-checked", String(one === currentTarget));
+          void reload();
+        },
       },
-    }, label);
-  const tabs = h("div", { class: "segmented", role: "radiogroup", "aria-label": "Which designs" },
+      label,
+    );
+  const tabs = h(
+    "div",
+    { class: "segmented", role: "radiogroup", "aria-label": "Which designs" },
     tab(false, "Designs", "designs-kept"),
-    tab(true, "Deleted", "designs-deleted"));
+    tab(true, "Deleted", "designs-deleted"),
+  );
   const element = dialog(
     "designs-dialog",
     "My designs",
-    h("div", { class: "dialog-tools" },
+    h(
+      "div",
+      { class: "dialog-tools" },
       search,
       tabs,
       h("span", { class: "spacer" }),
-      h("button", { class: "button", id: "designs-gallery", onclick: () => leave(() => context.open("gallery")) }, icon("gallery"), "Examples"),
-      h("button", { class: "button primary", id: "designs-new", onclick: () => leave(() => context.open("gallery")) }, icon("plus"), "New")),
+      h(
+        "button",
+        { class: "button", id: "designs-gallery", onclick: () => leave(() => context.open("gallery")) },
+        icon("gallery"),
+        "Examples",
+      ),
+      h(
+        "button",
+        { class: "button primary", id: "designs-new", onclick: () => leave(() => context.open("gallery")) },
+        icon("plus"),
+        "New",
+      ),
+    ),
     status,
     list,
     more,
@@ -121,43 +141,65 @@ export function create(studio, context) {
     const here = design.id === keeper.remoteId;
     const frame = h("span", { class: "card-picture", "data-id": design.id }, deleted && icon("trash"));
     pictures.observe(frame);
-    const open = h("button", {
-      class: "card-open",
-      disabled: deleted,
-      "aria-label": `Open ${design.name}`,
-      "aria-current": here ? "true" : undefined,
-      onclick: async () => {
-        if (here) return element.close();
-        const kept = await attempt(status, () => designs.read(design.id));
-        if (kept) leave(() => keeper.openKept(kept));
+    const open = h(
+      "button",
+      {
+        class: "card-open",
+        disabled: deleted,
+        "aria-label": `Open ${design.name}`,
+        "aria-current": here ? "true" : undefined,
+        onclick: async () => {
+          if (here) return element.close();
+          const kept = await attempt(status, () => designs.read(design.id));
+          if (kept) leave(() => keeper.openKept(kept));
+        },
       },
-    }, frame);
-    const facts = h("span", { class: "card-facts muted figures" }, `${design.columns} × ${design.rows} · ${here ? "open now" : ago(design.deleted_at ?? design.changed_at)}`);
-    const item = h("li", { class: here ? "card here" : "card", "data-name": design.name.toLowerCase() }, open, name, facts);
+      frame,
+    );
+    const facts = h(
+      "span",
+      { class: "card-facts muted figures" },
+      `${design.columns} × ${design.rows} · ${here ? "open now" : ago(design.deleted_at ?? design.changed_at)}`,
+    );
+    const item = h(
+      "li",
+      { class: here ? "card here" : "card", "data-name": design.name.toLowerCase() },
+      open,
+      name,
+      facts,
+    );
     /** @param {import("../../icons.js").IconName} sign @param {string} label @param {() => void} perform */
-    const tool = (sign, label, perform) =>
-      iconButton(sign, `${label}: ${design.name}`, perform, { title: label });
+    const tool = (sign, label, perform) => iconButton(sign, `${label}: ${design.name}`, perform, { title: label });
     item.append(
-      h("span", { class: "card-tools" },
+      h(
+        "span",
+        { class: "card-tools" },
         ...(deleted
           ? [h("button", { class: "button", onclick: () => void recover(design, item) }, icon("undo"), "Bring back")]
           : [
               tool("pencil", "Rename", () => rename(design, name)),
               tool("copy", "Duplicate", () => void duplicate(design)),
               tool("trash", "Delete", () => void remove(design, item)),
-            ])),
+            ]),
+      ),
     );
     return item;
   };
 
   /** @param {Summary} design @param {HTMLElement} name */
   const rename = (design, name) => {
-    const field = h("input", { class: "text-field card-rename", value: design.name, maxLength: 80, "aria-label": "New name" });
+    const field = h("input", {
+      class: "text-field card-rename",
+      value: design.name,
+      maxLength: 80,
+      "aria-label": "New name",
+    });
     const done = async () => {
       const wanted = field.value.trim();
       field.replaceWith(name);
       if (!wanted || wanted === design.name) return;
-      if (design.id === keeper.remoteId) studio.name.value = wanted; // the keeper delivers it
+      if (design.id === keeper.remoteId)
+        studio.name.value = wanted; // the keeper delivers it
       else {
         const kept = await attempt(status, () => designs.rename(design.id, wanted, design.revision));
         if (!kept) return;
@@ -192,9 +234,17 @@ export function create(studio, context) {
     item.remove();
     filter();
     status.replaceChildren(
-      h("div", { class: "notice" },
+      h(
+        "div",
+        { class: "notice" },
         h("span", {}, `“${design.name}” was deleted. It stays under Deleted for 30 days.`),
-        h("button", { class: "button", id: "designs-undo", onclick: () => void recover(design, null) }, icon("undo"), "Undo")),
+        h(
+          "button",
+          { class: "button", id: "designs-undo", onclick: () => void recover(design, null) },
+          icon("undo"),
+          "Undo",
+        ),
+      ),
     );
     /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button"))?.focus();
   };

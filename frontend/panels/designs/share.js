@@ -28,37 +28,72 @@ export function create(_studio, { keeper }) {
   /** @type {ShareMode} */ let mode = "read";
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ul", { class: "rows-list", id: "share-list" });
-  const link = h("input", { class: "text-field", id: "share-link", readOnly: true, "aria-label": "The link", onfocus: () => link.select() });
-  const copy = h("button", {
-    class: "button",
-    onclick: () =>
-      void navigator.clipboard?.writeText(link.value).then(
-        () => (copied.textContent = "The link is on the clipboard."),
-        () => link.select(),
-      ),
-  }, icon("copy"), "Copy");
-  const copied = h("p", { class: "muted" });
-  const result = h("div", { class: "share-result", hidden: true }, h("div", { class: "dialog-tools" }, link, copy), copied);
-
-  const choices = h("div", { class: "choices", role: "radiogroup", "aria-label": "What the link allows" },
-    .../** @type {ShareMode[]} */ (["read", "copy"]).map((which) =>
-      h("label", { class: "choice" },
-        h("input", { type: "radio", name: "share-mode", value: which, checked: which === mode, id: `share-${which}`, onchange: () => (mode = which) }),
-        h("span", {}, h("strong", {}, MODES[which][0]), h("span", { class: "muted" }, MODES[which][1])))));
-  const make = h("button", {
-    class: "button primary",
-    id: "share-make",
-    onclick: async () => {
-      const id = await remote();
-      const share = id && (await attempt(status, () => designs.share(id, mode)));
-      if (!share) return;
-      link.value = linkTo(share.token);
-      copied.textContent = "Copy it now: for safety, the link itself is shown only this once.";
-      result.hidden = false;
-      link.focus();
-      await load();
+  const link = h("input", {
+    class: "text-field",
+    id: "share-link",
+    readOnly: true,
+    "aria-label": "The link",
+    onfocus: () => link.select(),
+  });
+  const copy = h(
+    "button",
+    {
+      class: "button",
+      onclick: () =>
+        void navigator.clipboard?.writeText(link.value).then(
+          () => (copied.textContent = "The link is on the clipboard."),
+          () => link.select(),
+        ),
     },
-  }, icon("share"), "Make a link");
+    icon("copy"),
+    "Copy",
+  );
+  const copied = h("p", { class: "muted" });
+  const result = h(
+    "div",
+    { class: "share-result", hidden: true },
+    h("div", { class: "dialog-tools" }, link, copy),
+    copied,
+  );
+
+  const choices = h(
+    "div",
+    { class: "choices", role: "radiogroup", "aria-label": "What the link allows" },
+    .../** @type {ShareMode[]} */ (["read", "copy"]).map((which) =>
+      h(
+        "label",
+        { class: "choice" },
+        h("input", {
+          type: "radio",
+          name: "share-mode",
+          value: which,
+          checked: which === mode,
+          id: `share-${which}`,
+          onchange: () => (mode = which),
+        }),
+        h("span", {}, h("strong", {}, MODES[which][0]), h("span", { class: "muted" }, MODES[which][1])),
+      ),
+    ),
+  );
+  const make = h(
+    "button",
+    {
+      class: "button primary",
+      id: "share-make",
+      onclick: async () => {
+        const id = await remote();
+        const share = id && (await attempt(status, () => designs.share(id, mode)));
+        if (!share) return;
+        link.value = linkTo(share.token);
+        copied.textContent = "Copy it now: for safety, the link itself is shown only this once.";
+        result.hidden = false;
+        link.focus();
+        await load();
+      },
+    },
+    icon("share"),
+    "Make a link",
+  );
   const element = dialog(
     "share-dialog",
     "Share this design",
@@ -71,7 +106,14 @@ export function create(_studio, { keeper }) {
 
   const remote = async () => {
     if (await keeper.flush()) return keeper.remoteId;
-    status.replaceChildren(h("div", { class: "problem", role: "alert" }, icon("warning"), "The design is not at the service yet, so it cannot be shared now."));
+    status.replaceChildren(
+      h(
+        "div",
+        { class: "problem", role: "alert" },
+        icon("warning"),
+        "The design is not at the service yet, so it cannot be shared now.",
+      ),
+    );
     return null;
   };
   const load = async () => {
@@ -81,16 +123,28 @@ export function create(_studio, { keeper }) {
   };
   /** @param {Share} share */
   const row = (share) =>
-    h("li", { class: "row" },
+    h(
+      "li",
+      { class: "row" },
       icon("share"),
-      h("span", { class: "row-text" }, h("span", {}, MODES[share.mode][0]), h("span", { class: "muted" }, `made ${ago(share.created_at)}`)),
-      h("button", {
-        class: "button",
-        onclick: async () => {
-          const id = keeper.remoteId;
-          if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();
+      h(
+        "span",
+        { class: "row-text" },
+        h("span", {}, MODES[share.mode][0]),
+        h("span", { class: "muted" }, `made ${ago(share.created_at)}`),
+      ),
+      h(
+        "button",
+        {
+          class: "button",
+          onclick: async () => {
+            const id = keeper.remoteId;
+            if (id && (await attempt(status, () => designs.unshare(id, share.id).then(() => true)))) await load();
+          },
         },
-      }, "Take back"));
+        "Take back",
+      ),
+    );
 
   return () => {
     status.replaceChildren();

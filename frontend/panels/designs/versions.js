@@ -29,22 +29,32 @@ export function create(studio, { keeper }) {
     placeholder: "Name of this state, such as “before the cuff”",
     "aria-label": "Name of this state",
   });
-  const form = h("form", {
-    class: "dialog-tools",
-    onsubmit: async (/** @type {SubmitEvent} */ event) => {
-      event.preventDefault();
-      const id = await remote();
-      const wanted = name.value.trim() || new Date().toLocaleString("en", { dateStyle: "medium", timeStyle: "short" });
-      if (id && (await attempt(status, () => designs.keepVersion(id, wanted)))) {
-        name.value = "";
-        await load();
-      }
+  const form = h(
+    "form",
+    {
+      class: "dialog-tools",
+      onsubmit: async (/** @type {SubmitEvent} */ event) => {
+        event.preventDefault();
+        const id = await remote();
+        const wanted =
+          name.value.trim() || new Date().toLocaleString("en", { dateStyle: "medium", timeStyle: "short" });
+        if (id && (await attempt(status, () => designs.keepVersion(id, wanted)))) {
+          name.value = "";
+          await load();
+        }
+      },
     },
-  }, name, h("button", { class: "button primary", type: "submit", id: "version-keep" }, icon("pin"), "Keep"));
+    name,
+    h("button", { class: "button primary", type: "submit", id: "version-keep" }, icon("pin"), "Keep"),
+  );
   const element = dialog(
     "versions-dialog",
     "Versions",
-    h("p", { class: "muted" }, "Every stroke is saved by itself. A version is a state that you can come back to; restoring one keeps the present state, too."),
+    h(
+      "p",
+      { class: "muted" },
+      "Every stroke is saved by itself. A version is a state that you can come back to; restoring one keeps the present state, too.",
+    ),
     form,
     status,
     list,
@@ -53,7 +63,14 @@ export function create(studio, { keeper }) {
   /** The service's name for the design; it gets the design now if it has not. */
   const remote = async () => {
     if (await keeper.flush()) return keeper.remoteId;
-    status.replaceChildren(h("div", { class: "problem", role: "alert" }, icon("warning"), "The design is not at the service yet; versions are kept there."));
+    status.replaceChildren(
+      h(
+        "div",
+        { class: "problem", role: "alert" },
+        icon("warning"),
+        "The design is not at the service yet; versions are kept there.",
+      ),
+    );
     return null;
   };
   const load = async () => {
@@ -73,23 +90,34 @@ export function create(studio, { keeper }) {
       ({ document }) => picture.replaceChildren(thumbnail(document, { side: 44 })),
       () => {}, // the name is enough
     );
-    return h("li", { class: "row" },
+    return h(
+      "li",
+      { class: "row" },
       picture,
-      h("span", { class: "row-text" },
+      h(
+        "span",
+        { class: "row-text" },
         h("span", { class: "ellipsis" }, version.name),
-        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept by itself" : ""}`)),
-      h("button", {
-        class: "button",
-        "aria-label": `Restore ${version.name}`,
-        onclick: async () => {
-          const known = await remote();
-          const kept = known && (await attempt(status, () => designs.restore(known, version.number, keeper.revision)));
-          if (!kept) return;
-          keeper.takeOver(kept);
-          element.close();
-          studio.tell(`“${version.name}” is restored. The state before it is a version, too.`);
+        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept by itself" : ""}`),
+      ),
+      h(
+        "button",
+        {
+          class: "button",
+          "aria-label": `Restore ${version.name}`,
+          onclick: async () => {
+            const known = await remote();
+            const kept =
+              known && (await attempt(status, () => designs.restore(known, version.number, keeper.revision)));
+            if (!kept) return;
+            keeper.takeOver(kept);
+            element.close();
+            studio.tell(`“${version.name}” is restored. The state before it is a version, too.`);
+          },
         },
-      }, "Restore"));
+        "Restore",
+      ),
+    );
   };
 
   return () => {

@@ -14,9 +14,12 @@ export function dialog(id, title, ...content) {
   const element = h(
     "dialog",
     { id, class: "dialog", "aria-labelledby": `${id}-title` },
-    h("header", {},
+    h(
+      "header",
+      {},
       h("h2", { id: `${id}-title`, tabIndex: -1, autofocus: true }, title),
-      iconButton("close", "Close", () => element.close())),
+      iconButton("close", "Close", () => element.close()),
+    ),
     ...content,
   );
   element.addEventListener("click", (event) => {
@@ -33,7 +36,10 @@ export function dialog(id, title, ...content) {
  * @param {() => void} [again] tries once more
  */
 export function problemBox(problem, again) {
-  return h("div", { class: "problem", role: "alert" },
+  return h(
+    "div",
+    { class: "problem", role: "alert" },
     icon("warning"),
-    problemText(problem, again && h("button", { class: "button", onclick: again }, "Try again")));
+    problemText(problem, again && h("button", { class: "button", onclick: again }, "Try again")),
+  );
 }

@@ -11,17 +11,30 @@ export function create() {
   const element = dialog(
     "help-dialog",
     "Keys and tools",
-    h("p", { class: "muted" },
-      "Paint stitches in the chart; its colours show what each will do, and the panel at the right what the whole cloth will do. The right mouse button paints the opposite stitch. The wheel zooms, Space and drag moves. With the chart focused, arrow keys move and Enter paints."),
-    h("div", { class: "help-columns" },
+    h(
+      "p",
+      { class: "muted" },
+      "Paint stitches in the chart; its colours show what each will do, and the panel at the right what the whole cloth will do. The right mouse button paints the opposite stitch. The wheel zooms, Space and drag moves. With the chart focused, arrow keys move and Enter paints.",
+    ),
+    h(
+      "div",
+      { class: "help-columns" },
       ...groups.map((group) =>
-        h("section", {},
+        h(
+          "section",
+          {},
           h("h3", {}, group),
-          h("dl", { class: "keys" },
+          h(
+            "dl",
+            { class: "keys" },
             ...ACTIONS.filter((one) => one.group === group).flatMap((one) => [
               h("dt", {}, ...one.keys.slice(0, 2).map((key) => h("kbd", {}, shown(key)))),
               h("dd", {}, one.label, hints.has(one.id) && h("span", { class: "muted" }, ` – ${hints.get(one.id)}`)),
-            ]))))),
+            ]),
+          ),
+        ),
+      ),
+    ),
   );
   return () => element.showModal();
 }

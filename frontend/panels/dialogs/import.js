@@ -42,13 +42,24 @@ export function create(_, context) {
   const element = dialog(
     "import-dialog",
     "Import a chart",
-    h("p", { class: "muted" }, "Lines of K and P (or | and •), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page."),
+    h(
+      "p",
+      { class: "muted" },
+      "Lines of K and P (or | and •), the top row first, as seen from the face; or written rows, KnitSpeak or knitout. A text, a picture or a project file can also be dropped anywhere on the page.",
+    ),
     text,
     problem,
-    h("div", { class: "dialog-buttons" },
+    h(
+      "div",
+      { class: "dialog-buttons" },
       h("label", { class: "button", for: "import-file" }, "Choose a file …"),
       file,
-      h("button", { class: "button primary", id: "import-apply", onclick: () => void settle(importText(context, text.value)) }, "Import")),
+      h(
+        "button",
+        { class: "button primary", id: "import-apply", onclick: () => void settle(importText(context, text.value)) },
+        "Import",
+      ),
+    ),
   );
   return () => {
     problem.hidden = true;

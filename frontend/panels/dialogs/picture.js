@@ -56,38 +56,74 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
   const each = Math.max(bitmap.width, bitmap.height) <= MAX_SIDE;
   const found = detectedGrid(values, width, height);
   const guess = Math.min(60, width);
-  const cells = found ?? (each
-    ? { columns: bitmap.width, rows: bitmap.height }
-    : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
+  const cells =
+    found ??
+    (each
+      ? { columns: bitmap.width, rows: bitmap.height }
+      : { columns: guess, rows: Math.min(MAX_SIDE, Math.max(1, Math.round((guess * height) / width / stitch))) });
 
   /** @param {string} label @param {string} id @param {number} value */
   const count = (label, id, value) => {
-    const input = h("input", { type: "number", class: "number figures", id, min: 1, max: MAX_SIDE, value, oninput: () => show() });
+    const input = h("input", {
+      type: "number",
+      class: "number figures",
+      id,
+      min: 1,
+      max: MAX_SIDE,
+      value,
+      oninput: () => show(),
+    });
     return { input, row: h("label", { class: "field" }, h("span", {}, label), input) };
   };
   const columns = count("Stitches", "picture-columns", cells.columns);
   const rows = count("Rows", "picture-rows", cells.rows);
-  const threshold = h("input", { type: "range", class: "slider", id: "picture-threshold", min: 1, max: 255, value: bestThreshold(values), oninput: () => show() });
+  const threshold = h("input", {
+    type: "range",
+    class: "slider",
+    id: "picture-threshold",
+    min: 1,
+    max: 255,
+    value: bestThreshold(values),
+    oninput: () => show(),
+  });
   const share = h("output", { class: "figures muted", for: "picture-threshold" });
   const inverted = h("input", { type: "checkbox", id: "picture-inverted", onchange: () => show() });
   const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
   const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
   const problem = h("p", { class: "problem-text", role: "alert" });
-  const apply = h("button", { class: "button primary", id: "picture-apply", onclick: () => {
-    const grid = read();
-    if (!grid) return;
-    element.close();
-    studio.document.replace(grid, "Import");
-    studio.tell(`Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. Undo brings the old chart back.`);
-  } }, "Import");
+  const apply = h(
+    "button",
+    {
+      class: "button primary",
+      id: "picture-apply",
+      onclick: () => {
+        const grid = read();
+        if (!grid) return;
+        element.close();
+        studio.document.replace(grid, "Import");
+        studio.tell(
+          `Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. Undo brings the old chart back.`,
+        );
+      },
+    },
+    "Import",
+  );
 
   /** @param {string} id @param {string} label @param {{columns: number, rows: number}} size */
   const size = (id, label, size) =>
-    h("button", { class: "button", id, onclick: () => {
-      columns.input.value = String(size.columns);
-      rows.input.value = String(size.rows);
-      show();
-    } }, label);
+    h(
+      "button",
+      {
+        class: "button",
+        id,
+        onclick: () => {
+          columns.input.value = String(size.columns);
+          rows.input.value = String(size.rows);
+          show();
+        },
+      },
+      label,
+    );
 
   const read = () => {
     const [across, up] = [columns.input.valueAsNumber, rows.input.valueAsNumber];
@@ -95,7 +131,12 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
     problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
     apply.disabled = !well;
     return well
-      ? stitchesOf(values, width, height, { columns: across, rows: up, threshold: threshold.valueAsNumber, inverted: inverted.checked })
+      ? stitchesOf(values, width, height, {
+          columns: across,
+          rows: up,
+          threshold: threshold.valueAsNumber,
+          inverted: inverted.checked,
+        })
       : null;
   };
   const show = () => {
@@ -128,19 +169,44 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
   const element = dialog(
     "picture-dialog",
     "Import a picture",
-    h("div", { class: "picture-pair" },
-      h("figure", {}, source, h("figcaption", { class: "muted ellipsis" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`)),
-      h("figure", {}, preview, h("figcaption", { class: "muted" }, "The chart, as seen from the face"))),
-    h("div", { class: "fields" }, columns.row, rows.row,
-      h("div", { class: "picture-sizes" },
+    h(
+      "div",
+      { class: "picture-pair" },
+      h(
+        "figure",
+        {},
+        source,
+        h("figcaption", { class: "muted ellipsis" }, `${name}, ${bitmap.width} × ${bitmap.height} pixels`),
+      ),
+      h("figure", {}, preview, h("figcaption", { class: "muted" }, "The chart, as seen from the face")),
+    ),
+    h(
+      "div",
+      { class: "fields" },
+      columns.row,
+      rows.row,
+      h(
+        "div",
+        { class: "picture-sizes" },
         each && size("picture-each", "A pixel a stitch", { columns: bitmap.width, rows: bitmap.height }),
-        found && size("picture-found", `Grid found: ${found.columns} × ${found.rows}`, found))),
+        found && size("picture-found", `Grid found: ${found.columns} × ${found.rows}`, found),
+      ),
+    ),
     problem,
-    h("div", { class: "picture-tone" }, h("label", { for: "picture-threshold" }, "Purl if darker than"), threshold, share,
-      h("label", { class: "check" }, inverted, "Light is purl")),
-    h("div", { class: "dialog-buttons" },
+    h(
+      "div",
+      { class: "picture-tone" },
+      h("label", { for: "picture-threshold" }, "Purl if darker than"),
+      threshold,
+      share,
+      h("label", { class: "check" }, inverted, "Light is purl"),
+    ),
+    h(
+      "div",
+      { class: "dialog-buttons" },
       h("button", { class: "button", onclick: () => element.close() }, "Cancel"),
-      apply),
+      apply,
+    ),
   );
   element.addEventListener("close", () => element.remove());
   element.showModal();

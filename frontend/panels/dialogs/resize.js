@@ -9,15 +9,31 @@ import { resized } from "../../core/reshape.js";
 import { h } from "../../dom.js";
 import { dialog } from "./dialog.js";
 
-const UP = /** @type {const} */ ([[1, "top"], [0.5, "middle"], [0, "bottom"]]);
-const ACROSS = /** @type {const} */ ([[0, "left"], [0.5, "middle"], [1, "right"]]);
+const UP = /** @type {const} */ ([
+  [1, "top"],
+  [0.5, "middle"],
+  [0, "bottom"],
+]);
+const ACROSS = /** @type {const} */ ([
+  [0, "left"],
+  [0.5, "middle"],
+  [1, "right"],
+]);
 
 /** @param {Studio} studio */
 export function create(studio) {
   const { document } = studio;
   /** @param {string} label @param {string} id */
   const field = (label, id) => {
-    const input = h("input", { type: "number", class: "number figures", id, min: "1", max: String(MAX_SIDE), required: true, oninput: () => advise() });
+    const input = h("input", {
+      type: "number",
+      class: "number figures",
+      id,
+      min: "1",
+      max: String(MAX_SIDE),
+      required: true,
+      oninput: () => advise(),
+    });
     return { input, row: h("label", { class: "field" }, h("span", {}, label), input) };
   };
   const columns = field("Stitches", "new-columns");
@@ -27,7 +43,15 @@ export function create(studio) {
   const anchors = UP.flatMap(([up, vertical]) =>
     ACROSS.map(([across, horizontal]) => {
       const name = vertical === horizontal ? "middle" : `${vertical} ${horizontal}`;
-      return h("input", { type: "radio", name: "anchor", class: "anchor", value: `${up} ${across}`, "aria-label": name, title: name, id: `anchor-${vertical}-${horizontal}` });
+      return h("input", {
+        type: "radio",
+        name: "anchor",
+        class: "anchor",
+        value: `${up} ${across}`,
+        "aria-label": name,
+        title: name,
+        id: `anchor-${vertical}-${horizontal}`,
+      });
     }),
   );
 
@@ -61,11 +85,18 @@ export function create(studio) {
         if (next.rows === size[0] && next.columns === size[1]) return [];
         return [
           h("p", { class: "muted" }, `${repeat.name} is a ${repeat.rule}.`),
-          h("button", { class: "button", onclick: () => {
-            columns.input.value = String(next.columns);
-            rows.input.value = String(next.rows);
-            advise();
-          } }, `Keep it whole: ${next.columns} × ${next.rows}`),
+          h(
+            "button",
+            {
+              class: "button",
+              onclick: () => {
+                columns.input.value = String(next.columns);
+                rows.input.value = String(next.rows);
+                advise();
+              },
+            },
+            `Keep it whole: ${next.columns} × ${next.rows}`,
+          ),
         ];
       }),
     );
@@ -79,19 +110,47 @@ export function create(studio) {
   const element = dialog(
     "resize-dialog",
     "Size of the chart",
-    h("div", { class: "resize-fields" },
+    h(
+      "div",
+      { class: "resize-fields" },
       h("div", { class: "fields" }, columns.row, rows.row),
-      h("fieldset", { class: "anchors" }, h("legend", {}, "The chart stays at"), h("div", { class: "anchor-grid" }, ...anchors))),
+      h(
+        "fieldset",
+        { class: "anchors" },
+        h("legend", {}, "The chart stays at"),
+        h("div", { class: "anchor-grid" }, ...anchors),
+      ),
+    ),
     problem,
     advice,
     h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
-    h("div", { class: "dialog-buttons" },
-      h("button", { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) }, "New, all knit"),
-      h("button", { class: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) }, "Repeat to this size"),
-      h("button", { class: "button primary", id: "resize-apply", onclick: () => apply((r, c) => {
-        const same = r === document.grid.rows && c === document.grid.columns;
-        if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
-      }) }, "Resize")),
+    h(
+      "div",
+      { class: "dialog-buttons" },
+      h(
+        "button",
+        { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) },
+        "New, all knit",
+      ),
+      h(
+        "button",
+        { class: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) },
+        "Repeat to this size",
+      ),
+      h(
+        "button",
+        {
+          class: "button primary",
+          id: "resize-apply",
+          onclick: () =>
+            apply((r, c) => {
+              const same = r === document.grid.rows && c === document.grid.columns;
+              if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
+            }),
+        },
+        "Resize",
+      ),
+    ),
   );
   return () => {
     columns.input.value = String(document.grid.columns);

@@ -24,24 +24,66 @@ const MOST_SHOWN = 6000;
 export function create(studio) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
-  const tex = h("input", { type: "number", class: "number figures", min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex" });
-  const sides = choice("export-side", "Side of row 1", [["RS", "row 1 is a right side"], ["WS", "a wrong side"]], "RS", (value) => (chosen.first_side = value));
+  const tex = h("input", {
+    type: "number",
+    class: "number figures",
+    min: "1",
+    step: "any",
+    placeholder: "–",
+    "aria-label": "Yarn in tex",
+  });
+  const sides = choice(
+    "export-side",
+    "Side of row 1",
+    [
+      ["RS", "row 1 is a right side"],
+      ["WS", "a wrong side"],
+    ],
+    "RS",
+    (value) => (chosen.first_side = value),
+  );
   const note = h("p", { class: "muted" });
   /** @type {Record<Option, HTMLElement>} */
   const options = {
-    worked: h("div", { class: "exports-options" },
-      choice("export-worked", "Worked", [["flat", "worked flat"], ["round", "in the round"]], "flat", (value) => {
-        chosen.construction = value;
-        sides.hidden = value === "round";
-      }),
-      sides),
-    finish: choice("export-finish", "The last row", [["waste", "ends in waste yarn"], ["bind-off", "is bound off"]], "waste", (value) => (chosen.finish = value)),
+    worked: h(
+      "div",
+      { class: "exports-options" },
+      choice(
+        "export-worked",
+        "Worked",
+        [
+          ["flat", "worked flat"],
+          ["round", "in the round"],
+        ],
+        "flat",
+        (value) => {
+          chosen.construction = value;
+          sides.hidden = value === "round";
+        },
+      ),
+      sides,
+    ),
+    finish: choice(
+      "export-finish",
+      "The last row",
+      [
+        ["waste", "ends in waste yarn"],
+        ["bind-off", "is bound off"],
+      ],
+      "waste",
+      (value) => (chosen.finish = value),
+    ),
     tex: labelled("Yarn, tex (g/km)", tex, "for its mass in the key"),
     note,
   };
   const status = h("div", { class: "dialog-status", role: "status" });
   const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
-  const make = h("button", { class: "button primary", id: "export-make", onclick: () => void run() }, icon("export"), "Make the file");
+  const make = h(
+    "button",
+    { class: "button primary", id: "export-make", onclick: () => void run() },
+    icon("export"),
+    "Make the file",
+  );
 
   /** @param {ExportKind} one */
   const choose = (one) => {
@@ -54,16 +96,42 @@ export function create(studio) {
   const element = dialog(
     "export-dialog",
     "Export",
-    h("div", { class: "exports" },
-      h("div", {},
+    h(
+      "div",
+      { class: "exports" },
+      h(
+        "div",
+        {},
         ...groups.map((group) =>
-          h("fieldset", { class: "exports-kinds" },
+          h(
+            "fieldset",
+            { class: "exports-kinds" },
             h("legend", {}, group),
             ...KINDS.filter((one) => one.group === group).map((one) =>
-              h("label", { class: "exports-kind" },
-                h("input", { type: "radio", name: "export-kind", value: one.to, checked: one === kind, onchange: () => choose(one) }),
-                h("span", {}, one.name, h("span", { class: "muted" }, one.note))))))),
-      h("section", { class: "exports-options", "aria-label": "Options and file" }, ...Object.values(options), status, outcome)),
+              h(
+                "label",
+                { class: "exports-kind" },
+                h("input", {
+                  type: "radio",
+                  name: "export-kind",
+                  value: one.to,
+                  checked: one === kind,
+                  onchange: () => choose(one),
+                }),
+                h("span", {}, one.name, h("span", { class: "muted" }, one.note)),
+              ),
+            ),
+          ),
+        ),
+      ),
+      h(
+        "section",
+        { class: "exports-options", "aria-label": "Options and file" },
+        ...Object.values(options),
+        status,
+        outcome,
+      ),
+    ),
     h("div", { class: "dialog-buttons" }, make),
   );
 
@@ -77,8 +145,13 @@ export function create(studio) {
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
     };
     make.disabled = true;
-    outcome.replaceChildren(h("p", { class: "muted" }, kind.to === "knitout" ? "A virtual machine knits it …" : "One moment …"));
-    const file = await attempt(status, () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })));
+    outcome.replaceChildren(
+      h("p", { class: "muted" }, kind.to === "knitout" ? "A virtual machine knits it …" : "One moment …"),
+    );
+    const file = await attempt(
+      status,
+      () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })),
+    );
     make.disabled = false;
     outcome.replaceChildren();
     if (file) show(file);
@@ -90,7 +163,11 @@ export function create(studio) {
     const save = () => download(file.name, new Blob([bytes], { type: file.media_type }));
     const found = [
       `${file.name}, ${(file.bytes / 1000).toFixed(1)} kB`,
-      ...(file.transfers === null ? [] : [`${file.transfers} transfers between the beds, ${file.carriers} ${file.carriers === 1 ? "carrier" : "carriers"}`]),
+      ...(file.transfers === null
+        ? []
+        : [
+            `${file.transfers} transfers between the beds, ${file.carriers} ${file.carriers === 1 ? "carrier" : "carriers"}`,
+          ]),
       ...file.notes,
     ];
     const text = kind.text ? new TextDecoder().decode(bytes.slice(0, MOST_SHOWN)) : "";
@@ -110,7 +187,9 @@ export function create(studio) {
       studio.note.value ? "The design's note goes with it." : "A note of the design would go with it.",
       outline ? "The chart has an outline." : "",
       yarns.size ? `Its yarns: ${[...yarns].join(", ")}.` : "",
-    ].filter(Boolean).join(" ");
+    ]
+      .filter(Boolean)
+      .join(" ");
     choose(kind);
     element.showModal();
   };

@@ -88,7 +88,12 @@ function shareMenu(studio, wish) {
       null,
       item("page", "Page to turn it in (.html)", (files) => files.saveFile(studio, wish, "page", false)),
       item("animation", "Page with the stretch (.html)", (files) => files.saveFile(studio, wish, "page", true), still),
-      item("recording", "Recording of the stretch (.viser)", (files) => files.saveFile(studio, wish, "recording", true), still),
+      item(
+        "recording",
+        "Recording of the stretch (.viser)",
+        (files) => files.saveFile(studio, wish, "recording", true),
+        still,
+      ),
       null,
       item("solid", "Solid with colours (.glb)", (files) => files.saveFile(studio, wish, "solid", false)),
     ]);

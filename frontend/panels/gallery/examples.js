@@ -22,22 +22,46 @@ import { exampleGrid } from "../../core/example.js";
 import { Grid } from "../../core/grid.js";
 
 /** @param {string} motif rows from the top, separated by / @param {number} rows @param {number} columns */
-const tiled = (motif, rows, columns) => () =>
-  Grid.fromText(motif.replaceAll("/", "\n")).tiled(rows, columns).text;
+const tiled = (motif, rows, columns) => () => Grid.fromText(motif.replaceAll("/", "\n")).tiled(rows, columns).text;
 
 const DIAMONDS = "KKKKPKKK/KKKPKPKK/KKPKKKPK/KPKKKKKP/PKKKKKKK/KPKKKKKP/KKPKKKPK/KKKPKPKK";
 
 /** @type {Example[]} */
 export const EXAMPLES = [
-  { id: "stockinette", name: "Stockinette", note: "All even segments: the stiffest of the four.", chart: tiled("K", 24, 30) },
-  { id: "garter", name: "Garter", note: "Odd segments along the wales: stretches lengthwise.", chart: tiled("P/K", 24, 30) },
+  {
+    id: "stockinette",
+    name: "Stockinette",
+    note: "All even segments: the stiffest of the four.",
+    chart: tiled("K", 24, 30),
+  },
+  {
+    id: "garter",
+    name: "Garter",
+    note: "Odd segments along the wales: stretches lengthwise.",
+    chart: tiled("P/K", 24, 30),
+  },
   { id: "rib", name: "1×1 rib", note: "Odd segments along the course: stretches across.", chart: tiled("KP", 24, 30) },
   { id: "seed", name: "Seed", note: "Odd segments both ways: soft both ways.", chart: tiled("KP/PK", 24, 30) },
-  { id: "rib-2-2", name: "2×2 rib", note: "Pulls in more, and stretches more, than 1×1.", chart: tiled("KKPP", 24, 32) },
-  { id: "basket", name: "Basket", note: "Blocks that lean against each other.", chart: tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32) },
+  {
+    id: "rib-2-2",
+    name: "2×2 rib",
+    note: "Pulls in more, and stretches more, than 1×1.",
+    chart: tiled("KKPP", 24, 32),
+  },
+  {
+    id: "basket",
+    name: "Basket",
+    note: "Blocks that lean against each other.",
+    chart: tiled("PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK/KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP", 24, 32),
+  },
   { id: "moss", name: "Moss", note: "Seed drawn out to two rows.", chart: tiled("PK/PK/KP/KP", 24, 30) },
   { id: "diamonds", name: "Diamonds", note: "Soft lines across a stiff ground.", chart: tiled(DIAMONDS, 24, 32) },
-  { id: "sampler", name: "Cuff with a panel", note: "All four fabrics in one swatch: where will it give?", chart: () => exampleGrid().text },
+  {
+    id: "sampler",
+    name: "Cuff with a panel",
+    note: "All four fabrics in one swatch: where will it give?",
+    chart: () => exampleGrid().text,
+  },
 ];
 
 /** @type {GarmentExample[]} */

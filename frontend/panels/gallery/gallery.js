@@ -26,7 +26,11 @@ export function create(studio, { keeper, open }) {
   const element = dialog(
     "gallery-dialog",
     "New design",
-    h("p", { class: "muted" }, "Begin with one of these and change it. The design on show is kept: it stays among your designs."),
+    h(
+      "p",
+      { class: "muted" },
+      "Begin with one of these and change it. The design on show is kept: it stays among your designs.",
+    ),
     status,
     h("h3", {}, "Charts"),
     examples,
@@ -48,11 +52,17 @@ export function create(studio, { keeper, open }) {
    * @param {() => void} perform
    */
   const card = (id, name, note, picture, perform) =>
-    h("li", { class: "card" },
-      h("button", { class: "card-open", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
-        h("span", { class: "card-picture" }, picture)),
+    h(
+      "li",
+      { class: "card" },
+      h(
+        "button",
+        { class: "card-open", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
+        h("span", { class: "card-picture" }, picture),
+      ),
       h("span", { class: "card-name" }, name),
-      h("span", { class: "card-facts muted" }, note));
+      h("span", { class: "card-facts muted" }, note),
+    );
 
   const show = () => {
     examples.replaceChildren(
@@ -62,21 +72,26 @@ export function create(studio, { keeper, open }) {
       }),
       ...EXAMPLES.map(({ id, name, note, chart }) =>
         card(id, name, note, thumbnail({ chart: chart() }), () =>
-          begin(plainDesign(name, chart(), studio.materialId.value)))),
+          begin(plainDesign(name, chart(), studio.materialId.value)),
+        ),
+      ),
     );
   };
 
   /** @type {Map<string, DesignDocument>} */
   const fitted = new Map();
   const showGarments = async () => {
-    garments.replaceChildren(
-      ...GARMENTS.map(() => h("li", { class: "card loading", "aria-hidden": "true" })));
+    garments.replaceChildren(...GARMENTS.map(() => h("li", { class: "card loading", "aria-hidden": "true" })));
     for (const example of GARMENTS) {
       if (fitted.has(example.id)) continue;
       const { garment, material } = example;
-      const found = await attempt(status, () =>
-        /** @type {Promise<import("./examples.js").Garment>} */ (
-          call("/garment", { method: "POST", body: { garment, material } })));
+      const found = await attempt(
+        status,
+        () =>
+          /** @type {Promise<import("./examples.js").Garment>} */ (
+            call("/garment", { method: "POST", body: { garment, material } })
+          ),
+      );
       if (found) fitted.set(example.id, garmentDesign(example, found));
     }
     garments.replaceChildren(

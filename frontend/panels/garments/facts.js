@@ -20,15 +20,21 @@ export function facts(garment, unit) {
   const gauge = gauges.find(({ fabric }) => fabric === "stockinette") ?? gauges[0];
   const mass = yarn_g === null ? "" : `, ${figure(yarn_g)} g`;
   return [
-    h("p", { class: "planner-sizes figures" },
+    h(
+      "p",
+      { class: "planner-sizes figures" },
       h("strong", {}, `${columns} sts × ${rows} rows`),
-      ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`),
+      ` · ${stitches} stitches · ${figure(yarn_m)} m of yarn${mass} · gauge ${figure(gauge.stitches_per_10_cm)} sts × ${figure(gauge.rows_per_10_cm)} rows per 10 cm of ${gauge.fabric}`,
+    ),
     regions(garment, unit),
     ...pressure(garment, unit),
-    h("ul", { class: "planner-notes" },
+    h(
+      "ul",
+      { class: "planner-notes" },
       ...garment.warnings.map((words) => h("li", { class: "warned" }, icon("warning"), words)),
       ...garment.notes.map((words) => h("li", {}, icon("info"), words)),
-      h("li", {}, icon("info"), `To close: ${garment.closing}.`)),
+      h("li", {}, icon("info"), `To close: ${garment.closing}.`),
+    ),
   ];
 }
 
@@ -37,18 +43,38 @@ const long = (mm, unit) => (unit === "in" ? `${(mm / 25.4).toFixed(1)} in` : `${
 
 /** @param {Garment} garment @param {string} unit */
 function regions({ regions: all }, unit) {
-  return h("table", { class: "planner-table figures" },
-    h("thead", {}, h("tr", {}, ...["Region", "Stitches", "At rest", "Yarn", "Gives 1/Y, mm/N"].map((words) => h("th", { scope: "col" }, words)))),
-    h("tbody", {}, ...all.map((one) => {
-      const swatch = h("span", { class: "planner-swatch" });
-      swatch.style.background = one.colour;
-      return h("tr", {},
-        h("th", { scope: "row" }, swatch, one.name),
-        h("td", {}, `${one.columns} × ${one.rows}`),
-        h("td", {}, `${long(one.width_mm, unit)} × ${long(one.height_mm, unit)}`),
-        h("td", {}, `${figure(one.yarn_m)} m${one.yarn_g === null ? "" : `, ${figure(one.yarn_g)} g`}`),
-        h("td", {}, `${figure(one.extensibility_course_mm_per_n)} × ${figure(one.extensibility_wale_mm_per_n)}`));
-    })));
+  return h(
+    "table",
+    { class: "planner-table figures" },
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        ...["Region", "Stitches", "At rest", "Yarn", "Gives 1/Y, mm/N"].map((words) =>
+          h("th", { scope: "col" }, words),
+        ),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      ...all.map((one) => {
+        const swatch = h("span", { class: "planner-swatch" });
+        swatch.style.background = one.colour;
+        return h(
+          "tr",
+          {},
+          h("th", { scope: "row" }, swatch, one.name),
+          h("td", {}, `${one.columns} × ${one.rows}`),
+          h("td", {}, `${long(one.width_mm, unit)} × ${long(one.height_mm, unit)}`),
+          h("td", {}, `${figure(one.yarn_m)} m${one.yarn_g === null ? "" : `, ${figure(one.yarn_g)} g`}`),
+          h("td", {}, `${figure(one.extensibility_course_mm_per_n)} × ${figure(one.extensibility_wale_mm_per_n)}`),
+        );
+      }),
+    ),
+  );
 }
 
 /** @param {Garment} garment @param {string} unit @returns {Node[]} */
@@ -57,19 +83,47 @@ function pressure({ worn }, unit) {
   const shown = worn.slice(0, MOST_PLACES);
   const warned = [...new Set(shown.flatMap(({ warnings }) => warnings))];
   return [
-    h("table", { class: "planner-table figures", id: "planner-pressure" },
-      h("thead", {}, h("tr", {}, ...["Where it is worn", "Garment", "Limb", "Ease", "Pressure"].map((words) => h("th", { scope: "col" }, words)))),
-      h("tbody", {}, ...shown.map((place) =>
-        h("tr", {},
-          h("th", { scope: "row" }, `${place.part}, ${long(place.at_mm, unit)}`),
-          h("td", {}, long(place.rest_mm, unit)),
-          h("td", {}, long(place.worn_mm, unit)),
-          h("td", {}, percent(place.ease)),
-          h("td", {}, place.mmhg && place.kpa
-            ? `${figure(place.mmhg.low, 2)} – ${figure(place.mmhg.high, 2)} mmHg (${figure(place.kpa.low, 2)} – ${figure(place.kpa.high, 2)} kPa)`
-            : "none"))))),
-    h("details", { class: "planner-warnings" },
+    h(
+      "table",
+      { class: "planner-table figures", id: "planner-pressure" },
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          ...["Where it is worn", "Garment", "Limb", "Ease", "Pressure"].map((words) =>
+            h("th", { scope: "col" }, words),
+          ),
+        ),
+      ),
+      h(
+        "tbody",
+        {},
+        ...shown.map((place) =>
+          h(
+            "tr",
+            {},
+            h("th", { scope: "row" }, `${place.part}, ${long(place.at_mm, unit)}`),
+            h("td", {}, long(place.rest_mm, unit)),
+            h("td", {}, long(place.worn_mm, unit)),
+            h("td", {}, percent(place.ease)),
+            h(
+              "td",
+              {},
+              place.mmhg && place.kpa
+                ? `${figure(place.mmhg.low, 2)} – ${figure(place.mmhg.high, 2)} mmHg (${figure(place.kpa.low, 2)} – ${figure(place.kpa.high, 2)} kPa)`
+                : "none",
+            ),
+          ),
+        ),
+      ),
+    ),
+    h(
+      "details",
+      { class: "planner-warnings" },
       h("summary", {}, `About the pressure (${warned.length})`),
-      h("ul", {}, ...warned.map((words) => h("li", {}, words)))),
+      h("ul", {}, ...warned.map((words) => h("li", {}, words))),
+    ),
   ];
 }

@@ -54,12 +54,19 @@ export class LengthField {
  * @param {(value: string) => void} changed
  */
 export function choice(name, label, choices, chosen, changed) {
-  return h("fieldset", { class: "planner-choice" },
+  return h(
+    "fieldset",
+    { class: "planner-choice" },
     h("legend", { class: "visually-hidden" }, label),
     ...choices.map(([value, words]) =>
-      h("label", { class: "planner-choice-item" },
+      h(
+        "label",
+        { class: "planner-choice-item" },
         h("input", { type: "radio", name, value, checked: value === chosen, onchange: () => changed(value) }),
-        h("span", {}, words))));
+        h("span", {}, words),
+      ),
+    ),
+  );
 }
 
 /**
@@ -68,6 +75,9 @@ export function choice(name, label, choices, chosen, changed) {
  * @param {string} [hint]
  */
 export const labelled = (label, field, hint) =>
-  h("label", { class: "planner-field" },
+  h(
+    "label",
+    { class: "planner-field" },
     h("span", {}, label, hint && h("span", { class: "muted" }, ` ${hint}`)),
-    field);
+    field,
+  );

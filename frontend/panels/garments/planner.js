@@ -55,18 +55,54 @@ export function create(studio, { keeper }) {
   // --- what is asked ----------------------------------------------------------------------------
   const measures = h("div", { class: "planner-measures" });
   const about = h("p", { class: "muted" });
-  const ease = h("input", { type: "number", class: "number figures", id: "planner-ease", min: "-60", max: "100", step: "1", "aria-label": "Ease in percent", oninput: changed });
-  const target = h("input", { type: "number", class: "number figures", id: "planner-target", min: "1", max: "300", step: "1", value: String(TARGET_MMHG), "aria-label": "Wanted pressure in mmHg", oninput: changed });
+  const ease = h("input", {
+    type: "number",
+    class: "number figures",
+    id: "planner-ease",
+    min: "-60",
+    max: "100",
+    step: "1",
+    "aria-label": "Ease in percent",
+    oninput: changed,
+  });
+  const target = h("input", {
+    type: "number",
+    class: "number figures",
+    id: "planner-target",
+    min: "1",
+    max: "300",
+    step: "1",
+    value: String(TARGET_MMHG),
+    "aria-label": "Wanted pressure in mmHg",
+    oninput: changed,
+  });
   let byPressure = true;
   const easeRow = labelled("Ease, %", ease, "negative is tighter");
   const targetRow = labelled("Wanted pressure, mmHg", target);
-  const fit = choice("planner-fit", "How tight", [["ease", "by ease"], ["pressure", "by pressure"]], "pressure", (value) => {
-    byPressure = value === "pressure";
-    showFit();
-    changed();
-  });
+  const fit = choice(
+    "planner-fit",
+    "How tight",
+    [
+      ["ease", "by ease"],
+      ["pressure", "by pressure"],
+    ],
+    "pressure",
+    (value) => {
+      byPressure = value === "pressure";
+      showFit();
+      changed();
+    },
+  );
   const yarn = h("select", { class: "text-field", id: "planner-material", onchange: changed });
-  const tex = h("input", { type: "number", class: "number figures", min: "1", step: "any", placeholder: "–", "aria-label": "Yarn in tex", oninput: changed });
+  const tex = h("input", {
+    type: "number",
+    class: "number figures",
+    min: "1",
+    step: "any",
+    placeholder: "–",
+    "aria-label": "Yarn in tex",
+    oninput: changed,
+  });
   const intarsia = h("input", { type: "checkbox", id: "planner-intarsia", onchange: changed });
   const own = h("input", {
     type: "checkbox",
@@ -78,46 +114,100 @@ export function create(studio, { keeper }) {
   });
   /** @param {string} label @param {string} value */
   const count = (label, value) =>
-    h("input", { type: "number", class: "number figures", min: "1", step: "any", value, "aria-label": label, oninput: changed });
+    h("input", {
+      type: "number",
+      class: "number figures",
+      min: "1",
+      step: "any",
+      value,
+      "aria-label": label,
+      oninput: changed,
+    });
   const [stitches, rows] = [count("Stitches", "22"), count("Rows", "30")];
-  const per = h("select", { class: "text-field", "aria-label": "Counted over", onchange: changed }, ...["10 cm", "4 in", "5 cm"].map((one) => h("option", {}, one)));
-  const of = h("select", { class: "text-field", "aria-label": "Fabric of the swatch", onchange: changed }, ...["stockinette", "garter", "rib", "seed"].map((one) => h("option", {}, one)));
-  const gaugeRow = h("div", { class: "planner-gauge", hidden: true }, stitches, "sts ×", rows, "rows per", per, "of", of);
+  const per = h(
+    "select",
+    { class: "text-field", "aria-label": "Counted over", onchange: changed },
+    ...["10 cm", "4 in", "5 cm"].map((one) => h("option", {}, one)),
+  );
+  const of = h(
+    "select",
+    { class: "text-field", "aria-label": "Fabric of the swatch", onchange: changed },
+    ...["stockinette", "garter", "rib", "seed"].map((one) => h("option", {}, one)),
+  );
+  const gaugeRow = h(
+    "div",
+    { class: "planner-gauge", hidden: true },
+    stitches,
+    "sts ×",
+    rows,
+    "rows per",
+    per,
+    "of",
+    of,
+  );
 
   // --- what comes of it -------------------------------------------------------------------------
   const canvas = h("canvas", { role: "img", id: "planner-preview", "aria-label": "The garment, laid flat" });
   const result = h("div", { class: "planner-facts", id: "planner-facts", "aria-live": "polite" });
   const status = h("div", { class: "dialog-status", role: "status" });
-  const make = h("button", {
-    class: "button primary",
-    id: "planner-make",
-    disabled: true,
-    onclick: () => {
-      if (!garment) return;
-      element.close();
-      keeper.openNew(garment.design);
-      studio.tell(`${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`);
+  const make = h(
+    "button",
+    {
+      class: "button primary",
+      id: "planner-make",
+      disabled: true,
+      onclick: () => {
+        if (!garment) return;
+        element.close();
+        keeper.openNew(garment.design);
+        studio.tell(
+          `${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`,
+        );
+      },
     },
-  }, "Make this design");
+    "Make this design",
+  );
 
   const element = dialog(
     "planner-dialog",
     "Plan a garment",
-    h("div", { class: "planner" },
-      h("form", { class: "planner-form", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
-        choice("planner-template", "Garment", TEMPLATES.map(({ id, name }) => [id, name]), template.id, (id) => {
-          template = TEMPLATES.find((one) => one.id === id) ?? template;
-          showTemplate();
-          changed();
-        }),
+    h(
+      "div",
+      { class: "planner" },
+      h(
+        "form",
+        { class: "planner-form", onsubmit: (/** @type {Event} */ event) => event.preventDefault() },
+        choice(
+          "planner-template",
+          "Garment",
+          TEMPLATES.map(({ id, name }) => [id, name]),
+          template.id,
+          (id) => {
+            template = TEMPLATES.find((one) => one.id === id) ?? template;
+            showTemplate();
+            changed();
+          },
+        ),
         about,
-        h("div", { class: "planner-heading" },
+        h(
+          "div",
+          { class: "planner-heading" },
           h("h3", {}, "Measurements"),
-          choice("planner-unit", "Unit", [["mm", "mm"], ["in", "inches"]], unit, (value) => {
-            unit = value;
-            for (const field of lengths) field.show(unit);
-            if (garment) show(garment);
-          })),
+          choice(
+            "planner-unit",
+            "Unit",
+            [
+              ["mm", "mm"],
+              ["in", "inches"],
+            ],
+            unit,
+            (value) => {
+              unit = value;
+              for (const field of lengths) field.show(unit);
+              if (garment) show(garment);
+            },
+          ),
+        ),
         measures,
         h("div", { class: "planner-heading" }, h("h3", {}, "Fit"), fit),
         easeRow,
@@ -127,8 +217,16 @@ export function create(studio, { keeper }) {
         labelled("Yarn, tex (g/km)", tex, "for its mass"),
         h("label", { class: "planner-check" }, own, "My own gauge"),
         gaugeRow,
-        h("label", { class: "planner-check" }, intarsia, "A colour for each fabric (intarsia)")),
-      h("section", { class: "planner-result", "aria-label": "The garment" }, h("div", { class: "planner-picture" }, canvas), status, result)),
+        h("label", { class: "planner-check" }, intarsia, "A colour for each fabric (intarsia)"),
+      ),
+      h(
+        "section",
+        { class: "planner-result", "aria-label": "The garment" },
+        h("div", { class: "planner-picture" }, canvas),
+        status,
+        result,
+      ),
+    ),
     h("div", { class: "dialog-buttons" }, make),
   );
   /** A glove's ease is that of its fingers; the pressure is told for its wrist. */
@@ -151,17 +249,39 @@ export function create(studio, { keeper }) {
       lengths.push(field);
       return field;
     };
-    const fields = template.measures.map(({ key, label, value, hint }) => ({ key, label, hint, field: length(label, value) }));
+    const fields = template.measures.map(({ key, label, value, hint }) => ({
+      key,
+      label,
+      hint,
+      field: length(label, value),
+    }));
     const parts = fields.map(({ label, hint, field }) => labelled(label, field.input, hint));
-    const digits = template.fingers ? DIGITS.map(([name, long, around]) => ({ name, long: length(`${name}: length`, long), around: length(`${name}: around`, around) })) : [];
+    const digits = template.fingers
+      ? DIGITS.map(([name, long, around]) => ({
+          name,
+          long: length(`${name}: length`, long),
+          around: length(`${name}: around`, around),
+        }))
+      : [];
     const profile = template.profile ? profileTable(template.profile, length) : null;
     measures.replaceChildren(
       ...(profile ? [profile.element] : []),
       ...parts,
       ...(digits.length
-        ? [h("table", { class: "planner-table" },
-            h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "Length"), h("th", {}, "Around"))),
-            h("tbody", {}, ...digits.map(({ name, long, around }) => h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, long.input), h("td", {}, around.input)))))]
+        ? [
+            h(
+              "table",
+              { class: "planner-table" },
+              h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "Length"), h("th", {}, "Around"))),
+              h(
+                "tbody",
+                {},
+                ...digits.map(({ name, long, around }) =>
+                  h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, long.input), h("td", {}, around.input)),
+                ),
+              ),
+            ),
+          ]
         : []),
     );
     measured = () => ({
@@ -189,26 +309,49 @@ export function create(studio, { keeper }) {
     const add = ([at, around]) => {
       const place = { at: length("Distance along the limb", at), around: length("Circumference there", around) };
       places.push(place);
-      const row = h("tr", {},
+      const row = h(
+        "tr",
+        {},
         h("td", {}, place.at.input),
         h("td", {}, place.around.input),
-        h("td", {}, iconButton("close", "Remove this place", () => {
-          if (places.length <= 2) return;
-          places.splice(places.indexOf(place), 1);
-          row.remove();
-          changed();
-        })));
+        h(
+          "td",
+          {},
+          iconButton("close", "Remove this place", () => {
+            if (places.length <= 2) return;
+            places.splice(places.indexOf(place), 1);
+            row.remove();
+            changed();
+          }),
+        ),
+      );
       body.append(row);
     };
     start.forEach(add);
-    const element = h("div", { class: "planner-profile" },
-      h("table", { class: "planner-table" },
-        h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))), body),
-      h("button", { class: "button", id: "planner-add", onclick: () => {
-        const last = places[places.length - 1];
-        add([last.at.mm + 40, last.around.mm]);
-        changed();
-      } }, icon("plus"), "Add a place"));
+    const element = h(
+      "div",
+      { class: "planner-profile" },
+      h(
+        "table",
+        { class: "planner-table" },
+        h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))),
+        body,
+      ),
+      h(
+        "button",
+        {
+          class: "button",
+          id: "planner-add",
+          onclick: () => {
+            const last = places[places.length - 1];
+            add([last.at.mm + 40, last.around.mm]);
+            changed();
+          },
+        },
+        icon("plus"),
+        "Add a place",
+      ),
+    );
     return { element, read: () => places.map(({ at, around }) => [at.mm, around.mm]) };
   }
 
@@ -233,7 +376,9 @@ export function create(studio, { keeper }) {
         target_mmhg: byPressure ? target.valueAsNumber : null,
       },
       material: yarn.value,
-      gauge: own.checked ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value } : null,
+      gauge: own.checked
+        ? { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber, per: per.value, fabric: of.value }
+        : null,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
       intarsia: intarsia.checked,
     };
@@ -256,7 +401,10 @@ export function create(studio, { keeper }) {
   function show(found) {
     const gauge = found.gauges.find(({ fabric }) => fabric === "stockinette") ?? found.gauges[0];
     drawGarment(canvas, found.design, gauge.stitches_per_10_cm / gauge.rows_per_10_cm);
-    canvas.setAttribute("aria-label", `${found.name}: ${found.columns} stitches by ${found.rows} rows, with ${found.regions.map(({ name }) => name).join(", ")}`);
+    canvas.setAttribute(
+      "aria-label",
+      `${found.name}: ${found.columns} stitches by ${found.rows} rows, with ${found.regions.map(({ name }) => name).join(", ")}`,
+    );
     result.replaceChildren(...facts(found, unit));
   }
 

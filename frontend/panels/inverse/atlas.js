@@ -46,11 +46,23 @@ export function atlasTab(studio, context) {
     "div",
     { class: "segmented", role: "radiogroup", "aria-label": "Which repeats" },
     ...EXTENTS.map(({ id, label }) =>
-      h("button", { class: "segment", role: "radio", id: `atlas-${id}`, "aria-checked": String(id === extent), onclick: () => {
-        extent = id;
-        for (const other of extents.children) other.setAttribute("aria-checked", String(other.id === `atlas-${id}`));
-        void load();
-      } }, label)),
+      h(
+        "button",
+        {
+          class: "segment",
+          role: "radio",
+          id: `atlas-${id}`,
+          "aria-checked": String(id === extent),
+          onclick: () => {
+            extent = id;
+            for (const other of extents.children)
+              other.setAttribute("aria-checked", String(other.id === `atlas-${id}`));
+            void load();
+          },
+        },
+        label,
+      ),
+    ),
   );
   /** @type {Point | null} */ let chosen = null;
 
@@ -78,42 +90,98 @@ export function atlasTab(studio, context) {
   const describe = () => {
     if (!chosen || !table) {
       detail.replaceChildren(
-        h("p", { class: "muted" }, "Every dot is a repeat. Point at one to see it, press it for its numbers, or drag it onto the chart, a region or the selection."),
-        h("p", { class: "inverse-legend" },
+        h(
+          "p",
+          { class: "muted" },
+          "Every dot is a repeat. Point at one to see it, press it for its numbers, or drag it onto the chart, a region or the selection.",
+        ),
+        h(
+          "p",
+          { class: "inverse-legend" },
           h("span", {}, h("i", { class: "mark pure" }), "four fabrics"),
           h("span", {}, h("i", { class: "mark square" }), "yarn level"),
           h("span", {}, h("i", { class: "mark ring" }), "corrected for folding"),
-          h("span", {}, h("i", { class: "mark" }), "flat composite")),
+          h("span", {}, h("i", { class: "mark" }), "flat composite"),
+        ),
       );
       return;
     }
     const { key, index: k } = chosen;
     /** @param {string} name @param {string} value @param {string} [spread] */
     const row = (name, value, spread = "") =>
-      h("tr", {}, h("th", { scope: "row" }, name), h("td", { class: "value" }, value), h("td", { class: "interval muted" }, spread));
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, name),
+        h("td", { class: "value" }, value),
+        h("td", { class: "interval muted" }, spread),
+      );
     const size = table.relaxed_course_mm[k];
     const picture = repeatPicture(key, 92);
     const handle = h("div", { class: "inverse-handle", title: "Drag it onto the chart" }, picture);
     handle.addEventListener("pointerdown", (event) => carry(event, studio, context.view, key));
     detail.replaceChildren(
-      h("div", { class: "inverse-chosen" },
+      h(
+        "div",
+        { class: "inverse-chosen" },
         handle,
-        h("div", { class: "inverse-title" },
+        h(
+          "div",
+          { class: "inverse-title" },
           h("strong", { id: "inverse-name" }, nameOf(key)),
           h("span", { class: "muted" }, sourceInWords(table.provenance[k])),
-          h("div", { class: "inverse-buttons" },
-            h("button", { class: "button primary", id: "atlas-apply", onclick: apply }, icon("fill"), studio.selection.value ? "Fill the selection" : "Fill the chart"),
-            h("button", { class: "button", onclick: () => paintWith(studio, key) }, icon("pencil"), "Paint with it")))),
-      h("table", { class: "inverse-numbers" },
-        h("tbody", {},
-          row("Along rows", `${figure(table.modulus_course_n_per_mm[k])} N/mm`, range([table.modulus_course_low[k], table.modulus_course_high[k]])),
-          row("Along columns", `${figure(table.modulus_wale_n_per_mm[k])} N/mm`, range([table.modulus_wale_low[k], table.modulus_wale_high[k]])),
-          row("Stretch at 0.1 N/mm", `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`))),
-      h("table", { class: "inverse-numbers" },
-        h("tbody", {},
+          h(
+            "div",
+            { class: "inverse-buttons" },
+            h(
+              "button",
+              { class: "button primary", id: "atlas-apply", onclick: apply },
+              icon("fill"),
+              studio.selection.value ? "Fill the selection" : "Fill the chart",
+            ),
+            h("button", { class: "button", onclick: () => paintWith(studio, key) }, icon("pencil"), "Paint with it"),
+          ),
+        ),
+      ),
+      h(
+        "table",
+        { class: "inverse-numbers" },
+        h(
+          "tbody",
+          {},
+          row(
+            "Along rows",
+            `${figure(table.modulus_course_n_per_mm[k])} N/mm`,
+            range([table.modulus_course_low[k], table.modulus_course_high[k]]),
+          ),
+          row(
+            "Along columns",
+            `${figure(table.modulus_wale_n_per_mm[k])} N/mm`,
+            range([table.modulus_wale_low[k], table.modulus_wale_high[k]]),
+          ),
+          row(
+            "Stretch at 0.1 N/mm",
+            `${percent(table.stretch_course[k])} rows, ${percent(table.stretch_wale[k])} columns`,
+          ),
+        ),
+      ),
+      h(
+        "table",
+        { class: "inverse-numbers" },
+        h(
+          "tbody",
+          {},
           row("Poisson’s ratios", `${figure(table.poisson_yx[k], 2)} and ${figure(table.poisson_xy[k], 2)}`),
-          row("Stitch at rest", size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`),
-          row("To knit, a stitch", `${figure(table.transfers_per_stitch[k], 2)} transfers, ${figure(table.crossings_per_stitch[k], 2)} crossings; ${curlInWords(table.curl[k])}`))),
+          row(
+            "Stitch at rest",
+            size === null ? "not certified" : `${figure(size)} × ${figure(table.relaxed_wale_mm[k])} mm`,
+          ),
+          row(
+            "To knit, a stitch",
+            `${figure(table.transfers_per_stitch[k], 2)} transfers, ${figure(table.crossings_per_stitch[k], 2)} crossings; ${curlInWords(table.curl[k])}`,
+          ),
+        ),
+      ),
     );
   };
 
@@ -141,11 +209,14 @@ export function atlasTab(studio, context) {
   studio.selection.listen(() => chosen && describe());
   describe();
 
-  const element = h("div", { class: "inverse-tab" },
+  const element = h(
+    "div",
+    { class: "inverse-tab" },
     h("div", { class: "inverse-bar" }, extents, count, h("span", { class: "spacer" })),
     run.element,
     frame,
-    detail);
+    detail,
+  );
   return {
     element,
     open: () => {

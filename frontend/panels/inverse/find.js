@@ -23,15 +23,65 @@ import { Run } from "./run.js";
 const QUANTITIES = [
   { id: "modulus_course_n_per_mm", label: "Stiffness, rows", short: "rows", unit: "N/mm", start: 0.1 },
   { id: "modulus_wale_n_per_mm", label: "Stiffness, columns", short: "columns", unit: "N/mm", start: 0.1 },
-  { id: "stretch_course", label: "Stretch, rows", short: "stretch, rows", unit: "%", start: 60, percent: true, needs: "load" },
-  { id: "stretch_wale", label: "Stretch, columns", short: "stretch, columns", unit: "%", start: 40, percent: true, needs: "load" },
-  { id: "pressure_course_mmhg", label: "Pressure, rows around a limb", short: "pressure", unit: "mmHg", start: 20, needs: "limb" },
-  { id: "pressure_wale_mmhg", label: "Pressure, columns around a limb", short: "pressure", unit: "mmHg", start: 20, needs: "limb" },
+  {
+    id: "stretch_course",
+    label: "Stretch, rows",
+    short: "stretch, rows",
+    unit: "%",
+    start: 60,
+    percent: true,
+    needs: "load",
+  },
+  {
+    id: "stretch_wale",
+    label: "Stretch, columns",
+    short: "stretch, columns",
+    unit: "%",
+    start: 40,
+    percent: true,
+    needs: "load",
+  },
+  {
+    id: "pressure_course_mmhg",
+    label: "Pressure, rows around a limb",
+    short: "pressure",
+    unit: "mmHg",
+    start: 20,
+    needs: "limb",
+  },
+  {
+    id: "pressure_wale_mmhg",
+    label: "Pressure, columns around a limb",
+    short: "pressure",
+    unit: "mmHg",
+    start: 20,
+    needs: "limb",
+  },
   { id: "anisotropy", label: "Anisotropy (rows over columns)", short: "anisotropy", unit: "", start: 1 },
-  { id: "poisson_yx", label: "Poisson’s ratio, pulled along rows", short: "Poisson, rows", unit: "", start: 0.2, difference: true },
-  { id: "poisson_xy", label: "Poisson’s ratio, pulled along columns", short: "Poisson, columns", unit: "", start: 0.4, difference: true },
+  {
+    id: "poisson_yx",
+    label: "Poisson’s ratio, pulled along rows",
+    short: "Poisson, rows",
+    unit: "",
+    start: 0.2,
+    difference: true,
+  },
+  {
+    id: "poisson_xy",
+    label: "Poisson’s ratio, pulled along columns",
+    short: "Poisson, columns",
+    unit: "",
+    start: 0.4,
+    difference: true,
+  },
   { id: "extensibility_course_mm_per_n", label: "Extensibility, rows", short: "ext., rows", unit: "mm/N", start: 10 },
-  { id: "extensibility_wale_mm_per_n", label: "Extensibility, columns", short: "ext., columns", unit: "mm/N", start: 10 },
+  {
+    id: "extensibility_wale_mm_per_n",
+    label: "Extensibility, columns",
+    short: "ext., columns",
+    unit: "mm/N",
+    start: 10,
+  },
 ];
 const COUNT = 12;
 
@@ -51,14 +101,24 @@ export function findTab(studio, context) {
 
   /** @param {Quantity} first @param {number} [value] */
   const addRow = (first, value = first.start) => {
-    const select = h("select", { class: "text", "aria-label": "Quantity" },
-      ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)));
+    const select = h(
+      "select",
+      { class: "text", "aria-label": "Quantity" },
+      ...QUANTITIES.map((q) => h("option", { value: q.id, selected: q === first }, q.label)),
+    );
     const number = field("Value", value, { step: "any", class: "number figures wish-value" });
     const unit = h("span", { class: "muted wish-unit" });
     const tolerance = field("Tolerance", 10, { min: "0.1", step: "any" });
     const toleranceUnit = h("span", { class: "muted" }, "%");
-    const weight = h("select", { class: "text", "aria-label": "Weight" },
-      ...[["0.25", "minor"], ["1", "normal"], ["4", "major"]].map(([v, text]) => h("option", { value: v, selected: v === "1" }, text)));
+    const weight = h(
+      "select",
+      { class: "text", "aria-label": "Weight" },
+      ...[
+        ["0.25", "minor"],
+        ["1", "normal"],
+        ["4", "major"],
+      ].map(([v, text]) => h("option", { value: v, selected: v === "1" }, text)),
+    );
     const load = field("Load in N/mm", 0.1, { min: "0.001", max: "0.5", step: "any" });
     const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
@@ -73,7 +133,13 @@ export function findTab(studio, context) {
       toleranceUnit.textContent = q.difference ? "" : "%";
       extra.replaceChildren(
         ...(q.needs === "load" ? [h("label", {}, "at", load), h("span", { class: "muted" }, "N/mm of width")] : []),
-        ...(q.needs === "limb" ? [h("label", {}, "tube", rest), h("label", {}, "on a limb of", worn), h("span", { class: "muted" }, "mm around")] : []),
+        ...(q.needs === "limb"
+          ? [
+              h("label", {}, "tube", rest),
+              h("label", {}, "on a limb of", worn),
+              h("span", { class: "muted" }, "mm around"),
+            ]
+          : []),
       );
       extra.hidden = !q.needs;
     };
@@ -100,25 +166,52 @@ export function findTab(studio, context) {
     };
     show();
     readers.push(read);
-    const row = h("div", { class: "wish" },
-      h("div", { class: "wish-line" }, select, number, unit, h("label", { class: "wish-tolerance" }, "±", tolerance, toleranceUnit), weight, remove),
-      extra);
+    const row = h(
+      "div",
+      { class: "wish" },
+      h(
+        "div",
+        { class: "wish-line" },
+        select,
+        number,
+        unit,
+        h("label", { class: "wish-tolerance" }, "±", tolerance, toleranceUnit),
+        weight,
+        remove,
+      ),
+      extra,
+    );
     rows.append(row);
   };
 
   const across = h("input", { type: "checkbox", id: "find-all-yarns" });
   const large = h("input", { type: "checkbox", id: "find-large" });
-  const transfers = limit("Transfers", [["", "any"], ["0", "none"], ["0.25", "≤ ¼ a stitch"], ["0.5", "≤ ½ a stitch"]]);
-  const curl = limit("Curl", [["", "any"], ["0.15", "lies flat"], ["0.5", "little"]]);
+  const transfers = limit("Transfers", [
+    ["", "any"],
+    ["0", "none"],
+    ["0.25", "≤ ¼ a stitch"],
+    ["0.5", "≤ ½ a stitch"],
+  ]);
+  const curl = limit("Curl", [
+    ["", "any"],
+    ["0.15", "lies flat"],
+    ["0.5", "little"],
+  ]);
 
   const search = async () => {
     const targets = readers.map((read) => read()).filter((wanted) => wanted !== null);
     if (targets.length < readers.length || !targets.length) {
-      run.say({ title: "A wish is incomplete", detail: "Every wish needs a value and a tolerance.", remedy: "Fill it in, or remove it." });
+      run.say({
+        title: "A wish is incomplete",
+        detail: "Every wish needs a value and a tolerance.",
+        remedy: "Fill it in, or remove it.",
+      });
       return;
     }
     const all = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4).map(({ id }) => id);
-    const materials = across.checked ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)] : [studio.materialId.value];
+    const materials = across.checked
+      ? [studio.materialId.value, ...all.filter((id) => id !== studio.materialId.value)]
+      : [studio.materialId.value];
     const request = {
       materials,
       targets,
@@ -133,18 +226,27 @@ export function findTab(studio, context) {
     show(found, targets);
     if (found.reached || materials.length === all.length) return;
     /** @type {Found | null} */
-    const more = await run.run("find", { ...request, repeats: "small", elsewhere: true }, "Looking into the other yarns");
+    const more = await run.run(
+      "find",
+      { ...request, repeats: "small", elsewhere: true },
+      "Looking into the other yarns",
+    );
     if (more) show({ ...found, elsewhere: more.elsewhere }, targets);
   };
 
   /** @param {Found} found @param {Wanted[]} targets */
   const show = (found, targets) => {
     answer.replaceChildren(
-      h("p", { class: found.reached ? "inverse-verdict good" : "inverse-verdict" },
+      h(
+        "p",
+        { class: found.reached ? "inverse-verdict good" : "inverse-verdict" },
         icon(found.reached ? "check" : "info"),
-        h("span", {}, verdict(found, targets))),
+        h("span", {}, verdict(found, targets)),
+      ),
       h("ol", { class: "candidates" }, ...found.candidates.map(item)),
-      ...(found.elsewhere.length ? [h("h3", {}, "In other yarns"), h("ol", { class: "candidates" }, ...found.elsewhere.map(item))] : []),
+      ...(found.elsewhere.length
+        ? [h("h3", {}, "In other yarns"), h("ol", { class: "candidates" }, ...found.elsewhere.map(item))]
+        : []),
     );
   };
 
@@ -153,33 +255,87 @@ export function findTab(studio, context) {
     const key = candidate.chart.replaceAll("\n", "/");
     const name = studio.materials.value.find(({ id }) => id === candidate.material)?.name ?? candidate.material;
     const picture = h("div", { class: "inverse-handle", title: "Drag it onto the chart" }, repeatPicture(key, 60));
-    picture.addEventListener("pointerdown", (event) => carry(event, studio, context.view, key, undefined, candidate.material));
-    return h("li", { class: candidate.reached ? "candidate reached" : "candidate" },
+    picture.addEventListener("pointerdown", (event) =>
+      carry(event, studio, context.view, key, undefined, candidate.material),
+    );
+    return h(
+      "li",
+      { class: candidate.reached ? "candidate reached" : "candidate" },
       picture,
-      h("div", { class: "candidate-body" },
-        h("div", { class: "candidate-title" }, h("strong", {}, nameOf(key)), h("span", { class: "muted ellipsis" }, name),
-          candidate.reached && h("span", { class: "reached-mark" }, icon("check"), "within tolerance")),
-        h("div", { class: "candidate-values figures" }, ...Object.keys(candidate.values).map((label) => valueOf(candidate, label))),
-        h("div", { class: "muted candidate-cost" }, `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`)),
-      h("div", { class: "candidate-buttons" },
-        iconButton("fill", `Fill with ${nameOf(key)}`, () => fillWith(studio, key, chosenPlace(studio), candidate.material), { title: "Fill the selection or the chart" }),
-        iconButton("pencil", `Paint with ${nameOf(key)}`, () => paintWith(studio, key), { title: "Paint with it" })));
+      h(
+        "div",
+        { class: "candidate-body" },
+        h(
+          "div",
+          { class: "candidate-title" },
+          h("strong", {}, nameOf(key)),
+          h("span", { class: "muted ellipsis" }, name),
+          candidate.reached && h("span", { class: "reached-mark" }, icon("check"), "within tolerance"),
+        ),
+        h(
+          "div",
+          { class: "candidate-values figures" },
+          ...Object.keys(candidate.values).map((label) => valueOf(candidate, label)),
+        ),
+        h(
+          "div",
+          { class: "muted candidate-cost" },
+          `${figure(candidate.transfers_per_stitch, 2)} transfers, ${figure(candidate.crossings_per_stitch, 2)} crossings a stitch; ${curlInWords(candidate.curl)}. ${sourceInWords(candidate.provenance)}.`,
+        ),
+      ),
+      h(
+        "div",
+        { class: "candidate-buttons" },
+        iconButton(
+          "fill",
+          `Fill with ${nameOf(key)}`,
+          () => fillWith(studio, key, chosenPlace(studio), candidate.material),
+          { title: "Fill the selection or the chart" },
+        ),
+        iconButton("pencil", `Paint with ${nameOf(key)}`, () => paintWith(studio, key), { title: "Paint with it" }),
+      ),
+    );
   };
 
   addRow(QUANTITIES[0]);
   addRow(QUANTITIES[1]);
-  const form = h("form", { class: "inverse-form", onsubmit: (/** @type {Event} */ event) => {
-    event.preventDefault();
-    void search();
-  } },
+  const form = h(
+    "form",
+    {
+      class: "inverse-form",
+      onsubmit: (/** @type {Event} */ event) => {
+        event.preventDefault();
+        void search();
+      },
+    },
     rows,
-    h("div", { class: "inverse-bar" },
-      h("button", { class: "button", id: "wish-add", onclick: () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]) }, icon("plus"), "Wish"),
-      transfers.label, curl.label,
+    h(
+      "div",
+      { class: "inverse-bar" },
+      h(
+        "button",
+        {
+          class: "button",
+          id: "wish-add",
+          onclick: () =>
+            addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]),
+        },
+        icon("plus"),
+        "Wish",
+      ),
+      transfers.label,
+      curl.label,
       h("label", { class: "check" }, across, "All yarns"),
-      h("label", { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" }, large, "Up to 4 × 4"),
+      h(
+        "label",
+        { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" },
+        large,
+        "Up to 4 × 4",
+      ),
       h("span", { class: "spacer" }),
-      h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find")));
+      h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find"),
+    ),
+  );
   const element = h("div", { class: "inverse-tab scrolls" }, form, run.element, answer);
   return { element, open: () => {}, retheme: () => {} };
 }
@@ -187,12 +343,15 @@ export function findTab(studio, context) {
 /** @param {Found} found @param {Wanted[]} targets */
 function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) {
   const within = candidates.filter((candidate) => candidate.reached).length;
-  if (reached) return `${within === candidates.length ? `The nearest ${within}` : within} of ${searched} repeats are within all tolerances.`;
+  if (reached)
+    return `${within === candidates.length ? `The nearest ${within}` : within} of ${searched} repeats are within all tolerances.`;
   const beyond = Object.entries(ranges).flatMap(([label, [low, high]]) => {
     const q = quantityOf(label);
     const wanted = targets.find(({ quantity }) => quantity === q.id)?.value ?? low;
     const scale = q.percent ? 100 : 1;
-    return wanted < low || wanted > high ? [`${q.label}: all span ${figure(scale * low)} to ${figure(scale * high)} ${q.unit}.`] : [];
+    return wanted < low || wanted > high
+      ? [`${q.label}: all span ${figure(scale * low)} to ${figure(scale * high)} ${q.unit}.`]
+      : [];
   });
   return [
     `None of ${searched} repeats reaches all of it; the nearest stand first.`,
@@ -209,14 +368,29 @@ function valueOf(candidate, label) {
   const scale = q.percent ? 100 : 1;
   if (value === null || off === null) return h("span", {}, `${q.short}: beyond the lock-up`);
   const [low, high] = candidate.intervals[label].map((end) => (end === null ? "…" : figure(scale * end, 2)));
-  const away = q.difference ? `${off < 0 ? "−" : "+"}${figure(Math.abs(off), 2)}` : `${off < 0 ? "−" : "+"}${Math.abs(100 * off).toFixed(0)} %`;
-  return h("span", { title: `90 % interval ${low} to ${high} ${q.unit}` },
-    h("span", { class: "muted" }, `${q.short} `), `${figure(scale * value)} ${q.unit} `, h("span", { class: "away" }, away), h("span", { class: "muted" }, ` (${low}–${high})`));
+  const away = q.difference
+    ? `${off < 0 ? "−" : "+"}${figure(Math.abs(off), 2)}`
+    : `${off < 0 ? "−" : "+"}${Math.abs(100 * off).toFixed(0)} %`;
+  return h(
+    "span",
+    { title: `90 % interval ${low} to ${high} ${q.unit}` },
+    h("span", { class: "muted" }, `${q.short} `),
+    `${figure(scale * value)} ${q.unit} `,
+    h("span", { class: "away" }, away),
+    h("span", { class: "muted" }, ` (${low}–${high})`),
+  );
 }
 
 /** @param {string} label @param {number} value @param {Record<string, unknown>} more */
 export function field(label, value, more = {}) {
-  return h("input", { type: "number", class: "number figures", "aria-label": label, value: String(value), required: true, ...more });
+  return h("input", {
+    type: "number",
+    class: "number figures",
+    "aria-label": label,
+    value: String(value),
+    required: true,
+    ...more,
+  });
 }
 
 /** @param {string} label @param {string[][]} options */

@@ -49,8 +49,13 @@ function panel(studio, context) {
     { id: "stiffness", label: "Stiffness of parts", ...fillTab(studio) },
     { id: "outline", label: "Outline under a stretch", ...outlineTab(studio) },
   ];
-  const way = h("div", { class: "segmented", role: "radiogroup", "aria-label": "What is wished for" },
-    ...ways.map(({ id, label }) => h("button", { class: "segment", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label)));
+  const way = h(
+    "div",
+    { class: "segmented", role: "radiogroup", "aria-label": "What is wished for" },
+    ...ways.map(({ id, label }) =>
+      h("button", { class: "segment", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label),
+    ),
+  );
   const showWay = (/** @type {string} */ chosen) => {
     ways.forEach(({ id, element }, i) => {
       element.hidden = id !== chosen;
@@ -58,7 +63,12 @@ function panel(studio, context) {
     });
   };
   showWay("stiffness");
-  const fill = h("div", { class: "inverse-tab scrolls" }, h("div", { class: "inverse-bar" }, way), ...ways.map(({ element }) => element));
+  const fill = h(
+    "div",
+    { class: "inverse-tab scrolls" },
+    h("div", { class: "inverse-bar" }, way),
+    ...ways.map(({ element }) => element),
+  );
   /** @type {Record<TabName, HTMLElement>} */
   const contents = { atlas: atlas.element, find: find.element, fill };
 
@@ -66,30 +76,46 @@ function panel(studio, context) {
     section.hidden = true;
     byId("chart").focus({ preventScroll: true });
   };
-  const tabs = h("div", { class: "inverse-tabs", role: "tablist", "aria-label": "Inverse design" },
-    ...TABS.map(({ id, label }) => h("button", {
-      class: "inverse-tab-button", role: "tab", id: `inverse-${id}`, "aria-controls": `inverse-${id}-content`,
-      onclick: () => show(/** @type {TabName} */ (id)),
+  const tabs = h(
+    "div",
+    { class: "inverse-tabs", role: "tablist", "aria-label": "Inverse design" },
+    ...TABS.map(({ id, label }) =>
+      h(
+        "button",
+        {
+          class: "inverse-tab-button",
+          role: "tab",
+          id: `inverse-${id}`,
+          "aria-controls": `inverse-${id}-content`,
+          onclick: () => show(/** @type {TabName} */ (id)),
+          onkeydown: (/** @type {KeyboardEvent} */ event) => {
+            const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+            if (!step) return;
+            event.preventDefault();
+            event.stopPropagation();
+            const next = TABS[(TABS.findIndex((tab) => tab.id === id) + step + TABS.length) % TABS.length];
+            show(/** @type {TabName} */ (next.id));
+            byId(`inverse-${next.id}`).focus();
+          },
+        },
+        label,
+      ),
+    ),
+  );
+  const yarn = h("span", { class: "muted ellipsis inverse-yarn" });
+  const section = h(
+    "section",
+    {
+      class: "inverse",
+      id: "inverse",
+      "aria-label": "Inverse design",
       onkeydown: (/** @type {KeyboardEvent} */ event) => {
-        const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-        if (!step) return;
+        if (event.key !== "Escape") return;
         event.preventDefault();
         event.stopPropagation();
-        const next = TABS[(TABS.findIndex((tab) => tab.id === id) + step + TABS.length) % TABS.length];
-        show(/** @type {TabName} */ (next.id));
-        byId(`inverse-${next.id}`).focus();
+        close();
       },
-    }, label)));
-  const yarn = h("span", { class: "muted ellipsis inverse-yarn" });
-  const section = h("section", {
-    class: "inverse", id: "inverse", "aria-label": "Inverse design",
-    onkeydown: (/** @type {KeyboardEvent} */ event) => {
-      if (event.key !== "Escape") return;
-      event.preventDefault();
-      event.stopPropagation();
-      close();
     },
-  },
     h("header", {}, tabs, yarn, iconButton("close", "Close inverse design", close, { id: "inverse-close" })),
     ...TABS.map(({ id }) => {
       const content = contents[/** @type {TabName} */ (id)];
@@ -97,11 +123,13 @@ function panel(studio, context) {
       content.setAttribute("role", "tabpanel");
       content.setAttribute("aria-labelledby", `inverse-${id}`);
       return content;
-    }));
+    }),
+  );
   byId("inspector").parentElement?.append(section);
 
   const nameYarn = () => {
-    yarn.textContent = studio.materials.value.find(({ id }) => id === studio.materialId.value)?.name ?? studio.materialId.value;
+    yarn.textContent =
+      studio.materials.value.find(({ id }) => id === studio.materialId.value)?.name ?? studio.materialId.value;
   };
   /** @type {TabName} */ let current = "atlas";
   studio.materials.watch(nameYarn);

@@ -42,13 +42,17 @@ export function outlineTab(studio) {
   svg.setAttribute("role", "group");
   svg.setAttribute("aria-label", "Wanted width of the stretched swatch over its width at rest");
   const x = (/** @type {number} */ share) => PAD.left + share * (WIDTH - PAD.left - PAD.right);
-  const y = (/** @type {number} */ width) => PAD.top + ((HIGH - width) / (HIGH - LOW)) * (HEIGHT - PAD.top - PAD.bottom);
+  const y = (/** @type {number} */ width) =>
+    PAD.top + ((HIGH - width) / (HIGH - LOW)) * (HEIGHT - PAD.top - PAD.bottom);
 
   /** The wanted width at a share of the length. @param {number} share */
   const wanted = (share) => {
     const at = [0, ...PLACES, 1];
     const values = [1, ...widths, 1];
-    const k = Math.max(0, at.findLastIndex((place) => place <= share));
+    const k = Math.max(
+      0,
+      at.findLastIndex((place) => place <= share),
+    );
     if (k >= at.length - 1) return 1;
     const t = (share - at[k]) / (at[k + 1] - at[k]);
     return values[k] + (values[k + 1] - values[k]) * t * t * (3 - 2 * t);
@@ -71,7 +75,11 @@ export function outlineTab(studio) {
     const [first, last] = direction === "wale" ? ["bottom row", "top row"] : ["first column", "last column"];
     add("text", { x: PAD.left, y: HEIGHT - 10, class: "tick" }, first);
     add("text", { x: WIDTH - PAD.right, y: HEIGHT - 10, class: "tick end" }, last);
-    add("text", { x: (PAD.left + WIDTH - PAD.right) / 2, y: HEIGHT - 10, class: "tick middle" }, "stretched width over width at rest");
+    add(
+      "text",
+      { x: (PAD.left + WIDTH - PAD.right) / 2, y: HEIGHT - 10, class: "tick middle" },
+      "stretched width over width at rest",
+    );
     const shares = Array.from({ length: 81 }, (_, i) => i / 80);
     add("path", { d: path(shares.map((s) => [x(s), y(wanted(s))])), class: "outline-wanted" });
     if (reached) {
@@ -80,8 +88,17 @@ export function outlineTab(studio) {
     }
     PLACES.forEach((place, k) => {
       const handle = add("circle", {
-        id: `outline-${k}`, cx: x(place), cy: y(widths[k]), r: 7, class: "outline-handle", tabindex: 0, role: "slider",
-        "aria-label": `Wanted width at ${percent(place)} of the length`, "aria-valuemin": LOW, "aria-valuemax": HIGH, "aria-valuenow": widths[k],
+        id: `outline-${k}`,
+        cx: x(place),
+        cy: y(widths[k]),
+        r: 7,
+        class: "outline-handle",
+        tabindex: 0,
+        role: "slider",
+        "aria-label": `Wanted width at ${percent(place)} of the length`,
+        "aria-valuemin": LOW,
+        "aria-valuemax": HIGH,
+        "aria-valuenow": widths[k],
         "aria-valuetext": figure(widths[k], 2),
       });
       handle.addEventListener("pointerdown", (event) => drag(/** @type {PointerEvent} */ (event), k));
@@ -105,18 +122,27 @@ export function outlineTab(studio) {
   const drag = (down, k) => {
     down.preventDefault();
     const done = new AbortController();
-    window.addEventListener("pointermove", ({ clientY }) => {
-      const box = svg.getBoundingClientRect();
-      const at = ((clientY - box.top) / box.height) * HEIGHT;
-      set(k, HIGH - ((at - PAD.top) / (HEIGHT - PAD.top - PAD.bottom)) * (HIGH - LOW));
-    }, { signal: done.signal });
-    for (const name of ["pointerup", "pointercancel"]) window.addEventListener(name, () => done.abort(), { signal: done.signal });
+    window.addEventListener(
+      "pointermove",
+      ({ clientY }) => {
+        const box = svg.getBoundingClientRect();
+        const at = ((clientY - box.top) / box.height) * HEIGHT;
+        set(k, HIGH - ((at - PAD.top) / (HEIGHT - PAD.top - PAD.bottom)) * (HIGH - LOW));
+      },
+      { signal: done.signal },
+    );
+    for (const name of ["pointerup", "pointercancel"])
+      window.addEventListener(name, () => done.abort(), { signal: done.signal });
   };
 
   const fill = async () => {
     const { rows, columns } = studio.document.grid;
     if (rows * columns > MOST_STITCHES) {
-      run.say({ title: "The chart is too large for this", detail: `It is pulled about a hundred times; ${rows * columns} stitches would take too long.`, remedy: `Use at most ${MOST_STITCHES} stitches, such as 100 × 100.` });
+      run.say({
+        title: "The chart is too large for this",
+        detail: `It is pulled about a hundred times; ${rows * columns} stitches would take too long.`,
+        remedy: `Use at most ${MOST_STITCHES} stitches, such as 100 × 100.`,
+      });
       return;
     }
     const lines = direction === "wale" ? rows : columns;
@@ -124,15 +150,19 @@ export function outlineTab(studio) {
     reached = null;
     draw();
     /** @type {Shaped | null} */
-    const found = await run.run("shape", {
-      material: studio.materialId.value,
-      direction,
-      strain: strain.valueAsNumber / 100,
-      width: Array.from({ length: lines }, (_, i) => Number(wanted((i + 0.5) / lines).toFixed(4))),
-      across: direction === "wale" ? columns : rows,
-      smallest_band: Math.min(band.valueAsNumber || 4, lines),
-      seed: seed.valueAsNumber || 0,
-    }, "Pulling swatches");
+    const found = await run.run(
+      "shape",
+      {
+        material: studio.materialId.value,
+        direction,
+        strain: strain.valueAsNumber / 100,
+        width: Array.from({ length: lines }, (_, i) => Number(wanted((i + 0.5) / lines).toFixed(4))),
+        across: direction === "wale" ? columns : rows,
+        smallest_band: Math.min(band.valueAsNumber || 4, lines),
+        seed: seed.valueAsNumber || 0,
+      },
+      "Pulling swatches",
+    );
     if (found) show(found);
   };
   /** @param {Shaped} found */
@@ -142,50 +172,121 @@ export function outlineTab(studio) {
     const filled = Grid.fromText(found.chart);
     const good = found.largest <= 0.03;
     answer.replaceChildren(
-      h("p", { class: good ? "inverse-verdict good" : "inverse-verdict" }, icon(good ? "check" : "info"),
-        h("span", {}, `Stretched, the widths are ${percent(found.rms, 1)} off in the mean and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`)),
-      h("div", { class: "inverse-preview" },
+      h(
+        "p",
+        { class: good ? "inverse-verdict good" : "inverse-verdict" },
+        icon(good ? "check" : "info"),
+        h(
+          "span",
+          {},
+          `Stretched, the widths are ${percent(found.rms, 1)} off in the mean and ${percent(found.largest, 1)} at most (${figure(found.force_n, 2)} N; ${found.pulls} swatches pulled).`,
+        ),
+      ),
+      h(
+        "div",
+        { class: "inverse-preview" },
         thumbnail({ chart: found.chart }, { side: 150, label: "The filled chart" }),
-        h("div", { class: "preview-words" },
-          h("p", {}, `From the ${direction === "wale" ? "bottom" : "left"}: ${found.bands.map(({ repeat, lines }) => `${lines} of ${nameOf(repeat)}`).join(", ")}.`),
+        h(
+          "div",
+          { class: "preview-words" },
+          h(
+            "p",
+            {},
+            `From the ${direction === "wale" ? "bottom" : "left"}: ${found.bands.map(({ repeat, lines }) => `${lines} of ${nameOf(repeat)}`).join(", ")}.`,
+          ),
           ...found.messages.map((message) => h("p", {}, message)),
-          h("div", { class: "inverse-buttons" },
-            h("button", { class: "button primary", id: "outline-apply", onclick: () => {
-              studio.document.replace(filled, "Fill from an outline");
-              studio.tell("The chart is filled. Stretch it below to see the outline.");
-            } }, icon("check"), "Apply"),
-            h("button", { class: "button", onclick: () => {
-              reached = null;
-              draw();
-              answer.replaceChildren();
-            } }, "Discard")))),
+          h(
+            "div",
+            { class: "inverse-buttons" },
+            h(
+              "button",
+              {
+                class: "button primary",
+                id: "outline-apply",
+                onclick: () => {
+                  studio.document.replace(filled, "Fill from an outline");
+                  studio.tell("The chart is filled. Stretch it below to see the outline.");
+                },
+              },
+              icon("check"),
+              "Apply",
+            ),
+            h(
+              "button",
+              {
+                class: "button",
+                onclick: () => {
+                  reached = null;
+                  draw();
+                  answer.replaceChildren();
+                },
+              },
+              "Discard",
+            ),
+          ),
+        ),
+      ),
     );
   };
 
-  const pulls = h("div", { class: "segmented", role: "radiogroup", "aria-label": "Pulled along" },
-    ...[["wale", "Columns"], ["course", "Rows"]].map(([id, label]) => h("button", { class: "segment", role: "radio", "aria-checked": String(id === direction), onclick: (/** @type {Event} */ { currentTarget }) => {
-      direction = /** @type {Direction} */ (id);
-      for (const other of pulls.children) other.setAttribute("aria-checked", String(other === currentTarget));
-      reached = null;
-      draw();
-    } }, label)));
+  const pulls = h(
+    "div",
+    { class: "segmented", role: "radiogroup", "aria-label": "Pulled along" },
+    ...[
+      ["wale", "Columns"],
+      ["course", "Rows"],
+    ].map(([id, label]) =>
+      h(
+        "button",
+        {
+          class: "segment",
+          role: "radio",
+          "aria-checked": String(id === direction),
+          onclick: (/** @type {Event} */ { currentTarget }) => {
+            direction = /** @type {Direction} */ (id);
+            for (const other of pulls.children) other.setAttribute("aria-checked", String(other === currentTarget));
+            reached = null;
+            draw();
+          },
+        },
+        label,
+      ),
+    ),
+  );
   draw();
-  const element = h("div", { class: "inverse-section" },
-    h("form", { class: "inverse-form", onsubmit: (/** @type {Event} */ event) => {
-      event.preventDefault();
-      void fill();
-    } },
-      h("p", { class: "muted inverse-hint" }, "Drag the points: how wide the swatch shall be when it is stretched between clamps. The whole chart is filled with bands."),
+  const element = h(
+    "div",
+    { class: "inverse-section" },
+    h(
+      "form",
+      {
+        class: "inverse-form",
+        onsubmit: (/** @type {Event} */ event) => {
+          event.preventDefault();
+          void fill();
+        },
+      },
+      h(
+        "p",
+        { class: "muted inverse-hint" },
+        "Drag the points: how wide the swatch shall be when it is stretched between clamps. The whole chart is filled with bands.",
+      ),
       svg,
-      h("div", { class: "inverse-bar" },
-        h("span", { class: "muted" }, "Pulled along"), pulls,
+      h(
+        "div",
+        { class: "inverse-bar" },
+        h("span", { class: "muted" }, "Pulled along"),
+        pulls,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands from", band, "lines"),
         h("label", { class: "check", title: "Another number gives another chart, the same the same" }, "variant", seed),
         h("span", { class: "spacer" }),
-        h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"))),
+        h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"),
+      ),
+    ),
     run.element,
-    answer);
+    answer,
+  );
   return { element };
 }
 

@@ -25,7 +25,8 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     id: "inverse-scatter",
     tabIndex: 0,
     role: "application",
-    "aria-label": "Repeats by stiffness. Left and right: softer or stiffer along rows; up and down: along columns; Enter fills.",
+    "aria-label":
+      "Repeats by stiffness. Left and right: softer or stiffer along rows; up and down: along columns; Enter fills.",
   });
   /** @type {AtlasTable | null} */ let table = null;
   /** @type {Point[]} */ let points = [];
@@ -123,7 +124,8 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
   const interval = (context, index, palette) => {
     if (!table) return;
     const { x, y } = points[index];
-    const clip = (/** @type {number} */ v, /** @type {number} */ low, /** @type {number} */ high) => Math.min(high, Math.max(low, v));
+    const clip = (/** @type {number} */ v, /** @type {number} */ low, /** @type {number} */ high) =>
+      Math.min(high, Math.max(low, v));
     const right = canvas.clientWidth - PAD.right;
     const bottom = canvas.clientHeight - PAD.bottom;
     context.strokeStyle = palette.accent;
