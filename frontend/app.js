@@ -13,15 +13,15 @@ import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/sto
 import { byId, firstPaint, isTyping } from "./dom.js";
 import { openAddressed } from "./keeping/address.js";
 import { Keeper } from "./keeping/keeper.js";
-import { sharedbanner } from "./panels/keptchip.js";
-import { panelsForLater } from "./panels/later.js";
+import { sharedBanner } from "./panels/sharedbanner.js";
+import { panelOpener } from "./panels/registry.js";
 import { chartstrip } from "./panels/chartstrip.js";
-import { messages } from "./panels/messages.js";
+import { messages } from "./widgets/messages.js";
 import { overlaybar } from "./panels/overlaybar.js";
 import { rail } from "./panels/rail.js";
 import { selectionbar } from "./panels/selectionbar.js";
 import { shelf } from "./panels/shelf.js";
-import { split } from "./panels/split.js";
+import { split } from "./widgets/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
 import { offerTour, topbar } from "./panels/topbar.js";
 import { watchConnection } from "./services/connection.js";
@@ -42,7 +42,7 @@ const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"),
 new Painter(view, studio);
 
 const keeper = new Keeper(studio, kept?.remote ?? null);
-const open = panelsForLater(studio);
+const open = panelOpener(studio);
 /** @type {(() => void)[]} */
 const themed = [];
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -69,7 +69,7 @@ dark.addEventListener("change", retheme);
 
 const stretcher = new Stretcher(studio);
 topbar(byId("topbar"), studio, context);
-sharedbanner(byId("shared"), context);
+sharedBanner(byId("shared"), context);
 rail(byId("rail"), studio, context);
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);

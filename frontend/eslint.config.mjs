@@ -21,6 +21,15 @@ export default [
       "import-x/no-cycle": "error",
       "import-x/no-duplicates": "error",
       "import-x/no-unresolved": "error",
+      "import-x/no-restricted-paths": [
+        "error",
+        {
+          zones: [
+            { target: "./core", from: ["./!(core)/**", "./*.js"], message: "core/ is logic without a browser." },
+            { target: "./widgets", from: "./panels", message: "Widgets know no panels." },
+          ],
+        },
+      ],
     },
   },
   {

@@ -214,4 +214,6 @@ export interface Problem {
   detail: string;
   field?: string | null;
   remedy?: string | null;
+  /** The largest number that the field accepts, where that is known. */
+  most?: number | null;
 }

@@ -22,16 +22,21 @@ class InputError(KnitcoreError, ValueError):
     field : the name of the offending input, as the caller knows it (``"chart"``, ``"strain"``).
     problem : one sentence that says what is wrong.
     remedy : one sentence that says what would be accepted.
+    most : the largest number that would be accepted, in the unit of the field, where that is known.
     """
 
-    def __init__(self, field: str, problem: str, remedy: str) -> None:
+    def __init__(self, field: str, problem: str, remedy: str, *, most: float | None = None) -> None:
         super().__init__(f"{field}: {problem} {remedy}")
         self.field = field
         self.problem = problem
         self.remedy = remedy
+        self.most = most
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str]]:
-        return type(self), (self.field, self.problem, self.remedy)  # survives between processes
+    def __reduce__(
+        self,
+    ) -> tuple[type[InputError], tuple[str, str, str], dict[str, float | None]]:
+        # survives between processes
+        return type(self), (self.field, self.problem, self.remedy), {"most": self.most}
 
 
 class ConvergenceError(KnitcoreError):

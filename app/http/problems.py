@@ -36,6 +36,9 @@ class Problem(BaseModel):
     detail: str = Field(description="What is wrong, for people.")
     field: str | None = Field(None, description="The input that is to blame.")
     remedy: str | None = Field(None, description="What would be accepted.")
+    most: float | None = Field(
+        None, description="The largest number that the field would accept, where that is known."
+    )
 
 
 PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -137,6 +140,7 @@ def problem_of(error: Exception) -> Problem:
             detail=f"{error.field}: {error.problem}",
             field=error.field,
             remedy=error.remedy,
+            most=error.most,
         )
     if isinstance(error, ConvergenceError | UnravelledError | CancelledError):
         return Problem(

@@ -6,7 +6,7 @@
  * @import {Studio} from "../studio.js"
  * @import {IconName} from "../icons.js"
  *
- * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: import("../panels/later.js").PanelName) => void,
+ * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: import("../panels/registry.js").PanelName) => void,
  *   toggleTheme: () => void}} ActionContext
  *
  * @typedef {object} Action

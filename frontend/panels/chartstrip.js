@@ -8,7 +8,7 @@
 
 import { action } from "../actions/registry.js";
 import { h } from "../dom.js";
-import { actionButton } from "./buttons.js";
+import { actionButton } from "../widgets/buttons.js";
 
 /** @type {[Look, string][]} */
 const LOOKS = [

@@ -12,11 +12,11 @@ import { shownOverlay } from "../chart/overlays.js";
 import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
-import { FrameGovernor } from "./framegovernor.js";
+import { FrameGovernor } from "./fabric/framegovernor.js";
 import { ViewLink } from "./fabric/link.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
-import { problemText } from "./problem.js";
+import { problemText } from "../widgets/problem.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;

@@ -13,7 +13,7 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { curvePlot } from "../plots/curve.js";
 import { rigidityPlot } from "../plots/rigidity.js";
-import { problemText } from "./problem.js";
+import { problemText } from "../widgets/problem.js";
 
 const COUNT_MS = 80;
 

@@ -10,7 +10,7 @@ import { action, shown } from "../actions/registry.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { TOOLS } from "../tools/registry.js";
-import { actionButton } from "./buttons.js";
+import { actionButton } from "../widgets/buttons.js";
 
 const SYMMETRY_NAMES = { none: "off", across: "left and right", up: "top and bottom", both: "both ways" };
 

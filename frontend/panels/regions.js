@@ -18,8 +18,8 @@ import { loadShelf } from "../core/store.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { pencil } from "../tools/pencil.js";
-import { iconButton } from "./buttons.js";
-import { docked, refreshed } from "./dock.js";
+import { iconButton } from "../widgets/buttons.js";
+import { docked, refreshed } from "../widgets/dock.js";
 
 /**
  * @param {Studio} studio

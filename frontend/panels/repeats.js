@@ -14,9 +14,9 @@ import { MAX_ITEMS } from "../core/design.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { repeat as placeTool } from "../tools/repeat.js";
-import { iconButton } from "./buttons.js";
-import { docked, refreshed } from "./dock.js";
-import { thumbnail } from "./thumbnail.js";
+import { iconButton } from "../widgets/buttons.js";
+import { docked, refreshed } from "../widgets/dock.js";
+import { thumbnail } from "../widgets/thumbnail.js";
 
 /**
  * @param {Studio} studio

@@ -16,7 +16,7 @@ import { ownInk, ownPatterns } from "../core/shelf.js";
 import { loadShelf, saveShelf } from "../core/store.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
-import { iconButton } from "./buttons.js";
+import { iconButton } from "../widgets/buttons.js";
 
 const SIDE = 34;
 /** A thumbnail shows at most this many stitches a side. */

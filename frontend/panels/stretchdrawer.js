@@ -72,6 +72,11 @@ export function stretchdrawer(host, studio, stretcher) {
       shear_modulus_n_per_mm: shear > 0 ? shear : null,
     });
   };
+  /** @param {number} strain */
+  const pullBy = (strain) => {
+    amount.value = String(Math.floor(100 * strain + 1e-9));
+    start();
+  };
   const run = h("button", {
     class: "button primary",
     id: "stretch-run",
@@ -174,7 +179,7 @@ export function stretchdrawer(host, studio, stretcher) {
     note.className = problem ? "stretch-note error" : "stretch-note";
     note.replaceChildren();
     if (problem) {
-      note.append(icon("warning"), h("span", {}, h("strong", {}, problem.title), `: ${inPercent(problem)}`));
+      note.append(icon("warning"), refused(problem, pullBy));
     } else if (busy) note.append(waiting() ? "Waiting for its turn …" : "Pulling the cloth between two clamps …");
     else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
     else if (value) {
@@ -260,12 +265,19 @@ function stretchOptions() {
 }
 
 /**
- * The service speaks of strains as shares, this panel in percent.
+ * What is wrong with a test that was refused; a strain in percent, as it was entered.
  *
  * @param {Problem} problem
+ * @param {(strain: number) => void} pull
  */
-function inPercent({ detail, remedy, field }) {
-  const text = `${detail} ${remedy ?? ""}`;
-  if (field !== "strain") return text;
-  return text.replace(/\d+(\.\d+)?/g, (share) => `${Math.floor(100 * Number(share) + 1e-9)} %`);
+function refused({ title, detail, remedy, field, most }, pull) {
+  if (field !== "strain" || !most) return h("span", {}, h("strong", {}, title), `: ${detail} ${remedy ?? ""}`);
+  const amount = `${Math.floor(100 * most + 1e-9)} %`;
+  return h(
+    "span",
+    {},
+    h("strong", {}, "Too far"),
+    `: the first stitches lock before that. Use at most ${amount}. `,
+    h("button", { class: "link", id: "stretch-most", onclick: () => pull(most) }, `Pull by ${amount}`),
+  );
 }

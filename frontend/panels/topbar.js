@@ -9,9 +9,9 @@
 import { action, shown } from "../actions/registry.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
-import { iconButton } from "./buttons.js";
-import { keptchip } from "./keptchip.js";
-import { menu } from "./menu.js";
+import { iconButton } from "../widgets/buttons.js";
+import { saveState } from "./savestate.js";
+import { menu } from "../widgets/menu.js";
 
 /**
  * @param {HTMLElement} host
@@ -81,7 +81,7 @@ export function topbar(host, studio, context) {
   host.append(
     designsMenu(context),
     name,
-    keptchip(context),
+    saveState(context),
     h("div", { class: "group" }, button("undo"), button("redo")),
     size,
     h("div", { class: "spacer" }),

@@ -270,12 +270,16 @@ def check_lock_up(sheet: Sheet, direction: Direction, strain: float) -> None:
     limit = min(LOCK_UP_SHARE * lock_up_strain(sheet, direction), MAX_STRAIN)
     if strain > limit:
         why = (
-            "is at or beyond the lock-up of this swatch" if limit < MAX_STRAIN else "is no fabric's"
+            "this swatch locks up before that"
+            if limit < MAX_STRAIN
+            else "no fabric stretches so far"
         )
+        most = float(np.floor(1000 * limit) / 1000)
         raise InputError(
             "strain",
-            f"{strain:.3g} {why} {direction}-wise.",
-            f"Use at most {np.floor(1000 * limit) / 1000:.3f}.",
+            f"{strain:.3g} {direction}-wise is too much: {why}.",
+            f"Use at most {most:.3f}.",
+            most=most,
         )
 
 

@@ -6,9 +6,9 @@
  */
 
 import { h } from "../../dom.js";
-import { dialog } from "../dialogs/dialog.js";
-import { thumbnail } from "../thumbnail.js";
-import { attempt } from "./attempt.js";
+import { dialog } from "../../widgets/dialog.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
+import { attempt } from "../../widgets/attempt.js";
 
 /**
  * @param {Studio} studio

@@ -10,9 +10,9 @@ import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { linkTo } from "../../keeping/address.js";
 import { designs } from "../../keeping/designs.js";
-import { dialog } from "../dialogs/dialog.js";
-import { attempt } from "./attempt.js";
-import { ago } from "./when.js";
+import { dialog } from "../../widgets/dialog.js";
+import { attempt } from "../../widgets/attempt.js";
+import { ago } from "../../core/ago.js";
 
 /** @type {Record<ShareMode, [string, string]>} */
 const MODES = {

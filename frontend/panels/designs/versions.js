@@ -9,10 +9,10 @@
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { designs } from "../../keeping/designs.js";
-import { dialog } from "../dialogs/dialog.js";
-import { thumbnail } from "../thumbnail.js";
-import { attempt } from "./attempt.js";
-import { ago } from "./when.js";
+import { dialog } from "../../widgets/dialog.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
+import { attempt } from "../../widgets/attempt.js";
+import { ago } from "../../core/ago.js";
 
 /**
  * @param {Studio} studio

@@ -3,7 +3,7 @@
 import { ACTIONS, shown } from "../../actions/registry.js";
 import { h } from "../../dom.js";
 import { TOOLS } from "../../tools/registry.js";
-import { dialog } from "./dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 
 export function create() {
   const hints = new Map(TOOLS.map((tool) => [`tool-${tool.id}`, tool.hint]));

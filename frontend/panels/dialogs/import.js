@@ -8,8 +8,8 @@
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { importFile, importText } from "../../services/importer.js";
-import { problemText } from "../problem.js";
-import { dialog } from "./dialog.js";
+import { problemText } from "../../widgets/problem.js";
+import { dialog } from "../../widgets/dialog.js";
 
 /**
  * @param {Studio} _

@@ -8,7 +8,7 @@
 import { ACTIONS, shown } from "../../actions/registry.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { dialog } from "./dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 
 /** @param {Studio} _studio @param {ActionContext} context */
 export function create(_studio, context) {

@@ -10,7 +10,7 @@ import { MAX_SIDE } from "../../core/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/picture.js";
 import { h } from "../../dom.js";
 import { refusal } from "../../services/refusal.js";
-import { dialog } from "./dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 
 /** Larger pictures are made smaller before they are looked at. */
 const MOST_PIXELS = 1600;

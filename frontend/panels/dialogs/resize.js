@@ -7,7 +7,7 @@
 import { Grid, MAX_SIDE } from "../../core/grid.js";
 import { resized } from "../../core/reshape.js";
 import { h } from "../../dom.js";
-import { dialog } from "./dialog.js";
+import { dialog } from "../../widgets/dialog.js";
 
 const UP = /** @type {const} */ ([
   [1, "top"],

@@ -12,9 +12,9 @@ import { call } from "../../api.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { download } from "../../services/exporter.js";
-import { attempt } from "../designs/attempt.js";
-import { dialog } from "../dialogs/dialog.js";
-import { choice, labelled } from "../garments/fields.js";
+import { attempt } from "../../widgets/attempt.js";
+import { dialog } from "../../widgets/dialog.js";
+import { choice, labelled } from "../../widgets/fields.js";
 import { KINDS } from "./kinds.js";
 
 /** Characters of a text file that are shown. */

@@ -7,7 +7,7 @@
 
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { menu } from "../menu.js";
+import { menu } from "../../widgets/menu.js";
 
 /** @type {{side: Side, label: string, hint: string}[]} */
 const SIDES = [

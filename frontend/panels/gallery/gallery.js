@@ -10,9 +10,9 @@ import { call } from "../../api.js";
 import { Grid } from "../../core/grid.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { attempt } from "../designs/attempt.js";
-import { dialog } from "../dialogs/dialog.js";
-import { thumbnail } from "../thumbnail.js";
+import { attempt } from "../../widgets/attempt.js";
+import { dialog } from "../../widgets/dialog.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
 import { EXAMPLES, GARMENTS, garmentDesign, plainDesign } from "./examples.js";
 
 /**

@@ -10,7 +10,7 @@
 import { motifGrid } from "../../core/motif.js";
 import { selectedCells, selects } from "../../core/selection.js";
 import { byId, h } from "../../dom.js";
-import { thumbnail } from "../thumbnail.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
 
 /** @type {Record<string, string>} */
 const NAMES = { K: "stockinette", "K/P": "garter", PK: "1×1 rib", "PK/KP": "seed" };

@@ -13,7 +13,7 @@ import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
-import { Run } from "./run.js";
+import { Run } from "../../widgets/jobrun.js";
 import { inWords, scatter } from "./scatter.js";
 
 const EXTENTS = [

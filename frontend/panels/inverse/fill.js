@@ -14,11 +14,11 @@ import { selectedCells } from "../../core/selection.js";
 import { outlineText } from "../../core/snapshot.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { iconButton } from "../buttons.js";
-import { thumbnail } from "../thumbnail.js";
+import { iconButton } from "../../widgets/buttons.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field } from "./find.js";
-import { Run } from "./run.js";
+import { Run } from "../../widgets/jobrun.js";
 
 const SHOWN_PATCHES = 6;
 

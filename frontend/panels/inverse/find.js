@@ -9,10 +9,10 @@
 import { figure } from "../../core/format.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { iconButton } from "../buttons.js";
+import { iconButton } from "../../widgets/buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
-import { Run } from "./run.js";
+import { Run } from "../../widgets/jobrun.js";
 
 /**
  * @typedef {{id: string, label: string, short: string, unit: string, start: number, percent?: boolean,

@@ -7,7 +7,7 @@
  */
 
 import { byId, h } from "../../dom.js";
-import { iconButton } from "../buttons.js";
+import { iconButton } from "../../widgets/buttons.js";
 import { atlasTab } from "./atlas.js";
 import { fillTab } from "./fill.js";
 import { findTab } from "./find.js";

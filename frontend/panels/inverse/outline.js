@@ -10,10 +10,10 @@ import { figure, percent } from "../../core/format.js";
 import { Grid } from "../../core/grid.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { thumbnail } from "../thumbnail.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field } from "./find.js";
-import { Run } from "./run.js";
+import { Run } from "../../widgets/jobrun.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 480;

@@ -1,7 +1,7 @@
 /** Ask the service for something on behalf of a dialog, and show there what goes wrong. */
 
-import { ApiError } from "../../api.js";
-import { problemBox } from "../dialogs/dialog.js";
+import { ApiError } from "../api.js";
+import { problemBox } from "./dialog.js";
 
 /**
  * @template T

@@ -1,14 +1,14 @@
 /** The frame that all dialogs share: a heading, a way to close it, and a click beside it closes it, too. */
 
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
-import { iconButton } from "../buttons.js";
-import { problemText } from "../problem.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+import { iconButton } from "./buttons.js";
+import { problemText } from "./problem.js";
 
 /**
  * @param {string} id
  * @param {string} title
- * @param {...import("../../dom.js").Child} content
+ * @param {...import("../dom.js").Child} content
  */
 export function dialog(id, title, ...content) {
   const element = h(
@@ -32,7 +32,7 @@ export function dialog(id, title, ...content) {
 /**
  * What went wrong, and what to do, for the body of a dialog.
  *
- * @param {import("../../types.js").Problem} problem
+ * @param {import("../types.js").Problem} problem
  * @param {() => void} [again] tries once more
  */
 export function problemBox(problem, again) {

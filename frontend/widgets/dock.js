@@ -1,6 +1,6 @@
 /**
  * The place beside the chart where one panel at a time is open. A panel is made when it is opened
- * first (see later.js) and puts itself here.
+ * first (see panels/registry.js) and puts itself here.
  *
  * @import {Child} from "../dom.js"
  * @import {Studio} from "../studio.js"

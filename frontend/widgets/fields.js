@@ -1,6 +1,6 @@
 /** Fields of the garment planner. Lengths are kept in mm and shown in mm or inches. */
 
-import { h } from "../../dom.js";
+import { h } from "../dom.js";
 
 const MM_PER_INCH = 25.4;
 

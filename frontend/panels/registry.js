@@ -1,5 +1,5 @@
 /**
- * Panels that most visits do not open: each is loaded when it is opened for the first time. A module
+ * The panels that most visits do not open: each is loaded when it is opened for the first time. A module
  * exports `create`, which makes the panel once and returns the function that shows it.
  *
  * @import {ActionContext} from "../actions/action.js"
@@ -50,7 +50,7 @@ const PANELS = {
  * @param {Studio} studio
  * @returns {(name: PanelName, context: ActionContext) => Promise<void>} opens a panel
  */
-export function panelsForLater(studio) {
+export function panelOpener(studio) {
   /** @type {Map<PanelName, () => void>} */
   const made = new Map();
   return async (name, context) => {

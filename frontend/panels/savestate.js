@@ -6,10 +6,8 @@
  * @import {IconName} from "../icons.js"
  */
 
-import { ApiError } from "../api.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
-import { designs } from "../keeping/designs.js";
 
 /** @type {Record<KeepState["kind"], {label: string, icon: IconName, title: string}>} */
 const LOOKS = {
@@ -28,7 +26,7 @@ const LOOKS = {
 };
 
 /** @param {ActionContext} context */
-export function keptchip(context) {
+export function saveState(context) {
   const { keeper } = context;
   const chip = h("button", {
     class: "kept quiet",
@@ -51,47 +49,4 @@ export function keptchip(context) {
     if (kind === "conflict") context.open("conflict");
   });
   return chip;
-}
-
-/**
- * The banner over somebody else's design.
- *
- * @param {HTMLElement} host
- * @param {ActionContext} context
- */
-export function sharedbanner(host, { keeper, studio }) {
-  keeper.state.watch((state) => {
-    host.hidden = state.kind !== "shared";
-    if (state.kind !== "shared") return;
-    host.replaceChildren(
-      icon("share"),
-      h("strong", {}, "Shared with you."),
-      "Look, paint and stretch as you like; what you change is not kept.",
-      h("span", { class: "spacer" }),
-    );
-    if (state.mode === "copy") {
-      host.append(
-        h(
-          "button",
-          { class: "button", id: "shared-copy", onclick: () => void copy(state.token) },
-          icon("copy"),
-          "Make my copy",
-        ),
-      );
-    }
-  });
-
-  /** @param {string} token */
-  const copy = async (token) => {
-    const tried = studio.toDocument();
-    try {
-      const kept = await designs.copyShared(token);
-      keeper.openKept(kept);
-      studio.follow({ ...tried, name: kept.document.name });
-      studio.tell("It is yours now, with what you have changed in it.");
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      studio.tellProblem(error.problem);
-    }
-  };
 }

@@ -1,14 +1,14 @@
 /**
  * A long computation of the panel: progress, cancel, and problems in words.
  *
- * @import {Problem} from "../../types.js"
+ * @import {Problem} from "../types.js"
  */
 
-import { ApiError, isAbort } from "../../api.js";
-import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
-import { runJob } from "../../services/jobs.js";
-import { problemText } from "../problem.js";
+import { ApiError, isAbort } from "../api.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+import { runJob } from "../services/jobs.js";
+import { problemText } from "./problem.js";
 
 export class Run {
   /** @type {AbortController | null} */ #running = null;

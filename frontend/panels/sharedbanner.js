@@ -1,0 +1,51 @@
+/**
+ * The banner over somebody else's design.
+ *
+ * @import {ActionContext} from "../actions/action.js"
+ */
+
+import { ApiError } from "../api.js";
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+import { designs } from "../keeping/designs.js";
+
+/**
+ * @param {HTMLElement} host
+ * @param {ActionContext} context
+ */
+export function sharedBanner(host, { keeper, studio }) {
+  keeper.state.watch((state) => {
+    host.hidden = state.kind !== "shared";
+    if (state.kind !== "shared") return;
+    host.replaceChildren(
+      icon("share"),
+      h("strong", {}, "Shared with you."),
+      "Look, paint and stretch as you like; what you change is not kept.",
+      h("span", { class: "spacer" }),
+    );
+    if (state.mode === "copy") {
+      host.append(
+        h(
+          "button",
+          { class: "button", id: "shared-copy", onclick: () => void copy(state.token) },
+          icon("copy"),
+          "Make my copy",
+        ),
+      );
+    }
+  });
+
+  /** @param {string} token */
+  const copy = async (token) => {
+    const tried = studio.toDocument();
+    try {
+      const kept = await designs.copyShared(token);
+      keeper.openKept(kept);
+      studio.follow({ ...tried, name: kept.document.name });
+      studio.tell("It is yours now, with what you have changed in it.");
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      studio.tellProblem(error.problem);
+    }
+  };
+}
