@@ -12,6 +12,7 @@ from fastapi import FastAPI
 
 from app.api import routers
 from app.compute import memory
+from app.compute.answers import Answers
 from app.compute.compute import Compute
 from app.compute.places import Place
 from app.compute.processes import processes
@@ -60,6 +61,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.state.compute = Compute(_places(chosen), chosen.job_timeout_s)
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
+        app.state.answers = Answers(
+            app.state.compute, app.state.recent, chosen.data_dir.expanduser()
+        )
         app.state.viewer_page = relay.viewer_page()
         job_store = JobStore(app.state.database, chosen.process_name)
         app.state.jobs = JobRunner(

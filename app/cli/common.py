@@ -12,8 +12,7 @@ from typing import Any
 import click
 from pydantic import BaseModel
 
-from app.operations.charts import fabric_repeat
-from app.operations.predict import GaugeInput
+from app.models.charts import fabric_repeat
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -63,30 +62,6 @@ loop_lengths_option = click.option(
     metavar="ROW/ROW…",
     help="Instead of one length: rows from the bottom, each one length or one for every stitch.",
 )
-
-
-def gauge_options(function: Decorated) -> Decorated:
-    """--stitches-per-10-cm and --rows-per-10-cm."""
-    help_text = "Counted on your own relaxed swatch; corrects the draw-in of ribs and welts."
-    stitches = click.option("--stitches-per-10-cm", type=float, help=help_text)
-    rows = click.option("--rows-per-10-cm", type=float, help="Give both or neither.")
-    return stitches(rows(function))
-
-
-def resolve_gauge(stitches: float | None, rows: float | None) -> GaugeInput | None:
-    """The gauge that was given, if any.
-
-    Raises
-    ------
-    InputError
-        If only one of the two was given.
-    """
-    if stitches is None and rows is None:
-        return None
-    if stitches is None or rows is None:
-        missing = "stitches-per-10-cm" if stitches is None else "rows-per-10-cm"
-        raise InputError(missing, "is missing.", "Give both, or neither.")
-    return GaugeInput(stitches_per_10_cm=stitches, rows_per_10_cm=rows)
 
 
 def chart_argument(function: Decorated) -> Decorated:
@@ -161,6 +136,13 @@ def given_chart(
     if loop_lengths_mm is None or size is None:
         return resolve_repeat(chart, size)
     return resolve_chart(chart, size)
+
+
+def user_data_dir() -> Path:
+    """The data folder of the settings."""
+    from app.settings import Settings
+
+    return Settings().data_dir.expanduser()
 
 
 def emit(result: BaseModel, text: str, *, as_json: bool) -> None:

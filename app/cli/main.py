@@ -11,7 +11,11 @@ from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
 import app.cli as commands
+from app.operations.registry import names_of_commands, operation_of_command
 from knitcore.errors import KnitcoreError
+
+NO_COMMANDS = {"main", "common", "commands"}
+"""Modules of this package that hold none."""
 
 
 class Failure(click.ClickException):
@@ -25,16 +29,21 @@ class Failure(click.ClickException):
 
 
 class Commands(click.Group):
-    """The subcommands, one module of this package each, loaded when they are called."""
+    """The operations, and what runs the service (a module here each); loaded when called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands."""
-        modules = (m.name for m in pkgutil.iter_modules(commands.__path__))
-        return sorted(m for m in modules if m not in ("main", "common"))
+        modules = {m.name for m in pkgutil.iter_modules(commands.__path__)}
+        return sorted(modules - NO_COMMANDS | names_of_commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of that name."""
-        if cmd_name not in self.list_commands(ctx):
+        operation = operation_of_command(cmd_name)
+        if operation is not None:
+            from app.cli.commands import command_of
+
+            return command_of(operation, cmd_name)
+        if cmd_name not in {m.name for m in pkgutil.iter_modules(commands.__path__)} - NO_COMMANDS:
             return None
         module = importlib.import_module(f"{commands.__name__}.{cmd_name}")
         command = module.command

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, model_validator
 
-from app.operations.charts import ChartText
+from app.models.charts import ChartText
 from knitcore.chart import MAX_STITCHES_PER_SIDE
 from knitcore.formats.design import FORMAT, VERSION, migrated
 from knitcore.formats.layout import DesignLayout

@@ -18,7 +18,8 @@ from app.operations.characterise import (
     CharacteriseResult,
     run_characterise,
 )
-from app.operations.curve import CurveRequest, CurveResult, run_curve
+from app.operations.context import Context
+from app.operations.curve import CurveRequest, CurveResult, curve
 from app.operations.field import (
     CalibrateRequest,
     CalibrateResult,
@@ -42,6 +43,7 @@ from app.operations.relax import RelaxRequest, RelaxResult, run_relax
 from app.operations.shape import ShapeRequest, ShapeResult, run_shape
 from app.operations.stretch import StretchRequest, StretchResult, StretchRun, run_stretch
 from app.operations.sweep import SweepRequest, SweepResult, run_sweep
+from app.settings import Settings
 
 DECIDING = frozenset({".py", ".csv", ".json", ".npz"})
 """Endings of program and data files."""
@@ -152,6 +154,11 @@ class JobKind:
     result: type[BaseModel]
     function: Callable[..., Any]
     told: Callable[[Any], bytes] = packed
+
+
+def run_curve(request: CurveRequest, *, cancelled: Callable[[], bool]) -> CurveResult:
+    """The curve, until all kinds are made of operations."""
+    return curve(request, Context(Settings().data_dir, cancelled=cancelled))
 
 
 KINDS: dict[str, JobKind] = {

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart
+from app.models.charts import ChartInput, to_chart
 from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError

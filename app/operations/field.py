@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.models.uploads import UploadedFile, stored
 from app.operations.materials import LawResult
-from app.operations.uploads import UploadedFile, stored
 from app.results.own_materials import find_material
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.models.charts import MAX_TEXT, ChartText
 from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
-from app.operations.charts import MAX_TEXT, ChartText
 from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
 from knitcore.design.fill import FilledField, fill_field

@@ -8,8 +8,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.models.uploads import UploadedFile, stored
 from app.operations.materials import LawResult
-from app.operations.uploads import UploadedFile, stored
 from knitcore.fabric import Direction
 from knitcore.materials.document import CurveDocument
 from knitcore.measure.uniaxial import LawFit, Reduction, Residuals, fit_files

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartResult, ParsedChart, ParseRequest, parse_chart
-from app.operations.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, stored
+from app.operations.parse import ChartResult
 from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.design import read_design
 from knitcore.formats.layout import (
@@ -66,12 +66,11 @@ def import_path(path: Path) -> ImportResult:
     else:
         piece = read_piece(path)
         chart, known, layout = piece.chart, {}, layout_of(piece)
-    parsed: ParsedChart = parse_chart(ParseRequest(text=chart.text))
     return ImportResult(
         rows=chart.rows,
         columns=chart.columns,
         chart=chart.text,
-        repeat=parsed.repeat,
+        repeat=ChartResult.of(chart.repeat_cut()),
         notes=list(layout_notes(chart, layout)),
         **known,
         **layout_fields(layout),

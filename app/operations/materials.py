@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import BaseModel, Field
 
 from app.results.own_materials import find_material, own_materials
+from app.settings import Settings
 from knitcore.fabric import PHASES, Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
@@ -150,7 +151,11 @@ class MaterialDetail(BaseModel):
 
 def list_materials() -> Materials:
     """One's own, the library and its variants, in short."""
-    found = [*own_materials().values(), *load_library().values(), *load_variants().values()]
+    found = [
+        *own_materials(Settings().data_dir.expanduser()).values(),
+        *load_library().values(),
+        *load_variants().values(),
+    ]
     return Materials(
         materials=[
             MaterialSummary(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, stored
 from knitcore.errors import InputError
 from knitcore.measure.bending import measure_bending
 from knitcore.measure.compression import (

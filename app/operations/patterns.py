@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from app.models.base import NoRequest, ResultModel
+from app.operations.context import Context
+from app.operations.registry import Operation
 from knitcore.patterns import PATTERNS
 
 
-class PatternResult(BaseModel):
+class PatternResult(ResultModel):
     """A repeat with a name."""
 
     id: str
@@ -16,17 +19,26 @@ class PatternResult(BaseModel):
     note: str
 
 
-class Patterns(BaseModel):
+class Patterns(ResultModel):
     """All named patterns."""
 
     patterns: list[PatternResult]
 
 
-def list_patterns() -> Patterns:
-    """The pattern shelf."""
+def patterns(request: NoRequest, context: Context) -> Patterns:
+    """Repeats to begin with: the four fabrics, ribs, basket, moss, diamonds."""
+    del request, context
     return Patterns(
-        patterns=[
-            PatternResult(id=p.identifier, name=p.name, chart=p.chart.text, note=p.note)
-            for p in PATTERNS
-        ]
+        patterns=[PatternResult.of(p, id=p.identifier, chart=p.chart.text) for p in PATTERNS]
     )
+
+
+OPERATION = Operation(
+    name="patterns",
+    method="GET",
+    tag="charts",
+    summary="Named patterns",
+    request=NoRequest,
+    result=Patterns,
+    run=patterns,
+)

@@ -2,62 +2,41 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from app.operations.charts import MAX_TEXT, ChartInput, to_chart
-from app.results.own_materials import find_material
-from knitcore.answer.prediction import predict
-from knitcore.answer.relaxed import RelaxedSize
+from app.models.base import Ends, RequestModel, ResultModel
+from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
+from app.models.gauge import GaugeInput
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.answer.prediction import predict as predicted
 from knitcore.answer.stored import known_repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.shaped import ShapedChart, outline_marks
-from knitcore.materials import Interval, Material
 from knitcore.segments import segment_map
 
-IntervalResult = tuple[float, float]
 
-
-class GaugeInput(BaseModel):
-    """A swatch's gauge: what you counted on your own relaxed cloth."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    stitches_per_10_cm: float = Field(gt=0, le=1000, allow_inf_nan=False)
-    rows_per_10_cm: float = Field(gt=0, le=1000, allow_inf_nan=False)
-
-    def relaxed_size(self) -> RelaxedSize:
-        """The relaxed size of one stitch."""
-        return RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
-
-
-class PredictRequest(BaseModel):
-    """A chart and its material."""
-
-    model_config = ConfigDict(extra="forbid")
+class PredictRequest(RequestModel):
+    """A chart and its material; of a shaped piece, the largest rectangle inside counts."""
 
     chart: ChartInput
-    material: str = Field(max_length=80, examples=["acrylic"])
-    outline: str | None = Field(
-        None,
-        max_length=MAX_TEXT,
-        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
-        "left out. The constants are then those of the largest rectangle inside.",
-    )
+    material: MaterialName
+    outline: OutlineInput = None
     gauge: GaugeInput | None = Field(
         None, description="Corrects the draw-in of ribs and welts; from a table otherwise."
     )
 
 
-class SegmentCountsResult(BaseModel):
+class SegmentCountsResult(ResultModel):
     """Segments of one direction by their symmetry."""
 
     even: int
     odd: int
 
 
-class PredictResult(BaseModel):
+class PredictResult(ResultModel):
     """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
 
     rows: int = Field(description="Of the stitches that the constants are of.")
@@ -69,12 +48,12 @@ class PredictResult(BaseModel):
     poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
-    modulus_course_interval_n_per_mm: IntervalResult
-    modulus_wale_interval_n_per_mm: IntervalResult
-    poisson_yx_interval: IntervalResult
-    poisson_xy_interval: IntervalResult
-    modulus_course_bounds_n_per_mm: IntervalResult = Field(description="Reuss and Voigt.")
-    modulus_wale_bounds_n_per_mm: IntervalResult
+    modulus_course_interval_n_per_mm: Ends
+    modulus_wale_interval_n_per_mm: Ends
+    poisson_yx_interval: Ends
+    poisson_xy_interval: Ends
+    modulus_course_bounds_n_per_mm: Ends = Field(description="Reuss and Voigt.")
+    modulus_wale_bounds_n_per_mm: Ends
     shear_modulus_n_per_mm: float = Field(description="An assumption unless it was calibrated.")
     relaxed_course_mm: float | None = Field(
         description="Mean width of a stitch at rest; null where it is not certified."
@@ -89,63 +68,66 @@ class PredictResult(BaseModel):
     notes: list[str]
 
 
-def predict_request(request: PredictRequest) -> PredictResult:
-    """The prediction that a request asks for."""
-    chart = to_chart(request.chart)
-    material = find_material(request.material)
-    if request.outline is None:
-        return predict_chart(chart, material, request.gauge)
-    shaped = ShapedChart(chart, outline_marks(request.outline))
-    return predict_shaped(shaped, material, request.gauge)
-
-
-def predict_shaped(
-    shaped: ShapedChart, material: Material, gauge: GaugeInput | None = None
-) -> PredictResult:
-    """The prediction of the largest rectangle inside an outline."""
-    inside = StitchChart(shaped.chart.purl[largest_rectangle(shaped.stitch)])
-    found = predict_chart(inside, material, gauge)
-    if shaped.stitch.all():
-        return found
-    size = f"{inside.columns} x {inside.rows}"
-    note = f"Of the largest rectangle inside the outline, {size} stitches."
-    return found.model_copy(update={"notes": [note, *found.notes]})
-
-
-def predict_chart(
-    chart: StitchChart, material: Material, gauge: GaugeInput | None = None
-) -> PredictResult:
-    """The prediction of any chart and material."""
+def predict(request: PredictRequest, context: Context) -> PredictResult:
+    """Effective constants with their 90 % intervals and where they come from."""
+    chart, material = to_chart(request.chart), context.material(request.material)
+    notes = []
+    if request.outline is not None:
+        shaped = ShapedChart(chart, outline_marks(request.outline))
+        chart = StitchChart(chart.purl[largest_rectangle(shaped.stitch)])
+        if not shaped.stitch.all():
+            size = f"{chart.columns} x {chart.rows}"
+            notes.append(f"Of the largest rectangle inside the outline, {size} stitches.")
     known = known_repeat(chart, material)
-    relaxed = gauge.relaxed_size() if gauge else known.relaxed if known else None
-    found = predict(chart, material, relaxed=relaxed, repeat_law=known.law if known else None)
+    relaxed = known.relaxed if known else None
+    if request.gauge is not None:
+        relaxed = request.gauge.relaxed_size()
+    found = predicted(chart, material, relaxed=relaxed, repeat_law=known.law if known else None)
     segments = segment_map(chart)
-    counts = {direction: segments.counts(direction) for direction in Direction}
-    return PredictResult(
+    return PredictResult.of(
+        found,
         rows=chart.rows,
         columns=chart.columns,
-        segments={d: SegmentCountsResult(even=c.even, odd=c.odd) for d, c in counts.items()},
-        modulus_course_n_per_mm=found.modulus_course_n_per_mm,
-        modulus_wale_n_per_mm=found.modulus_wale_n_per_mm,
-        poisson_yx=found.poisson_yx,
-        poisson_xy=found.poisson_xy,
-        extensibility_course_mm_per_n=found.extensibility_course_mm_per_n,
-        extensibility_wale_mm_per_n=found.extensibility_wale_mm_per_n,
-        modulus_course_interval_n_per_mm=_pair(found.modulus_course_interval),
-        modulus_wale_interval_n_per_mm=_pair(found.modulus_wale_interval),
-        poisson_yx_interval=_pair(found.poisson_yx_interval),
-        poisson_xy_interval=_pair(found.poisson_xy_interval),
-        modulus_course_bounds_n_per_mm=_pair(found.modulus_course_bounds),
-        modulus_wale_bounds_n_per_mm=_pair(found.modulus_wale_bounds),
-        shear_modulus_n_per_mm=found.shear_modulus_n_per_mm,
-        relaxed_course_mm=found.relaxed_course_mm,
-        relaxed_wale_mm=found.relaxed_wale_mm,
-        relaxed_source=found.relaxed_source,
-        provenance=found.provenance,
-        method=found.method,
-        notes=[*found.notes, *(known.notes if known else ())],
+        segments={direction: segments.counts(direction) for direction in Direction},
+        notes=[*notes, *found.notes, *(known.notes if known else ())],
     )
 
 
-def _pair(interval: Interval) -> IntervalResult:
-    return interval.low, interval.high
+def _text(r: PredictResult) -> str:
+    course, wale = r.segments.values()
+    low_x, high_x = r.modulus_course_interval_n_per_mm
+    low_y, high_y = r.modulus_wale_interval_n_per_mm
+    return "\n".join(
+        [
+            f"{r.columns} columns x {r.rows} rows",
+            f"segments        course {course.even} even, {course.odd} odd   "
+            f"wale {wale.even} even, {wale.odd} odd",
+            f"Young's modulus course {r.modulus_course_n_per_mm:.4f} N/mm "
+            f"(90 %: {low_x:.4f} to {high_x:.4f})",
+            f"                wale   {r.modulus_wale_n_per_mm:.4f} N/mm "
+            f"(90 %: {low_y:.4f} to {high_y:.4f})",
+            f"extensibility   course {r.extensibility_course_mm_per_n:.2f} mm/N   "
+            f"wale {r.extensibility_wale_mm_per_n:.2f} mm/N",
+            f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
+            f"stitch at rest  {_relaxed(r)}",
+            f"source          {r.provenance} ({r.method})",
+            *(f"note: {note}" for note in r.notes),
+        ]
+    )
+
+
+def _relaxed(r: PredictResult) -> str:
+    if r.relaxed_course_mm is None or r.relaxed_wale_mm is None:
+        return "not certified: knit a swatch and give its gauge"
+    return f"{r.relaxed_course_mm:.2f} x {r.relaxed_wale_mm:.2f} mm ({r.relaxed_source})"
+
+
+OPERATION = Operation(
+    name="predict",
+    tag="mechanics",
+    summary="Moduli and extensibility of a chart",
+    request=PredictRequest,
+    result=PredictResult,
+    run=predict,
+    command=Command(_text, help="Moduli, Poisson's ratios and extensibility of CHART."),
+)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput, to_chart, to_repeat
+from app.models.charts import ChartInput, to_chart, to_repeat
 from app.results.on_disk import KeptResults
 from app.results.own_materials import find_material
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart

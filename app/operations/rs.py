@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
+from app.models.base import RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction, Fabric
 from knitcore.mechanics.elastica import Parity
-from knitcore.mechanics.reduced_symmetry import SegmentResult, rs_fabrics
+from knitcore.mechanics.reduced_symmetry import rs_fabrics
 
 
-class RSSegment(BaseModel):
+class RSRequest(RequestModel):
+    """A yarn whose shape the paper has: acrylic or cotton."""
+
+    material: MaterialName
+
+
+class RSSegment(ResultModel):
     """The connecting segments of one direction."""
 
     parity: Parity
@@ -23,7 +33,7 @@ class RSSegment(BaseModel):
     published_n_per_mm: float | None = Field(description="The paper's value for this modulus.")
 
 
-class RSFabricResult(BaseModel):
+class RSFabricResult(ResultModel):
     """A pure fabric in the model."""
 
     modulus_course_n_per_mm: float
@@ -31,38 +41,47 @@ class RSFabricResult(BaseModel):
     segments: dict[Direction, RSSegment]
 
 
-class RSResult(BaseModel):
+class RSResult(ResultModel):
     """The four fabrics of a yarn."""
 
     material: str
     fabrics: dict[Fabric, RSFabricResult]
 
 
-def rs_material(material: str) -> RSResult:
-    """Moduli from the shape of the yarn alone; the paper has shapes for acrylic and cotton."""
-    return RSResult(
-        material=material,
-        fabrics={
-            fabric: RSFabricResult(
-                modulus_course_n_per_mm=found.modulus_course_n_per_mm,
-                modulus_wale_n_per_mm=found.modulus_wale_n_per_mm,
-                segments={d: _segment(found.segment(d)) for d in Direction},
+def rs(request: RSRequest, context: Context) -> RSResult:
+    """Even and odd segments as springs, in series and side by side, beside the paper's values."""
+    del context
+    fabrics = {}
+    for fabric, found in rs_fabrics(request.material).items():
+        segments = {d: found.segment(d) for d in Direction}
+        fabrics[fabric] = RSFabricResult.of(
+            found, segments={d: RSSegment.of(s, s.geometry) for d, s in segments.items()}
+        )
+    return RSResult(material=request.material, fabrics=fabrics)
+
+
+def _text(result: RSResult) -> str:
+    lines = [f"{'':24}{'Y N/mm':>9} {'published':>10}   segment"]
+    for fabric, found in result.fabrics.items():
+        for direction, s in found.segments.items():
+            published = "" if s.published_n_per_mm is None else f"{s.published_n_per_mm:.3f}"
+            angle = "" if s.angle_rad is None else f", phi {s.angle_rad:.3f}"
+            lines.append(
+                f"{fabric:13}{direction:11}{s.modulus_n_per_mm:9.4f} {published:>10}   "
+                f"{s.parity}: lambda {s.separation_mm:.3f} mm, L {s.length_mm:.3f} mm, "
+                f"v {s.slope:.3f}{angle}"
             )
-            for fabric, found in rs_fabrics(material).items()
-        },
-    )
+    return "\n".join(lines)
 
 
-def _segment(result: SegmentResult) -> RSSegment:
-    geometry = result.geometry
-    return RSSegment(
-        parity=geometry.parity,
-        separation_mm=geometry.separation_mm,
-        length_mm=geometry.length_mm,
-        slope=geometry.slope,
-        angle_rad=geometry.angle_rad,
-        delta=geometry.delta,
-        rigidity_n_per_mm=result.rigidity_n_per_mm,
-        modulus_n_per_mm=result.modulus_n_per_mm,
-        published_n_per_mm=result.published_n_per_mm,
-    )
+OPERATION = Operation(
+    name="rs",
+    method="GET",
+    path="/rs/{material}",
+    tag="mechanics",
+    summary="Moduli from the shape of the yarn",
+    request=RSRequest,
+    result=RSResult,
+    run=rs,
+    command=Command(_text, help="The reduced-symmetry model of the four fabrics."),
+)

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from scipy.ndimage import distance_transform_edt
 
 from app.http.packed import packed
-from app.operations.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
+from app.models.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
 from app.operations.stretch_margins import StretchMargins, sampled_steps, stretch_margins
 from app.results.own_materials import find_material
 from knitcore.chart import StitchChart

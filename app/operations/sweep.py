@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import ChartInput
+from app.models.charts import ChartInput
 from app.operations.relax import (
     Cancelled,
     YarnLevelOptions,

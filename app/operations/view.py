@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.operations.charts import MAX_TEXT, ChartInput, to_chart
+from app.models.charts import MAX_TEXT, ChartInput, to_chart
 from app.operations.stretch import StretchRun
 from app.operations.view_colours import (
     Colour,

@@ -35,7 +35,18 @@ def find_material(identifier: str) -> Material:
     """
     if not identifier.startswith(PREFIX):
         return material(identifier)
-    own = own_materials()
+    return find_own_material(identifier, Settings().data_dir.expanduser())
+
+
+def find_own_material(identifier: str, data_dir: Path) -> Material:
+    """A material of one's own.
+
+    Raises
+    ------
+    InputError
+        If there is none of that identifier.
+    """
+    own = own_materials(data_dir)
     if identifier in own:
         return own[identifier]
     stem = identifier.rpartition(".")[0]
@@ -47,9 +58,9 @@ def find_material(identifier: str) -> Material:
     )
 
 
-def own_materials() -> dict[str, Material]:
+def own_materials(data_dir: Path) -> dict[str, Material]:
     """All materials in the folder, by identifier; files that hold none are logged and left out."""
-    folder = _folder()
+    folder = data_dir / FOLDER
     if not folder.is_dir():
         return {}
     files = sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS)
@@ -63,10 +74,6 @@ def own_materials() -> dict[str, Material]:
             continue
         found[own.identifier] = own
     return found
-
-
-def _folder() -> Path:
-    return Settings().data_dir.expanduser() / FOLDER
 
 
 @lru_cache(maxsize=MOST_FILES)

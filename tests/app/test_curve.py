@@ -10,7 +10,8 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.main import create_app
-from app.operations.curve import CurveRequest, run_curve
+from app.operations.context import Context
+from app.operations.curve import CurveRequest, curve
 from app.settings import Settings
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction, Fabric
@@ -79,7 +80,7 @@ REPEAT = "KKKPPK\nPKPPPK\nKPPKKK\nPPKPKP\nKKPPPK\nPKKPKP"
 """Large enough that Newton's method takes many seconds."""
 
 
-def test_a_long_curve_is_stopped_and_holds_nobody_up() -> None:
+def test_a_long_curve_is_stopped_and_holds_nobody_up(tmp_path: Path) -> None:
     body = {"chart": REPEAT, "material": "acrylic", "direction": "course"}
     app = create_app(Settings(workers=1, job_timeout_s=1.0))
     with TestClient(app, base_url="http://127.0.0.1") as client:
@@ -87,4 +88,4 @@ def test_a_long_curve_is_stopped_and_holds_nobody_up() -> None:
         assert answer.status_code == 503
         assert "longer than 1 s" in answer.json()["detail"]
     with pytest.raises(CancelledError):
-        run_curve(CurveRequest.model_validate(body), cancelled=lambda: True)
+        curve(CurveRequest.model_validate(body), Context(tmp_path, cancelled=lambda: True))

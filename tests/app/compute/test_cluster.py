@@ -21,9 +21,10 @@ from app.compute.cluster import Cluster, ClusterError, ClusterPlace
 from app.compute.compute import Compute
 from app.compute.places import AbandonedError, TimeLimitError, WorkerDiedError
 from app.jobs.document import JobState
+from app.jobs.kinds import run_curve
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.operations.curve import CurveRequest, CurveResult, run_curve
+from app.operations.curve import CurveRequest, CurveResult
 from app.results.recent import RecentResults
 from app.store.database import Database
 from app.store.schema import migrate

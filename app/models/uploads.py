@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 
-from pydantic import Base64Bytes, BaseModel, ConfigDict, Field
+from pydantic import Base64Bytes, BaseModel, ConfigDict, Field, PrivateAttr
 
 
 class UploadedFile(BaseModel):
@@ -17,6 +17,14 @@ class UploadedFile(BaseModel):
 
     name: str = Field(min_length=1, max_length=200, examples=["course.csv"])
     content: Base64Bytes = Field(description="The file, base64.")
+    _path: Path | None = PrivateAttr(None)
+
+    @classmethod
+    def at(cls, path: Path) -> UploadedFile:
+        """A file of this machine, read where it is."""
+        file = cls.model_construct(name=path.name, content=b"")
+        file._path = path
+        return file
 
 
 @contextlib.contextmanager
@@ -25,6 +33,9 @@ def stored(files: Sequence[UploadedFile]) -> Iterator[list[Path]]:
     with tempfile.TemporaryDirectory(prefix="knitcore-") as folder:
         paths = []
         for index, file in enumerate(files):
+            if file._path is not None:
+                paths.append(file._path)
+                continue
             place = Path(folder) / str(index)
             place.mkdir()
             # only the last part, so that a name cannot lead out of the folder

@@ -1,4 +1,4 @@
-"""Charts at the border, and reading them."""
+"""Charts, outlines and materials in requests."""
 
 from __future__ import annotations
 
@@ -38,6 +38,21 @@ ChartInput = Annotated[
     Annotated[ChartText, Tag(TEXT_TAG)] | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
     Discriminator(lambda given: TEXT_TAG if isinstance(given, str) else FABRIC_TAG),
 ]
+IS_REPEAT = "repeat"
+RepeatInput = Annotated[ChartInput, IS_REPEAT]
+"""A chart of which the repeat counts: a pure fabric by name needs no size on the command line."""
+
+OutlineInput = Annotated[
+    str | None,
+    Field(
+        max_length=MAX_TEXT,
+        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
+        "left out.",
+    ),
+]
+MaterialName = Annotated[
+    str, Field(max_length=1000, description="Id of the library.", examples=["acrylic"])
+]
 
 
 def to_chart(chart: ChartInput) -> StitchChart:
@@ -57,35 +72,3 @@ def to_repeat(chart: ChartInput) -> StitchChart:
 def fabric_repeat(fabric: Fabric) -> StitchChart:
     """The repeat of a pure fabric."""
     return StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
-
-
-class ParseRequest(BaseModel):
-    """A chart text as somebody typed it."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    text: ChartText
-
-
-class ChartResult(BaseModel):
-    """A chart, read and written again in the canonical form."""
-
-    rows: int
-    columns: int
-    text: str
-
-
-class ParsedChart(ChartResult):
-    """A chart and its smallest repeat."""
-
-    repeat: ChartResult
-
-
-def parse_chart(request: ParseRequest) -> ParsedChart:
-    """Read a chart text and find its repeat."""
-    chart = StitchChart.parse(request.text)
-    return ParsedChart(**_result(chart).model_dump(), repeat=_result(chart.repeat_cut()))
-
-
-def _result(chart: StitchChart) -> ChartResult:
-    return ChartResult(rows=chart.rows, columns=chart.columns, text=chart.text)

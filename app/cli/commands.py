@@ -1,0 +1,209 @@
+"""Commands made of operations: an option for every field of the request.
+
+A chart becomes the argument CHART with ``--size``, a file an argument or an option that names it, a
+group of fields (such as a gauge) an option for each of them. What does not go by these rules says
+the operation's :class:`~app.operations.registry.Command`.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from enum import Enum
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+import click
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from app.cli.common import emit, json_option, resolve_piece, resolve_repeat, user_data_dir
+from app.models.charts import IS_REPEAT
+from app.models.uploads import UploadedFile
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.errors import InputError
+
+FILE = click.Path(path_type=Path)
+MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
+
+
+def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
+    """The command of an operation."""
+    described = operation.command
+    if isinstance(described, click.Command):
+        return described
+    if described is None:
+        raise TypeError(f"{operation.name} is no command")
+    options = _Options(operation.request, described)
+
+    def callback(as_json: bool, **given: Any) -> None:
+        context = Context(user_data_dir, local=True)
+        request = options.request(given)
+        more = {option: given[option] for option in _parameters(described.run)}
+        result = (described.run or operation.run)(request, context, **more)
+        emit(result, described.text(result), as_json=as_json)
+
+    help_text = described.help or f"{operation.summary}."
+    made = json_option(click.command(name, help=help_text)(callback))
+    own = [*_declared(described.fields), *_declared(described.run)]
+    made.params = [*options.parameters, *own, *made.params]
+    return made
+
+
+def _declared(function: Callable[..., Any] | None) -> list[click.Parameter]:
+    """The options that ``click.option`` put on a function, in the order of its lines."""
+    return list(reversed(getattr(function, "__click_params__", [])))
+
+
+def _parameters(function: Callable[..., Any] | None) -> list[str]:
+    """Names of the options of a function of its own."""
+    return [str(option.name) for option in _declared(function)]
+
+
+class _Options:
+    """The options of a request's fields, and the request that they ask."""
+
+    def __init__(self, request: type[BaseModel], described: Command) -> None:
+        self._model = request
+        self._described = described
+        fields = request.model_fields
+        self._fields = {
+            name: f for name, f in fields.items() if described.names.get(name, "") is not None
+        }
+        if "chart" in fields:
+            self._fields.pop("outline", None)  # comes with the chart's file
+        self._groups = {
+            name: group
+            for name, field in self._fields.items()
+            if (group := _group(field)) is not None
+        }
+
+    @property
+    def parameters(self) -> list[click.Parameter]:
+        """For click, arguments first."""
+        found = [p for name, field in self._fields.items() for p in self._of(name, field)]
+        return sorted(found, key=lambda p: not isinstance(p, click.Argument))
+
+    def request(self, given: dict[str, Any]) -> Any:
+        """The request.
+
+        Raises
+        ------
+        InputError
+            Naming the option that it does not take.
+        """
+        asked: dict[str, Any] = {}
+        for name in self._fields:
+            if name in self._groups:
+                parts = {part: given[part] for part in self._groups[name].model_fields}
+                asked[name] = _given(parts) or None
+            elif name == "chart":
+                asked |= self._chart(given)
+            else:
+                asked[name] = _value(given[name])
+        if self._described.fields is not None:
+            own = {name: given[name] for name in _parameters(self._described.fields)}
+            asked |= self._described.fields(**own)
+        try:
+            return self._model.model_validate(_given(asked))
+        except ValidationError as error:
+            first = error.errors()[0]
+            place = [str(part) for part in first["loc"]]
+            place = place[1:] if place and place[0] in self._groups else place
+            name = ".".join(self._named(part) for part in place) or "request"
+            raise InputError(name, f"{first['msg']}.", "See --help for what it takes.") from None
+
+    def _chart(self, given: dict[str, Any]) -> dict[str, Any]:
+        chart, size = given["chart"], given["size"]
+        if IS_REPEAT in self._fields["chart"].metadata:
+            return {"chart": resolve_repeat(chart, size).text}
+        piece = resolve_piece(chart, size)
+        asked: dict[str, Any] = {"chart": piece.chart.text}
+        if "outline" in self._model.model_fields and not piece.is_rectangle:
+            asked["outline"] = piece.shaped.outline
+        return asked
+
+    def _named(self, field: str) -> str:
+        option = self._described.names.get(field) or field.replace("_", "-")
+        return option.removeprefix("--")
+
+    def _of(self, name: str, field: FieldInfo) -> Iterator[click.Parameter]:
+        if name in self._groups:
+            for part, its in self._groups[name].model_fields.items():
+                yield click.Option(
+                    [f"--{self._named(part)}", part], type=_type(its), help=its.description
+                )
+        elif name == "chart":
+            yield click.Argument(["chart"], metavar="CHART")
+            yield click.Option(
+                ["--size"],
+                metavar="COLUMNSxROWS",
+                help="Size of a fabric given by name, such as 31x20.",
+            )
+        elif field.is_required() and _is_file(field):
+            many = get_origin(field.annotation) is list
+            yield click.Argument([name], type=FILE, nargs=-1 if many else 1, required=True)
+        elif field.annotation is bool:
+            off = f"/--no-{self._named(name)}" if field.default else ""
+            yield click.Option(
+                [f"--{self._named(name)}{off}", name], default=field.default, help=field.description
+            )
+        else:
+            default = field.get_default(call_default_factory=True)
+            more: dict[str, Any] = {}
+            if isinstance(default, str | float) and default != "":
+                more = {"default": str(default), "show_default": True}
+            yield click.Option(
+                [f"--{self._named(name)}", name],
+                type=_type(field),
+                required=field.is_required(),
+                help=MATERIAL_HELP if name == "material" else field.description,
+                **more,
+            )
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _value(value: Any) -> Any:
+    """Files are taken where they are."""
+    if isinstance(value, Path):
+        return UploadedFile.at(value)
+    if isinstance(value, tuple):
+        return [_value(one) for one in value]
+    return value
+
+
+def _kinds(field: FieldInfo) -> list[Any]:
+    """What a value may be, without None."""
+    of = field.annotation
+    parts = get_args(of) if get_origin(of) in (Union, UnionType) else (of,)
+    bare = [get_args(part)[0] if get_origin(part) is Annotated else part for part in parts]
+    return [part for part in bare if part is not NoneType]
+
+
+def _group(field: FieldInfo) -> type[BaseModel] | None:
+    """The model of a group of fields."""
+    kind = _kinds(field)[0]
+    is_model = inspect.isclass(kind) and issubclass(kind, BaseModel)
+    return kind if is_model and kind is not UploadedFile else None
+
+
+def _is_file(field: FieldInfo) -> bool:
+    kind = _kinds(field)[0]
+    return kind is UploadedFile or get_args(kind) == (UploadedFile,)
+
+
+def _type(field: FieldInfo) -> Any:
+    """A type of click."""
+    kind = _kinds(field)[0]
+    if kind is UploadedFile:
+        return FILE
+    if get_origin(kind) is Literal:
+        return click.Choice(get_args(kind))
+    if inspect.isclass(kind) and issubclass(kind, Enum):
+        return click.Choice([member.value for member in kind])
+    return kind if kind in (int, float, str) else str

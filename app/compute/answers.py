@@ -1,0 +1,52 @@
+"""Answers of operations: from memory, or computed where there is room."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+from app.compute.compute import Compute
+from app.operations.perform import Answer, perform
+from app.operations.registry import Operation
+from app.results.recent import RecentResults
+
+
+class Answers:
+    """Whoever asks for an operation, a request or a job, asks here.
+
+    Parameters
+    ----------
+    compute : where the work is done.
+    recent : the latest answers, by the operation's key of the request.
+    data_dir : folder of own materials and kept results.
+    """
+
+    def __init__(self, compute: Compute, recent: RecentResults, data_dir: Path) -> None:
+        self.compute = compute
+        self._recent = recent
+        self.data_dir = data_dir
+
+    async def answer(
+        self,
+        abandoned: Callable[[], Awaitable[bool]],
+        operation: Operation[Any, Any],
+        request: BaseModel,
+        **turn: Any,
+    ) -> Answer:
+        """What an operation says to a request; ``turn`` goes to :meth:`Compute.run`.
+
+        Raises
+        ------
+        ServiceError, KnitcoreError
+        """
+        key = operation.key(request)
+        known: Answer | None = self._recent.get(key)
+        if known is not None:
+            return known
+        args = operation.run, request, self.data_dir
+        answer: Answer = await self.compute.run(abandoned, perform, *args, **turn)
+        self._recent.put(key, answer, answer.size_bytes)
+        return answer

@@ -1,0 +1,1 @@
+"""Parts of requests and results that several operations share."""

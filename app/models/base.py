@@ -1,0 +1,81 @@
+"""Bases of requests and results."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+UNIT = "_n_per_mm"
+
+
+class RequestModel(BaseModel):
+    """A request, or a part of one; a field that it does not know is refused."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class NoRequest(RequestModel):
+    """The request of an operation that needs none."""
+
+
+class ResultModel(BaseModel):
+    """A result, or a part of one, read from the attributes of what the library returned.
+
+    A field takes the attribute of its name, or of its name without the unit N/mm, for laws have
+    ``stiffness_xxxx`` where a result has ``stiffness_xxxx_n_per_mm``.
+    """
+
+    @classmethod
+    def of(cls, *sources: object, **more: Any) -> Self:
+        """A result of attributes of the first source that has them, and of what is given."""
+        found = more
+        for source in sources:
+            found = _attributes(cls, source) | found
+        return cls.model_validate(found)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read(cls, value: Any) -> Any:
+        return value if isinstance(value, Mapping | BaseModel) else _attributes(cls, value)
+
+
+def _attributes(model: type[BaseModel], source: object) -> dict[str, Any]:
+    found = {}
+    for name in model.model_fields:
+        for attribute in (name, name.replace(UNIT, "")):
+            if hasattr(source, attribute):
+                found[name] = getattr(source, attribute)
+                break
+    return found
+
+
+def _listed(value: Any) -> Any:
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _ends(value: Any) -> Any:
+    return (value.low, value.high) if hasattr(value, "low") else value
+
+
+def _known(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+Floats = Annotated[list[float], BeforeValidator(_listed)]
+"""An array of the library."""
+Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
+"""An interval as [low, high]."""
+Known = Annotated[float | None, BeforeValidator(_known)]
+"""Null where the library has no finite number."""
+
+Positive = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+
+
+class IntervalResult(ResultModel):
+    """An interval by its ends."""
+
+    low: float
+    high: float

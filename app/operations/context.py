@@ -1,0 +1,79 @@
+"""What an operation works with beside its request, wherever it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from pathlib import Path
+
+from app.results.on_disk import KeptResults
+from app.results.own_materials import PREFIX, find_own_material
+from knitcore.materials import Material, load_material_file, material
+
+FILE_KINDS = (".json", ".yaml", ".yml")
+
+
+def _never() -> bool:
+    return False
+
+
+def _untold(done: float, total: float) -> None:
+    """Nobody asks how far it is."""
+
+
+class Context:
+    """Materials, kept results, and how to stop and to tell.
+
+    Parameters
+    ----------
+    data_dir : folder of own materials and kept results, or what finds it when it is needed.
+    local : whether the caller sits at this machine: then materials may be files, and charts are
+        as large as the library takes.
+    cancelled : whether nobody waits for the result any more.
+    progress : told (done, total).
+    """
+
+    def __init__(
+        self,
+        data_dir: Path | Callable[[], Path],
+        *,
+        local: bool = False,
+        cancelled: Callable[[], bool] = _never,
+        progress: Callable[[float, float], None] = _untold,
+    ) -> None:
+        self._data_dir = data_dir
+        self.local = local
+        self.cancelled = cancelled
+        self.progress = progress
+
+    @cached_property
+    def data_dir(self) -> Path:
+        """Folder of own materials and kept results."""
+        return self._data_dir if isinstance(self._data_dir, Path) else self._data_dir()
+
+    @property
+    def kept(self) -> KeptResults:
+        """Results of the yarn level that were computed before."""
+        return KeptResults(self.data_dir / "yarn-level")
+
+    def material(self, name: str) -> Material:
+        """A material of the library, one's own, or, on this machine, of a file.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if self.local and name.lower().endswith(FILE_KINDS):
+            return load_material_file(name)
+        return find_own_material(name, self.data_dir) if name.startswith(PREFIX) else material(name)
+
+    def within(self, start: float, share: float) -> Context:
+        """For a part of the work: its progress from 0 to 1 is ``share`` of the whole's."""
+
+        def progress(done: float, total: float) -> None:
+            self.progress(start + share * done / total, 1.0)
+
+        return Context(
+            self._data_dir, local=self.local, cancelled=self.cancelled, progress=progress
+        )

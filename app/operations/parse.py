@@ -1,0 +1,47 @@
+"""Reading a chart as somebody typed it."""
+
+from __future__ import annotations
+
+from app.models.base import RequestModel, ResultModel
+from app.models.charts import ChartText
+from app.operations.context import Context
+from app.operations.registry import Operation
+from knitcore.chart import StitchChart
+
+
+class ParseRequest(RequestModel):
+    """A chart text as somebody typed it."""
+
+    text: ChartText
+
+
+class ChartResult(ResultModel):
+    """A chart, read and written again in the canonical form."""
+
+    rows: int
+    columns: int
+    text: str
+
+
+class ParsedChart(ChartResult):
+    """A chart and its smallest repeat."""
+
+    repeat: ChartResult
+
+
+def parse(request: ParseRequest, context: Context) -> ParsedChart:
+    """K/P lines, the top row first; errors name line and stitch."""
+    del context
+    chart = StitchChart.parse(request.text)
+    return ParsedChart.of(chart, repeat=chart.repeat_cut())
+
+
+OPERATION = Operation(
+    name="parse",
+    path="/charts/parse",
+    tag="charts",
+    summary="Read a chart text and find its repeat",
+    request=ParseRequest,
+    result=ParsedChart,
+    run=parse,
+)

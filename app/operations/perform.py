@@ -1,0 +1,64 @@
+"""Running an operation in a worker process, where its answer is packed, too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from pydantic import BaseModel
+
+from app.http.packed import packed
+from app.operations.context import Context
+
+
+class View(Protocol):
+    """What the 3D view needs of a result."""
+
+    @property
+    def size_bytes(self) -> int:
+        """About how much memory it takes."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Viewed:
+    """A result that the 3D view shows, too; an operation may return it in place of the result."""
+
+    result: BaseModel
+    view: View
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What came of a request.
+
+    Attributes
+    ----------
+    body : the result as packed JSON.
+    view : what the 3D view needs of it.
+    """
+
+    body: bytes
+    view: View | None = None
+
+    @property
+    def size_bytes(self) -> int:
+        """About how much memory it takes."""
+        return len(self.body) + (self.view.size_bytes if self.view is not None else 0)
+
+
+def perform(
+    run: Callable[..., Any],
+    request: BaseModel,
+    data_dir: Path,
+    *,
+    cancelled: Callable[[], bool],
+    progress: Callable[[float, float], None],
+) -> Answer:
+    """Do an operation; megabytes of numbers are packed here and not on the event loop."""
+    found = run(request, Context(data_dir, cancelled=cancelled, progress=progress))
+    if isinstance(found, Viewed):
+        return Answer(packed(found.result), found.view)
+    return Answer(packed(found))

@@ -1,0 +1,119 @@
+"""Operations, one module of this package each, and everything that is made of them.
+
+A module holds one ``OPERATION``. Routes (:mod:`app.api.operations`), commands
+(:mod:`app.cli.commands`), jobs (:mod:`app.jobs.kinds`), the client's methods
+(:mod:`app.client`) and the page's types (``scripts/page_types.py``) are made from it, so a new
+operation is one file here and its test.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import inspect
+import keyword
+import pkgutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+
+from pydantic import BaseModel
+
+import app.operations as package
+
+if TYPE_CHECKING:
+    import click
+
+Request = TypeVar("Request", bound=BaseModel)
+Result = TypeVar("Result", bound=BaseModel)
+
+
+@dataclass(frozen=True)
+class Command:
+    """How an operation is a command; its options are the fields of the request.
+
+    Attributes
+    ----------
+    text : prints a result for people.
+    help : of the command; by default the operation's summary.
+    names : options that are not named after their field; None leaves the field out.
+    fields : makes fields of the request from options of its own (``click.option`` on it).
+    run : runs the operation where the command does more, with options of its own.
+    """
+
+    text: Callable[[Any], str]
+    help: str = ""
+    names: Mapping[str, str | None] = field(default_factory=dict)
+    fields: Callable[..., Mapping[str, Any]] | None = None
+    run: Callable[..., BaseModel] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Operation(Generic[Request, Result]):
+    """Something that Knitcore does for page, programs and command line alike.
+
+    Attributes
+    ----------
+    name : of the client's method, the kind of job and, by default, of the address.
+    summary : one line.
+    tag : heading in the API's reference.
+    request, result : models of what it takes and gives.
+    run : does it, given the request and a :class:`app.operations.context.Context`; the docstring
+        is the description in the API's reference.
+    path : address under ``/api/v1``; None if it is a job only.
+    heavy : whether it takes long enough to need a worker process.
+    job : whether it can run in the background.
+    command : on the command line, where its name is that of the module.
+    """
+
+    name: str
+    summary: str
+    tag: str
+    request: type[Request]
+    result: type[Result]
+    run: Callable[..., Any]
+    method: Literal["GET", "POST"] = "POST"
+    path: str | None = ""
+    heavy: bool = False
+    job: bool = False
+    command: Command | click.Command | None = None
+
+    @property
+    def address(self) -> str:
+        """The path under ``/api/v1``."""
+        return self.path or f"/{self.name}"
+
+    @property
+    def description(self) -> str:
+        """What the API's reference says."""
+        return (inspect.getdoc(self.run) or "").partition("\n\nRaises\n")[0]
+
+    def key(self, request: BaseModel) -> str:
+        """A name made of everything that a caller can decide."""
+        content = f"{self.name}\0{request.model_dump_json()}"
+        return hashlib.sha256(content.encode()).hexdigest()[:32]
+
+
+@cache
+def operations() -> dict[str, Operation[Any, Any]]:
+    """All operations by name, in the order of their modules."""
+    names = sorted(module.name for module in pkgutil.iter_modules(package.__path__))
+    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in names]
+    found = [module.OPERATION for module in modules if hasattr(module, "OPERATION")]
+    return {operation.name: operation for operation in found}
+
+
+def names_of_commands() -> set[str]:
+    """Names of all commands that are made of operations."""
+    names = (module.name.removesuffix("_") for module in pkgutil.iter_modules(package.__path__))
+    return {name for name in names if operation_of_command(name) is not None}
+
+
+def operation_of_command(name: str) -> Operation[Any, Any] | None:
+    """The operation that a command is made of; loads no other."""
+    module = f"{name}_" if keyword.iskeyword(name) else name
+    if module not in {found.name for found in pkgutil.iter_modules(package.__path__)}:
+        return None
+    found = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
+    return found if isinstance(found, Operation) and found.command else None
