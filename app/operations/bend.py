@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict, Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
-from app.operations.charts import ChartInput, to_repeat
+from app.models.charts import ChartInput, to_repeat
 from app.operations.relax import Cancelled, YarnResult, yarn_result
 from app.results.own_materials import find_material
 from knitcore.chart import StitchChart
