@@ -40,7 +40,7 @@ class Stretched:
 
     def __init__(self, text: str, direction: Direction) -> None:
         cell = relax(
-            StitchChart.parse(text.replace("/", "\n")),
+            StitchChart.parse(text),
             YARN,
             LOOP_LENGTH_MM,
             branch=Branch.MIRRORED,

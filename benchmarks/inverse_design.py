@@ -16,7 +16,6 @@ from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.design.fill import fill_field
-from knitcore.design.repeats import repeat_of_key
 from knitcore.design.shape import fill_shape
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
@@ -69,7 +68,7 @@ def hidden_repeat(rng: np.random.Generator, small: list[str]) -> StitchChart:
         up = np.logical_xor.accumulate(rng.random(rows) < odd[1])
         noise = rng.random((rows, columns)) < rng.choice([0, 0.05, 0.2])
         return StitchChart(across[None] ^ up[:, None] ^ noise).repeat()
-    first, second = (repeat_of_key(small[k]) for k in rng.integers(len(small), size=2))
+    first, second = (StitchChart.parse(small[k]) for k in rng.integers(len(small), size=2))
     a, b = (int(w) for w in rng.integers(2, 7, 2))
     if rng.random() < 0.5:
         rows = int(np.lcm(first.rows, second.rows))

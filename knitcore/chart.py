@@ -63,7 +63,8 @@ class StitchChart:
         """Read K/P lines, the top row first, as on paper.
 
         K, k or ``|`` is a knit; P, p, ``•``, ``–`` or ``-`` is a purl. Blanks and commas between
-        stitches, blank lines around the chart and lines that begin with ``#`` are passed over.
+        stitches, blank lines around the chart and lines that begin with ``#`` are passed over. A
+        ``/`` also ends a line, as in :attr:`key`.
 
         Raises
         ------
@@ -72,9 +73,15 @@ class StitchChart:
         """
         rows: list[list[bool]] = []
         first_line = 0
-        for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
+        lines = (
+            (number, part)
+            for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1)
+            if not line.lstrip().startswith("#")
+            for part in line.split("/")
+        )
+        for number, line in lines:
             stitches = _SEPARATORS.sub("", line.strip())
-            if not stitches or stitches.startswith("#"):
+            if not stitches:
                 continue
             row = []
             for column, symbol in enumerate(stitches, start=1):
@@ -131,6 +138,17 @@ class StitchChart:
         """The chart as K/P lines, top row first; :meth:`parse` reads it back."""
         return "\n".join("".join("P" if p else "K" for p in row) for row in self.purl[::-1])
 
+    @property
+    def key(self) -> str:
+        """The chart in one line, rows from the top separated by ``/``: a short name for it.
+
+        Examples
+        --------
+        >>> StitchChart.parse("KP/PK").key
+        'KP/PK'
+        """
+        return self.text.replace("\n", "/")
+
     def tile(self, down: int, across: int) -> StitchChart:
         """The chart repeated ``down`` times along the wales and ``across`` times along courses."""
         if down < 1 or across < 1:
@@ -174,6 +192,26 @@ class StitchChart:
         'KP'
         """
         return StitchChart(self.purl[: _period(self.purl), : _period(self.purl.T)])
+
+    def canonical(self) -> StitchChart:
+        """One repeat for all charts of the same fabric: shifted, mirrored, or seen from the back.
+
+        Upside down is another fabric: loops point upwards. Of all these repeats it is the first in
+        the order of their rows from the bottom, knits before purls.
+
+        Examples
+        --------
+        >>> StitchChart.parse("PPKK").canonical().text
+        'KKPP'
+        """
+        purl = self.repeat().purl
+        images = (
+            np.roll(image, (up, right), axis=(0, 1))
+            for image in (purl, purl[:, ::-1], ~purl, ~purl[:, ::-1])
+            for up in range(purl.shape[0])
+            for right in range(purl.shape[1])
+        )
+        return StitchChart(min(images, key=lambda image: image.tobytes()))
 
     def repeat_cut(self) -> StitchChart:
         """The smallest repeat whose periodic continuation, cut anywhere, gives this chart.

@@ -21,7 +21,6 @@ from scipy.interpolate import PchipInterpolator
 from knitcore.chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
 from knitcore.design.curves import STRESS_N_PER_MM
-from knitcore.design.repeats import canonical, repeat_key, repeat_of_key
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
@@ -74,7 +73,7 @@ class Atlas:
     ----------
     material : its identifier.
     fingerprint : of the material's laws and sizes; an atlas of other laws is not continued.
-    keys : the repeats (see :func:`knitcore.design.repeats.repeat_key`).
+    keys : the repeats (see :attr:`~knitcore.chart.StitchChart.key`).
     values : (repeats, len(VALUES)).
     strains : (repeats, 2, stresses), course-wise and wale-wise, at ``STRESS_N_PER_MM``.
     provenance : where each repeat's law comes from.
@@ -145,11 +144,11 @@ class Atlas:
 
     def index_of(self, repeat: StitchChart) -> int | None:
         """Where a repeat stands, whichever of its images is given; None if it is not here."""
-        return self._index.get(repeat_key(canonical(repeat)))
+        return self._index.get(repeat.canonical().key)
 
     def chart(self, index: int) -> StitchChart:
         """One repeat."""
-        return repeat_of_key(self.keys[index])
+        return StitchChart.parse(self.keys[index])
 
     @cached_property
     def costs(self) -> tuple[KnittingCost, ...]:

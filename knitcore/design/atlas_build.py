@@ -20,7 +20,6 @@ from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
 from knitcore.design.curves import CurveMaker
-from knitcore.design.repeats import repeat_key, repeat_of_key
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
@@ -80,7 +79,7 @@ def build_atlas(
     """
     fingerprint = material_fingerprint(material)
     known = known_entries(file, fingerprint)
-    keys = [repeat_key(repeat) for repeat in repeats]
+    keys = [repeat.key for repeat in repeats]
     missing = [key for key in keys if key not in known]
     parts = [tuple(missing[k : k + AT_ONCE]) for k in range(0, len(missing), AT_ONCE)]
     tasks = {f"{fingerprint}-{_digest(part)}": AtlasTask(material, part) for part in parts}
@@ -114,7 +113,7 @@ def predict_repeats(task: AtlasTask) -> dict[str, Any]:
     curves = CurveMaker(task.material)
     found = {}
     for key in task.keys:
-        repeat = repeat_of_key(key)
+        repeat = StitchChart.parse(key)
         known = known_repeat(repeat.tile(2, 2), task.material)
         found[key] = _document(predict_entry(repeat, task.material, curves, known))
     return {"entries": found}

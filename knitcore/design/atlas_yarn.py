@@ -23,7 +23,6 @@ from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
 from knitcore.design.atlas_build import known_entries, material_fingerprint, predict_entry
 from knitcore.design.curves import CurveMaker
-from knitcore.design.repeats import canonical, repeat_of_key
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.phases import reference_fabric
@@ -104,7 +103,7 @@ def yarn_level_tasks(
         if key not in pure
         and len(key.replace("/", "")) <= most_stitches
         and entry.provenance != Provenance.YARN_LEVEL
-        and layout_of(repeat_of_key(key)) is None
+        and layout_of(StitchChart.parse(key)) is None
     ]
     order = [*sorted(pure), *sorted(mixed, key=lambda key: (len(key.replace("/", "")), key))]
     return {key: _task(material, key) for key in order}
@@ -112,11 +111,11 @@ def yarn_level_tasks(
 
 def key_of_pure(fabric: Fabric) -> str:
     """The key of a pure fabric's repeat."""
-    return canonical(StitchChart.of_fabric(fabric, rows=2, columns=2)).text.replace("\n", "/")
+    return StitchChart.of_fabric(fabric, rows=2, columns=2).canonical().key
 
 
 def _task(material: Material, key: str) -> RepeatTask:
-    used = yarn_for(material, repeat_of_key(key))
+    used = yarn_for(material, StitchChart.parse(key))
     return RepeatTask(key, used.yarn, used.loop_length_mm)
 
 
@@ -143,7 +142,7 @@ def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None
     entries = known_entries(file, fingerprint)
     curves = CurveMaker(material)
     for key, document in done.items():
-        repeat, law = repeat_of_key(key), law_of(document)
+        repeat, law = StitchChart.parse(key), law_of(document)
         if law is None or not document["converged"] or key in map(key_of_pure, Fabric):
             continue
         reference = reference_fabric(repeat)

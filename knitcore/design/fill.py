@@ -26,7 +26,6 @@ from knitcore.design.patches import patches_of, smooth, unevenness, wanted_label
 from knitcore.design.placing import placed
 from knitcore.design.progress import Progress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
-from knitcore.design.repeats import repeat_key
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
@@ -332,7 +331,7 @@ class _Fill:
             cells = patches == patch
             row, column = (int(k) + 1 for k in np.argwhere(cells)[0])
             place = int(cells.sum()), row, column
-            regions.append(Patch(repeat_key(choice.repeat), *place, *off[patch], *there[patch]))
+            regions.append(Patch(choice.repeat.key, *place, *off[patch], *there[patch]))
         judged = self._judged(trial.choices, trial.factors)
         self._progress.look(1.0)
         return FilledField(

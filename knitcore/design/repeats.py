@@ -35,7 +35,7 @@ def primitive_repeats(rows: int, columns: int) -> tuple[StitchChart, ...]:
     Examples
     --------
     >>> [chart.text for chart in primitive_repeats(1, 3)]
-    ['PKK']
+    ['KKP']
     """
     stitches = rows * columns
     if rows < 1 or columns < 1 or stitches > LARGEST:
@@ -45,17 +45,18 @@ def primitive_repeats(rows: int, columns: int) -> tuple[StitchChart, ...]:
             f"Use at most {LARGEST} stitches, such as 4x4.",
         )
     codes = np.arange(2**stitches)
-    bits = (codes[:, None] >> np.arange(stitches)) & 1
+    weights = 1 << np.arange(stitches)[::-1]  # the order of codes is that of StitchChart.canonical
+    bits = (codes[:, None] & weights) > 0
     smallest = codes.copy()
     primitive = np.ones(len(codes), dtype=bool)
     for order, shift in _symmetries(rows, columns):
-        image = bits[:, order] @ (1 << np.arange(stitches))
+        image = bits[:, order] @ weights
         if shift is not None:
             primitive &= image != codes
         np.minimum(smallest, image, out=smallest)
         np.minimum(smallest, 2**stitches - 1 - image, out=smallest)
     chosen = codes[primitive & (smallest == codes)]
-    grids = bits[chosen].reshape(-1, rows, columns).astype(bool)
+    grids = bits[chosen].reshape(-1, rows, columns)
     return tuple(StitchChart(grid) for grid in grids)
 
 
@@ -78,7 +79,7 @@ def known_larger_repeats() -> tuple[StitchChart, ...]:
     charts = [*(rib(a, b) for a, b in sides), *(welt(a, b) for a, b in sides)]
     charts += [_basket(a, b) for a in range(1, 5) for b in range(1, 5) if max(a, b) > 2]
     charts += [p.chart for p in PATTERNS if max(p.chart.purl.shape) > 4]
-    return tuple(dict.fromkeys(canonical(chart) for chart in charts))
+    return tuple(dict.fromkeys(chart.canonical() for chart in charts))
 
 
 def striped_repeats() -> tuple[StitchChart, ...]:
@@ -86,42 +87,8 @@ def striped_repeats() -> tuple[StitchChart, ...]:
 
     In stiffness they lie between their fabrics, each a step from the next.
     """
-    found = dict.fromkeys(canonical(chart) for chart in _stripes())
+    found = dict.fromkeys(chart.canonical() for chart in _stripes())
     return tuple(chart for chart in found if max(chart.purl.shape) > 4)
-
-
-def repeat_key(chart: StitchChart) -> str:
-    """A short name: rows from the top, separated by ``/``.
-
-    Examples
-    --------
-    >>> repeat_key(StitchChart.parse("KP\\nPK"))
-    'KP/PK'
-    """
-    return chart.text.replace("\n", "/")
-
-
-def repeat_of_key(key: str) -> StitchChart:
-    """Inverse of :func:`repeat_key`."""
-    return StitchChart.parse(key.replace("/", "\n"))
-
-
-def canonical(chart: StitchChart) -> StitchChart:
-    """The representative of a repeat among all that are the same fabric (any size).
-
-    Examples
-    --------
-    >>> canonical(StitchChart.parse("PKK")) == canonical(StitchChart.parse("PPK"))
-    True
-    """
-    repeat = chart.repeat()
-    grid = repeat.purl
-    images: list[NDArray[np.bool_]] = []
-    for order, _ in _symmetries(*grid.shape):
-        image = grid.ravel()[order]
-        images += [image, ~image]
-    smallest = min(images, key=lambda image: image[::-1].tobytes())
-    return StitchChart(smallest.reshape(grid.shape))
 
 
 def _by_stitches(size: tuple[int, int]) -> tuple[int, tuple[int, int]]:

@@ -119,12 +119,12 @@ def motif_chart(motif: str) -> StitchChart:
     >>> motif_chart("KP/PP").purl.tolist()
     [[True, True], [False, True]]
     """
-    return StitchChart.parse(motif.replace("/", "\n"))
+    return StitchChart.parse(motif)
 
 
 def motif_text(chart: StitchChart) -> str:
     """The inverse of :func:`motif_chart`."""
-    return chart.text.replace("\n", "/")
+    return chart.key
 
 
 def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bool_]:

@@ -24,9 +24,9 @@ from knitcore.fabric import Direction
 from knitcore.materials import material
 from knitcore.phases import reference_fabric
 from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlibrary.catalogue import COMMON, canonical, distinct_repeats
+from knitcore.yarnlibrary.catalogue import COMMON, distinct_repeats
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
-from knitcore.yarnlibrary.store import MATERIALS, key_of
+from knitcore.yarnlibrary.store import MATERIALS
 from knitcore.yarnlibrary.yarns import yarn_for
 
 _SIZES_FILE = Path(__file__).parents[1] / "answer" / "data" / "stored_sizes.csv"
@@ -37,7 +37,7 @@ SQUARE = 3
 
 def charts_of_the_store(most_stitches: int = MOST_STITCHES) -> dict[StitchChart, str]:
     """The repeats to make, representatives of their fabrics, with the names of known ones."""
-    names = {canonical(StitchChart.parse(text)): name for name, text in COMMON.items()}
+    names = {StitchChart.parse(text).canonical(): name for name, text in COMMON.items()}
     square = [c for c in distinct_repeats(SQUARE**2) if (c.rows, c.columns) == (SQUARE, SQUARE)]
     some = [*names, *distinct_repeats(most_stitches), *(square if most_stitches >= 8 else [])]
     return {chart: names.get(chart, "") for chart in some}
@@ -73,7 +73,7 @@ def build(
     for material_id in MATERIALS:
         for chart, name in names.items():
             label = _label(material_id, chart, Branch.MIRRORED)
-            key = f"{material_id}/{key_of(chart)}"
+            key = f"{material_id}/{chart.key}"
             document = _found(found, label, tasks[label])
             provenance = yarn_for(material(material_id), chart).provenance
             entries[key] = _entry(document, tasks[label], provenance, name)
@@ -103,10 +103,10 @@ def _write_sizes(file: Path, entries: dict[str, Any]) -> None:
         writer.writerow(["chart", "yarn", "course_ratio", "wale_ratio"])
         for key, entry in entries.items():
             material_id, _, text = key.partition("/")
-            chart = StitchChart.parse(text.replace("/", "\n"))
+            chart = StitchChart.parse(text)
             pure = StitchChart.of_fabric(reference_fabric(chart), 2, 2)
-            like = entries[f"{material_id}/{key_of(canonical(pure))}"]
-            if chart == canonical(pure) or not (_settled(entry) and _settled(like)):
+            like = entries[f"{material_id}/{pure.canonical().key}"]
+            if chart == pure.canonical() or not (_settled(entry) and _settled(like)):
                 continue
             shorter = like["loop_length_mm"] / entry["loop_length_mm"]
             ratios = [
@@ -131,13 +131,13 @@ def _tasks(most_stitches: int) -> dict[str, RepeatTask]:
             for material_id in MATERIALS:
                 used = yarn_for(material(material_id), chart)
                 tasks[_label(material_id, chart, branch)] = RepeatTask(
-                    key_of(chart), used.yarn, used.loop_length_mm, branch=branch
+                    chart.key, used.yarn, used.loop_length_mm, branch=branch
                 )
     return tasks
 
 
 def _label(material_id: str, chart: StitchChart, branch: Branch) -> str:
-    return f"{material_id}.{key_of(chart).replace('/', '-')}.{branch}"
+    return f"{material_id}.{chart.key.replace('/', '-')}.{branch}"
 
 
 def _found(found: BatchResult, label: str, task: RepeatTask) -> Document:

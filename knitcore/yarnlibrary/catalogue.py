@@ -57,19 +57,7 @@ def placements(grid: Grid) -> Iterator[tuple[Placement, Grid]]:
             yield Placement(up, right, mirror, swap), np.roll(turned, (up, right), axis=(0, 1))
 
 
-def canonical(chart: StitchChart) -> StitchChart:
-    """The representative of a repeat among all that are the same fabric.
-
-    Examples
-    --------
-    >>> canonical(StitchChart.parse("KP")) == canonical(StitchChart.parse("PK"))
-    True
-    """
-    repeat = chart.repeat()
-    return StitchChart(min((g for _, g in placements(repeat.purl)), key=lambda g: g.tobytes()))
-
-
-def place(chart: StitchChart, representative: StitchChart) -> Placement | None:
+def placement(chart: StitchChart, representative: StitchChart) -> Placement | None:
     """How a repeat follows from its representative; None if it does not."""
     wanted = chart.repeat().purl
     if wanted.shape != representative.purl.shape:
@@ -92,5 +80,5 @@ def distinct_repeats(most_stitches: int) -> list[StitchChart]:
             bits = [(code >> k) & 1 == 1 for k in range(rows * columns)]
             chart = StitchChart(np.array(bits).reshape(rows, columns))
             if chart.repeat() == chart:
-                found.setdefault(canonical(chart))
+                found.setdefault(chart.canonical())
     return list(found)

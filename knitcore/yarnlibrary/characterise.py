@@ -78,7 +78,7 @@ def characterise_repeat(task: RepeatTask) -> Document:
     ``curves`` by direction, ``law`` with ``law_range`` (or None, and ``law_failure``), and
     ``controls``, the control points of the repeat without the drift (mm).
     """
-    chart = StitchChart.parse(task.chart.replace("/", "\n"))
+    chart = StitchChart.parse(task.chart)
     try:
         rest = relax(
             chart, task.yarn, task.loop_length_mm, branch=task.branch, convention=task.convention

@@ -22,7 +22,7 @@ from knitcore.yarnlevel.kernels import sample_curve
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.catalogue import canonical, place
+from knitcore.yarnlibrary.catalogue import placement
 
 Array = NDArray[np.float64]
 
@@ -102,21 +102,21 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
     'PK'
     """
     repeat = chart.repeat()
-    representative = canonical(repeat)
-    entry = _entries().get(f"{material_id}/{key_of(representative)}")
+    representative = repeat.canonical()
+    entry = _entries().get(f"{material_id}/{representative.key}")
     if entry is None or "failure" in entry:
         return None
-    placement = place(repeat, representative)
-    if placement is None:
+    placed = placement(repeat, representative)
+    if placed is None:
         return None
-    points = np.asarray(_controls()[f"{material_id}/{key_of(representative)}"], dtype=float)
+    points = np.asarray(_controls()[f"{material_id}/{representative.key}"], dtype=float)
     per_stitch = points.shape[1] // repeat.columns
-    if placement.mirror:
+    if placed.mirror:
         # t -> columns - t turns control c into control -c, and stitch i into columns - 1 - i
         points = np.roll(points[:, ::-1], 1, axis=1) * (-1.0, 1.0, 1.0)
-    if placement.swap:
+    if placed.swap:
         points = points * (1.0, 1.0, -1.0)
-    points = np.roll(points, (placement.up, placement.right * per_stitch), axis=(0, 1))
+    points = np.roll(points, (placed.up, placed.right * per_stitch), axis=(0, 1))
     free = entry.get("free", {"failure": "not relaxed freely"})
     return StoredStitch(
         chart=repeat,
@@ -143,7 +143,7 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
 
 def stored_failure(chart: StitchChart, material_id: str) -> str | None:
     """Why a repeat of the store has no relaxed shape; None if it has one or is not in the store."""
-    entry = _entries().get(f"{material_id}/{key_of(canonical(chart))}", {})
+    entry = _entries().get(f"{material_id}/{chart.canonical().key}", {})
     failure: str | None = entry.get("failure")
     return failure
 
@@ -152,7 +152,7 @@ def stored_charts(material_id: str) -> list[StitchChart]:
     """The relaxed repeats in the store, one of each fabric."""
     prefix = f"{material_id}/"
     return [
-        StitchChart.parse(key.removeprefix(prefix).replace("/", "\n"))
+        StitchChart.parse(key.removeprefix(prefix))
         for key, entry in _entries().items()
         if key.startswith(prefix) and "failure" not in entry
     ]
@@ -175,8 +175,3 @@ def _entries() -> dict[str, Any]:
 def _controls() -> dict[str, NDArray[np.float32]]:
     with (files(_DATA) / "data" / "stitches.npz").open("rb") as stream, np.load(stream) as found:
         return {name: found[name] for name in found.files}
-
-
-def key_of(chart: StitchChart) -> str:
-    """Rows from the top, separated by ``/``."""
-    return chart.text.replace("\n", "/")

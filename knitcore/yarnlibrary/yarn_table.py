@@ -73,7 +73,7 @@ class YarnPlan:
         for setting in self.settings:
             for fabric, yarn in self.yarns.items():
                 task = RepeatTask(
-                    StitchChart.of_fabric(fabric, 2, 2).repeat().text.replace("\n", "/"),
+                    StitchChart.of_fabric(fabric, 2, 2).repeat().key,
                     yarn, setting.loop_length_mm[fabric], self.branch, self.convention,
                     self.max_stress_n_per_mm,
                 )  # fmt: skip

@@ -158,7 +158,7 @@ def test_stretch_at_a_load_and_poisson_s_ratio_together() -> None:
         Target(Quantity.POISSON_WALE, law.poisson_xy, 0.02),
     ]
     best = find_fabric([ATLAS], targets).candidates[0]
-    assert best.repeat == "K/P"
+    assert best.repeat == "P/K"
     assert best.reached
     assert "stretch_wale@0.05" in best.intervals
 

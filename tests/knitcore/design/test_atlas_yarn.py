@@ -8,6 +8,7 @@ import pytest
 
 from knitcore import Fabric, InputError
 from knitcore.answer.composite import layout_of
+from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import (
@@ -16,7 +17,7 @@ from knitcore.design.atlas_yarn import (
     yarn_level_folder,
     yarn_level_tasks,
 )
-from knitcore.design.repeats import repeat_of_key, repeats_up_to
+from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.materials import material
 from knitcore.yarnlibrary.characterise import RepeatTask
@@ -42,7 +43,7 @@ class Relaxing:
         monkeypatch.setattr("knitcore.design.atlas_yarn.characterise_repeat", self)
 
     def __call__(self, task: RepeatTask) -> dict[str, Any]:
-        stored = stored_stitch(repeat_of_key(task.chart), "acrylic")
+        stored = stored_stitch(StitchChart.parse(task.chart), "acrylic")
         assert stored is not None
         self.done.append(task.chart)
         return {
@@ -62,7 +63,7 @@ def test_small_repeats_come_first_after_the_pure_fabrics(file: Path) -> None:
     order = [len(key.replace("/", "")) for key in tasks]
     assert set(list(tasks)[:4]) == {key_of_pure(fabric) for fabric in Fabric}
     assert order[4:] == sorted(order[4:])
-    assert all(layout_of(repeat_of_key(key)) is None for key in list(tasks)[4:])
+    assert all(layout_of(StitchChart.parse(key)) is None for key in list(tasks)[4:])
     assert len(yarn_level_tasks(WOOL, load_atlas(file).entries(), 4)) < len(tasks)
 
 

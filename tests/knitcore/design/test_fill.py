@@ -8,7 +8,7 @@ from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import patches_of
-from knitcore.design.repeats import repeat_of_key, repeats_up_to
+from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
@@ -105,7 +105,7 @@ def test_a_wish_between_the_repeats_is_met_by_a_mixture() -> None:
     hidden = predict_repeat(StitchChart.parse("KKKKKKPKP\nKKKKKKKPK"), ACRYLIC)
     wish = [np.full((20, 20), hidden.modulus_n_per_mm(d)) for d in Direction]
     field = fill_field(*wish, ACRYLIC, ATLAS)
-    found = predict_repeat(repeat_of_key(field.regions[0].repeat), ACRYLIC)
+    found = predict_repeat(StitchChart.parse(field.regions[0].repeat), ACRYLIC)
     for direction in Direction:
         wanted = hidden.modulus_n_per_mm(direction)
         assert found.modulus_n_per_mm(direction) == pytest.approx(wanted, rel=0.05)

@@ -7,11 +7,8 @@ from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
 from knitcore.design.repeats import (
-    canonical,
     known_larger_repeats,
     primitive_repeats,
-    repeat_key,
-    repeat_of_key,
     repeats_up_to,
 )
 from tests.knitcore.charts import stitch_charts
@@ -29,7 +26,7 @@ def test_numbers_of_repeats(rows: int, columns: int, stitches: int, count: int) 
 
 def test_the_four_fabrics_are_the_smallest_repeats() -> None:
     fabrics = [StitchChart.of_fabric(f, 2, 2) for f in ("stockinette", "garter", "rib", "seed")]
-    found = [canonical(fabric) for fabric in fabrics]
+    found = [fabric.canonical() for fabric in fabrics]
     assert len(set(found)) == 4
     assert set(found) < set(repeats_up_to(2, 2))
 
@@ -43,18 +40,18 @@ def test_images_of_a_repeat_are_the_same_fabric(
     for turn in (StitchChart.mirror, StitchChart.turn_over):
         if data.draw(st.booleans()):
             image = turn(image)
-    assert canonical(image) == repeat
-    assert canonical(image.tile(2, 3)) == repeat
+    assert image.canonical() == repeat
+    assert image.tile(2, 3).canonical() == repeat
 
 
 @given(chart=stitch_charts(most=4))
 def test_every_chart_is_a_repeat_of_the_list(chart: StitchChart) -> None:
-    assert canonical(chart) in repeats_up_to(4, 4)
+    assert chart.canonical() in repeats_up_to(4, 4)
 
 
 @given(chart=stitch_charts(most=8))
 def test_keys_are_read_back(chart: StitchChart) -> None:
-    assert repeat_of_key(repeat_key(chart)) == chart
+    assert StitchChart.parse(chart.key) == chart
 
 
 def test_the_larger_ones_are_new_and_fit_8_x_8() -> None:

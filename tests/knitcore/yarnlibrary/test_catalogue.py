@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from knitcore.chart import StitchChart
-from knitcore.yarnlibrary.catalogue import COMMON, canonical, distinct_repeats, place, placements
+from knitcore.yarnlibrary.catalogue import COMMON, distinct_repeats, placement, placements
 
 charts = arrays(bool, st.tuples(st.integers(1, 3), st.integers(1, 4))).map(StitchChart)
 
@@ -38,7 +38,7 @@ def test_the_counts_are_those_of_the_composite_study():
 def test_common_repeats_are_primitive_and_different():
     found = [StitchChart.parse(text) for text in COMMON.values()]
     assert all(chart.repeat() == chart for chart in found)
-    assert len({canonical(chart) for chart in found}) == len(found)
+    assert len({chart.canonical() for chart in found}) == len(found)
 
 
 @settings(deadline=None, max_examples=40)
@@ -47,5 +47,5 @@ def test_symmetric_charts_have_one_representative(chart, up, right, mirror, swap
     other = chart.mirror() if mirror else chart
     other = other.swap() if swap else other
     other = StitchChart(np.roll(other.purl, (up, right), axis=(0, 1)))
-    assert canonical(other) == canonical(chart)
-    assert place(other, canonical(chart)) is not None
+    assert other.canonical() == chart.canonical()
+    assert placement(other, chart.canonical()) is not None
