@@ -116,7 +116,10 @@ async def get_events(design: DesignId, request: Request) -> StreamingResponse:
     "/views/{design}/picture",
     summary="A picture of the view",
     response_class=Response,
-    responses={200: {"content": {"image/png": {}}, "description": "A PNG."}},
+    responses={
+        200: {"content": {"image/png": {}}, "description": "A PNG."},
+        409: {"model": Problem, "description": "No browser shows the view, or sends a picture."},
+    },
 )
 async def get_picture(
     design: DesignId,

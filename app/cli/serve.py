@@ -31,6 +31,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     from app.http.connections import Connection
     from app.http.observing import configure_logging
     from app.main import create_app
+    from app.viewer.incoming import MOST_PICTURE_BYTES
 
     memory.keep_no_large_blocks()
     configure_logging(settings.log_format)
@@ -58,6 +59,8 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
             http=Connection,
             log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
+            ws_max_size=MOST_PICTURE_BYTES,
+            ws_max_queue=2,
             # longer than clients and proxies keep theirs, or they send on one that closes just then
             timeout_keep_alive=75,
             timeout_graceful_shutdown=3,

@@ -7,15 +7,16 @@ import contextlib
 import logging
 from pathlib import Path
 
-import msgspec
 import viser
 import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from app.http.rate import RateLimit
 from app.viewer.design_id import DesignId, private_name
+from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on
 from app.viewer.private_port import RELAY_HEADERS
-from app.viewer.views import Views
+from app.viewer.views import View, Views
 
 log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
@@ -29,8 +30,6 @@ VIEW_STYLE = """<style>
   /* Where viser draws rectangles to select with: one more layer that every frame would blend. */
   canvas[width="0"] { display: none !important; }
 </style>"""
-SHARE_REQUESTS = frozenset({"ShareUrlRequest", "ShareUrlDisconnect"})
-"""Messages that would make viser open a public tunnel to this machine."""
 
 
 @router.get("/view/{design}")
@@ -66,12 +65,15 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
         await socket.accept(subprotocol=inner.subprotocol)
         views.watch(name, +1)
         try:
-            await _carry(socket, inner)
+            await _carry(socket, inner, view)
         finally:
             views.watch(name, -1)
 
 
-async def _carry(socket: WebSocket, inner: websockets.ClientConnection) -> None:
+async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: View) -> None:
+    rate = RateLimit(PER_S, BURST)
+    code = 1000
+
     async def outwards() -> None:
         async for message in inner:
             if isinstance(message, bytes):
@@ -80,13 +82,22 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection) -> None:
                 await socket.send_text(message)
 
     async def inwards() -> None:
+        nonlocal code
         while True:
             message = await socket.receive()
             if message["type"] == "websocket.disconnect":
                 return
-            data = message.get("bytes") or message.get("text")
-            if data and not _asks_for_a_tunnel(data):
-                await inner.send(data)
+            data = message.get("bytes") or message.get("text") or b""
+            try:
+                if rate.take("")[1]:
+                    raise RefusedMessageError("too many messages")
+                kept = passed_on(data, view.wanted)
+            except RefusedMessageError as refused:
+                log.warning("a browser's connection to a view is closed: %s", refused)
+                code = 1008
+                return
+            if kept is not None:
+                await inner.send(kept)
 
     tasks = [asyncio.create_task(outwards()), asyncio.create_task(inwards())]
     _, pending = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -98,17 +109,7 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection) -> None:
         ):
             await task
     with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # the browser closed first
-        await socket.close()
-
-
-def _asks_for_a_tunnel(data: bytes | str) -> bool:
-    if isinstance(data, str):
-        return False
-    try:
-        message = msgspec.msgpack.decode(data)
-    except msgspec.DecodeError:
-        return True  # what cannot be read is not passed on
-    return isinstance(message, dict) and message.get("type") in SHARE_REQUESTS
+        await socket.close(code)
 
 
 def viewer_page() -> str:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from PIL import Image
 
-from app.http.problems import UnavailableError
+from app.http.problems import ServiceError
 from app.viewer.fabric import FabricScene
+from app.viewer.incoming import WantedPicture
 from app.viewer.views import View, new_view
 from knitcore.geometry.instances import resampled
 from knitcore.geometry.placing import placed_lines
@@ -25,31 +23,44 @@ SOLID_LEVELS = ((1_000, 33, 8), (4_000, 17, 6), (10_000, 11, 5))
 MOST_SOLID = SOLID_LEVELS[-1][0]
 
 
+class NoPictureError(ServiceError):
+    """There can be no picture of a view now."""
+
+    status, type, title = 409, "conflict", "No picture can be taken"
+
+
 def picture_png(view: View, width: int, height: int) -> bytes:
     """A picture as the last of the browsers that look sees it, with a transparent background.
 
     Raises
     ------
-    UnavailableError
-        If nobody looks, or the browser does not answer.
+    NoPictureError
+        If nobody looks, another picture is being taken, or the browser does not answer.
     """
     clients = sorted(view.server.get_clients().items())
     if not clients:
-        raise UnavailableError("Nobody looks at this view, so there is no picture of it.")
-    try:
-        pixels = clients[-1][1].get_render(
-            height, width, transport_format="png", timeout=PICTURE_TIMEOUT_S
+        raise NoPictureError(
+            "Nobody looks at this view, so there is no picture of it.", remedy="Open the view."
         )
+    if not view.picturing.acquire(blocking=False):
+        raise NoPictureError("Another picture of this view is being taken.", remedy="Wait for it.")
+    view.wanted = wanted = WantedPicture(width, height)
+    try:
+        clients[-1][1].get_render(height, width, transport_format="png", timeout=PICTURE_TIMEOUT_S)
     except (TimeoutError, RuntimeError, ConnectionError) as error:
-        raise UnavailableError("The browser that shows this view sent no picture.") from error
-    return png(pixels)
+        raise _silent() from error
+    finally:
+        view.wanted = None
+        view.picturing.release()
+    if wanted.content is None:
+        raise _silent()
+    return wanted.content
 
 
-def png(pixels: NDArray[np.uint8]) -> bytes:
-    """Pixels (height, width, 3 or 4) as a file."""
-    content = io.BytesIO()
-    Image.fromarray(pixels).save(content, "PNG")
-    return content.getvalue()
+def _silent() -> NoPictureError:
+    return NoPictureError(
+        "The browser that shows this view sent no picture.", remedy="Bring it to the front."
+    )
 
 
 def page_html(scenes: Iterable[FabricScene], *, dark: bool) -> str:

@@ -12,6 +12,7 @@ import viser
 from app.http.problems import UnavailableError
 from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.fabric import FabricScene
+from app.viewer.incoming import WantedPicture
 from app.viewer.private_port import private_server
 from app.viewer.scene import SceneWriter
 
@@ -20,11 +21,19 @@ log = logging.getLogger("knitcore.app")
 
 @dataclass
 class View:
-    """A design's viser server; it listens on loopback only and is reached through the relay."""
+    """A design's viser server; it listens on loopback only and is reached through the relay.
+
+    Attributes
+    ----------
+    wanted : the picture that a browser was asked for, if one was.
+    picturing : held by who takes a picture.
+    """
 
     server: viser.ViserServer
     writer: SceneWriter
     watchers: int = 0
+    wanted: WantedPicture | None = None
+    picturing: threading.Lock = field(default_factory=threading.Lock)
     last_used: float = field(default_factory=time.monotonic)
 
     @property

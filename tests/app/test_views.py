@@ -13,7 +13,6 @@ from fastapi.testclient import TestClient
 
 from app.api import views as views_api
 from app.viewer.colours import diverging, fabric_mix, sequential
-from app.viewer.relay import _asks_for_a_tunnel
 from app.viewer.views import Views
 from tests.app.test_stretch import ASKED, GARTER
 
@@ -97,14 +96,6 @@ def test_the_view_page_comes_from_here(client: TestClient) -> None:
     assert "<html" in page.text
     assert client.get("/view/..%2f..%2fetc/").status_code == 404
     assert client.get("/view/a b/").status_code == 404
-
-
-def test_requests_for_a_public_tunnel_are_dropped() -> None:
-    import msgspec
-
-    assert _asks_for_a_tunnel(msgspec.msgpack.encode({"type": "ShareUrlRequest"}))
-    assert _asks_for_a_tunnel(b"\xc1")
-    assert not _asks_for_a_tunnel(msgspec.msgpack.encode({"type": "ViewerCameraMessage"}))
 
 
 def test_views_make_room_and_leave_nothing_behind() -> None:

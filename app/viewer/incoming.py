@@ -1,0 +1,104 @@
+"""What a browser may send into a view: where it looks, clicks, and the picture it was asked for.
+
+viser reads every message with all that it holds, in the service's own process. So the relay passes
+on nothing else than the page needs, nothing large, and no picture: that is checked by its header,
+kept as it came, and a single pixel goes on in its place.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+import msgspec
+
+MOST_BYTES = 64_000
+"""Of a message; clicks and cameras have less than 1,000."""
+MOST_PICTURE_BYTES = 16_000_000
+PER_S, BURST = 300.0, 1_200
+"""Messages of one browser; while the view is turned it sends one a frame."""
+
+PNG_HEAD = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR"
+ONE_PIXEL = bytes.fromhex(
+    "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c489"
+    "0000000d49444154789c6360606060000000050001a5f645400000000049454e44ae426082"
+)
+
+
+class RefusedMessageError(Exception):
+    """A message that no page sends; its connection is closed."""
+
+
+@dataclass
+class WantedPicture:
+    """A picture that a browser was asked for; ``content`` is the PNG once it came."""
+
+    width: int
+    height: int
+    content: bytes | None = None
+
+    def accept(self, content: bytes) -> None:
+        """Take a PNG of the size that was asked for.
+
+        Raises
+        ------
+        RefusedMessageError
+        """
+        head = len(PNG_HEAD)
+        sizes = content[head : head + 8]
+        if content[:head] != PNG_HEAD or len(sizes) < 8:
+            raise RefusedMessageError("the picture is no PNG")
+        if struct.unpack(">II", sizes) != (self.width, self.height):
+            raise RefusedMessageError("the picture has another size than was asked for")
+        self.content = content
+
+
+class _Camera(msgspec.Struct, tag_field="type", tag="ViewerCameraMessage"):
+    """Where the browser looks from."""
+
+
+class _Pointer(msgspec.Struct, tag_field="type", tag="ScenePointerMessage"):
+    """A click into the scene."""
+
+
+class _Click(msgspec.Struct, tag_field="type", tag="SceneNodeClickMessage"):
+    """A click on a thing in it."""
+
+
+class _Picture(
+    msgspec.Struct, tag_field="type", tag="GetRenderResponseMessage", forbid_unknown_fields=True
+):
+    """The picture that was asked for."""
+
+    payload: bytes
+    render_uuid: str
+
+
+# Fields that are not named here are skipped, not built.
+_decoder = msgspec.msgpack.Decoder(_Camera | _Pointer | _Click | _Picture)
+
+
+def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
+    """What viser gets of a browser's message; None if nothing.
+
+    Raises
+    ------
+    RefusedMessageError
+        If it is larger than any that a page sends, or a picture other than that asked for.
+    """
+    if len(data) > (MOST_BYTES if wanted is None else MOST_PICTURE_BYTES):
+        raise RefusedMessageError("the message is too large")
+    if isinstance(data, str):
+        return None
+    try:
+        message = _decoder.decode(data)
+    except msgspec.DecodeError:
+        return None
+    if not isinstance(message, _Picture):
+        if len(data) > MOST_BYTES:
+            raise RefusedMessageError("the message is too large")
+        return data
+    if wanted is None:
+        return None
+    wanted.accept(message.payload)
+    return msgspec.msgpack.encode(_Picture(ONE_PIXEL, message.render_uuid))

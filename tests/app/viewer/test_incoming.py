@@ -1,0 +1,176 @@
+"""What browsers send into views, and what they might."""
+
+from __future__ import annotations
+
+import io
+import time
+import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import msgspec
+import pytest
+import viser
+import zstandard
+from fastapi.testclient import TestClient
+from PIL import Image
+from starlette.websockets import WebSocketDisconnect
+
+from app.viewer.incoming import (
+    MOST_BYTES,
+    MOST_PICTURE_BYTES,
+    ONE_PIXEL,
+    RefusedMessageError,
+    WantedPicture,
+    passed_on,
+)
+
+CAMERA = {
+    "type": "ViewerCameraMessage",
+    "wxyz": [1.0, 0.0, 0.0, 0.0],
+    "position": [0.0, 0.0, 9.0],
+    "image_height": 100,
+    "image_width": 100,
+    "fov": 0.9,
+    "near": 0.1,
+    "far": 100.0,
+    "look_at": [0.0, 0.0, 0.0],
+    "up_direction": [0.0, 1.0, 0.0],
+}
+
+
+def _packed(**message: Any) -> bytes:
+    return msgspec.msgpack.encode(message)
+
+
+def _png(width: int, height: int) -> bytes:
+    content = io.BytesIO()
+    Image.new("RGBA", (width, height), "#d8c6ab").save(content, "PNG")
+    return content.getvalue()
+
+
+def _render(content: bytes) -> bytes:
+    return _packed(type="GetRenderResponseMessage", payload=content, render_uuid="u")
+
+
+def test_cameras_and_clicks_go_on_as_they_are() -> None:
+    for kind in ("ViewerCameraMessage", "ScenePointerMessage", "SceneNodeClickMessage"):
+        message = _packed(**CAMERA | {"type": kind})
+        assert passed_on(message, None) == message
+
+
+def test_requests_for_a_public_tunnel_are_dropped() -> None:
+    for kind in ("ShareUrlRequest", "ShareUrlDisconnect"):
+        assert passed_on(_packed(type=kind), None) is None
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "text",
+        b"",
+        b"\xc1",
+        _packed(type=["x"]),
+        _packed(type="FileTransferStartUpload"),
+        _packed(type="NoSuchMessage"),
+        _packed(other=1),
+        msgspec.msgpack.encode([1, 2]),
+        _render(_png(2, 2)),  # nobody asked for it
+    ],
+)
+def test_everything_else_is_dropped(message: bytes | str) -> None:
+    assert passed_on(message, None) is None
+
+
+def test_a_huge_message_is_refused_and_never_built() -> None:
+    """Two to the 24 nils in an array: 1.2 GB once they are Python objects."""
+    count = MOST_PICTURE_BYTES - 100
+    nils = b"\xdd" + count.to_bytes(4, "big") + b"\xc0" * count
+    head = b"\x82\xa4type\xb8GetRenderResponseMessage\xa7payload"
+    tracemalloc.start()
+    try:
+        with pytest.raises(RefusedMessageError, match="too large"):
+            passed_on(nils, None)
+        for message in (nils, head + nils):
+            assert passed_on(message, WantedPicture(100, 100)) is None
+        assert tracemalloc.get_traced_memory()[1] < 2 * MOST_PICTURE_BYTES + 1_000_000
+    finally:
+        tracemalloc.stop()
+    padded = _packed(**CAMERA | {"more": "x" * MOST_BYTES})
+    with pytest.raises(RefusedMessageError, match="too large"):
+        passed_on(padded, WantedPicture(100, 100))
+
+
+def test_a_picture_is_kept_as_it_came_and_one_pixel_goes_on() -> None:
+    wanted = WantedPicture(30, 20)
+    sent = msgspec.msgpack.decode(passed_on(_render(_png(30, 20)), wanted) or b"")
+    assert (sent["render_uuid"], sent["payload"]) == ("u", ONE_PIXEL)
+    assert Image.open(io.BytesIO(ONE_PIXEL)).convert("RGBA").size == (1, 1)
+    assert wanted.content == _png(30, 20)
+
+
+@pytest.mark.parametrize(
+    "content", [_png(13_000, 10), _png(20, 30), b"", b"GIF89a", _png(3, 2)[:20]]
+)
+def test_a_picture_of_another_size_is_refused_by_its_header(content: bytes) -> None:
+    wanted = WantedPicture(30, 20)
+    with pytest.raises(RefusedMessageError, match="picture"):
+        passed_on(_render(content), wanted)
+    assert wanted.content is None
+
+
+def _shown(client: TestClient, design: str) -> Any:
+    body = {"chart": "KP\nPK", "material": "cotton"}
+    assert client.put(f"/api/v1/views/{design}", json=body).status_code == 200
+    return client.websocket_connect(
+        f"ws://127.0.0.1/view/{design}", subprotocols=[f"viser-v{viser.__version__}"]
+    )
+
+
+def _drain(socket: Any) -> None:
+    while True:
+        socket.receive_bytes()
+
+
+def _asked_for(socket: Any) -> str:
+    """The id of the picture that the service asks a browser for."""
+    while True:
+        frame = socket.receive_bytes()
+        size = int.from_bytes(frame[8:16], "little")
+        content = zstandard.decompress(frame[16 : 16 + size])
+        for message in msgspec.msgpack.decode(content)["messages"]:
+            if message["type"] == "GetRenderRequestMessage":
+                return str(message["render_uuid"])
+
+
+@pytest.mark.parametrize(("size", "status"), [((40, 30), 200), ((30, 40), 409)])
+def test_a_browser_is_asked_for_a_picture(
+    client: TestClient, size: tuple[int, int], status: int
+) -> None:
+    design = f"a-picture-{status}"
+    with _shown(client, design) as socket, ThreadPoolExecutor(1) as thread:
+        socket.send_bytes(_packed(**CAMERA))
+        view = client.app.state.views.get(f"local/{design}")  # type: ignore[attr-defined]
+        deadline = time.monotonic() + 30
+        while not view.server.get_clients() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        address = f"/api/v1/views/{design}/picture?width=40&height=30"
+        answer = thread.submit(client.get, address)
+        uuid = _asked_for(socket)
+        assert client.get(address).json()["detail"].startswith("Another picture")
+        sent = {"payload": _png(*size), "render_uuid": uuid}
+        socket.send_bytes(_packed(type="GetRenderResponseMessage", **sent))
+        assert answer.result(30).status_code == status
+        if status == 200:
+            assert answer.result().content == _png(*size)
+
+
+def test_who_sends_too_much_into_a_view_is_let_go(client: TestClient) -> None:
+    with _shown(client, "a-loud-view") as socket:
+        socket.send_bytes(b"\0" * (MOST_BYTES + 1))
+        with pytest.raises(WebSocketDisconnect) as closed:
+            _drain(socket)
+    assert closed.value.code == 1008
+    with _shown(client, "a-loud-view") as socket:
+        socket.send_text("no message at all")
+        assert socket.receive_bytes()  # others are not disturbed
