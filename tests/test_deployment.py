@@ -92,3 +92,9 @@ def test_the_image_runs_as_a_plain_user_from_debian_packages() -> None:
     for line in re.findall(r"ENV (.*)", DOCKERFILE):
         for name in re.findall(r"KNITCORE_(\w+)=", line):
             assert name.lower() in Settings.model_fields
+
+
+def test_secrets_stay_out_of_image_and_repository() -> None:
+    """compose.yaml asks for an .env file beside it."""
+    for name in (".dockerignore", ".gitignore"):
+        assert ".env" in (ROOT / name).read_text().splitlines(), name

@@ -95,7 +95,10 @@ class PageFiles(StaticFiles):
             raise HTTPException(404)
         named_by_content = "-" in name.stem and len(name.parts) == 1
         caching = self.caching if named_by_content else CHECK_AGAIN
-        file, _ = self.lookup_path(path)  # refuses to leave the folder
+        try:
+            file, _ = self.lookup_path(path)  # refuses to leave the folder
+        except OSError:  # longer than any name
+            raise HTTPException(404) from None
         if file:
             return packed(Path(file), Headers(scope=scope), caching)
         raise HTTPException(404)

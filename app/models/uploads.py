@@ -2,12 +2,42 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
+from typing import Annotated
 
-from pydantic import Base64Bytes, BaseModel, ConfigDict, Field, PrivateAttr
+from pydantic import BaseModel, ConfigDict, EncodedBytes, EncoderProtocol, Field, PrivateAttr
+from pydantic_core import PydanticCustomError
+
+MOST_NAME_BYTES = 200
+"""What a file system takes as a name, with room to spare."""
+
+
+class _Strict(EncoderProtocol):
+    """Base64 in which nothing else is skipped: a file arrives whole, or not at all."""
+
+    @classmethod
+    def decode(cls, data: bytes) -> bytes:
+        try:
+            return base64.b64decode(data, validate=True)
+        except ValueError as error:
+            raise PydanticCustomError(
+                "base64", "This is no base64: {error}", {"error": str(error)}
+            ) from None
+
+    @classmethod
+    def encode(cls, value: bytes) -> bytes:
+        return base64.b64encode(value)
+
+    @classmethod
+    def get_json_format(cls) -> str:
+        return "base64"
+
+
+Content = Annotated[bytes, EncodedBytes(encoder=_Strict)]
 
 
 class UploadedFile(BaseModel):
@@ -16,7 +46,7 @@ class UploadedFile(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: str = Field(min_length=1, max_length=200, examples=["course.csv"])
-    content: Base64Bytes = Field(description="The file, base64.")
+    content: Content = Field(description="The file, base64.")
     _path: Path | None = PrivateAttr(None)
 
     @classmethod
@@ -38,9 +68,16 @@ def stored(files: Sequence[UploadedFile]) -> Iterator[list[Path]]:
                 continue
             place = Path(folder) / str(index)
             place.mkdir()
-            # only the last part, so that a name cannot lead out of the folder
-            name = PurePosixPath(file.name.replace("\\", "/").replace("\0", "")).name
-            path = place / (name if name not in ("", ".", "..") else "file")
+            path = place / _name(file.name)
             path.write_bytes(file.content)
             paths.append(path)
         yield paths
+
+
+def _name(given: str) -> str:
+    """The last part of a name, which cannot lead out of its folder, as long as may be."""
+    name = PurePosixPath(given.replace("\\", "/").replace("\0", ""))
+    room = MOST_NAME_BYTES - len(name.suffix.encode())
+    if name.name in ("", ".", "..") or room < 1:
+        return "file"
+    return name.stem.encode()[:room].decode(errors="ignore") + name.suffix

@@ -90,7 +90,7 @@ def read_design(file: Path) -> DesignFile:
     """
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(
             "chart", f"{file.name} is not valid JSON ({error}).", "Export the design again."
         ) from None

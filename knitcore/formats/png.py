@@ -107,7 +107,9 @@ def read_png_piece(file: Path) -> Piece:
             f"{file.name} has more pixels than any chart has stitches.",
             f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
         ) from None
-    except (UnidentifiedImageError, OSError, SyntaxError):
+    except InputError:
+        raise
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError):
         raise InputError(
             "chart", f"{file.name} is not a readable PNG.", "Export it again as PNG."
         ) from None

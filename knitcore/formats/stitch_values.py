@@ -38,9 +38,14 @@ def write_csv(chart: StitchChart | Piece, material: Material) -> str:
     for row, column in np.argwhere(piece.shaped.stitch).tolist():
         stitch = "P" if piece.chart.purl[row, column] else "K"
         numbers = [f"{float(v[row, column]):.6g}" for v in values.values()]
-        yarn = [piece.yarns[piece.yarn_of[row, column]].name] if several else []
+        yarn = [_as_text(piece.yarns[piece.yarn_of[row, column]].name)] if several else []
         writer.writerow([row + 1, column + 1, stitch, *numbers, *yarn])
     return buffer.getvalue()
+
+
+def _as_text(name: str) -> str:
+    """A name that no spreadsheet takes for a formula."""
+    return f"'{name}" if name.startswith(("=", "+", "-", "@", "\t", "\r")) else name
 
 
 def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:

@@ -16,7 +16,9 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
+from pydantic import ValidationError
 
+from app.models.uploads import UploadedFile, stored
 from app.operations.field import CompareRequest, run_compare
 from app.operations.fit import FitRequest, run_fit
 from app.operations.imports import ImportRequest, run_import
@@ -91,8 +93,10 @@ def _request(kind: type[Any], **fields: Any) -> Any:
     import base64
 
     def coded(value: Any) -> Any:
-        if isinstance(value, dict) and "content" in value:
-            return value | {"content": base64.b64encode(value["content"]).decode()}
+        if isinstance(value, bytes):
+            return base64.b64encode(value).decode()
+        if isinstance(value, dict):
+            return {key: coded(inner) for key, inner in value.items()}
         return [coded(v) for v in value] if isinstance(value, list) else value
 
     return kind.model_validate({name: coded(value) for name, value in fields.items()})
@@ -132,3 +136,36 @@ def test_a_hostile_file_is_refused_in_words(reader: str) -> None:
 def test_a_picture_of_billions_of_pixels_is_refused_as_too_large() -> None:
     with pytest.raises(InputError, match="more pixels than"):
         READERS["import"]({"name": "a.png", "content": _bomb()}, {})
+
+
+def _text_bomb() -> bytes:
+    """A PNG with a compressed text of 80 MB."""
+    chunk = b"zTXt" + b"a\0\0" + zlib.compress(b"0" * 80_000_000, 9)
+    size, check = (len(chunk) - 4).to_bytes(4, "big"), zlib.crc32(chunk).to_bytes(4, "big")
+    image = _png(2, 2)
+    return image[:33] + size + chunk + check + image[33:]
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.png", _text_bomb()),
+        ("a.json", b'{"format": "knitcore-design", "version": ' + b"1" * 5_000 + b"}"),
+    ],
+)
+def test_files_that_go_beyond_a_reader_s_own_limits(name: str, content: bytes) -> None:
+    with pytest.raises(InputError, match=r"not a readable PNG|not valid JSON"):
+        READERS["import"]({"name": name, "content": content}, {})
+
+
+@pytest.mark.parametrize("name", ["é" * 196 + ".txt", "🧶" * 190, "a" * 200, "." + "a" * 199, "/"])
+def test_a_long_name_is_shortened(name: str) -> None:
+    with stored([_request(UploadedFile, name=name, content=b"KP")]) as (path,):
+        assert path.read_bytes() == b"KP"
+        assert path.suffix == (".txt" if name.endswith(".txt") else path.suffix)
+
+
+@pytest.mark.parametrize("content", ["%%%%", "S1A-S1A_", "S1BL UEs=", "S1A", "K\nA=="])
+def test_damaged_base64_is_refused(content: str) -> None:
+    with pytest.raises(ValidationError, match="no base64"):
+        UploadedFile(name="a.txt", content=content)

@@ -138,3 +138,30 @@ def test_the_commands(filled: Database, tmp_path: Path, monkeypatch: pytest.Monk
     assert "already" in refused.stderr
     monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path / "new"))
     assert CliRunner().invoke(main, ["restore", str(file), "--json"]).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        {"table": "no_such_table", "row": {}},
+        {"table": "designs", "row": [1]},
+        {"table": "designs", "row": {"id": "a", "no_such_column": 1}},
+        {"table": "designs", "row": {"id": {}}},
+        {"tabel": "designs"},
+        {"end": 3},
+    ],
+)
+def test_a_crafted_backup_is_refused_in_words(
+    filled: Database, tmp_path: Path, line: dict[str, object]
+) -> None:
+    whole, crafted = tmp_path / "whole.gz", tmp_path / "crafted.gz"
+    back_up(filled, whole)
+    with gzip.open(whole, "rt") as text:
+        header = text.readline()
+    with gzip.open(crafted, "wt") as text:
+        text.write(header + json.dumps(line) + "\n" + json.dumps({"end": {"designs": 1}}) + "\n")
+    other = _database(tmp_path / "new")
+    with pytest.raises(InputError, match=r"damaged|not whole"):
+        restore(other, crafted)
+    assert DesignStore(other).page("ada", limit=9, cursor=None, deleted=False).designs == []
+    other.close()

@@ -1,0 +1,21 @@
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from knitcore import StitchChart
+from knitcore.formats.stitch_values import write_csv
+from knitcore.garment.piece import Piece, PieceYarn
+from knitcore.garment.shaped import ShapedChart
+from knitcore.materials import material
+
+
+@pytest.mark.parametrize("name", ["=cmd|calc!A0", "+1", "-1", "@x", "cream, dark"])
+def test_no_name_of_a_yarn_is_a_formula(name: str) -> None:
+    yarns = (PieceYarn("white", "#ffffff"), PieceYarn(name, "#0000ff"))
+    piece = Piece(ShapedChart.rectangle(StitchChart.parse("KP")), yarns, np.array([[0, 1]]))
+    lines = list(csv.DictReader(io.StringIO(write_csv(piece, material("acrylic")))))
+    assert [line["yarn"] for line in lines] == ["white", name if name[0] == "c" else f"'{name}"]
