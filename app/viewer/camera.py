@@ -18,6 +18,10 @@ MARGIN = 1.22
 """Room around the fabric, over its size."""
 LIFT = 0.1
 """So much of the view's half height lies the fabric below its middle: tools lie over its top."""
+FARTHEST = 900.0
+"""Units that a camera can go back: browsers draw nothing that is 1000 units away."""
+MOVED = 1e-3
+"""Relative change of place by which a camera is not where it was put any more."""
 
 
 class Side(StrEnum):
@@ -38,20 +42,20 @@ _TOWARDS: dict[Side, tuple[tuple[float, float, float], tuple[float, float, float
 }
 
 
-def stand(side: Side, extent_mm: Array) -> tuple[Array, Array, Array]:
+def stand(side: Side, extent: Array) -> tuple[Array, Array, Array]:
     """Where the camera stands, what it looks at, and what is up, so that the whole fabric is seen.
 
     Parameters
     ----------
-    extent_mm : width and height of the fabric, whose middle is the origin.
+    extent : width and height of the fabric, whose middle is the origin.
 
     Returns
     -------
-    position (3,) and aim (3,) in mm, and the direction that is up (3,).
+    position (3,) and aim (3,) in the unit of the extent, and the direction that is up (3,).
     """
     direction, up = (np.array(vector) for vector in _TOWARDS[side])
     direction /= np.linalg.norm(direction)
-    width, height = extent_mm
+    width, height = extent
     # What is nearer than the middle looks larger.
     nearer = (abs(direction[0]) * width + abs(direction[1]) * height) / 2
     if side is Side.EDGE:
@@ -61,15 +65,26 @@ def stand(side: Side, extent_mm: Array) -> tuple[Array, Array, Array]:
     return aim + direction * (needed / np.tan(FIELD_OF_VIEW / 2) + nearer), aim, up
 
 
-def place_camera(server: viser.ViserServer, side: Side, extent_mm: Array) -> None:
-    """Turn everybody's camera, and that of later ones, so that the whole fabric is seen."""
-    position, aim, up = stand(side, extent_mm)
+def place_camera(server: viser.ViserServer, side: Side, extent: Array, *, everybody: bool) -> None:
+    """Place the camera, that of later ones too, so that the whole fabric is seen.
+
+    Parameters
+    ----------
+    server : whose cameras.
+    side : from which the fabric is seen.
+    extent : width and height of the fabric.
+    everybody : also those who have turned or moved their camera since it was placed.
+    """
+    position, aim, up = stand(side, extent)
     start = server.initial_camera
+    before = np.array(start.position)
     start.fov = FIELD_OF_VIEW
     start.up = up
     start.look_at = aim
     start.position = position
     for client in server.get_clients().values():
+        if not everybody and not np.allclose(client.camera.position, before, rtol=MOVED):
+            continue
         with client.atomic():
             client.camera.fov = FIELD_OF_VIEW
             client.camera.up_direction = up

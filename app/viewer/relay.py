@@ -30,6 +30,17 @@ VIEW_STYLE = """<style>
   /* Where viser draws rectangles to select with: one more layer that every frame would blend. */
   canvas[width="0"] { display: none !important; }
 </style>"""
+VIEW_SCRIPT = """<script>
+  // Notices of viser's client that nobody here can act on: its sorter of point clouds, unused here,
+  // builds functions from text, which our policy forbids; and three.js renames a class.
+  for (const name of ["error", "unhandledrejection"]) {
+    addEventListener(name, (event) => {
+      if (/unsafe-eval/.test(event.message ?? event.reason?.message)) event.preventDefault();
+    });
+  }
+  const warn = console.warn;
+  console.warn = (...words) => String(words[0]).startsWith("THREE.Clock") || warn(...words);
+</script>"""
 
 
 @router.get("/view/{design}")
@@ -113,5 +124,6 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
 
 
 def viewer_page() -> str:
-    """viser's client page with the style that hides its panel."""
-    return CLIENT_PAGE.read_text(encoding="utf-8").replace("</head>", f"{VIEW_STYLE}</head>", 1)
+    """viser's client page with the style that hides its panel, and without its notices."""
+    page = CLIENT_PAGE.read_text(encoding="utf-8")
+    return page.replace("<head>", f"<head>{VIEW_SCRIPT}{VIEW_STYLE}", 1)

@@ -1,4 +1,4 @@
-"""What a viser server shows of a fabric: instanced stitches, rectangles, a mark."""
+"""What a viser server shows of a fabric: its yarn, rectangles, a mark."""
 
 from __future__ import annotations
 
@@ -10,18 +10,14 @@ import viser
 from numpy.typing import NDArray
 
 from app.viewer.camera import Side, place_camera
-from app.viewer.colours import linear
+from app.viewer.cloth import UNITS_PER_MM, Cloth
 from app.viewer.fabric import Box, FabricScene
-from knitcore.geometry.instances import StitchMeshes, level_of, quaternions, stitch_meshes
-from knitcore.geometry.placing import mean_sizes_mm
-from knitcore.geometry.stitches import StitchShapes
+from knitcore.geometry.instances import level_of
 
 Array = NDArray[np.float64]
 
-RESIZE = 0.06
-"""Logarithm of the change of size up to which tubes are scaled instead of drawn anew."""
-FINEST = 256
-"""Steps to a millimetre in which places and sizes are sent."""
+BUILD_S = 0.4
+"""So long browsers build a cloth before it takes the place of the one on show."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
 PAPER = (255, 252, 246)
@@ -30,19 +26,18 @@ PAPER = (255, 252, 246)
 class SceneWriter:
     """Keeps one viser server's scene in step with a :class:`FabricScene`.
 
-    Handles are kept between writes: a new stretch or colour of the same chart only moves instances.
+    A new stretch or colour of the same chart only moves instances. Anything else is a new cloth,
+    which browsers build unseen while the one before it stays: there is always one to look at.
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
         self._lock = threading.RLock()
         self._scene: FabricScene | None = None
-        self._shapes: StitchShapes | None = None
-        self._drawn: NDArray[np.bool_] | None = None
-        self._meshes: StitchMeshes | None = None
-        self._level = (0, 0)
-        self._handles: dict[int, Any] = {}
-        self._members: dict[int, NDArray[np.intp]] = {}
+        self._cloths: list[Cloth] = []
+        """The one on show, and the one that is being built, if any."""
+        self._made = 0
+        self._timer: threading.Timer | None = None
         self._layers: dict[str, Any] = {}
         self._framed: tuple[float, ...] | None = None
         self._side = Side.FACE
@@ -58,17 +53,13 @@ class SceneWriter:
         stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
         with self._lock:
             self._scene = scene
-            if self._is_drawn(part, level_of(stitches)):
-                self._move(part, scene.middle_mm)
-            else:
-                self._level = level_of(stitches)
-                self._build(part, scene.middle_mm)
+            self._draw(part, scene.middle_mm, level_of(stitches))
             self._draw_rectangles(part, scene.middle_mm)
             self._draw_sheet(None if part is scene else scene)
             room = _room(scene)
             if room != self._framed:
                 self._framed = room
-                self.look(self._side)
+                self._place_camera(everybody=False)
         return stitches
 
     def mark(self, box: Box | None) -> None:
@@ -87,7 +78,7 @@ class SceneWriter:
                 "mark",
                 self._server.scene.add_line_segments(
                     "/mark",
-                    points=pairs.astype(np.float32),
+                    points=_units(pairs),
                     colors=MARK,
                     thickness=3.0,
                     thickness_units="screen",
@@ -98,65 +89,58 @@ class SceneWriter:
         """Turn everybody's camera to a side."""
         with self._lock:
             self._side = side
-            if self._scene is not None:
-                room = self._scene.extent_mm
-                if self._scene.room_mm is not None:
-                    room = np.maximum(room, self._scene.room_mm)
-                # Loops reach into the rows and columns beside theirs, the outermost beyond all.
-                place_camera(self._server, side, room + self._scene.placement.sizes_mm[0, 0])
+            self._place_camera(everybody=True)
+
+    def close(self) -> None:
+        """Build nothing any more."""
+        with self._lock:
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+
+    def _place_camera(self, *, everybody: bool) -> None:
+        if self._scene is None:
+            return
+        room = self._scene.extent_mm
+        if self._scene.room_mm is not None:
+            room = np.maximum(room, self._scene.room_mm)
+        # Loops reach into the rows and columns beside theirs, the outermost beyond all.
+        extent = UNITS_PER_MM * (room + self._scene.placement.sizes_mm[0, 0])
+        place_camera(self._server, self._side, extent, everybody=everybody)
 
     # -- yarn ---------------------------------------------------------------------------------
 
-    def _is_drawn(self, scene: FabricScene, level: tuple[int, int]) -> bool:
-        before, shapes = self._shapes, scene.shapes
-        return (
-            before is not None
-            and level == self._level
-            and before.yarn_radius_mm == shapes.yarn_radius_mm
-            and _same(self._drawn, scene.drawn)
-            and np.array_equal(before.index, shapes.index)
-            and np.array_equal(before.lines, shapes.lines)
-        )
+    def _draw(self, scene: FabricScene, middle: Array, level: tuple[int, int]) -> None:
+        for cloth in self._cloths:
+            if cloth.draws(scene, level):
+                cloth.move(scene, middle)
+        if self._cloths and self._cloths[-1].draws(scene, level) and self._cloths[-1].fits(scene):
+            return
+        for outdated in self._cloths[1:]:
+            outdated.remove()
+        del self._cloths[1:]
+        self._made += 1
+        unseen = bool(self._cloths) and bool(self._server.get_clients())
+        name = f"/fabric/{self._made}"
+        cloth = Cloth(self._server, name, scene, middle, level, visible=not unseen)
+        self._cloths.append(cloth)
+        self.close()
+        if unseen:
+            self._timer = threading.Timer(BUILD_S, self._take_turns, [cloth])
+            self._timer.daemon = True
+            self._timer.start()
+        else:
+            self._take_turns(cloth)
 
-    def _build(self, scene: FabricScene, middle: Array) -> None:
-        index = scene.shapes.index.ravel()
-        if scene.drawn is not None:
-            index = np.where(scene.drawn.ravel(), index, -1)
-        members = {int(s): np.flatnonzero(index == s) for s in np.unique(index[index >= 0])}
-        meshes = stitch_meshes(scene.shapes, scene.placement, *self._level)
-        instances = _instances(scene, middle, meshes)
-        with self._server.atomic():
-            for shape in self._handles.keys() - members.keys():
-                self._handles.pop(shape).remove()
-            for shape, stitches in members.items():
-                self._handles[shape] = self._server.scene.add_batched_meshes_simple(
-                    f"/fabric/{shape}",
-                    vertices=_short(meshes.vertices[shape]),
-                    faces=meshes.faces,
-                    lod="off",
-                    cast_shadow=False,
-                    receive_shadow=False,
-                    **_of(instances, stitches),
-                )
-        self._members, self._meshes = members, meshes
-        self._shapes, self._drawn = scene.shapes, scene.drawn
-
-    def _move(self, scene: FabricScene, middle: Array) -> None:
-        assert self._meshes is not None  # noqa: S101 - it is drawn
-        sizes, depth = mean_sizes_mm(scene.shapes, scene.placement), scene.placement.depth
-        meshes = self._meshes
-        if not meshes.fits(sizes, depth, RESIZE):
-            meshes = stitch_meshes(scene.shapes, scene.placement, *self._level)
-        instances = _instances(scene, middle, meshes)
-        with self._server.atomic():
-            for shape, handle in self._handles.items():
-                if meshes is not self._meshes:
-                    handle.vertices = _short(meshes.vertices[shape])
-                for name, values in instances.items():
-                    new = values[self._members[shape]]
-                    if not np.array_equal(getattr(handle, name), new):
-                        setattr(handle, name, new)
-        self._meshes = meshes
+    def _take_turns(self, cloth: Cloth) -> None:
+        """A cloth that is built now takes the place of the one before it."""
+        with self._lock, self._server.atomic():
+            if cloth is not self._cloths[-1]:
+                return
+            cloth.show()
+            for before in self._cloths[:-1]:
+                before.remove()
+            self._cloths = [cloth]
 
     # -- layers -------------------------------------------------------------------------------
 
@@ -203,10 +187,10 @@ class SceneWriter:
             self._server.scene.add_image(
                 "/sheet",
                 picture[::-1],
-                render_width=float(width),
-                render_height=float(height),
+                render_width=UNITS_PER_MM * float(width),
+                render_height=UNITS_PER_MM * float(height),
                 format="png",
-                position=(0.0, 0.0, -2.0 * float(depth)),
+                position=(0.0, 0.0, -2.0 * UNITS_PER_MM * float(depth)),
                 cast_shadow=False,
                 receive_shadow=False,
             ),
@@ -221,45 +205,23 @@ class SceneWriter:
             old.remove()
 
 
-def _same(a: NDArray[np.bool_] | None, b: NDArray[np.bool_] | None) -> bool:
-    return a is b or (a is not None and b is not None and np.array_equal(a, b))
-
-
 def _room(scene: FabricScene) -> tuple[float, ...]:
     """What the camera is placed for; it stays where people turned it until this changes."""
     shape = scene.shapes.index.shape
     return shape if scene.room_mm is None else (*shape, *scene.room_mm.round(1).tolist())
 
 
-def _instances(scene: FabricScene, middle: Array, meshes: StitchMeshes) -> dict[str, Any]:
-    """What viser takes of every stitch, in the order of the chart's cells."""
-    places, index = scene.placement, scene.shapes.index.ravel()
-    centres = places.centres_mm.reshape(-1, 2) - middle
-    sizes = places.sizes_mm.reshape(-1, 2) / meshes.sizes_mm[index]
-    depth = np.full(len(index), places.depth / meshes.depth)
-    return {
-        "batched_positions": _short(np.column_stack([centres, 0.0 * depth])),
-        "batched_scales": _short(np.column_stack([sizes, depth])),
-        "batched_wxyzs": _short(quaternions(places.angles.ravel())),
-        "batched_colors": linear(scene.colours.reshape(-1, 3)),
-    }
-
-
-def _short(values: NDArray[Any]) -> NDArray[np.float32]:
-    """Numbers with few digits, which pack well on their way to the browser."""
-    short: NDArray[np.float32] = np.round(values * FINEST).astype(np.float32) / np.float32(FINEST)
-    return short
-
-
-def _of(instances: dict[str, Any], stitches: NDArray[np.intp]) -> dict[str, Any]:
-    return {name: values[stitches] for name, values in instances.items()}
+def _units(points_mm: Array) -> NDArray[np.float32]:
+    """Places of the fabric in the scene's unit."""
+    units: NDArray[np.float32] = (UNITS_PER_MM * points_mm).astype(np.float32)
+    return units
 
 
 def _lifted_rectangles(scene: FabricScene, middle: Array) -> NDArray[np.float32]:
-    """Corners of the rectangles over the face, (rectangles, 4, 3)."""
+    """Corners of the rectangles over the face, (rectangles, 4, 3), in the scene's unit."""
     assert scene.rectangles_mm is not None  # noqa: S101 - the caller checked
     corners = scene.rectangles_mm - middle
     highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
     height = highest + 1.3 * scene.shapes.yarn_radius_mm
     lifted = np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)
-    return lifted.astype(np.float32)
+    return _units(lifted)

@@ -91,7 +91,7 @@ def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
         serializer.insert_sleep(FRAME_S)
         yield serializer
     finally:
-        view.server.stop()
+        view.stop()
 
 
 def solid_glb(scene: FabricScene) -> bytes:

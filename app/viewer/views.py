@@ -10,7 +10,9 @@ from dataclasses import dataclass, field
 import viser
 
 from app.http.problems import UnavailableError
+from app.viewer.camera import FARTHEST
 from app.viewer.clicks import Clicks, clicked_stitch
+from app.viewer.cloth import UNITS_PER_MM
 from app.viewer.fabric import FabricScene
 from app.viewer.incoming import WantedPicture
 from app.viewer.private_port import private_server
@@ -45,6 +47,11 @@ class View:
         """Draw a scene; returns the number of stitches drawn."""
         self.last_used = time.monotonic()
         return self.writer.write(scene)
+
+    def stop(self) -> None:
+        """Close its server."""
+        self.writer.close()
+        self.server.stop()
 
 
 class Views:
@@ -102,7 +109,7 @@ class Views:
             idle = [d for d, v in self._views.items() if not v.watchers and v.last_used < deadline]
             stopped = [self._views.pop(design) for design in idle]
         for view in stopped:
-            view.server.stop()
+            view.stop()
         return len(stopped)
 
     def close(self) -> None:
@@ -111,7 +118,7 @@ class Views:
             views = list(self._views.values())
             self._views.clear()
         for view in views:
-            view.server.stop()
+            view.stop()
 
     def __len__(self) -> int:
         return len(self._views)
@@ -120,7 +127,10 @@ class Views:
         @view.server.scene.on_click()
         def clicked(event: viser.SceneClickEvent) -> None:
             scene = view.writer.scene
-            cell = clicked_stitch(scene, event.ray_origin, event.ray_direction) if scene else None
+            if scene is None:
+                return
+            x, y, z = (value / UNITS_PER_MM for value in event.ray_origin)
+            cell = clicked_stitch(scene, (x, y, z), event.ray_direction)
             if cell is not None:
                 self.clicks.tell(design, cell)
 
@@ -130,7 +140,7 @@ class Views:
         unwatched = [(v.last_used, d) for d, v in self._views.items() if not v.watchers]
         if not unwatched:
             raise UnavailableError(f"All {self._most} 3D views are in use.")
-        self._views.pop(min(unwatched)[1]).server.stop()
+        self._views.pop(min(unwatched)[1]).stop()
 
 
 def new_view() -> View:
@@ -148,4 +158,9 @@ def new_view() -> View:
     )
     scene.add_light_directional("/light/key", intensity=2.6, position=(-70.0, 100.0, 90.0))
     scene.add_light_directional("/light/back", intensity=2.6, position=(70.0, 100.0, -90.0))
+
+    @server.on_client_connect
+    def stay_in_sight(client: viser.ClientHandle) -> None:
+        client.camera.max_orbit_distance = FARTHEST
+
     return View(server, SceneWriter(server))

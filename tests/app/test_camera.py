@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from app.viewer.camera import ASPECT, FIELD_OF_VIEW, Side, stand
+from app.viewer.cloth import UNITS_PER_MM
+from knitcore.chart import MAX_STITCHES_PER_SIDE
 
 
 @pytest.mark.parametrize("side", Side)
@@ -22,3 +24,10 @@ def test_all_corners_are_in_the_picture(side: Side, extent_mm: tuple[float, floa
     upward = seen @ np.cross(right, ahead) / half
     assert np.abs(across).max() < 0.95
     assert np.abs(upward).max() < 0.95
+
+
+@pytest.mark.parametrize("side", Side)
+def test_the_largest_cloth_is_nearer_than_what_browsers_leave_out(side: Side) -> None:
+    side_mm = MAX_STITCHES_PER_SIDE * 8.0  # bulky yarn
+    position, _, _ = stand(side, UNITS_PER_MM * np.array([side_mm, side_mm]))
+    assert np.linalg.norm(position) + 0.75 * UNITS_PER_MM * side_mm < 1000
