@@ -1,0 +1,112 @@
+"""Kernel regression with its variance: what charts that were computed say of one that was not.
+
+The covariance of two charts is that of a linear function of their densities, which depends on the
+yarn a little, plus that of a smooth one (squared exponential); so far from every known chart the
+mean goes back to the linear function, and the variance grows by itself. See Rasmussen and Williams,
+*Gaussian Processes for Machine Learning* (2006), chapters 2 and 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+from scipy.spatial.distance import cdist
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class KernelSettings:
+    """Hyperparameters, for features and yarn numbers in units of their spread.
+
+    Attributes
+    ----------
+    linear, linear_by_yarn : variance of the linear part, and how much of it follows the yarn.
+    smooth, length, yarn_length : variance of the smooth part, and its lengths in both spaces.
+    noise : variance of what no density explains.
+    """
+
+    linear: float
+    linear_by_yarn: float
+    smooth: float
+    length: float
+    yarn_length: float
+    noise: float
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Known charts: features (n, features) and yarn numbers (n, numbers) in units of their spread,
+    and which of them are pure fabrics (n,), whose values are exact.
+    """
+
+    features: Array
+    numbers: Array
+    pure: NDArray[np.bool_]
+
+    def __getitem__(self, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Samples:
+        return Samples(self.features[rows], self.numbers[rows], self.pure[rows])
+
+
+_PURE_NOISE = 1e-3
+"""Of a pure fabric, as a part of the others'."""
+
+
+def covariance(settings: KernelSettings, first: Samples, second: Samples) -> Array:
+    """(n, m) prior covariance of two sets of charts."""
+    size = first.features.shape[1]
+    linear = settings.linear * (first.features @ second.features.T / size)
+    linear *= 1.0 + settings.linear_by_yarn * (first.numbers @ second.numbers.T)
+    apart = cdist(first.features, second.features, "sqeuclidean") / size / settings.length**2
+    apart += cdist(first.numbers, second.numbers, "sqeuclidean") / settings.yarn_length**2
+    return np.asarray(linear + settings.smooth * np.exp(-apart / 2))
+
+
+def noisy_covariance(settings: KernelSettings, samples: Samples) -> Array:
+    """(n, n) prior covariance of observations."""
+    matrix = covariance(settings, samples, samples)
+    matrix[np.diag_indices_from(matrix)] += settings.noise * np.where(
+        samples.pure, _PURE_NOISE, 1.0
+    )
+    return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class KernelModel:
+    """A fitted regression.
+
+    Attributes
+    ----------
+    settings, samples : hyperparameters and known charts.
+    factor : Cholesky factor of the observations' covariance.
+    weights : (n, outputs).
+    """
+
+    settings: KernelSettings
+    samples: Samples
+    factor: Array
+    weights: Array
+
+    @classmethod
+    def fit(cls, settings: KernelSettings, samples: Samples, targets: Array) -> KernelModel:
+        """Fit to targets (n, outputs)."""
+        factor = cholesky(noisy_covariance(settings, samples), lower=True)
+        return cls(settings, samples, factor, cho_solve((factor, True), targets))
+
+    def __call__(self, wanted: Samples) -> tuple[Array, Array]:
+        """Mean (m, outputs), and variance (m,) of an observation in units of each output's own."""
+        cross = covariance(self.settings, wanted, self.samples)
+        reduced = solve_triangular(self.factor, cross.T, lower=True)
+        prior = self._prior_variance(wanted)
+        variance = prior - np.einsum("nm,nm->m", reduced, reduced) + self.settings.noise
+        return cross @ self.weights, variance
+
+    def _prior_variance(self, wanted: Samples) -> Array:
+        size = wanted.features.shape[1]
+        linear = self.settings.linear * np.einsum("mf,mf->m", wanted.features, wanted.features)
+        by_yarn = np.einsum("mk,mk->m", wanted.numbers, wanted.numbers)
+        linear *= (1.0 + self.settings.linear_by_yarn * by_yarn) / size
+        return np.asarray(linear + self.settings.smooth)

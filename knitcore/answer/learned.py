@@ -1,0 +1,249 @@
+"""What a mixed chart will do, learned from the yarn level: milliseconds for any chart.
+
+The pure fabrics mixed by their shares (:mod:`knitcore.answer.mixture`) are corrected in two steps,
+each a kernel regression on the chart's densities and the yarn's dimensionless numbers:
+
+1. *Folding*: logarithms of relaxed width and height over those of the mixture.
+2. *Unfolding*: logarithms of the strain over that of the mixture, at six stresses and in both
+   directions, for a given folding. Cloth that is narrower at rest has more to give: nearly its
+   stretched size is kept, so that d ln strain / d ln size is ``slope * (1 + e) / (e + 0.15)``, with
+   slopes about -0.9.
+
+A known size (a gauge, or a relaxation on the yarn level) takes the place of the first step. Stress
+is compared in units of B / L³. :mod:`knitcore.answer.learned_build` fits both, calibrates their
+intervals on charts left out, and says by how much those are missed. Knitted cloth folds less than
+the yarn level: see :data:`MOST_FOLDED`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.answer.densities import Densities, densities
+from knitcore.answer.kernel import KernelModel, KernelSettings, Samples
+from knitcore.answer.mixture import Mixture
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.materials import Material
+
+Array = NDArray[np.float64]
+
+STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
+"""Stresses over B / L³ at which strains are learned: about .01 to .3 N/mm."""
+
+MOST_FOLDED = 0.87
+"""Knitted cloth folds less than the yarn level, which knows no friction and no set. In logarithms a
+fold f becomes f / (1 + |f| / MOST_FOLDED), times the square of how straight the fold lines run on:
+folds that cross each other stay shut. This one number was fitted to the 29 swatches of KnitDB, and
+the power was chosen there from 1, 2 and 3 (benchmarks/knitdb.py)."""
+
+SHOWN_LOG_SD = 0.067
+"""What is left there: the standard deviation of the logarithm of a swatch's width or height."""
+
+
+_TOE = 0.15
+"""Strain below which cloth does not yet unfold by as much as it was folded."""
+
+
+@dataclass(frozen=True)
+class KnownSize:
+    """A relaxed size that need not be learned.
+
+    Attributes
+    ----------
+    course_mm, wale_mm : width and height of the mean stitch.
+    log_sd : standard deviation of their logarithms: 0.03 for a gauge, 0 for a relaxation.
+    """
+
+    course_mm: float
+    wale_mm: float
+    log_sd: float = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedAnswer:
+    """Size and response of a mixed chart.
+
+    Attributes
+    ----------
+    size_mm, size_log_sd : (2,) width and height of the mean stitch at rest.
+    mixture : what was corrected.
+    log_ratio, log_ratio_sd : (2, stresses) ln of strain over that of the mixture, by direction.
+    poisson, poisson_sd : (2,) nu_yx and nu_xy: mean slopes up to 0.3 N/mm.
+    """
+
+    size_mm: Array
+    size_log_sd: Array
+    mixture: Mixture
+    log_ratio: Array
+    log_ratio_sd: Array
+    poisson: Array
+    poisson_sd: Array
+
+    def strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Strain at stresses (N/mm, at least 0)."""
+        ratio = np.exp(self._at(self.log_ratio, direction, stress_n_per_mm))
+        return np.asarray(ratio * self.mixture.strain(direction, stress_n_per_mm))
+
+    def strain_log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Standard deviation of the log strain: of the learning, and of the pure fabrics' laws."""
+        own = self._at(self.log_ratio_sd, direction, stress_n_per_mm)
+        return np.asarray(np.hypot(own, self.mixture.log_sd(direction, stress_n_per_mm)))
+
+    def modulus_n_per_mm(self, direction: Direction) -> float:
+        """Initial Young's modulus."""
+        ratio = np.exp(self.log_ratio[direction.axis, 0])
+        return float(self.mixture.modulus_n_per_mm(direction) / ratio)
+
+    def modulus_log_sd(self, direction: Direction) -> float:
+        """Standard deviation of the log modulus."""
+        first = STRESS_GRID[0] * self.mixture.bending_stress_n_per_mm
+        return float(self.strain_log_sd(direction, first))
+
+    def _at(self, values: Array, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        stress = np.asarray(stress_n_per_mm, dtype=float) / self.mixture.bending_stress_n_per_mm
+        at = np.log(np.maximum(stress, STRESS_GRID[0]))
+        return np.asarray(np.interp(at, np.log(STRESS_GRID), values[direction.axis]))
+
+
+def learned(
+    chart: StitchChart, material: Material, known: KnownSize | None = None
+) -> LearnedAnswer:
+    """Size and response of a chart that is repeated for ever.
+
+    Parameters
+    ----------
+    chart : the repeat.
+    material : one yarn on one setting, with the pure fabrics that the chart is made of.
+    known : its relaxed size, where that is known.
+
+    Raises
+    ------
+    InputError
+        If the material lacks a pure fabric that the chart needs.
+
+    Examples
+    --------
+    >>> from knitcore.materials import material
+    >>> rib = learned(StitchChart.parse("KKPP"), material("acrylic"))
+    >>> rib.size_mm[0] < material("acrylic").record("rib").stitch_course_mm  # folds more than 1x1
+    True
+    """
+    return packaged_model().answer(densities(chart), material, known)
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedModel:
+    """Both regressions with what belongs to them.
+
+    Attributes
+    ----------
+    charts : text of each sample's chart, rows from the top separated by ``/``.
+    feature_scale, number_centre, number_scale : units of the samples.
+    folding, unfolding : the regressions; of ``unfolding`` the outputs are 12 strains and 2 Poisson
+        ratios.
+    slopes : (14, 2) by output: how it follows ln width and ln height.
+    folding_scale, unfolding_scale : (2,), (14,) standard deviation over the root of the
+        regression's variance, such that 90 % of what was left out lies in a 90 % interval.
+    """
+
+    charts: tuple[str, ...]
+    feature_scale: Array
+    number_centre: Array
+    number_scale: Array
+    folding: KernelModel
+    unfolding: KernelModel
+    slopes: Array
+    folding_scale: Array
+    unfolding_scale: Array
+
+    def answer(
+        self, found: Densities, material: Material, known: KnownSize | None = None
+    ) -> LearnedAnswer:
+        """Size and response of a chart with these densities."""
+        mixture = Mixture.of(found.shares, material)
+        sample = self.sample(found.features, mixture.numbers)
+        flat_mm = mixture.size_mm
+        if known is not None:
+            fold = np.log(np.array([known.course_mm, known.wale_mm]) / flat_mm)
+            fold_sd = np.full(2, known.log_sd)
+        else:
+            means, variance = self.folding(sample)
+            fold, fold_sd = means[0], self.folding_scale * np.sqrt(variance[0])
+            if not mixture.simulated:
+                shown = found.straight**2 / (1.0 + np.abs(fold) / MOST_FOLDED)
+                fold, fold_sd = shown * fold, np.hypot(SHOWN_LOG_SD, shown * fold_sd)
+        means, variance = self.unfolding(sample)
+        slopes = self.slopes * follows(mixture)
+        values = means[0] + slopes @ fold
+        deviations = np.sqrt(self.unfolding_scale**2 * variance[0] + slopes**2 @ fold_sd**2)
+        return LearnedAnswer(
+            size_mm=flat_mm * np.exp(fold),
+            size_log_sd=fold_sd,
+            mixture=mixture,
+            log_ratio=values[:12].reshape(2, -1),
+            log_ratio_sd=deviations[:12].reshape(2, -1),
+            poisson=mixture.poisson + values[12:],
+            poisson_sd=deviations[12:],
+        )
+
+    def sample(self, features: Array, numbers: Array | None) -> Samples:
+        """One chart of one yarn in the units of the samples."""
+        yarn = self.number_centre if numbers is None else numbers
+        return Samples(
+            (features / self.feature_scale)[None],
+            ((yarn - self.number_centre) / self.number_scale)[None],
+            np.zeros(1, dtype=bool),
+        )
+
+
+def follows(mixture: Mixture) -> Array:
+    """(14, 1): (1 + e) / (e + 0.15) with the mixture's strains e, and 1 for Poisson's ratios."""
+    stress = STRESS_GRID * mixture.bending_stress_n_per_mm
+    strains = np.concatenate([mixture.strain(d, stress) for d in Direction])
+    return np.append((1.0 + strains) / (strains + _TOE), [1.0, 1.0])[:, None]
+
+
+@cache
+def packaged_model() -> LearnedModel:
+    """The model that comes with the package, fitted to its samples as it is loaded."""
+    path = files("knitcore.answer") / "data" / "learned.npz"
+    with path.open("rb") as stream, np.load(stream) as found:
+        return model_of({name: found[name] for name in found.files})
+
+
+def model_of(
+    arrays: dict[str, NDArray[np.generic]], left_out: frozenset[str] = frozenset()
+) -> LearnedModel:
+    """A model from its arrays, without the charts that are to be left out."""
+    kept = ~np.isin(arrays["charts"], list(left_out))
+    samples = Samples(
+        np.asarray(arrays["features"], dtype=float)[kept],
+        np.asarray(arrays["numbers"], dtype=float)[kept],
+        np.asarray(arrays["pure"], dtype=bool)[kept],
+    )
+    folding = np.asarray(arrays["folding"], dtype=float)[kept]
+    unfolding = np.asarray(arrays["unfolding"], dtype=float)[kept]
+    swept = np.isfinite(unfolding).all(axis=1)
+    return LearnedModel(
+        charts=tuple(str(text) for text in arrays["charts"][kept]),
+        feature_scale=np.asarray(arrays["feature_scale"], dtype=float),
+        number_centre=np.asarray(arrays["number_centre"], dtype=float),
+        number_scale=np.asarray(arrays["number_scale"], dtype=float),
+        folding=KernelModel.fit(
+            KernelSettings(*map(float, arrays["folding_settings"])), samples, folding
+        ),
+        unfolding=KernelModel.fit(
+            KernelSettings(*map(float, arrays["unfolding_settings"])),
+            samples[swept],
+            unfolding[swept],
+        ),
+        slopes=np.asarray(arrays["slopes"], dtype=float),
+        folding_scale=np.asarray(arrays["folding_scale"], dtype=float),
+        unfolding_scale=np.asarray(arrays["unfolding_scale"], dtype=float),
+    )

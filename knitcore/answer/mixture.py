@@ -1,0 +1,120 @@
+"""The pure fabrics of a material, mixed by their shares in a chart without knowing where they are.
+
+Strain at equal stress (the Reuss bound), size and Poisson's ratio are means over the quarter cells.
+This is what :mod:`knitcore.answer.learned` corrects.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Direction
+from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.materials import FabricRecord, Material, Origin
+from knitcore.yarnlevel.yarn import YarnModel
+from knitcore.yarnlibrary.yarns import yarn_for
+
+Array = NDArray[np.float64]
+
+USUAL_STRESS_N_PER_MM = 2e-5
+"""B / L³ of a yarn that is not known well enough: about the middle of the library."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """Pure fabrics with their shares.
+
+    Attributes
+    ----------
+    parts : (share, record) of each fabric that is present.
+    numbers : ln r/L, ln core/L, ln k r⁴L/B and contact exponent of the yarn, means of the parts;
+        None where the material does not say enough of its yarn.
+    bending_stress_n_per_mm : B / L³, by which stresses of yarns compare.
+    """
+
+    parts: tuple[tuple[float, FabricRecord], ...]
+    numbers: Array | None
+    bending_stress_n_per_mm: float
+
+    @classmethod
+    def of(cls, shares: Array, material: Material) -> Mixture:
+        """The mixture of a material's fabrics with these shares, by phase code.
+
+        Raises
+        ------
+        InputError
+            If the material lacks a fabric with a share.
+        """
+        phases = np.flatnonzero(shares > 0)
+        parts = tuple((float(shares[k]), material.record(PHASES[k])) for k in phases)
+        try:
+            yarns = np.array([_yarn_numbers(material, record) for _, record in parts])
+        except InputError:
+            return cls(parts, None, USUAL_STRESS_N_PER_MM)
+        mean = shares[phases] @ yarns
+        return cls(parts, mean[:-1], math.exp(mean[-1]))
+
+    @property
+    def simulated(self) -> bool:
+        """Whether all of it comes from the yarn level."""
+        return all(record.origin is Origin.SIMULATED for _, record in self.parts)
+
+    @property
+    def size_mm(self) -> Array:
+        """(2,) width and height of the mean stitch."""
+        sizes = [(s * r.stitch_course_mm, s * r.stitch_wale_mm) for s, r in self.parts]
+        return np.asarray(np.sum(sizes, axis=0))
+
+    @property
+    def poisson(self) -> Array:
+        """(2,) nu_yx and nu_xy."""
+        ratios = [(s * r.law.poisson_yx, s * r.law.poisson_xy) for s, r in self.parts]
+        return np.asarray(np.sum(ratios, axis=0))
+
+    def modulus_n_per_mm(self, direction: Direction) -> float:
+        """Initial modulus: parts in series."""
+        return 1.0 / sum(share / record.law.modulus(direction) for share, record in self.parts)
+
+    def strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Strain at stresses (N/mm, at least 0)."""
+        return np.asarray(np.sum(self._strains(direction, stress_n_per_mm), axis=0))
+
+    def log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Standard deviation of the log strain from the uncertainty of the pure fabrics' laws."""
+        strains = np.array(self._strains(direction, stress_n_per_mm))
+        total = strains.sum(axis=0)
+        deviations = [record.uncertainty.log_modulus(direction) for _, record in self.parts]
+        shares = np.divide(strains, total, out=np.zeros_like(strains), where=total > 0)
+        return np.sqrt(np.tensordot(np.square(deviations), shares**2, axes=1))
+
+    def _strains(self, direction: Direction, stress_n_per_mm: ArrayLike) -> list[Array]:
+        return [
+            share * free_strains_at_stress(record.law, direction, stress_n_per_mm)
+            for share, record in self.parts
+        ]
+
+
+def yarn_numbers(yarn: YarnModel, loop_length_mm: float) -> Array:
+    """(5,): ln r/L, ln core/L, ln k r⁴L/B, contact exponent, ln B/L³ (of N/mm)."""
+    r, bending = yarn.radius_mm, yarn.bending_modulus_n_mm2
+    contact = yarn.contact_stiffness_n_per_mm3 * r**4 * loop_length_mm / bending
+    return np.array(
+        [
+            math.log(r / loop_length_mm),
+            math.log(yarn.core_radius_mm / loop_length_mm),
+            math.log(contact),
+            yarn.contact_exponent,
+            math.log(bending / loop_length_mm**3),
+        ]
+    )
+
+
+def _yarn_numbers(material: Material, record: FabricRecord) -> Array:
+    used = yarn_for(material, StitchChart.of_fabric(record.fabric, 2, 2))
+    return yarn_numbers(used.yarn, used.loop_length_mm)

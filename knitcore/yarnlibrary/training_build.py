@@ -1,0 +1,177 @@
+"""Relax and stretch the training charts: ``python -m knitcore.yarnlibrary.training_build``.
+
+Every finished task is kept in a folder, so a build that was stopped goes on where it was.
+``--pack`` writes what is finished into ``data/training.json``, however much that is.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from knitcore.batch import BatchProgress, run_batch
+from knitcore.chart import StitchChart
+from knitcore.errors import KnitcoreError
+from knitcore.materials import material
+from knitcore.yarnlevel.cell import mirrored_cell
+from knitcore.yarnlevel.relax import COARSE, relax
+from knitcore.yarnlibrary.catalogue import canonical
+from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
+from knitcore.yarnlibrary.fingerprint import content_key
+from knitcore.yarnlibrary.store import key_of, stored_charts
+from knitcore.yarnlibrary.training import YARN_POINTS, anchor_charts, training_charts
+from knitcore.yarnlibrary.yarns import yarn_for
+
+MOST_RELAXED = 25
+"""Cells of more stitches are left out."""
+MOST_STRETCHED = 18
+"""Cells of more stitches are relaxed only: their size costs a tenth of their curves."""
+
+
+@dataclass(frozen=True)
+class TrainingTask:
+    """A repeat of one yarn, to relax and perhaps to stretch both ways."""
+
+    yarn_name: str
+    repeat: RepeatTask
+    stretched: bool
+
+    @property
+    def key(self) -> str:
+        """A name that says everything that decides the result."""
+        name = self.repeat.chart.replace("/", "-")
+        return f"{self.yarn_name.replace(' ', '_')}.{name}.{content_key(asdict(self))}"
+
+
+def characterise(task: TrainingTask) -> Document:
+    """Relaxed size of a repeat and, if asked for, both curves as they were computed."""
+    repeat = task.repeat
+    head = {"task": {**asdict(task), "repeat": asdict(repeat)}}
+    if task.stretched:
+        document = characterise_repeat(repeat)
+        document.pop("controls", None)
+        return {**head, **document}
+    chart = StitchChart.parse(repeat.chart.replace("/", "\n"))
+    try:
+        rest = relax(
+            chart, repeat.yarn, repeat.loop_length_mm, branch=repeat.branch,
+            convention=repeat.convention,
+        )  # fmt: skip
+    except KnitcoreError as error:
+        return {**head, "failure": str(error)}
+    return {
+        **head,
+        "cell_course_mm": rest.cell_course_mm,
+        "cell_wale_mm": rest.cell_wale_mm,
+        "energy_n_mm": rest.energy_n_mm,
+        "converged": rest.converged,
+        "notes": list(rest.notes),
+        "curves": {},
+    }
+
+
+def tasks() -> dict[str, TrainingTask]:
+    """All tasks by key, the most telling first."""
+    return {task.key: task for task in _ordered()}
+
+
+def _ordered() -> Iterator[TrainingTask]:
+    anchors = iter([(chart, point) for chart in anchor_charts() for point in YARN_POINTS])
+    for turn, chart in enumerate(training_charts()):
+        if mirrored_cell(chart, COARSE).stitches > MOST_RELAXED:
+            continue
+        yield _of_material("acrylic", chart, stretched=True)
+        yield _of_point(0, chart, stretched=turn % 4 == 2)
+        yield _of_material("cotton", chart, stretched=turn % 4 == 0)
+        for anchor, point in (entry for entry in (next(anchors, None),) if entry is not None):
+            yield _of_point(YARN_POINTS.index(point), anchor, stretched=True)
+    for name in ("acrylic", "cotton"):
+        for chart in stored_charts(name):
+            yield _of_material(name, chart, stretched=True)
+
+
+def _of_material(name: str, chart: StitchChart, *, stretched: bool) -> TrainingTask:
+    used = yarn_for(material(name), chart)
+    return _task(name, RepeatTask(key_of(chart), used.yarn, used.loop_length_mm), stretched)
+
+
+def _of_point(index: int, chart: StitchChart, *, stretched: bool) -> TrainingTask:
+    point = YARN_POINTS[index]
+    text = key_of(canonical(chart))
+    return _task(point.name, RepeatTask(text, point.yarn, point.loop_length_mm), stretched)
+
+
+def _task(name: str, repeat: RepeatTask, stretched: bool) -> TrainingTask:
+    chart = StitchChart.parse(repeat.chart.replace("/", "\n"))
+    small = mirrored_cell(chart, COARSE).stitches <= MOST_STRETCHED
+    return TrainingTask(name, repeat, stretched and small)
+
+
+def pack(keep: Path, file: Path) -> int:
+    """Write the finished tasks into one file, the same bytes for the same tasks; their number."""
+    documents = (path.read_text(encoding="utf-8") for path in sorted(keep.glob("*.json")))
+    entries = [_packed(json.loads(document)) for document in documents]
+    lines = ",\n".join(json.dumps(entry) for entry in entries)
+    file.write_text(f'{{"entries": [\n{lines}\n]}}\n', encoding="utf-8")
+    return len(entries)
+
+
+def _packed(document: Document) -> Document:
+    task = document["task"]
+    repeat = task["repeat"]
+    head = {
+        "chart": repeat["chart"],
+        "yarn_name": task["yarn_name"],
+        "yarn": repeat["yarn"],
+        "loop_length_mm": repeat["loop_length_mm"],
+        "branch": repeat["branch"],
+    }
+    if "failure" in document:
+        return {**head, "failure": document["failure"]}
+    kept = ("cell_course_mm", "cell_wale_mm", "energy_n_mm", "converged")
+    packed = {**head, **{name: document[name] for name in kept}}
+    if document["curves"]:
+        packed["curves"] = {
+            name: [[_short(value) for value in curve[column]] for column in _COLUMNS]
+            for name, curve in document["curves"].items()
+        }
+        packed |= {"law": document["law"], "law_failure": document["law_failure"]}
+    return packed
+
+
+_COLUMNS = ("strain", "transverse_strain", "stress_n_per_mm")
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.5g}")
+
+
+def _tell(progress: BatchProgress) -> None:
+    sys.stderr.write(f"{progress.done}/{progress.total} {progress.key}\n")
+    sys.stderr.flush()
+
+
+def main() -> None:
+    """Entry of ``python -m knitcore.yarnlibrary.training_build``."""
+    parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.training_build")
+    parser.add_argument("--keep", type=Path, default=Path("build/training"))
+    parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
+    parser.add_argument("--workers", type=int, help="processes, all cores if left out")
+    parser.add_argument("--pack", action="store_true", help="only pack what is finished")
+    arguments = parser.parse_args()
+    if arguments.pack:
+        count = pack(arguments.keep, Path(__file__).parent / "data" / "training.json")
+        sys.stderr.write(f"{count} packed\n")
+        return
+    run_batch(
+        characterise, tasks(), scheduler=arguments.scheduler, workers=arguments.workers,
+        keep=arguments.keep, on_progress=_tell,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+"""The training library as it is packaged: relaxed sizes, raw curves and failures.
+
+``data/training.json`` is written by :mod:`knitcore.yarnlibrary.training_build`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.yarnlevel.yarn import YarnModel
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RawCurve:
+    """A stretch as it was computed, jumps and all."""
+
+    strain: Array
+    transverse_strain: Array
+    stress_n_per_mm: Array
+
+    def strain_at(self, stress_n_per_mm: Array) -> Array:
+        """Strain where a stress is first reached; nan beyond the end."""
+        reached = np.maximum.accumulate(self.stress_n_per_mm)
+        first = np.searchsorted(reached, stress_n_per_mm)
+        found = np.full(np.shape(stress_n_per_mm), np.nan)
+        inside = (first > 0) & (first < len(reached))
+        i = first[inside]
+        low, high = self.stress_n_per_mm[i - 1], self.stress_n_per_mm[i]
+        part = (stress_n_per_mm[inside] - low) / (high - low)
+        found[inside] = self.strain[i - 1] + part * (self.strain[i] - self.strain[i - 1])
+        return found
+
+    def poisson(self, most_stress_n_per_mm: float = 0.3) -> float:
+        """Slope of the contraction over the strain, up to a stress."""
+        used = np.maximum.accumulate(self.stress_n_per_mm) <= most_stress_n_per_mm
+        return -float(np.polyfit(self.strain[used], self.transverse_strain[used], 1)[0])
+
+
+@dataclass(frozen=True, eq=False)
+class TrainingEntry:
+    """One repeat of one yarn.
+
+    Attributes
+    ----------
+    chart, yarn_name, yarn, loop_length_mm, branch : what was relaxed.
+    cell_mm : (course, wale) of the mean stitch; None where it failed for the reason in `failure`.
+    curves : by direction; empty where it was only relaxed, or the stretch failed.
+    law : fitted to the curves, None where there is none.
+    """
+
+    chart: StitchChart
+    yarn_name: str
+    yarn: YarnModel
+    loop_length_mm: float
+    branch: str
+    cell_mm: tuple[float, float] | None
+    converged: bool
+    curves: Mapping[Direction, RawCurve]
+    law: ConstitutiveLaw | None
+    failure: str
+
+
+@cache
+def training_entries() -> tuple[TrainingEntry, ...]:
+    """All that is packaged, in the order of the build."""
+    text = (files("knitcore.yarnlibrary") / "data" / "training.json").read_text(encoding="utf-8")
+    return tuple(_entry(document) for document in json.loads(text)["entries"])
+
+
+def _entry(document: Mapping[str, Any]) -> TrainingEntry:
+    failed = "failure" in document
+    curves = {
+        Direction(name): RawCurve(*(np.array(column) for column in columns))
+        for name, columns in document.get("curves", {}).items()
+    }
+    law = document.get("law")
+    return TrainingEntry(
+        chart=StitchChart.parse(document["chart"].replace("/", "\n")),
+        yarn_name=document["yarn_name"],
+        yarn=YarnModel(**document["yarn"]),
+        loop_length_mm=document["loop_length_mm"],
+        branch=document["branch"],
+        cell_mm=None if failed else (document["cell_course_mm"], document["cell_wale_mm"]),
+        converged=document.get("converged", False),
+        curves=curves,
+        law=None if law is None else ConstitutiveLaw(**law),
+        failure=document.get("failure", ""),
+    )

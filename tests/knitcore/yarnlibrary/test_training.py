@@ -1,0 +1,59 @@
+"""The training library: its charts, its tasks, and what is packaged of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore import StitchChart
+from knitcore.fabric import Direction
+from knitcore.yarnlibrary.catalogue import canonical
+from knitcore.yarnlibrary.training import YARN_POINTS, training_charts
+from knitcore.yarnlibrary.training_build import tasks
+from knitcore.yarnlibrary.training_data import RawCurve, training_entries
+
+
+def test_charts_are_distinct_repeats_and_any_beginning_holds_all_kinds() -> None:
+    charts = training_charts()
+    assert len(charts) > 240
+    assert all(chart == canonical(chart) for chart in charts)
+    kinds = list(charts.values())
+    assert set(kinds[:16]) == set(kinds)
+
+
+def test_yarn_points_have_the_numbers_that_they_are_named_for() -> None:
+    thick = next(point for point in YARN_POINTS if point.name == "thick")
+    yarn, loop = thick.yarn, thick.loop_length_mm
+    assert yarn.radius_mm / loop == pytest.approx(0.066)
+    contact = yarn.contact_stiffness_n_per_mm3 * yarn.radius_mm**4 * loop
+    assert contact / yarn.bending_modulus_n_mm2 == pytest.approx(0.25)
+    assert yarn.bending_modulus_n_mm2 / loop**3 == pytest.approx(1.5e-5)
+
+
+def test_tasks_name_yarn_and_chart() -> None:
+    named = tasks()
+    assert all(key.count(".") == 2 for key in named)
+    assert {task.yarn_name for task in named.values()} >= {"acrylic", "cotton", "middle", "thick"}
+
+
+def test_every_packaged_entry_has_a_size_or_a_reason() -> None:
+    entries = training_entries()
+    assert len(entries) > 100
+    for entry in entries:
+        assert (entry.cell_mm is None) == bool(entry.failure)
+    swept = [entry for entry in entries if entry.curves]
+    stockinette = next(e for e in swept if e.chart == StitchChart.parse("K"))
+    strain = stockinette.curves[Direction.COURSE].strain_at(np.array([0.01, 0.05, 0.2]))
+    assert np.all(np.diff(strain) > 0)
+
+
+def test_a_strain_is_read_where_the_stress_is_first_reached() -> None:
+    curve = RawCurve(
+        strain=np.array([0.0, 0.1, 0.2, 0.3]),
+        transverse_strain=np.array([0.0, -0.03, -0.06, -0.09]),
+        stress_n_per_mm=np.array([0.0, 0.04, 0.02, 0.08]),  # it jumps
+    )
+    assert curve.strain_at(np.array([0.02, 0.06, 0.2])) == pytest.approx(
+        [0.05, 0.2 + 0.1 * 4 / 6, np.nan], nan_ok=True
+    )
+    assert curve.poisson() == pytest.approx(0.3)
