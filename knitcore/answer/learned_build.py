@@ -28,8 +28,7 @@ from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.catalogue import canonical
-from knitcore.yarnlibrary.store import MATERIALS, key_of, stored_charts, stored_stitch
+from knitcore.yarnlibrary.store import MATERIALS, stored_charts, stored_stitch
 from knitcore.yarnlibrary.training_data import TrainingEntry, training_entries
 
 Array = NDArray[np.float64]
@@ -75,7 +74,7 @@ class Row:
         return self.chart in _PURE
 
 
-_PURE = {canonical(StitchChart.of_fabric(fabric, 2, 2)): fabric for fabric in PHASES}
+_PURE = {StitchChart.of_fabric(fabric, 2, 2).canonical(): fabric for fabric in PHASES}
 
 
 def simulated_materials() -> dict[str, Material]:
@@ -93,7 +92,7 @@ def simulated_materials() -> dict[str, Material]:
                 record = _record(fabric, size, stored.loop_length_mm, stored.law)
                 records.setdefault(name, {})[fabric] = record
     for entry in training_entries():
-        pure = _PURE.get(canonical(entry.chart))
+        pure = _PURE.get(entry.chart.canonical())
         if pure is not None and entry.law is not None and entry.cell_mm is not None:
             record = _record(pure, entry.cell_mm, entry.loop_length_mm, entry.law)
             records.setdefault(entry.yarn_name, {}).setdefault(pure, record)
@@ -116,14 +115,14 @@ def rows() -> list[Row]:
     for entry in training_entries():
         if entry.cell_mm is None or not entry.converged:
             continue
-        key = entry.yarn_name, key_of(canonical(entry.chart))
+        key = entry.yarn_name, entry.chart.canonical().key
         if key not in found or entry.curves:
             row = _row_of_entry(entry, materials)
             if row is not None:
                 found[key] = row
     for name in MATERIALS:
         for chart in stored_charts(name):
-            key = name, key_of(chart)
+            key = name, chart.key
             stored = stored_stitch(chart, name)
             if key in found or stored is None or not stored.converged or stored.law is None:
                 continue
@@ -180,14 +179,14 @@ def _row(
         len(mixture.parts) == 1
     ):  # a pure fabric is its own mixture; what is left is its law's misfit
         fold, outputs = np.zeros_like(fold), np.zeros_like(outputs)
-    return Row(canonical(chart), features, mixture.numbers, fold, outputs, follows(mixture)[:, 0])
+    return Row(chart.canonical(), features, mixture.numbers, fold, outputs, follows(mixture)[:, 0])
 
 
 def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
     """Everything that the model is made of."""
     features = np.array([row.features for row in found])
     scale = features.std(axis=0)
-    charts = np.array([key_of(row.chart) for row in found])
+    charts = np.array([row.chart.key for row in found])
     samples = Samples(
         features / scale,
         (np.array([row.numbers for row in found]) - NUMBER_CENTRE) / NUMBER_SCALE,
@@ -308,7 +307,7 @@ def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
 
 def _kind(text: str) -> str:
     rows_ = text.split("/")
-    if canonical(StitchChart.parse("\n".join(rows_))) in _PURE:
+    if StitchChart.parse(text).canonical() in _PURE:
         return "pure"
     return "rib" if len(rows_) == 1 else "welt" if len(rows_[0]) == 1 else "2-D"
 

@@ -17,7 +17,6 @@ import numpy as np
 
 from knitcore.chart import StitchChart
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.catalogue import canonical
 
 MOST_STITCHES = 36
 """Largest repeat."""
@@ -80,7 +79,7 @@ def training_charts() -> dict[StitchChart, str]:
         if entry is None:
             continue
         kind, chart = entry
-        repeat = canonical(chart)
+        repeat = chart.canonical()
         if repeat.rows * repeat.columns <= MOST_STITCHES:
             found.setdefault(repeat, kind)
     return found
@@ -111,11 +110,7 @@ def anchor_charts() -> list[StitchChart]:
         "KK/KK/KP/KP",
         "KKKK/KKKK/KKKK/KKKP",
     ]
-    return [_parse(text) for text in texts]
-
-
-def _parse(text: str) -> StitchChart:
-    return StitchChart.parse(text.replace("/", "\n"))
+    return [StitchChart.parse(text) for text in texts]
 
 
 def _sparse() -> Iterator[StitchChart]:
@@ -142,7 +137,7 @@ def _panels() -> Iterator[StitchChart]:
     pairs += [("garter", "seed"), ("K", "rib 2"), ("P", "garter")]
     for wide in (6, 4, 5, 8, 3):
         for first, second in pairs:
-            beside, above = (_parse(_TEXTURES[name]) for name in (first, second))
+            beside, above = (StitchChart.parse(_TEXTURES[name]) for name in (first, second))
             rows = max(beside.rows, above.rows)
             yield StitchChart(np.hstack([c.resized(rows, wide).purl for c in (beside, above)]))
             columns = max(beside.columns, above.columns)
@@ -162,7 +157,7 @@ def _baskets() -> Iterator[StitchChart]:
 
 
 def _shifted(row: str, shifts: list[int], height: int = 1) -> StitchChart:
-    line = _parse(row).purl[0]
+    line = StitchChart.parse(row).purl[0]
     return StitchChart(np.vstack([np.roll(line, s) for s in shifts for _ in range(height)]))
 
 
@@ -203,7 +198,7 @@ def _figures() -> Iterator[StitchChart]:
         "KPKPKP/PKPKPK/KPKPKP/KKKKKK/KKKKKK/KKKKKK KKKK/KPPK/KPPK/KKKK KPPK/PKKP "
         "KPPK/PKKP/PKKP/KPPK PKK/KKK/KPK/KKK KKKKPP/KKKKPP/PPKKKK/PPKKKK"
     )
-    yield from map(_parse, texts.split())
+    yield from map(StitchChart.parse, texts.split())
 
 
 def _random() -> Iterator[StitchChart]:

@@ -19,10 +19,9 @@ from knitcore.errors import KnitcoreError
 from knitcore.materials import material
 from knitcore.yarnlevel.cell import mirrored_cell
 from knitcore.yarnlevel.relax import COARSE, relax
-from knitcore.yarnlibrary.catalogue import canonical
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.fingerprint import content_key
-from knitcore.yarnlibrary.store import key_of, stored_charts
+from knitcore.yarnlibrary.store import stored_charts
 from knitcore.yarnlibrary.training import YARN_POINTS, anchor_charts, training_charts
 from knitcore.yarnlibrary.yarns import yarn_for
 
@@ -55,7 +54,7 @@ def characterise(task: TrainingTask) -> Document:
         document = characterise_repeat(repeat)
         document.pop("controls", None)
         return {**head, **document}
-    chart = StitchChart.parse(repeat.chart.replace("/", "\n"))
+    chart = StitchChart.parse(repeat.chart)
     try:
         rest = relax(
             chart, repeat.yarn, repeat.loop_length_mm, branch=repeat.branch,
@@ -96,17 +95,17 @@ def _ordered() -> Iterator[TrainingTask]:
 
 def _of_material(name: str, chart: StitchChart, *, stretched: bool) -> TrainingTask:
     used = yarn_for(material(name), chart)
-    return _task(name, RepeatTask(key_of(chart), used.yarn, used.loop_length_mm), stretched)
+    return _task(name, RepeatTask(chart.key, used.yarn, used.loop_length_mm), stretched)
 
 
 def _of_point(index: int, chart: StitchChart, *, stretched: bool) -> TrainingTask:
     point = YARN_POINTS[index]
-    text = key_of(canonical(chart))
+    text = chart.canonical().key
     return _task(point.name, RepeatTask(text, point.yarn, point.loop_length_mm), stretched)
 
 
 def _task(name: str, repeat: RepeatTask, stretched: bool) -> TrainingTask:
-    chart = StitchChart.parse(repeat.chart.replace("/", "\n"))
+    chart = StitchChart.parse(repeat.chart)
     small = mirrored_cell(chart, COARSE).stitches <= MOST_STRETCHED
     return TrainingTask(name, repeat, stretched and small)
 

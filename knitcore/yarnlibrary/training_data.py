@@ -88,7 +88,7 @@ def _entry(document: Mapping[str, Any]) -> TrainingEntry:
     }
     law = document.get("law")
     return TrainingEntry(
-        chart=StitchChart.parse(document["chart"].replace("/", "\n")),
+        chart=StitchChart.parse(document["chart"]),
         yarn_name=document["yarn_name"],
         yarn=YarnModel(**document["yarn"]),
         loop_length_mm=document["loop_length_mm"],

@@ -20,10 +20,6 @@ ACRYLIC = material("acrylic")
 STRESS = np.array([0.05, 0.1, 0.2])
 
 
-def chart(text: str) -> StitchChart:
-    return StitchChart.parse(text.replace("/", "\n"))
-
-
 def strains(answer: LearnedAnswer) -> np.ndarray:
     return np.stack([answer.strain(direction, STRESS) for direction in Direction])
 
@@ -60,7 +56,7 @@ def test_the_same_cloth_has_one_answer(some: StitchChart) -> None:
 def test_one_stitch_in_1024_changes_an_answer_by_at_most_3_percent(
     text: str, yarn: str, row: int, column: int
 ) -> None:
-    whole = chart(text).resized(32, 32)
+    whole = StitchChart.parse(text).resized(32, 32)
     flipped = whole.purl.copy()
     flipped[row, column] ^= True
     before, after = (learned(c, material(yarn)) for c in (whole, StitchChart(flipped)))
@@ -78,7 +74,7 @@ def test_a_wider_rib_changes_an_answer_gradually(yarn: str) -> None:
 
 
 def test_a_known_size_is_kept_and_narrows_the_interval() -> None:
-    basket = chart("KKPP/KKPP/PPKK/PPKK")
+    basket = StitchChart.parse("KKPP/KKPP/PPKK/PPKK")
     guess = learned(basket, ACRYLIC)
     known = learned(basket, ACRYLIC, KnownSize(2.9, 2.2))
     assert known.size_mm == pytest.approx([2.9, 2.2])
@@ -96,12 +92,15 @@ def test_what_is_narrower_at_rest_has_more_to_give() -> None:
 
 def test_intervals_widen_outside_what_was_learned() -> None:
     panels = StitchChart(np.kron([[0, 1], [1, 0]], np.ones((20, 20))).astype(bool))
-    seen, unseen = learned(chart("KKPP/KKPP/PPKK/PPKK"), ACRYLIC), learned(panels, ACRYLIC)
+    seen, unseen = (
+        learned(StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), ACRYLIC),
+        learned(panels, ACRYLIC),
+    )
     model = packaged_model()
     numbers = seen.mixture.numbers
     variances = [
         model.folding(model.sample(densities(c).features, numbers))[1][0]
-        for c in (chart("KKPP/KKPP/PPKK/PPKK"), panels)
+        for c in (StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), panels)
     ]
     assert variances[1] > 1.5 * variances[0]
     assert unseen.log_ratio_sd[0, 2] > seen.log_ratio_sd[0, 2]
@@ -110,5 +109,5 @@ def test_intervals_widen_outside_what_was_learned() -> None:
 def test_samples_were_made_by_these_densities() -> None:
     model = packaged_model()
     for i in range(0, len(model.charts), 40):
-        features = densities(chart(model.charts[i])).features / model.feature_scale
+        features = densities(StitchChart.parse(model.charts[i])).features / model.feature_scale
         assert model.folding.samples.features[i] == pytest.approx(features, abs=1e-9)

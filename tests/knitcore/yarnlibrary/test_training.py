@@ -7,7 +7,6 @@ import pytest
 
 from knitcore import StitchChart
 from knitcore.fabric import Direction
-from knitcore.yarnlibrary.catalogue import canonical
 from knitcore.yarnlibrary.training import YARN_POINTS, training_charts
 from knitcore.yarnlibrary.training_build import tasks
 from knitcore.yarnlibrary.training_data import RawCurve, training_entries
@@ -16,7 +15,7 @@ from knitcore.yarnlibrary.training_data import RawCurve, training_entries
 def test_charts_are_distinct_repeats_and_any_beginning_holds_all_kinds() -> None:
     charts = training_charts()
     assert len(charts) > 240
-    assert all(chart == canonical(chart) for chart in charts)
+    assert all(chart == chart.canonical() for chart in charts)
     kinds = list(charts.values())
     assert set(kinds[:16]) == set(kinds)
 
