@@ -8,7 +8,7 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, SecretStr
+from pydantic import Field, IPvAnyNetwork, SecretStr
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -38,6 +38,14 @@ class Settings(BaseSettings):
     )
     allowed_hosts: tuple[str, ...] = Field(
         (), description="Host names that a browser may use for this service beyond loopback."
+    )
+    trusted_proxies: tuple[IPvAnyNetwork, ...] = Field(
+        (),
+        description="Addresses or networks of proxies that say for whom they ask "
+        "(X-Forwarded-For, X-Forwarded-Proto); nobody is believed without.",
+    )
+    connections_per_address: int = Field(
+        256, ge=8, description="Open connections of one address; a trusted proxy may have more."
     )
     data_dir: Path = Field(
         default_factory=lambda: (
@@ -128,6 +136,13 @@ class Settings(BaseSettings):
             return True
         try:
             return ip_address(self.host).is_loopback
+        except ValueError:
+            return False
+
+    def is_proxy(self, address: str) -> bool:
+        """Whether an address is of a trusted proxy."""
+        try:
+            return any(ip_address(address) in network for network in self.trusted_proxies)
         except ValueError:
             return False
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import json
+import resource
 import signal
 import socket
 import sys
+from functools import partial
 from types import FrameType
 
 import click
@@ -14,6 +16,10 @@ import click
 from app.cli.common import json_option
 from app.settings import Settings
 from knitcore.errors import InputError
+
+MOST_HANDLES = 65_536
+SPARE_HANDLES = 400
+"""For databases, workers, views and files."""
 
 
 @click.command("serve")
@@ -28,7 +34,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     import uvicorn
 
     from app.compute import memory
-    from app.http.connections import Connection
+    from app.http.connections import Connection, Door
     from app.http.observing import configure_logging
     from app.main import create_app
     from app.viewer.incoming import MOST_PICTURE_BYTES
@@ -43,6 +49,9 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
         json.dumps({"url": address}) if as_json else f"Knitcore is at {address}  (Ctrl+C stops it)"
     )
     app = create_app(settings)
+    door = Door(
+        _raise_handles() - SPARE_HANDLES, settings.connections_per_address, settings.is_proxy
+    )
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -56,7 +65,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     server = Server(
         uvicorn.Config(
             app,
-            http=Connection,
+            http=partial(Connection, door=door),  # type: ignore[arg-type]
+            proxy_headers=bool(settings.trusted_proxies),
+            forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
+            server_header=False,
             log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
             ws_max_size=MOST_PICTURE_BYTES,
@@ -70,6 +82,16 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
     with contextlib.suppress(KeyboardInterrupt):
         server.run(sockets=[listener])
+
+
+def _raise_handles() -> int:
+    """Take as many file handles as the system allows, within reason; returns how many those are."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = MOST_HANDLES if hard == resource.RLIM_INFINITY else min(hard, MOST_HANDLES)
+    if soft == resource.RLIM_INFINITY or soft >= most:
+        return most
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+    return most
 
 
 def _listen(settings: Settings) -> socket.socket:

@@ -1,46 +1,168 @@
-"""Connections to the service: who opens one must ask for something in time."""
+"""Connections to the service: how many there may be, and how long a client may take to ask.
+
+uvicorn counts time after an answer only. A client that sends nothing, or a head or a body byte by
+byte, would keep its connection, and a file handle of the service, for ever.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import logging
+import time
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+log = logging.getLogger("knitcore.app")
 
-class Connection(HttpToolsProtocol):
-    """Closed when no whole head of a request has come in as long as a kept connection may rest.
+BODY_GRACE_S = 20.0
+LEAST_BYTES_PER_S = 20_000
+"""How fast a body must come once the grace is over."""
+TOLD_EVERY_S = 60.0
 
-    uvicorn counts that time after an answer only: a client that sends nothing, or a head byte by
-    byte, would keep its connection, and a file handle of the service, for ever.
+
+class Door:
+    """Counts open connections, and closes those beyond what there may be.
+
+    Parameters
+    ----------
+    most : connections in all, below the file handles that the process may have.
+    most_each : connections of one address.
+    is_proxy : whether an address is of a proxy, which speaks for many.
     """
 
-    _head_due: asyncio.TimerHandle | None = None
+    def __init__(
+        self, most: int, most_each: int, is_proxy: Callable[[str], bool] = lambda _: False
+    ) -> None:
+        self._most = most
+        self._most_each = most_each
+        self._is_proxy = is_proxy
+        self._open: Counter[str] = Counter()
+        self._told_at = -TOLD_EVERY_S
+
+    def enter(self, address: str) -> bool:
+        """Count a connection in; False if there is no room for it."""
+        full = self._open.total() >= self._most
+        if full or (self._open[address] >= self._most_each and not self._is_proxy(address)):
+            self._tell("in all" if full else f"of {address}")
+            return False
+        self._open[address] += 1
+        return True
+
+    def leave(self, address: str) -> None:
+        """Count a connection out."""
+        self._open[address] -= 1
+        if self._open[address] <= 0:
+            del self._open[address]
+
+    def __len__(self) -> int:
+        return self._open.total()
+
+    def _tell(self, whose: str) -> None:
+        now = time.monotonic()
+        if now - self._told_at >= TOLD_EVERY_S:
+            self._told_at = now
+            log.warning("too many connections %s: new ones are closed", whose)
+
+
+class Connection(HttpToolsProtocol):
+    """A connection that is closed when a request does not come in time.
+
+    A whole head must come as soon as a kept connection may rest, and a body after some grace at a
+    least speed.
+
+    Parameters
+    ----------
+    door : counts it; none if all may come.
+    body_grace_s : how long a body may take, whatever its speed.
+    """
+
+    def __init__(
+        self,
+        *args: Any,
+        door: Door | None = None,
+        body_grace_s: float = BODY_GRACE_S,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(*args, **kwargs)
+        self._door = door
+        self._counted: str | None = None
+        self._body_grace_s = body_grace_s
+        self._due: asyncio.TimerHandle | None = None
+        self._body_since = 0.0
+        self._body_bytes = 0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """The first head is awaited from now on."""
         super().connection_made(transport)
+        address = self.client[0] if self.client else ""
+        if self._door is not None:
+            if not self._door.enter(address):
+                transport.abort()
+                return
+            self._counted = address
         self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Nothing is awaited any more."""
-        self._head_came()
+        self._stop_waiting()
+        self._leave()
         super().connection_lost(exc)
+
+    def handle_websocket_upgrade(self) -> None:
+        """A websocket is another protocol's; the budgets of users count those."""
+        self._stop_waiting()
+        self._leave()
+        super().handle_websocket_upgrade()
 
     def on_message_begin(self) -> None:
         """The first byte of a head: the rest is due."""
         super().on_message_begin()
-        if self._head_due is None:
+        if self._due is None:
             self._await_head()
 
     def on_headers_complete(self) -> None:
-        """A whole head; from here on the application decides."""
-        self._head_came()
+        """A whole head; its body is due next."""
+        self._stop_waiting()
         super().on_headers_complete()
+        self._body_since, self._body_bytes = self.loop.time(), 0
+        self._due = self.loop.call_later(self._body_grace_s, self._look_at_body)
+
+    def on_body(self, body: bytes) -> None:
+        """A part of a body."""
+        self._body_bytes += len(body)
+        super().on_body(body)
+
+    def on_message_complete(self) -> None:
+        """The whole request came; from here on the application decides."""
+        self._stop_waiting()
+        super().on_message_complete()
+
+    def _look_at_body(self) -> None:
+        if self.flow.read_paused:  # the application is slow, not the client
+            self._body_since += self._body_grace_s
+        left = (
+            self._body_since
+            + self._body_grace_s
+            + self._body_bytes / LEAST_BYTES_PER_S
+            - self.loop.time()
+        )
+        if left <= 0:
+            self.transport.close()
+        else:
+            self._due = self.loop.call_later(left, self._look_at_body)
 
     def _await_head(self) -> None:
-        self._head_due = self.loop.call_later(self.timeout_keep_alive, self.transport.close)
+        self._due = self.loop.call_later(self.timeout_keep_alive, self.transport.close)
 
-    def _head_came(self) -> None:
-        if self._head_due is not None:
-            self._head_due.cancel()
-            self._head_due = None
+    def _stop_waiting(self) -> None:
+        if self._due is not None:
+            self._due.cancel()
+            self._due = None
+
+    def _leave(self) -> None:
+        if self._door is not None and self._counted is not None:
+            self._door.leave(self._counted)
+            self._counted = None

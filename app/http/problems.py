@@ -153,19 +153,30 @@ def problem_of(error: Exception) -> Problem:
     if isinstance(error, RequestValidationError):
         return _invalid(error)
     if isinstance(error, HTTPException):
-        return Problem(
-            type="http",
-            title=str(error.detail),
-            status=error.status_code,
-            detail=str(error.detail),
-            remedy="Compare address and method with /docs." if error.status_code < 500 else None,
-        )
+        return _of_http(error)
     return Problem(
         type="internal",
         title="Something went wrong in the service",
         status=500,
         detail="The service met an error that it did not expect; its log has the details.",
         remedy="Nothing you painted is lost. Try again, or report it with the log.",
+    )
+
+
+def _of_http(error: HTTPException) -> Problem:
+    detail = str(error.detail)
+    if error.status_code == 413:
+        return Problem(
+            type="refused",
+            title="The request is too large",
+            status=413,
+            detail=detail,
+            field="body",
+            remedy="Send less at once.",
+        )
+    remedy = "Compare address and method with /docs." if error.status_code < 500 else None
+    return Problem(
+        type="http", title=detail, status=error.status_code, detail=detail, remedy=remedy
     )
 
 

@@ -12,6 +12,7 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.exceptions import HTTPException
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
@@ -25,8 +26,11 @@ from app.store.database import StoreError
 
 SESSION_COOKIE = "knitcore_session"
 LOGIN_FAILURES = 20
-"""Wrong tokens that one address may try before no token of it is looked at; one more every ten
-seconds."""
+"""Unknown tokens that one address may try before it is told to wait, 10 s each. A right token
+always opens: 256 random bits are not guessed, and a stranger cannot lock others out."""
+MOST_VALUES = 250_000
+"""Values in a JSON body, counted by their commas: reading them keeps the event loop for less than a
+tenth of a second. Charts and files are one value each."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
 HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
 OPEN_PATHS = frozenset({"/healthz", "/readyz"})
@@ -113,6 +117,8 @@ class Guard:
             await send(message)
 
         if refusal is not None:
+            if _has_body(scope):  # nobody reads it any more
+                refusal.headers["Connection"] = "close"
             await refusal(scope, receive, send_with_headers)
             return
         try:
@@ -152,21 +158,17 @@ class Guard:
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
         """Let a known user in, within their rate, and note who it is."""
         address = (scope.get("client") or ("unknown", 0))[0]
-        slowed = self.failures.left(address) < 1
         login: Login = scope["app"].state.login
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)
         link = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
-        tried = "" if slowed else token or link  # a session is no guess: it still opens
         try:
-            identifier, user = await asyncio.to_thread(_who, login, tried, cookie)
+            identifier, user = await asyncio.to_thread(_who, login, token, link, cookie)
         except StoreError as error:
             return problem_response(error.problem)
         if not user:
-            if slowed:
-                return _too_many("Too many wrong tokens came from this address.", 10.0)
-            if tried:
-                self.failures.take(address)
+            if (token or link) and self.failures.take(address)[1]:
+                return _too_many("Too many unknown tokens came from this address.", 10.0)
             return _refused(
                 "token",
                 "This service asks for a token.",
@@ -194,8 +196,10 @@ class Guard:
         return None
 
 
-def _who(login: Login, token: str, cookie: str) -> tuple[str, str]:
-    found = login.by_token(token) if token else ("", "")
+def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str]:
+    if token:  # who names one is not let in by another
+        return login.by_token(token)
+    found = login.by_token(link) if link else ("", "")
     return found if found[1] or not cookie else login.by_session(cookie)
 
 
@@ -252,20 +256,28 @@ def _refused(field: str, detail: str, remedy: str, status: int) -> Response:
     )
 
 
-class BodyTooLargeError(Exception):
-    """A body without an honest Content-Length grew beyond the limit."""
+def _has_body(scope: Scope) -> bool:
+    headers = Headers(scope=scope)
+    return headers.get("content-length", "0") != "0" or "transfer-encoding" in headers
 
 
-def _limited(receive: Receive, limit: int) -> Receive:
-    seen = 0
+def _limited(receive: Receive, most_bytes: int) -> Receive:
+    """Receive a body, as long as it is not too large, whatever its head says."""
+    seen = values = 0
 
     async def limited() -> Message:
-        nonlocal seen
+        nonlocal seen, values
         message = await receive()
         if message["type"] == "http.request":
-            seen += len(message.get("body", b""))
-            if seen > limit:
-                raise BodyTooLargeError
+            body = message.get("body", b"")
+            seen += len(body)
+            values += body.count(b",")
+            if seen > most_bytes or values > MOST_VALUES:
+                raise HTTPException(
+                    413,
+                    f"A request has at most {most_bytes} bytes and {MOST_VALUES} values.",
+                    {"Connection": "close"},
+                )
         return message
 
     return limited

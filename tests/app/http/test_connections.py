@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 import uvicorn
 from starlette.types import Receive, Scope, Send
 
-from app.http.connections import Connection
+from app.http.connections import LEAST_BYTES_PER_S, Connection, Door
 
 KEPT_S = 1
+MOST = 6
+DOOR = Door(most=100, most_each=MOST)
 HEAD = b"GET / HTTP/1.1\r\nHost: here\r\n"
 
 
@@ -33,7 +37,11 @@ def address() -> Iterator[tuple[str, int]]:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         server = uvicorn.Server(
             uvicorn.Config(
-                _app, http=Connection, timeout_keep_alive=KEPT_S, lifespan="off", log_config=None
+                _app,
+                http=partial(Connection, door=DOOR, body_grace_s=KEPT_S),  # type: ignore[arg-type]
+                timeout_keep_alive=KEPT_S,
+                lifespan="off",
+                log_config=None,
             )
         )
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
@@ -75,10 +83,64 @@ def test_who_asks_nothing_in_time_is_let_go(address: tuple[str, int]) -> None:
             assert _is_closed(client)
 
 
-def test_a_slow_body_is_waited_for(address: tuple[str, int]) -> None:
+def _upload(size: int) -> bytes:
+    return f"POST /upload HTTP/1.1\r\nHost: here\r\nContent-Length: {size}\r\n\r\n".encode()
+
+
+def test_a_body_that_comes_fast_enough_is_waited_for(address: tuple[str, int]) -> None:
+    part = bytes(2 * LEAST_BYTES_PER_S * KEPT_S)
     with socket.create_connection(address, timeout=10) as client:
-        client.sendall(b"POST /upload HTTP/1.1\r\nHost: here\r\nContent-Length: 3\r\n\r\n")
-        for part in (b"a", b"b", b"c"):
-            time.sleep(0.6 * KEPT_S)
+        client.sendall(_upload(3 * len(part)))
+        for _ in range(3):
             client.sendall(part)
+            time.sleep(0.6 * KEPT_S)
         assert _is_answered(client)
+
+
+def test_who_sends_a_body_byte_by_byte_is_let_go(address: tuple[str, int]) -> None:
+    with (
+        socket.create_connection(address) as silent,
+        socket.create_connection(address) as slow,
+    ):
+        silent.sendall(_upload(100))
+        slow.sendall(_upload(100) + b"a")
+        time.sleep(0.5 * KEPT_S)
+        slow.sendall(b"b")
+        assert _is_closed(silent)
+        assert _is_closed(slow)
+
+
+def test_an_address_has_so_many_connections(address: tuple[str, int]) -> None:
+    with contextlib.ExitStack() as stack:
+        clients = [
+            stack.enter_context(socket.create_connection(address, timeout=10))
+            for _ in range(MOST + 2)
+        ]
+        for client in clients:
+            with contextlib.suppress(OSError):  # closed already
+                client.sendall(HEAD + b"\r\n")
+        assert [_is_served(client) for client in clients] == [True] * MOST + [False] * 2
+    with socket.create_connection(address, timeout=10) as next_one:
+        for _ in range(100):  # until the others are gone
+            if len(DOOR) < MOST:
+                break
+            time.sleep(0.05)
+        next_one.sendall(HEAD + b"\r\n")
+
+
+def _is_served(client: socket.socket) -> bool:
+    try:
+        return _is_answered(client)
+    except ConnectionError:
+        return False
+
+
+def test_a_proxy_speaks_for_many_and_handles_are_bounded(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    door = Door(most=5, most_each=2, is_proxy=lambda address: address == "proxy")
+    assert [door.enter("a") for _ in range(3)] == [True, True, False]
+    assert [door.enter("proxy") for _ in range(4)] == [True, True, True, False]
+    door.leave("a")
+    assert door.enter("b")
+    assert len([r for r in caplog.records if "too many connections" in r.message]) == 1

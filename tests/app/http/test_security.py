@@ -20,7 +20,7 @@ from websockets.typing import Subprotocol
 
 from app.cli.main import main
 from app.http.rate import RateLimit
-from app.http.security import LOGIN_FAILURES, PAGE_POLICY
+from app.http.security import LOGIN_FAILURES, MOST_VALUES, PAGE_POLICY
 from app.http.tokens import Tokens
 from app.main import create_app
 from app.settings import Settings
@@ -130,15 +130,14 @@ def test_another_token_in_the_settings_ends_sessions(tmp_path: Path) -> None:
         assert client.get("/api/v1/patterns").status_code == 403
 
 
-def test_wrong_tokens_are_slowed_down() -> None:
+def test_wrong_tokens_are_slowed_down_and_lock_nobody_out() -> None:
     with _guarded(token=TOKEN) as client:
-        answers = [
-            client.get("/api/v1/patterns", headers=_as(f"guess-{n}")).status_code for n in range(25)
-        ]
-        assert answers[:LOGIN_FAILURES] == [403] * LOGIN_FAILURES
-        assert answers[LOGIN_FAILURES:] == [429] * (25 - LOGIN_FAILURES)
-        refused = client.get("/api/v1/patterns", headers=_as(TOKEN))
-        assert refused.headers["retry-after"] == "10"
+        answers = [client.get("/api/v1/patterns", headers=_as(f"guess-{n}")) for n in range(25)]
+        codes = [answer.status_code for answer in answers]
+        assert codes == [403] * LOGIN_FAILURES + [429] * (25 - LOGIN_FAILURES)
+        assert answers[-1].headers["retry-after"] == "10"
+        assert client.get("/api/v1/patterns", headers=_as(TOKEN)).status_code == 200
+        assert client.get("/api/v1/patterns").status_code == 403  # who has no token is told so
 
 
 def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
@@ -147,11 +146,12 @@ def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
         cookies = dict(client.cookies)
         client.cookies.clear()
         for n in range(25):
-            client.get("/api/v1/patterns", headers=_as(f"guess-{n}"))
-        assert client.get("/api/v1/patterns").status_code == 429
+            last = client.get("/api/v1/patterns", headers=_as(f"guess-{n}"))
+        assert last.status_code == 429
         client.cookies.update(cookies)
         assert client.get("/api/v1/patterns").status_code == 200
-        assert client.get("/api/v1/patterns", headers=_as("guess")).status_code == 200
+        wrong = client.get("/api/v1/patterns", headers=_as("guess"))
+        assert wrong.status_code == 429  # who brings a token is not let in by a session
 
 
 def test_users_see_only_their_own(lab: TestClient) -> None:
@@ -329,6 +329,27 @@ def test_large_bodies_are_refused(client: TestClient) -> None:
     response = client.post("/api/v1/charts/parse", content=b"x" * 33_000_000)
     assert response.status_code == 413
     assert response.json()["field"] == "body"
+    assert response.headers["connection"] == "close"
+
+
+def test_bodies_that_lie_about_their_size_are_refused(client: TestClient) -> None:
+    def parts() -> Iterator[bytes]:
+        for _ in range(33):
+            yield b"x" * 1_000_000
+
+    response = client.post("/api/v1/charts/parse", content=parts())
+    assert (response.status_code, response.json()["field"]) == (413, "body")
+
+
+def test_bodies_of_more_values_than_can_be_read_at_once_are_refused(client: TestClient) -> None:
+    runs = [
+        {"id": f"r{n}", "name": "r", "colour": "#112233", "runs": [[0, 0, 1]] * 50_000}
+        for n in range(2)
+    ]
+    body = {"name": "a", "material": "acrylic", "chart": "K", "regions": runs}
+    response = client.post("/api/v1/designs", json=body)
+    assert (response.status_code, response.json()["type"]) == (413, "refused")
+    assert str(MOST_VALUES) in response.json()["detail"]
 
 
 def test_every_response_carries_the_headers(client: TestClient) -> None:
