@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.composite import UNFOLDING_STRESS_N_PER_MM
+from knitcore.answer.folded import UNFOLDING_STRESS_N_PER_MM
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.conventions import Convention

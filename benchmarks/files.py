@@ -18,8 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.answer.prediction import predict
-from knitcore.chart import StitchChart
+from knitcore import StitchChart, predict
 from knitcore.fabric import Fabric
 from knitcore.formats.chart_files import read_piece
 from knitcore.formats.export import SUFFIXES, ExportKind, ExportOptions, export_chart

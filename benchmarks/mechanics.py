@@ -7,8 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from knitcore.answer.prediction import predict
-from knitcore.chart import StitchChart
+from knitcore import StitchChart, predict
 from knitcore.fabric import Direction
 from knitcore.materials import load_library, load_variants, material
 from knitcore.mechanics.homogenisation import homogenise

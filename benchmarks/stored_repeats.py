@@ -14,14 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from knitcore.answer.chart_curve import chart_curve
-from knitcore.answer.composite import layout_of
-from knitcore.answer.relaxed import RelaxedSize, SizeSource, carried_over, reference_fabric
+from knitcore.answer.relaxed import RelaxedSize, SizeSource, reference_fabric
 from knitcore.chart import StitchChart
-from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material, material
+from knitcore.phases import reference_fabric
 from knitcore.yarnlibrary.store import StoredStitch, stored_charts, stored_stitch
 
 STRESS = np.array([0.03, 0.05, 0.1, 0.2])
@@ -61,25 +59,14 @@ def main() -> None:
 
 
 def _miss(missed, name, chart, stored: StoredStitch, yarn: Material, size) -> None:
-    kind = layout_of(chart) or "2-D"
-    if kind == "2-D" and name != "flat":
+    repeat = Repeat.of(chart.tile(2, 2))
+    if repeat.layout is None and size is not None:
         return
+    found = composite(repeat, yarn) if size is None else folded(repeat, yarn, size)
     for direction in Direction:
         own = free_strains_at_stress(stored.law, direction, STRESS)
-        try:
-            if name == "flat":
-                predicted = _flat(chart, yarn, direction)
-            else:
-                predicted = chart_curve(chart, yarn, direction, STRESS, relaxed=size).strain
-        except KnitcoreError:
-            continue
-        missed[str(kind), str(direction), name].append(np.log(predicted / own))
-
-
-def _flat(chart: StitchChart, yarn: Material, direction: Direction):
-    from knitcore.mechanics.repeat_curve import repeat_curve_at_stress
-
-    return repeat_curve_at_stress(chart, yarn, direction, STRESS).strain
+        predicted = found.along(direction).strain(STRESS)
+        missed[str(repeat.layout or "2-D"), str(direction), name].append(np.log(predicted / own))
 
 
 def _pure(yarn: str) -> dict[Fabric, StoredStitch]:
@@ -105,13 +92,16 @@ def _simulated(yarn: str, pure: dict[Fabric, StoredStitch]) -> Material:
 def _carried(twin, pure: dict[Fabric, StoredStitch], chart: StitchChart, yarn: Material):
     if twin is None:
         return None
-    like = pure[reference_fabric(chart)]
-    shorter = like.loop_length_mm / twin.loop_length_mm
-    ratio = (
-        twin.cell_course_mm / like.cell_course_mm * shorter,
-        twin.cell_wale_mm / like.cell_wale_mm * shorter,
+    like, other = reference_fabric(chart), pure[reference_fabric(chart)]
+    shorter = other.loop_length_mm / twin.loop_length_mm
+    own, lengths = yarn.record(like), Repeat.of(chart.tile(2, 2))
+    mean = sum(lengths.shares[f.phase] * yarn.record(f).loop_length_mm for f in lengths.present)
+    scale = shorter * mean / own.loop_length_mm
+    return RelaxedSize(
+        twin.cell_course_mm / other.cell_course_mm * own.stitch_course_mm * scale,
+        twin.cell_wale_mm / other.cell_wale_mm * own.stitch_wale_mm * scale,
+        SizeSource.STORE,
     )
-    return carried_over(ratio, {reference_fabric(chart): (1.0, 1.0)}, chart, yarn)
 
 
 if __name__ == "__main__":

@@ -63,8 +63,8 @@ class AtlasResult(BaseModel):
     poisson_xy: Column
     stretch_course: Column = Field(description="Strain at 0.1 N/mm.")
     stretch_wale: Column
-    relaxed_course_mm: list[float | None] = Field(description="Null where it is not certified.")
-    relaxed_wale_mm: list[float | None]
+    relaxed_course_mm: list[float] = Field(description="Width of the mean stitch at rest.")
+    relaxed_wale_mm: list[float] = Field(description="Height of the mean stitch at rest.")
     transfers_per_stitch: Column
     crossings_per_stitch: Column
     curl: Column
@@ -99,8 +99,8 @@ def atlas_result(atlas: Atlas) -> AtlasResult:
         **{name: _rounded(atlas.column(name)) for name in names},
         stretch_course=_rounded(atlas.strain_at(Direction.COURSE, USUAL_LOAD_N_PER_MM)),
         stretch_wale=_rounded(atlas.strain_at(Direction.WALE, USUAL_LOAD_N_PER_MM)),
-        relaxed_course_mm=_or_none(atlas.column("relaxed_course_mm")),
-        relaxed_wale_mm=_or_none(atlas.column("relaxed_wale_mm")),
+        relaxed_course_mm=_rounded(atlas.column("relaxed_course_mm")),
+        relaxed_wale_mm=_rounded(atlas.column("relaxed_wale_mm")),
         transfers_per_stitch=[round(c.transfers_per_stitch, DIGITS) for c in atlas.costs],
         crossings_per_stitch=[round(c.crossings_per_stitch, DIGITS) for c in atlas.costs],
         curl=[round(c.curl, DIGITS) for c in atlas.costs],
@@ -171,7 +171,3 @@ def _save(atlas: Atlas, file: Path) -> None:
 
 def _rounded(values: NDArray[np.float64]) -> Column:
     return [float(f"{value:.{DIGITS}g}") for value in values]
-
-
-def _or_none(values: NDArray[np.float64]) -> list[float | None]:
-    return [None if np.isnan(value) else round(float(value), 4) for value in values]

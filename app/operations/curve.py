@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.models.base import Floats, RequestModel, ResultModel
@@ -14,11 +13,10 @@ from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.gauge import GaugeInput
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.answer.chart_curve import DEFAULT_STRESS_N_PER_MM, ChartCurve, chart_curve
-from knitcore.answer.prediction import Provenance, predict
-from knitcore.answer.stored import known_repeat
+from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
+from knitcore.answer.curve import curve as chart_curve
+from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
-from knitcore.law.uniaxial import free_strains_at_stress
 
 Stress = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 
@@ -42,44 +40,21 @@ class CurveResult(ResultModel):
     strain: Floats
     strain_low: Floats = Field(description="Lower end of the 90 % interval.")
     strain_high: Floats = Field(description="Upper end of the 90 % interval.")
+    stress_low: Floats = Field(
+        description="Lower end of the 90 % interval of the stress at each strain, N/mm."
+    )
+    stress_high: Floats = Field(description="Upper end of it, at most 10 N/mm.")
     provenance: str
 
 
 def curve(request: CurveRequest, context: Context) -> CurveResult:
-    """Strain at each stress, for pure fabrics, ribs, welts and repeats of up to 256 stitches.
-
-    The interval takes the modulus' uncertainty as one of the whole scale of stress: the lock-up
-    strain, which the tests fix best, stays where it is. Large repeats take minutes; stops when the
-    caller goes away.
-    """
+    """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
+    if context.cancelled():
+        raise CancelledError("The caller stopped the curve.")
+    size = request.gauge.relaxed_size() if request.gauge else None
     chart, material = to_chart(request.chart), context.material(request.material)
-    known = known_repeat(chart, material)
-    relaxed = known.relaxed if known else None
-    if request.gauge is not None:
-        relaxed = request.gauge.relaxed_size()
-    law = known.law if known else None
-    modulus = predict(chart, material, relaxed=relaxed, repeat_law=law)
-    stress, direction = np.array(request.stress_n_per_mm), request.direction
-
-    def at(stresses: NDArray[np.float64]) -> ChartCurve:
-        if law is not None:
-            strain = free_strains_at_stress(law, direction, stresses)
-            return ChartCurve(stresses, strain, Provenance.YARN_LEVEL)
-        return chart_curve(
-            chart, material, direction, stresses, relaxed=relaxed, cancelled=context.cancelled
-        )
-
-    value = modulus.modulus_n_per_mm(direction)
-    interval = (
-        modulus.modulus_course_interval
-        if direction is Direction.COURSE
-        else modulus.modulus_wale_interval
-    )
     return CurveResult.of(
-        at(stress),
-        stress_n_per_mm=stress,
-        strain_low=at(stress * value / interval.high).strain,
-        strain_high=at(stress * value / interval.low).strain,
+        chart_curve(chart, material, request.direction, request.stress_n_per_mm, gauge=size)
     )
 
 
@@ -115,8 +90,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _text,
-        help="Stress-strain curve of CHART: a pure fabric, rib, welt or repeat of up to 256 "
-        "stitches.",
+        help="Stress-strain curve of CHART, a repeat or a swatch of any size.",
         names={"stress_n_per_mm": None},
         fields=_stresses,
     ),

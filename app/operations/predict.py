@@ -9,8 +9,7 @@ from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
 from app.models.gauge import GaugeInput
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.answer.prediction import predict as predicted
-from knitcore.answer.stored import known_repeat
+from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.garment.inscribed import largest_rectangle
@@ -25,7 +24,7 @@ class PredictRequest(RequestModel):
     material: MaterialName
     outline: OutlineInput = None
     gauge: GaugeInput | None = Field(
-        None, description="Corrects the draw-in of ribs and welts; from a table otherwise."
+        None, description="Relaxed size of the mean stitch; estimated if left out."
     )
 
 
@@ -52,17 +51,18 @@ class PredictResult(ResultModel):
     modulus_wale_interval_n_per_mm: Ends
     poisson_yx_interval: Ends
     poisson_xy_interval: Ends
-    modulus_course_bounds_n_per_mm: Ends = Field(description="Reuss and Voigt.")
+    modulus_course_bounds_n_per_mm: Ends = Field(
+        description="Reuss and Voigt; wider where folds need it."
+    )
     modulus_wale_bounds_n_per_mm: Ends
     shear_modulus_n_per_mm: float = Field(description="An assumption unless it was calibrated.")
-    relaxed_course_mm: float | None = Field(
-        description="Mean width of a stitch at rest; null where it is not certified."
-    )
-    relaxed_wale_mm: float | None
+    relaxed_course_mm: float = Field(description="Mean width of a stitch at rest.")
+    relaxed_wale_mm: float = Field(description="Mean height of a stitch at rest.")
+    relaxed_course_interval_mm: Ends
+    relaxed_wale_interval_mm: Ends
     relaxed_source: str
     provenance: str = Field(
-        description="measured; yarn level; estimated; composite, corrected; or composite, "
-        "stretched state only"
+        description="measured; estimated; swept; composite with known size; or composite"
     )
     method: str
     notes: list[str]
@@ -78,18 +78,14 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         if not shaped.stitch.all():
             size = f"{chart.columns} x {chart.rows}"
             notes.append(f"Of the largest rectangle inside the outline, {size} stitches.")
-    known = known_repeat(chart, material)
-    relaxed = known.relaxed if known else None
-    if request.gauge is not None:
-        relaxed = request.gauge.relaxed_size()
-    found = predicted(chart, material, relaxed=relaxed, repeat_law=known.law if known else None)
+    found = choose(chart, material, request.gauge.relaxed_size() if request.gauge else None)
     segments = segment_map(chart)
     return PredictResult.of(
         found,
         rows=chart.rows,
         columns=chart.columns,
         segments={direction: segments.counts(direction) for direction in Direction},
-        notes=[*notes, *found.notes, *(known.notes if known else ())],
+        notes=[*notes, *found.notes],
     )
 
 
@@ -117,9 +113,11 @@ def _text(r: PredictResult) -> str:
 
 
 def _relaxed(r: PredictResult) -> str:
-    if r.relaxed_course_mm is None or r.relaxed_wale_mm is None:
-        return "not certified: knit a swatch and give its gauge"
-    return f"{r.relaxed_course_mm:.2f} x {r.relaxed_wale_mm:.2f} mm ({r.relaxed_source})"
+    (low_x, high_x), (low_y, high_y) = r.relaxed_course_interval_mm, r.relaxed_wale_interval_mm
+    return (
+        f"{r.relaxed_course_mm:.2f} x {r.relaxed_wale_mm:.2f} mm (90 %: {low_x:.2f} to "
+        f"{high_x:.2f} x {low_y:.2f} to {high_y:.2f}; {r.relaxed_source})"
+    )
 
 
 OPERATION = Operation(

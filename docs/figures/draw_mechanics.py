@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.answer.composite import folded_repeat
-from knitcore.answer.relaxed import tabled_size
+from knitcore.answer.folded import folded_repeat
+from knitcore.answer.relaxed import known_size
+from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import free_strains_at_stress
@@ -141,8 +142,8 @@ def reduced_symmetry() -> str:
 
 def wide_rib() -> str:
     """Width and strain of 2x2 rib against stress."""
-    acrylic, rib = material("acrylic"), StitchChart.parse("KKPP")
-    size = tabled_size(rib, acrylic)
+    acrylic, rib = material("acrylic"), Repeat.of(StitchChart.parse("KKPP"))
+    size = known_size(rib, acrylic)
     assert size is not None
     series = folded_repeat(rib, acrylic, size).along
     stress = np.linspace(0, 0.2, 200)

@@ -1,1 +1,4 @@
-"""One question: what will this chart, knitted in this material, do?"""
+"""One question: what will this chart of this material do?
+
+:func:`knitcore.answer.choose.choose` answers it, whoever asks.
+"""

@@ -1,240 +1,156 @@
-"""Ribs and welts: the composite of phases corrected by one relaxed size.
+"""The flat composite: a chart as quarter cells of the four pure fabrics, held flat.
 
-A 1-D repeat (all rows alike: a rib; all columns alike: a welt) is a row of phases in series. At a
-force F per row (for a welt per wale) each phase has its own length; their mean is the flat
-composite's absolute size of a stitch,
+Its modulus is that of the periodic quarter grid (:mod:`knitcore.mechanics.homogenisation`). Under
+larger stress the cells count as lines along the pull: in a line the phases are in series at one
+force, and all lines are strained alike; the stresses are scaled so that the first slope is the
+homogenised modulus. Beside the full nonlinear solution of the periodic cell
+(:mod:`knitcore.mechanics.repeat_curve`), which takes some hundred times longer, the strains of
+repeats up to 4x4 are within 9 % between 0.01 and 0.2 N/mm, 2-3 % in the mean.
 
-    s_c(F) = sum_k f_k l_k (1 + e_k(F / t_k)),
-
-with share f, relaxed length l along the pull and t across, and e_k the phase's strain at a stress.
-Where the cloth lies flat, this is right; at rest it is too wide, because the real cloth folds. With
-the relaxed size s_0 and t_0 across (from the yarn level, a gauge or the packaged table),
-
-    s(sigma) = s_c(sigma t_0) - (s_c(0) - s_0) exp(-sigma / sigma_c).
-
-sigma_c is the stress that unfolds it: 0.015 N/mm for ribs, 0.020 N/mm for welts in the study's
-yarn, carried to others as B / d³. A repeat that is wider at rest than its flat composite is
-scaled instead. Against our own yarn level (benchmarks/draw_in.py) the strain is then within 5 %
-from 0.03 to 0.2 N/mm for ribs and welts; a study of folded shapes found 6 % and 13 %. Below
-0.01 N/mm the first stretch is an extrapolation.
-
-Across the folds nothing is in series. A rib pulled wale-wise strains as the course-parity-weighted
-mean of its phases at equal force per wale, a balanced rib (k x k) as the pure rib does; plain
-parallel mixing is 25-50 % too stiff there. A welt pulled course-wise has its rows in parallel, per
-flat height: per shortened height it would be a quarter too stiff (benchmarks/stored_repeats.py).
+It is right for stretched cloth. At rest, repeats with runs of like stitches fold and draw in.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
+from numpy.typing import NDArray
 
-from knitcore.answer.relaxed import RelaxedSize
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.answer.answer import Along, Answer, Source
+from knitcore.answer.measured import CURL
+from knitcore.answer.relaxed import RelaxedSize, SizeSource
+from knitcore.answer.repeat import Repeat
 from knitcore.fabric import PHASES, Direction, Fabric
-from knitcore.law.response import Parallel, Part, Series, flat_mm
+from knitcore.law.response import Tabled
+from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import Material
-from knitcore.phases import quarter_phases
+from knitcore.materials.uncertainty import MODEL_POISSON_SD, Z_SCORE
+from knitcore.mechanics.homogenisation import EffectiveSheet, PhaseGrid, homogenise, phase_grid
 
-UNFOLDING_STRESS_N_PER_MM = {Direction.COURSE: 0.015, Direction.WALE: 0.020}
-"""sigma_c of the study's yarn, for ribs (course) and welts (wale)."""
+Array = NDArray[np.float64]
 
-STUDY_BENDING_STRESS_N_PER_MM = 0.045 / 1.48**3
-"""B / d³ of the study's yarn."""
+MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
+"""The composite's own error: where fabrics are mixed stitch by stitch (the strain of 90 % of the
+stored 2-D repeats is within that factor at 0.05 N/mm, benchmarks/stored_repeats.py), and inside
+large regions of pure fabrics."""
 
-WIDE_RIB_RATIOS = (1.35, 1.50)
-"""A k x k rib (k > 1) is 35-50 % more extensible than 1x1 rib in the study. sigma_c is moved just
-as far as its first stretch needs to lie in that range: the ratio carries over to other yarns
-better than a stress does."""
+FOLDS_AT_REST = (
+    "Composite of flat quarter cells: right for the stretched cloth (above about 0.05 N/mm). At "
+    "rest a repeat with runs of like stitches folds and draws in; relax this repeat on the yarn "
+    "level, or give your own gauge."
+)
 
-_WIDEST_BALANCED = 8
+STRESSES: Array = np.array(
+    [0.001, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0]
+)
+"""Stresses (N/mm) at which composites are computed; smooth between them."""
 
-
-class Layout(StrEnum):
-    """Whether a repeat is one-dimensional, and how."""
-
-    RIB = "rib"
-    WELT = "welt"
-
-
-@dataclass(frozen=True)
-class FoldedRepeat:
-    """Corrected response of a 1-D repeat in both directions.
-
-    Attributes
-    ----------
-    layout : rib or welt.
-    relaxed : the size that corrects it.
-    along : across the folds' axes, where the cloth unfolds (course-wise for a rib).
-    across : the other direction.
-    """
-
-    layout: Layout
-    relaxed: RelaxedSize
-    along: Series
-    across: Series | Parallel
-
-    def response(self, direction: Direction) -> Series | Parallel:
-        """The response in a direction."""
-        return self.along if direction is self.along.direction else self.across
+_FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 240)])
+_LOOP_SPREAD = 1.15
 
 
-def layout_of(repeat: StitchChart) -> Layout | None:
-    """Whether a repeat (the smallest one) is a rib, a welt, or neither.
-
-    Examples
-    --------
-    >>> layout_of(StitchChart.parse("KKPP"))
-    <Layout.RIB: 'rib'>
-    >>> layout_of(StitchChart.of_fabric("seed", rows=2, columns=2)) is None
-    True
-    """
-    if repeat.rows == 1 and repeat.columns > 1:
-        return Layout.RIB
-    if repeat.columns == 1 and repeat.rows > 1:
-        return Layout.WELT
-    return None
-
-
-def folded_repeat(repeat: StitchChart, material: Material, relaxed: RelaxedSize) -> FoldedRepeat:
-    """The corrected composite of a rib or welt.
-
-    Parameters
-    ----------
-    repeat : the smallest repeat, one row (rib) or one column (welt).
-    relaxed : its relaxed size.
+def composite(repeat: Repeat, material: Material) -> Answer:
+    """What the flat composite of a repeat does.
 
     Raises
     ------
     InputError
-        If the repeat is neither, or the material lacks one of its phases.
-
-    Examples
-    --------
-    >>> from knitcore.materials import material
-    >>> from knitcore.answer.relaxed import tabled_size
-    >>> rib, acrylic = StitchChart.parse("KKPP"), material("acrylic")
-    >>> size = tabled_size(rib, acrylic)
-    >>> round(folded_repeat(rib, acrylic, size).along.modulus_n_per_mm, 4)  # 1x1 rib: 0.0100
-    0.0074
+        If the material lacks a pure fabric that the repeat needs.
     """
-    layout = layout_of(repeat)
-    if layout is None:
-        raise InputError("chart", "is neither a rib nor a welt.", "Give a 1-D repeat.")
-    if layout is Layout.RIB:
-        along = _series(repeat, material, Direction.COURSE, relaxed.course_mm, relaxed.wale_mm)
-        along = _anchored_to_the_pure_rib(along, repeat, material)
-        across = _rib_wale_wise(repeat, along.parts, relaxed.course_mm)
-        return FoldedRepeat(layout, relaxed, along, across)
-    along = _series(repeat, material, Direction.WALE, relaxed.wale_mm, relaxed.course_mm)
-    parts = tuple(replace(p, along_mm=p.across_mm, across_mm=p.along_mm) for p in along.parts)
-    # per flat height: pulled along its rows a shortened welt is softer than its rows laid flat
-    return FoldedRepeat(layout, relaxed, along, Parallel(Direction.COURSE, parts, along.flat_mm))
-
-
-def flat_rib_wale_wise(repeat: StitchChart, material: Material) -> Series:
-    """Wale-wise response of a rib whose relaxed size is unknown, at its flat width.
-
-    The mean of the phases' strains at equal stress, weighted by width: the Reuss bound, which is
-    as near to the force-per-wale rule as a flat composite can be.
-    """
-    parts = _parts(repeat, material, Direction.COURSE)
-    flat = flat_mm(parts)
-    return Series(
-        direction=Direction.WALE,
-        parts=tuple(
-            replace(part, share=part.share * part.along_mm / flat, along_mm=1.0, across_mm=1.0)
-            for part in parts
-        ),
-        relaxed_mm=1.0,
-        across_mm=1.0,
-        gap_mm=0.0,
-        unfolding_stress_n_per_mm=math.inf,
+    sheet, grid = homogenise(repeat.chart, material), phase_grid(repeat.chart, material)
+    size = RelaxedSize(
+        2 * float(grid.width_mm.mean()), 2 * float(grid.height_mm.mean()), SizeSource.COMPOSITE
+    )
+    course, wale = (_along(sheet, grid, repeat, material, d, size) for d in Direction)
+    return Answer(
+        course,
+        wale,
+        sheet.shear_modulus_n_per_mm,
+        Source.COMPOSITE,
+        f"periodic homogenisation of the quarter cells of {repeat.chart.columns} x "
+        f"{repeat.chart.rows} stitches",
+        str(size.source),
+        (FOLDS_AT_REST, *mixture_notes(repeat, material)),
     )
 
 
-def _parts(repeat: StitchChart, material: Material, direction: Direction) -> tuple[Part, ...]:
-    counts = np.bincount(quarter_phases(repeat, periodic=True).ravel(), minlength=4)
-    parts = []
-    for phase in np.flatnonzero(counts):
-        record = material.record(PHASES[phase])
-        parts.append(
-            Part(
-                fabric=record.fabric,
-                law=record.law,
-                share=float(counts[phase] / counts.sum()),
-                along_mm=record.stitch_size_mm(direction),
-                across_mm=record.stitch_size_mm(direction.other),
-            )
+def _along(
+    sheet: EffectiveSheet,
+    grid: PhaseGrid,
+    repeat: Repeat,
+    material: Material,
+    direction: Direction,
+    size: RelaxedSize,
+) -> Along:
+    modulus = sheet.modulus_n_per_mm(direction)
+    response = Tabled(modulus, STRESSES, _strains(grid, material, direction, modulus))
+    laws = phase_log_sd(sheet.energy_shares[direction.axis], material, direction)
+    model = MODEL_LOG_SD["flat"] if repeat.fabric is None else 0.0
+    course = direction is Direction.COURSE
+    return Along.of_response(
+        response,
+        math.hypot(model, laws),
+        (sheet.poisson_yx if course else sheet.poisson_xy, mixture_poisson_sd(material, direction)),
+        (size.extent_mm(direction), size.log_sd),
+        sheet.bounds_n_per_mm(direction),
+    )
+
+
+def _strains(grid: PhaseGrid, material: Material, direction: Direction, modulus: float) -> Array:
+    """Strains at :data:`STRESSES`."""
+    course = direction is Direction.COURSE
+    lines = grid.phases if course else grid.phases.T
+    along, across = (grid.width_mm, grid.height_mm) if course else (grid.height_mm, grid.width_mm)
+    in_line = np.stack([(lines == phase) @ along for phase in range(4)], axis=1) / along.sum()
+    in_line, same = np.unique(in_line.round(12), axis=0, return_inverse=True)
+    share = np.bincount(same.ravel(), weights=across) / across.sum()
+    phases = np.zeros((4, len(_FINE)))
+    for phase in np.unique(grid.phases):
+        phases[phase] = free_strains_at_stress(material.law(PHASES[phase]), direction, _FINE)
+    strains = in_line @ phases
+    common = np.linspace(0.0, 1.0, 600) ** 2 * strains[:, -1].min()
+    stress = np.zeros_like(common)
+    for weight, line in zip(share, strains, strict=True):
+        stress += weight * np.interp(common, line, _FINE)
+    first = float(stress[1] / common[1])
+    found: Array = np.interp(STRESSES, stress * (modulus / first), common)
+    return found
+
+
+def phase_log_sd(shares: Array, material: Material, direction: Direction) -> float:
+    """Uncertainty of a modulus by that of its phases' laws.
+
+    Delta method: d ln Y / d ln C of a phase is its share of the energy.
+    """
+    return math.hypot(
+        *(
+            float(shares[phase]) * material.record(PHASES[phase]).uncertainty.log_modulus(direction)
+            for phase in np.flatnonzero(shares > 0)
         )
-    return tuple(parts)
-
-
-def _series(
-    repeat: StitchChart, material: Material, direction: Direction, along_mm: float, across_mm: float
-) -> Series:
-    parts = _parts(repeat, material, direction)
-    flat = flat_mm(parts)
-    return Series(
-        direction=direction,
-        parts=parts,
-        relaxed_mm=along_mm,
-        across_mm=across_mm,
-        gap_mm=max(flat - along_mm, 0.0),
-        unfolding_stress_n_per_mm=_unfolding_stress(material, direction),
     )
 
 
-def _unfolding_stress(material: Material, direction: Direction) -> float:
-    bending = material.yarn.bending_modulus_n_mm2
-    plain = material.fabrics.get(Fabric.STOCKINETTE)
-    diameter = material.yarn.diameter_mm
-    if plain is not None and plain.yarn_diameter_mm is not None:
-        diameter = plain.yarn_diameter_mm
-    stress = UNFOLDING_STRESS_N_PER_MM[direction]
-    if bending is None or diameter is None:
-        return stress
-    return stress * bending / diameter**3 / STUDY_BENDING_STRESS_N_PER_MM
-
-
-def _is_balanced(repeat: StitchChart) -> bool:
-    """k knits and k purls, 1 < k <= 4 (wider ones tend to stockinette in their middle)."""
-    purl = repeat.purl[0]
-    changes = int(np.count_nonzero(purl != np.roll(purl, 1)))
-    return changes == 2 and 2 * int(purl.sum()) == purl.size and 2 < purl.size <= _WIDEST_BALANCED
-
-
-def _anchored_to_the_pure_rib(along: Series, repeat: StitchChart, material: Material) -> Series:
-    if not (_is_balanced(repeat) and along.gap_mm):
-        return along
-    parts, fold = along.compliances()
-    flat = float(parts.sum())
-    pure = 1.0 / material.law(Fabric.RIB).modulus(Direction.COURSE)
-    least, most = (ratio * pure for ratio in WIDE_RIB_RATIOS)
-    wanted = min(max(flat + fold, least), most)
-    if wanted <= flat:
-        return along
-    stress = along.unfolding_stress_n_per_mm * fold / (wanted - flat)
-    return replace(along, unfolding_stress_n_per_mm=stress)
-
-
-def _rib_wale_wise(repeat: StitchChart, phases: tuple[Part, ...], width_mm: float) -> Series:
-    """Mean of the phases' strains at equal force per wale; of the pure rib alone if balanced."""
-    parts = tuple(
-        replace(part, along_mm=1.0, across_mm=part.along_mm)
-        for part in phases
-        if not _is_balanced(repeat) or part.fabric is Fabric.RIB
+def mixture_poisson_sd(material: Material, direction: Direction) -> float:
+    """Standard deviation of a composite's contraction across a pull."""
+    spread = [record.uncertainty for record in material.fabrics.values()]
+    course = direction is Direction.COURSE
+    return math.hypot(
+        MODEL_POISSON_SD, max(s.poisson_yx if course else s.poisson_xy for s in spread)
     )
-    total = sum(part.share for part in parts)
-    return Series(
-        direction=Direction.WALE,
-        parts=tuple(replace(part, share=part.share / total) for part in parts),
-        relaxed_mm=1.0,
-        across_mm=width_mm,
-        gap_mm=0.0,
-        unfolding_stress_n_per_mm=math.inf,
-    )
+
+
+def mixture_notes(repeat: Repeat, material: Material) -> tuple[str, ...]:
+    """What a user should know of a chart that mixes pure fabrics."""
+    found = []
+    if repeat.shares[Fabric.STOCKINETTE.phase] > 0.5:
+        found.append(CURL)
+    lengths = {fabric: material.record(fabric).loop_length_mm for fabric in repeat.present}
+    known = {fabric: length for fabric, length in lengths.items() if length is not None}
+    if known and max(known.values()) > _LOOP_SPREAD * min(known.values()):
+        listed = ", ".join(f"{fabric} {length:g} mm" for fabric, length in known.items())
+        found.append(
+            f"The fabrics of this material were knitted at different loop lengths ({listed}); a "
+            "mixed chart lies between them."
+        )
+    return (*found, material.note) if material.note else tuple(found)

@@ -1,13 +1,12 @@
 """Relaxed sizes of repeats: what the flat composite does not know.
 
-Ribs draw in and welts shorten, because they fold. Their relaxed size comes from the yarn level,
-from a user's gauge, or from a packaged table of common repeats. The table is of one yarn (loop
-length 11.28 mm, radius 0.74 mm, core 0.30 mm, B = 0.045 N·mm², k = 6e-4 N/mm³, p = 2.4, convention
-``authors-code``), relaxed freely in a study, or with the chart's mirror symmetries by
-:mod:`knitcore.yarnlevel`. What it lacks comes from ``data/stored_sizes.csv``, the sizes of the
-packaged store of relaxed repeats of acrylic and cotton (:mod:`knitcore.yarnlibrary.build`
-writes it). Both are carried to a material by ratio: to the pure fabric that the repeat resembles
-(1x1 rib for ribs, garter for welts), at equal loop length, because lengths scale with it.
+Ribs draw in and welts shorten, because they fold. Their relaxed size comes from a user's gauge,
+from the packaged store of relaxed repeats (:mod:`knitcore.yarnlibrary.store`), or from a packaged
+table of common ones. The table is of one yarn (loop length 11.28 mm, radius 0.74 mm, core 0.30 mm,
+B = 0.045 N·mm², k = 6e-4 N/mm³, p = 2.4, convention ``authors-code``), relaxed freely in a study,
+or with the chart's mirror symmetries by :mod:`knitcore.yarnlevel`. All are taken over to a
+material by ratio: to the pure fabric that the repeat resembles (1x1 rib for ribs, garter for
+welts), at equal loop length, because lengths scale with it.
 """
 
 from __future__ import annotations
@@ -21,23 +20,41 @@ from importlib.resources import files
 
 import numpy as np
 
+from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
-from knitcore.phases import quarter_phases, reference_fabric
+from knitcore.phases import reference_fabric
+from knitcore.yarnlibrary.store import MATERIALS, StoredStitch, stored_stitch
 
 MOST_STITCHES = 64
-"""Largest repeat that is looked for in the table."""
+"""Largest repeat that is looked for."""
 
 
 class SizeSource(StrEnum):
     """Where a relaxed size comes from."""
 
+    MATERIAL = "gauge of the pure fabric"
     TABLE = "packaged table"
     STORE = "packaged store"
     YARN_LEVEL = "yarn level"
     GAUGE = "gauge"
+    COMPOSITE = "mean of its pure fabrics"
+
+
+SIZE_LOG_SD = {
+    SizeSource.MATERIAL: 0.08,
+    SizeSource.TABLE: 0.10,
+    SizeSource.STORE: 0.12,
+    SizeSource.YARN_LEVEL: 0.10,
+    SizeSource.GAUGE: 0.03,
+    SizeSource.COMPOSITE: 0.25,
+}
+"""Standard deviations of the logarithm of a size. Pure fabrics: one aspect ratio stands for all
+yarns, and those of two yarns differ by up to 17 % (``materials/data/aspect.csv``). Ratios of two
+yarns in the store differ by 0.07 (ribs and welts); the branches differ by 0.10. The mean of the
+pure fabrics misses 10 % of fresh yarn-level charts by more than a factor of 1.5."""
 
 
 @dataclass(frozen=True)
@@ -77,68 +94,49 @@ class RelaxedSize:
                 raise InputError(name, f"{value} is no gauge.", "Count over 10 cm.")
         return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm, SizeSource.GAUGE)
 
+    @property
+    def log_sd(self) -> float:
+        """Standard deviation of the logarithm of both sizes."""
+        return SIZE_LOG_SD[self.source]
 
-def canonical_repeat(repeat: StitchChart) -> StitchChart:
-    """One chart for all that are the same cloth: shifted, mirrored, or seen from the back.
-
-    A welt turned upside down is the same cloth too. Other repeats are not, because a stitch is not:
-    the columns of its upside-down neighbours lie half a stitch aside.
-
-    Examples
-    --------
-    >>> print(canonical_repeat(StitchChart.parse("PPKK")))
-    KKPP
-    """
-    best: tuple[bytes, StitchChart] | None = None
-    for chart in (repeat, repeat.mirror()):
-        for upright in (chart, chart.mirror_vertical()) if chart.columns == 1 else (chart,):
-            for side in (upright, upright.swap()):
-                for down in range(side.rows):
-                    for across in range(side.columns):
-                        purl = np.roll(side.purl, (down, across), axis=(0, 1))
-                        key = purl[::-1].tobytes()
-                        if best is None or key < best[0]:
-                            best = key, StitchChart(purl)
-    assert best is not None  # noqa: S101 - a chart has at least one stitch
-    return best[1]
+    def extent_mm(self, direction: Direction) -> float:
+        """Size along a direction."""
+        return self.course_mm if direction is Direction.COURSE else self.wale_mm
 
 
-def tabled_size(repeat: StitchChart, material: Material) -> RelaxedSize | None:
+def known_size(repeat: Repeat, material: Material) -> RelaxedSize | None:
     """Relaxed size of a repeat in a material, or None if neither table nor store has it.
-
-    Parameters
-    ----------
-    repeat : the smallest repeat of a chart.
 
     Examples
     --------
     >>> from knitcore.materials import material
-    >>> size = tabled_size(StitchChart.parse("KKPP"), material("acrylic"))
+    >>> size = known_size(Repeat.of(StitchChart.parse("KKPP")), material("acrylic"))
     >>> round(size.course_mm, 2)  # 1x1 rib is 2.64 mm wide
     1.8
     """
-    if repeat.rows * repeat.columns > MOST_STITCHES:
+    chart = repeat.chart
+    if chart.rows * chart.columns > MOST_STITCHES or any(
+        fabric not in material.fabrics for fabric in repeat.present
+    ):
         return None
-    key = canonical_repeat(repeat).text
+    key = chart.canonical().key
     for branch in _BRANCHES:
         cell = _table().get((branch, key))
         if cell is not None:
-            pure = {f: _table()[branch, text] for f, text in _PURE_CHARTS.items()}
-            return carried_over(cell, pure, repeat, material, SizeSource.TABLE)
-    ratio = stored_ratio(repeat, material)
-    if ratio is None:
-        return None
-    like = {reference_fabric(repeat): (1.0, 1.0)}
-    return carried_over(ratio, like, repeat, material, SizeSource.STORE)
+            pure = _table()[branch, _PURE_CHARTS[reference_fabric(chart)]]
+            ratio = cell[0] / pure[0], cell[1] / pure[1]
+            return _in_material(ratio, repeat, material, SizeSource.TABLE)
+    stored = stored_ratio(chart, material)
+    return None if stored is None else _in_material(stored, repeat, material, SizeSource.STORE)
 
 
-def stored_ratio(repeat: StitchChart, material: Material) -> tuple[float, float] | None:
+def stored_ratio(chart: StitchChart, material: Material) -> tuple[float, float] | None:
     """Size of a repeat over that of its pure fabric at equal loop length, from the store.
 
     Acrylic and cotton have their own; other yarns get the geometric mean of the two.
     """
     own = material.identifier.partition(":")[0]
-    ratios = _stored().get(canonical_repeat(repeat).text, {})
+    ratios = {yarn: ratio for yarn in MATERIALS if (ratio := _ratio(chart, yarn)) is not None}
     used = [ratios[own]] if own in ratios else list(ratios.values())
     if not used:
         return None
@@ -146,80 +144,51 @@ def stored_ratio(repeat: StitchChart, material: Material) -> tuple[float, float]
     return float(course), float(wale)
 
 
-def carried_over(
-    cell_mm: tuple[float, float],
-    pure_mm: Mapping[Fabric, tuple[float, float]],
-    repeat: StitchChart,
-    material: Material,
-    source: SizeSource = SizeSource.YARN_LEVEL,
+def stored_pure(fabric: Fabric, yarn: str) -> StoredStitch | None:
+    """The store's own pure fabric."""
+    return stored_stitch(StitchChart.of_fabric(fabric, rows=2, columns=2), yarn)
+
+
+def _ratio(chart: StitchChart, yarn: str) -> tuple[float, float] | None:
+    stored, pure = stored_stitch(chart, yarn), stored_pure(reference_fabric(chart), yarn)
+    if stored is None or pure is None or not (stored.converged and pure.converged):
+        return None
+    shorter = pure.loop_length_mm / stored.loop_length_mm
+    return (
+        stored.cell_course_mm / pure.cell_course_mm * shorter,
+        stored.cell_wale_mm / pure.cell_wale_mm * shorter,
+    )
+
+
+def _in_material(
+    ratio: tuple[float, float], repeat: Repeat, material: Material, source: SizeSource
 ) -> RelaxedSize | None:
-    """A relaxed size of one yarn taken over to a material, by its ratio to a pure fabric.
-
-    Parameters
-    ----------
-    cell_mm : (course, wale) size of the repeat's mean stitch, relaxed on the yarn level.
-    pure_mm : the same of the pure fabrics, of the same yarn, loop length and branch.
-    repeat : the smallest repeat.
-
-    Returns
-    -------
-    RelaxedSize, or None if the material lacks the pure fabric that the repeat resembles.
-    """
-    reference = reference_fabric(repeat)
-    record = material.fabrics.get(reference)
+    """A ratio to the pure fabric that a repeat resembles as a size in a material."""
+    record = material.fabrics.get(reference_fabric(repeat.chart))
     if record is None:
         return None
-    pure = pure_mm[reference]
-    scale = _loop_length_ratio(repeat, material, reference)
+    lengths = [material.record(fabric).loop_length_mm for fabric in repeat.present]
+    scale = 1.0
+    if record.loop_length_mm is not None and None not in lengths:
+        shares = repeat.shares[repeat.shares > 0]
+        scale = float(shares @ np.array(lengths, dtype=float)) / record.loop_length_mm
     return RelaxedSize(
-        course_mm=cell_mm[0] / pure[0] * record.stitch_course_mm * scale,
-        wale_mm=cell_mm[1] / pure[1] * record.stitch_wale_mm * scale,
-        source=source,
+        ratio[0] * record.stitch_course_mm * scale, ratio[1] * record.stitch_wale_mm * scale, source
     )
 
 
 _BRANCHES = ("free", "mirrored")
 """Shape spaces of the yarn level, the preferred one first: ribs fold freely."""
 
-_PURE_CHARTS = {
-    Fabric.STOCKINETTE: "K",
-    Fabric.GARTER: "K\nP",
-    Fabric.RIB: "KP",
-    Fabric.SEED: "KP\nPK",
-}
-
-
-def _loop_length_ratio(chart: StitchChart, material: Material, reference: Fabric) -> float:
-    """Loop length of the repeat (the mean of its phases) over that of the reference fabric."""
-    shares = np.bincount(quarter_phases(chart, periodic=True).ravel(), minlength=4)
-    lengths = []
-    for phase in np.flatnonzero(shares):
-        record = material.fabrics.get(PHASES[phase])
-        if record is None or record.loop_length_mm is None:
-            return 1.0
-        lengths.append(float(shares[phase] / shares.sum()) * record.loop_length_mm)
-    own = material.record(reference).loop_length_mm
-    return 1.0 if own is None else sum(lengths) / own
+_PURE_CHARTS = {fabric: StitchChart.of_fabric(fabric, 2, 2).canonical().key for fabric in Fabric}
 
 
 @cache
 def _table() -> Mapping[tuple[str, str], tuple[float, float]]:
-    """(course, wale) sizes in mm by branch and text of the canonical chart."""
+    """(course, wale) sizes in mm by branch and key of the canonical chart."""
     resource = files("knitcore.answer").joinpath("data", "relaxed_sizes.csv")
     found = {}
     for row in csv.DictReader(resource.read_text(encoding="utf-8").splitlines()):
-        chart = canonical_repeat(StitchChart.parse(row["chart"].replace("/", "\n")))
-        found[row["branch"], chart.text] = (float(row["course_mm"]), float(row["wale_mm"]))
-    return found
-
-
-@cache
-def _stored() -> Mapping[str, Mapping[str, tuple[float, float]]]:
-    """(course, wale) ratios by text of the canonical chart, and by yarn."""
-    resource = files("knitcore.answer").joinpath("data", "stored_sizes.csv")
-    found: dict[str, dict[str, tuple[float, float]]] = {}
-    for row in csv.DictReader(resource.read_text(encoding="utf-8").splitlines()):
-        chart = canonical_repeat(StitchChart.parse(row["chart"].replace("/", "\n")))
-        ratio = (float(row["course_ratio"]), float(row["wale_ratio"]))
-        found.setdefault(chart.text, {})[row["yarn"]] = ratio
+        key = StitchChart.parse(row["chart"]).canonical().key
+        found[row["branch"], key] = (float(row["course_mm"]), float(row["wale_mm"]))
     return found

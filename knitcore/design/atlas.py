@@ -20,14 +20,18 @@ from scipy.interpolate import PchipInterpolator
 
 from knitcore.chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
-from knitcore.design.curves import STRESS_N_PER_MM
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
 Array = NDArray[np.float64]
 
-FORMAT = 2
+FORMAT = 3
 MAXIMUM_BYTES = 50_000_000
+
+STRESS_N_PER_MM: Array = np.array(
+    [0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5]
+)
+"""Stresses at which an atlas keeps the strains."""
 
 VALUES = (
     "modulus_course_n_per_mm",
@@ -45,8 +49,8 @@ VALUES = (
     "relaxed_course_mm",
     "relaxed_wale_mm",
 )
-"""Columns of an atlas; low and high are ends of 90 % intervals. Relaxed sizes of the mean stitch
-are NaN where they are not certified."""
+"""Columns of an atlas; low and high are ends of 90 % intervals. Relaxed sizes are of the mean
+stitch."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -14,22 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from knitcore.answer.prediction import Prediction, Provenance, predict
-from knitcore.answer.stored import STORED_MATERIALS, KnownRepeat, known_repeat
+from knitcore.answer.answer import Answer
+from knitcore.answer.choose import choose
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
-from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
-from knitcore.design.curves import CurveMaker
+from knitcore.design.atlas import STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
 
 AT_ONCE = 16
 """Repeats in one task of a batch: half a second of work."""
-
-UNBELIEVABLE = 20.0
-"""A yarn-level modulus that is so many times smaller or larger than the flat composite's is not
-taken: without friction a folded repeat may open at almost no force."""
 
 Progress = Callable[[int, int], None]
 
@@ -110,37 +104,32 @@ def build_atlas(
 
 def predict_repeats(task: AtlasTask) -> dict[str, Any]:
     """One task: entries of its repeats, by key."""
-    curves = CurveMaker(task.material)
-    found = {}
-    for key in task.keys:
-        repeat = StitchChart.parse(key)
-        known = known_repeat(repeat.tile(2, 2), task.material)
-        found[key] = _document(predict_entry(repeat, task.material, curves, known))
+    found = {
+        key: asdict(entry_of(predict_repeat(StitchChart.parse(key), task.material)))
+        for key in task.keys
+    }
     return {"entries": found}
 
 
-def predict_repeat(repeat: StitchChart, material: Material) -> Prediction:
-    """Entry of a repeat, with its yarn-level law where the store has one."""
-    return _prediction(repeat, material, known_repeat(repeat.tile(2, 2), material))
+def predict_repeat(repeat: StitchChart, material: Material) -> Answer:
+    """What a large cloth of a repeat does."""
+    return choose(repeat.tile(2, 2), material)  # twice, so that its edges are not a swatch's
 
 
-def predict_entry(
-    repeat: StitchChart, material: Material, curves: CurveMaker, known: KnownRepeat | None
-) -> Entry:
-    """The row of a repeat, by its yarn-level law if there is one."""
-    prediction = _prediction(repeat, material, known)
+def entry_of(answer: Answer) -> Entry:
+    """The row of a repeat."""
+    course, wale = (answer.along(d) for d in Direction)
     values = (
-        *_three(prediction.modulus_course_n_per_mm, prediction.modulus_course_interval),
-        *_three(prediction.modulus_wale_n_per_mm, prediction.modulus_wale_interval),
-        *_three(prediction.poisson_yx, prediction.poisson_yx_interval),
-        *_three(prediction.poisson_xy, prediction.poisson_xy_interval),
-        _or_nan(prediction.relaxed_course_mm),
-        _or_nan(prediction.relaxed_wale_mm),
+        *_three(course.modulus_n_per_mm, course.modulus_interval_n_per_mm),
+        *_three(wale.modulus_n_per_mm, wale.modulus_interval_n_per_mm),
+        *_three(course.poisson, course.poisson_interval),
+        *_three(wale.poisson, wale.poisson_interval),
+        course.relaxed_mm,
+        wale.relaxed_mm,
     )
-    own = known is not None and prediction.provenance is Provenance.YARN_LEVEL
-    strains = curves.strains(repeat, prediction, known.law if known and own else None)
-    kept = strains.astype(np.float32).ravel().tolist()  # as a file keeps them
-    return Entry(values, tuple(kept), prediction.provenance.value)
+    strains = np.concatenate([along.strain(STRESS_N_PER_MM) for along in (course, wale)])
+    kept = strains.astype(np.float32).tolist()  # as a file keeps them
+    return Entry(values, tuple(kept), answer.provenance.value)
 
 
 def material_fingerprint(material: Material) -> str:
@@ -157,8 +146,7 @@ def material_fingerprint(material: Material) -> str:
     }
     text = json.dumps([material.identifier, content], sort_keys=True, default=str)
     digest = hashlib.sha256(text.encode())
-    if material.identifier in STORED_MATERIALS:
-        digest.update(files("knitcore.yarnlibrary").joinpath("data/stitches.json").read_bytes())
+    digest.update(files("knitcore.yarnlibrary").joinpath("data/stitches.json").read_bytes())
     return digest.hexdigest()[:24]
 
 
@@ -187,35 +175,13 @@ def parts_folder(file: Path) -> Path:
     return file.with_name(f"{file.stem}.parts")
 
 
-def _document(row: Entry) -> dict[str, Any]:
-    """A row as JSON; null where there is no number."""
-    values = [None if math.isnan(value) else value for value in row.values]
-    return {"values": values, "strains": list(row.strains), "provenance": row.provenance}
-
-
 def _entry(document: dict[str, Any]) -> Entry:
-    """Inverse of :func:`_document`."""
-    values = tuple(_or_nan(value) for value in document["values"])
-    return Entry(values, tuple(document["strains"]), document["provenance"])
-
-
-def _prediction(repeat: StitchChart, material: Material, known: KnownRepeat | None) -> Prediction:
-    cloth = repeat.tile(2, 2)  # twice, so that its edges do not count as those of a swatch
-    flat = predict(cloth, material)
-    if known is None:
-        return flat
-    found = predict(cloth, material, relaxed=known.relaxed, repeat_law=known.law)
-    ratios = [found.modulus_n_per_mm(d) / flat.modulus_n_per_mm(d) for d in Direction]
-    believed = all(1 / UNBELIEVABLE <= ratio <= UNBELIEVABLE for ratio in ratios)
-    return found if believed else flat
+    """A row from JSON."""
+    return Entry(tuple(document["values"]), tuple(document["strains"]), document["provenance"])
 
 
 def _three(value: float, interval: Interval) -> tuple[float, float, float]:
     return value, interval.low, interval.high
-
-
-def _or_nan(value: float | None) -> float:
-    return float("nan") if value is None else value
 
 
 def _digest(keys: tuple[str, ...]) -> str:

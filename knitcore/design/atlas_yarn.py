@@ -3,7 +3,7 @@
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
 in a folder beside the atlas, and the run can be stopped at any point and taken up again. Laws and
 sizes are carried to the measured material by the pure fabrics of the same yarn-level model
-(:mod:`knitcore.answer.carry`). Ribs and welts stay with the corrected composite.
+(:mod:`knitcore.answer.swept`). Ribs and welts stay with the composite of known size.
 """
 
 from __future__ import annotations
@@ -13,16 +13,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from knitcore.answer.carry import carried_law
-from knitcore.answer.composite import layout_of
-from knitcore.answer.prediction import Provenance
-from knitcore.answer.relaxed import RelaxedSize, SizeSource
-from knitcore.answer.stored import KnownRepeat
+from knitcore.answer.answer import Source
+from knitcore.answer.repeat import Repeat
+from knitcore.answer.swept import swept_answer
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
-from knitcore.design.atlas_build import known_entries, material_fingerprint, predict_entry
-from knitcore.design.curves import CurveMaker
+from knitcore.design.atlas_build import entry_of, known_entries, material_fingerprint
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.phases import reference_fabric
@@ -102,8 +99,8 @@ def yarn_level_tasks(
         for key, entry in entries.items()
         if key not in pure
         and len(key.replace("/", "")) <= most_stitches
-        and entry.provenance != Provenance.YARN_LEVEL
-        and layout_of(StitchChart.parse(key)) is None
+        and entry.provenance != Source.SWEPT
+        and Repeat.of(StitchChart.parse(key)).layout is None
     ]
     order = [*sorted(pure), *sorted(mixed, key=lambda key: (len(key.replace("/", "")), key))]
     return {key: _task(material, key) for key in order}
@@ -140,18 +137,22 @@ def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None
         return
     fingerprint = material_fingerprint(material)
     entries = known_entries(file, fingerprint)
-    curves = CurveMaker(material)
     for key, document in done.items():
-        repeat, law = StitchChart.parse(key), law_of(document)
+        chart, law = StitchChart.parse(key), law_of(document)
         if law is None or not document["converged"] or key in map(key_of_pure, Fabric):
             continue
-        reference = reference_fabric(repeat)
-        record, like = material.record(reference), pure[reference]
-        size = RelaxedSize(
-            document["cell_course_mm"] / like["cell_course_mm"] * record.stitch_course_mm,
-            document["cell_wale_mm"] / like["cell_wale_mm"] * record.stitch_wale_mm,
-            SizeSource.YARN_LEVEL,
+        reference = pure[reference_fabric(chart)]
+        answer = swept_answer(
+            law,
+            _cell_mm(document),
+            laws,
+            _cell_mm(reference),
+            Repeat.of(chart.tile(2, 2)),
+            material,
         )
-        known = KnownRepeat(carried_law(law, laws, repeat, material), size)
-        entries[key] = predict_entry(repeat, material, curves, known)
+        entries[key] = entry_of(answer)
     save_atlas(Atlas.of_entries(material.identifier, fingerprint, entries), file)
+
+
+def _cell_mm(document: Document) -> tuple[float, float]:
+    return document["cell_course_mm"], document["cell_wale_mm"]

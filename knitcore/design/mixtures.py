@@ -1,7 +1,7 @@
 """Fabrics between those of an atlas: stripes of two repeats.
 
 The moduli of two sheets side by side follow from theirs (stress common across the joint, strain
-along it; docs/composite.md). That ranks all stripes at once; the best are then predicted as the
+along it; docs/answer.md). That ranks all stripes at once; the best are then predicted as the
 repeats that they are, and errors of the ranking at the joints are corrected on the way. If none is
 near, single stitches, rows and columns of the nearest charts are turned.
 """
@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.prediction import Provenance
+from knitcore.answer.answer import Source
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import predict_repeat
@@ -247,7 +247,7 @@ def _partners(atlas: Atlas) -> NDArray[np.intp]:
     flat = [
         k
         for k in range(len(atlas))
-        if atlas.provenance[k] == Provenance.STRETCHED or len(_phases(atlas.chart(k))) == 1
+        if atlas.provenance[k] == Source.COMPOSITE or len(_phases(atlas.chart(k))) == 1
     ]
     small = sorted(flat, key=lambda k: (int(atlas.stitches[k]), k))
     return np.array(small[:_PARTNERS], dtype=np.intp)

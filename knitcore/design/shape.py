@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from knitcore.answer.prediction import Provenance
+from knitcore.answer.answer import Source
 from knitcore.chart import StitchChart, check_size
-from knitcore.design.atlas import Atlas
-from knitcore.design.curves import STRESS_N_PER_MM
+from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
@@ -344,7 +343,7 @@ def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> 
     """Repeats that differ in how they stretch and narrow; as the flat swatch would see them."""
     shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
     side = shapes[:, 0] if direction is Direction.COURSE else shapes[:, 1]
-    flat = [source != Provenance.CORRECTED for source in atlas.provenance]
+    flat = [source != Source.COMPOSITE_OF_SIZE for source in atlas.provenance]
     usable = np.flatnonzero(np.array(flat) & (side <= across) & (shapes.max(axis=1) <= 4))
     stretch = atlas.strain_at(direction, 0.05)[usable]
     narrowing = atlas.poisson(direction)[usable] * np.minimum(stretch, 2 * strain)

@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.chart_curve import ChartCurve, chart_curve
-from knitcore.answer.prediction import Prediction, predict
+from knitcore.answer.answer import Answer
+from knitcore.answer.choose import choose
+from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.chart_drawing import A4_MM, chart_pages
 from knitcore.formats.chart_key import MARGIN_MM, ChartStyle, tinted
@@ -55,20 +55,19 @@ def design_report(
     piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
     pages = []
     if piece.is_rectangle:
-        found = predict(piece.chart, material)
-        curves, said = _curves(piece.chart, material)
+        found = choose(piece.chart, material)
         shapes = [
             *_numbers(piece.chart, material, name, found),
             *_maps(piece, material, style.aspect, 73.0),
         ]
-        shapes += [*_plot(curves, said), *_assumptions(_said(found), 228.0)]
+        shapes += [*_plot(found), *_assumptions(_said(found), 228.0)]
         pages.append(Page(*A4_MM, tuple(shapes)))
     if regions or not piece.is_rectangle:
         pages.append(Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions))))
     return to_pdf([*pages, *chart_pages(piece, style)], name)
 
 
-def _said(found: Prediction) -> list[str]:
+def _said(found: Answer) -> list[str]:
     return [
         f"Law: {found.method}.",
         f"Shear modulus {found.shear_modulus_n_per_mm:g} N/mm: an assumption unless calibrated.",
@@ -123,16 +122,7 @@ def _factor(value: float, factor: float) -> str:
     return f"{value:.3g}  ({value / factor:.3g} to {value * factor:.3g})"
 
 
-def _curves(chart: StitchChart, material: Material) -> tuple[dict[Direction, ChartCurve], str]:
-    try:
-        return {d: chart_curve(chart, material, d) for d in Direction}, ""
-    except InputError as error:  # a patchwork has no curve of its own
-        return {}, f"No curve: {error.problem} A swatch of it can be stretched instead."
-
-
-def _numbers(
-    chart: StitchChart, material: Material, name: str, found: Prediction
-) -> Iterator[Shape]:
+def _numbers(chart: StitchChart, material: Material, name: str, found: Answer) -> Iterator[Shape]:
     yield Label(MARGIN_MM, 16.0, name, 6.0)
     size = (
         f"{chart.columns} stitches × {chart.rows} rows in {material.name} ({material.identifier})"
@@ -150,13 +140,15 @@ def _numbers(
         ("", "along the rows (course)", "along the columns (wale)"),
         (
             "Young's modulus, N/mm",
-            _value(found.modulus_course_n_per_mm, found.modulus_course_interval),
-            _value(found.modulus_wale_n_per_mm, found.modulus_wale_interval),
+            _value(found.modulus_course_n_per_mm, found.modulus_course_interval_n_per_mm),
+            _value(found.modulus_wale_n_per_mm, found.modulus_wale_interval_n_per_mm),
         ),
         (
             "extensibility, mm/N",
-            _value(found.extensibility_course_mm_per_n, found.extensibility_course_interval),
-            _value(found.extensibility_wale_mm_per_n, found.extensibility_wale_interval),
+            _value(
+                found.extensibility_course_mm_per_n, found.course.extensibility_interval_mm_per_n
+            ),
+            _value(found.extensibility_wale_mm_per_n, found.wale.extensibility_interval_mm_per_n),
         ),
         (
             "contraction when pulled so",
@@ -165,8 +157,8 @@ def _numbers(
         ),
         (
             "stitch at rest, mm",
-            _size(found.relaxed_course_mm),
-            _size(found.relaxed_wale_mm),
+            _value(found.relaxed_course_mm, found.relaxed_course_interval_mm),
+            _value(found.relaxed_wale_mm, found.relaxed_wale_interval_mm),
         ),
     ]
     for index, cells in enumerate(rows):
@@ -178,10 +170,6 @@ def _numbers(
 
 def _value(value: float, interval: Interval) -> str:
     return f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})"
-
-
-def _size(value: float | None) -> str:
-    return "not certified" if value is None else f"{value:.2f}"
 
 
 def _maps(piece: Piece, material: Material, aspect: float, top: float) -> Iterator[Shape]:
@@ -222,30 +210,27 @@ def _colour(level: int) -> str:
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
-def _plot(curves: dict[Direction, ChartCurve], said: str) -> Iterator[Shape]:
+def _plot(found: Answer) -> Iterator[Shape]:
     """Stress over strain, both directions."""
     yield Label(MARGIN_MM, 158.0, "stress (N/mm) over strain, pulled one way, free the other", 3.0)
-    if not curves:
-        yield Label(MARGIN_MM, 164.0, said, 2.8)
-        return
     left, top, width, height = MARGIN_MM + 10.0, 162.0, 150.0, 52.0
-    widest = max(float(c.strain[-1]) for c in curves.values())
-    tallest = float(next(iter(curves.values())).stress_n_per_mm[-1])
+    stress = np.array(DEFAULT_STRESS_N_PER_MM)
+    strains = {d: found.along(d).strain(stress) for d in Direction}
+    widest, tallest = max(float(strain[-1]) for strain in strains.values()), float(stress[-1])
     yield Box(left, top, width, height, stroke="#b5b0a8")
     for share in (0.0, 0.5, 1.0):
         x, y = left + width * share, top + height * (1 - share)
         yield Label(x, top + height + 4.0, f"{widest * share:.2f}", 2.8, "middle")
         yield Label(left - 1.5, y + 1.0, f"{tallest * share:.2f}", 2.8, "end")
-    for index, (direction, curve) in enumerate(curves.items()):
-        across = left + width * curve.strain / widest
-        up = top + height * (1 - curve.stress_n_per_mm / tallest)
+    for index, (direction, strain) in enumerate(strains.items()):
+        across, up = left + width * strain / widest, top + height * (1 - stress / tallest)
         lines = np.stack([across[:-1], up[:-1], across[1:], up[1:]], axis=1).tolist()
         drawn = tuple((a, b, c, d) for a, b, c, d in lines)
         ink = _DIRECTION_INK[direction]
         yield Strokes(drawn, ink, 0.5)
         line = top + 5.0 + 5.0 * index
         yield Strokes(((left + 4.0, line - 1.0, left + 11.0, line - 1.0),), ink, 0.5)
-        yield Label(left + 13.0, line, f"{direction} ({curve.provenance})", 2.8)
+        yield Label(left + 13.0, line, f"{direction} ({found.provenance})", 2.8)
 
 
 def _assumptions(said: Sequence[str], top: float) -> Iterator[Shape]:

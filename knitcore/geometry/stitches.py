@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
 from knitcore.geometry.fabrics import (
@@ -102,12 +103,12 @@ def stitch_shapes(chart: StitchChart, material: Material) -> StitchShapes:
 
 
 def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | None:
-    repeat = chart.repeat_cut()
-    if repeat.rows * repeat.columns > MOST_STORED:
+    repeat = Repeat.of(chart)
+    if repeat.fabric is not None:
+        return None  # its quarters are exact
+    if repeat.chart.rows * repeat.chart.columns > MOST_STORED:
         return None
-    if len(set(quarter_phases(repeat, periodic=True).ravel().tolist())) == 1:
-        return None  # a pure fabric: its quarters are exact
-    return stored_stitch(repeat, stored_material(material))
+    return stored_stitch(repeat.chart, stored_material(material))
 
 
 def _of_stored(

@@ -1,17 +1,119 @@
-"""Phases in series or in parallel: the responses that ribs and welts are made of."""
+"""How a sheet stretches under stress along one direction while the other is free.
+
+Whatever the strains come from (a law, phases in series or in parallel, a table), a response has a
+modulus and gives the strain at a stress.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 
 Array = NDArray[np.float64]
+
+
+class Response(Protocol):
+    """Stretch of a sheet pulled along one direction."""
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Young's modulus at no stress."""
+        ...
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Engineering strains at stresses (N/mm, at least 0); both arrays of one shape."""
+        ...
+
+
+@dataclass(frozen=True)
+class LawResponse:
+    """The response of a constitutive law."""
+
+    law: ConstitutiveLaw
+    direction: Direction
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Young's modulus of the law."""
+        return self.law.modulus(self.direction)
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        return free_strains_at_stress(self.law, self.direction, stress)
+
+
+@dataclass(frozen=True)
+class Stiffened:
+    """A response that needs ``factor`` times the stress for every strain."""
+
+    response: Response
+    factor: float
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Young's modulus."""
+        return self.factor * self.response.modulus_n_per_mm
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        return self.response.strain(np.asarray(stress, dtype=float) / self.factor)
+
+
+@dataclass(frozen=True, eq=False)
+class Tabled:
+    """A response through given points, smooth between them and a power of the stress beyond.
+
+    Parameters
+    ----------
+    modulus_n_per_mm : Young's modulus, held up to :data:`LINEAR_N_PER_MM`.
+    stress_n_per_mm, strains : (points,), increasing and above 0.
+    """
+
+    modulus_n_per_mm: float
+    stress_n_per_mm: Array
+    strains: Array
+
+    @cached_property
+    def _logs(self) -> PchipInterpolator:
+        stress = np.concatenate([[LINEAR_N_PER_MM], self.stress_n_per_mm])
+        strain = np.concatenate([[LINEAR_N_PER_MM / self.modulus_n_per_mm], self.strains])
+        return PchipInterpolator(np.log(stress), np.log(np.maximum.accumulate(strain)))
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        sigma = np.asarray(stress, dtype=float)
+        last = float(self.stress_n_per_mm[-1])
+        at = np.log(np.clip(sigma, LINEAR_N_PER_MM, last))
+        beyond = float(self._logs(np.log(last), 1)) * np.log(np.maximum(sigma / last, 1.0))
+        curved = np.exp(self._logs(at) + beyond)
+        return np.where(sigma < LINEAR_N_PER_MM, sigma / self.modulus_n_per_mm, curved)
+
+
+LINEAR_N_PER_MM = 1e-4
+"""Up to this stress a tabled response is linear."""
+
+_STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, 10.0, 600)])
+
+
+def stress_at_strain(response: Response, strain: ArrayLike) -> Array:
+    """Stresses (N/mm) at strains of at least 0; 10 N/mm where that stretches it less far."""
+    reached = np.maximum.accumulate(response.strain(_STRESSES))
+    grid, first = np.unique(reached, return_index=True)
+    wanted = np.asarray(strain, dtype=float)
+    # in logarithms, so that the first slope and the lock-up are met alike
+    logs = np.interp(
+        np.log(np.maximum(wanted, grid[1])), np.log(grid[1:]), np.log(_STRESSES[first][1:])
+    )
+    return np.where(wanted < grid[1], response.modulus_n_per_mm * wanted, np.exp(logs))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ parameters add up. The parameters are
   the material's modulus;
 - each fabric's coupling, at fixed moduli, with that of its Poisson ratios;
 - the logarithm of the shear modulus of all fabrics, where it is the assumed one;
-- the composite's own error (:mod:`knitcore.answer.uncertainty`), where fabrics are mixed: one of
+- the composite's own error (:mod:`knitcore.answer.composite`), where fabrics are mixed: one of
   the whole scale for the force, one of each fabric apart for strains.
 """
 
@@ -26,8 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.prediction import PATCHWORK_SHARE
-from knitcore.answer.uncertainty import MODEL_LOG_SD
+from knitcore.answer.composite import MODEL_LOG_SD
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.gridsolver.dissection import GridFactor
@@ -172,14 +171,14 @@ class StripSpread:
 
 
 def model_log_sd(sheet: Sheet) -> float:
-    """The composite's own error in a sheet, by the rule of predictions; 0 for one fabric."""
+    """The composite's own error in a sheet, by its share of stitches with mixed quarters."""
     grid = sheet.grid
     codes, there = grid.law_of_cell, grid.cloth[::2, ::2]
-    if len(np.unique(codes[grid.cloth])) == 1:
-        return 0.0
     quarters = np.stack([codes[i::2, j::2][there] for i in (0, 1) for j in (0, 1)])
     pure = float(np.mean(np.ptp(quarters, axis=0) == 0))
-    return MODEL_LOG_SD["patchwork" if pure >= PATCHWORK_SHARE else "flat"]
+    if len(np.unique(codes[grid.cloth])) == 1:
+        return 0.0
+    return pure * MODEL_LOG_SD["patchwork"] + (1 - pure) * MODEL_LOG_SD["flat"]
 
 
 def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Parameter]:

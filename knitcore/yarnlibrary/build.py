@@ -8,7 +8,6 @@ finished is kept in a folder, so a build that was stopped goes on where it was.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import sys
 from dataclasses import asdict
@@ -22,14 +21,12 @@ from knitcore.batch import BatchProgress, BatchResult, run_batch
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import material
-from knitcore.phases import reference_fabric
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlibrary.catalogue import COMMON, distinct_repeats
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.store import MATERIALS
 from knitcore.yarnlibrary.yarns import yarn_for
 
-_SIZES_FILE = Path(__file__).parents[1] / "answer" / "data" / "stored_sizes.csv"
 MOST_STITCHES = 8
 SQUARE = 3
 """Repeats of so many rows and columns are in the store too, though they have more stitches."""
@@ -47,14 +44,11 @@ def build(
     folder: Path,
     *,
     keep: Path,
-    sizes_file: Path,
     most_stitches: int = MOST_STITCHES,
     scheduler: str | None = None,
     workers: int | None = None,
 ) -> None:
     """Make all entries that `keep` does not hold, then write the store into `folder`.
-
-    The relaxed sizes go to `sizes_file` too, where the composite looks for them.
 
     Raises
     ------
@@ -83,7 +77,6 @@ def build(
             if "controls" in document:
                 controls[key] = np.asarray(document["controls"], dtype=np.float32)
     write_store(folder, entries, controls)
-    _write_sizes(sizes_file, entries)
 
 
 def write_store(
@@ -94,30 +87,6 @@ def write_store(
     text = f'{{"stitches": {{\n{lines}\n}}}}\n'
     (folder / "stitches.json").write_text(text, encoding="utf-8")
     np.savez_compressed(folder / "stitches.npz", **controls)  # type: ignore[arg-type]
-
-
-def _write_sizes(file: Path, entries: dict[str, Any]) -> None:
-    """Sizes over those of the pure fabric that each repeat resembles, at equal loop length."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["chart", "yarn", "course_ratio", "wale_ratio"])
-        for key, entry in entries.items():
-            material_id, _, text = key.partition("/")
-            chart = StitchChart.parse(text)
-            pure = StitchChart.of_fabric(reference_fabric(chart), 2, 2)
-            like = entries[f"{material_id}/{pure.canonical().key}"]
-            if chart == pure.canonical() or not (_settled(entry) and _settled(like)):
-                continue
-            shorter = like["loop_length_mm"] / entry["loop_length_mm"]
-            ratios = [
-                f"{entry[size] / like[size] * shorter:.4f}"
-                for size in ("cell_course_mm", "cell_wale_mm")
-            ]
-            writer.writerow([text, material_id, *ratios])
-
-
-def _settled(entry: dict[str, Any]) -> bool:
-    return bool(entry.get("converged", False))
 
 
 def _tasks(most_stitches: int) -> dict[str, RepeatTask]:
@@ -198,14 +167,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.build")
     parser.add_argument("--most-stitches", type=int, default=MOST_STITCHES)
     parser.add_argument("--folder", type=Path, default=Path(__file__).parent / "data")
-    parser.add_argument("--sizes-file", type=Path, default=_SIZES_FILE)
     parser.add_argument("--keep", type=Path, default=Path("build/stitches"))
     parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
     parser.add_argument("--workers", type=int, help="processes here; all cores if left out")
     chosen = parser.parse_args()
     build(
-        chosen.folder, keep=chosen.keep, sizes_file=chosen.sizes_file,
-        most_stitches=chosen.most_stitches, scheduler=chosen.scheduler, workers=chosen.workers,
+        chosen.folder, keep=chosen.keep, most_stitches=chosen.most_stitches,
+        scheduler=chosen.scheduler, workers=chosen.workers,
     )  # fmt: skip
 
 

@@ -24,6 +24,12 @@ FIELDS = {
     "extensibility_course_mm_per_n",
     "extensibility_wale_mm_per_n",
     "provenance",
+    "relaxed_course_mm",
+    "relaxed_wale_mm",
+    "relaxed_course_interval_mm",
+    "relaxed_wale_interval_mm",
+    "modulus_course_interval_n_per_mm",
+    "modulus_wale_interval_n_per_mm",
 }
 
 
@@ -98,9 +104,9 @@ def test_a_small_mixed_repeat_is_labelled_with_care(client: TestClient) -> None:
     rows = "\n".join(["KKPP" * 5] * 10)
     told = client.post("/api/v1/predict", json={"chart": rows, "material": "acrylic"}).json()
     assert told["provenance"] in (
-        "yarn level",
-        "composite, corrected",
-        "composite, stretched state only",
+        "swept",
+        "composite with known size",
+        "composite",
     )
 
 

@@ -243,9 +243,9 @@ export function sourceInWords(source) {
   const words = {
     measured: "Measured fabric",
     estimated: "Estimated fabric",
-    "yarn level": "From the yarn level, carried to the measured yarn",
-    "composite, corrected": "Composite of the four fabrics, corrected for folding",
-    "composite, stretched state only": "Flat composite: right when stretched, not certified at rest",
+    swept: "Stretched at the yarn level, carried to the measured yarn",
+    "composite with known size": "Composite of the four fabrics, corrected for folding",
+    composite: "Flat composite: right when stretched, folds at rest are not in it",
   };
   return words[source] ?? source;
 }

@@ -225,11 +225,11 @@ export function inWords({ index }, table) {
  */
 function mark(context, source, x, y, palette) {
   context.beginPath();
-  if (source === "yarn level") {
+  if (source === "swept") {
     context.rect(x - 3, y - 3, 6, 6);
     context.fillStyle = palette.text;
     context.fill();
-  } else if (source === "composite, corrected") {
+  } else if (source === "composite with known size") {
     context.arc(x, y, 4, 0, 2 * Math.PI);
     context.strokeStyle = palette.text;
     context.lineWidth = 1.5;

@@ -10,15 +10,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from knitcore import Fabric, InputError, StitchChart
-from knitcore.answer.chart_curve import chart_curve
-from knitcore.answer.prediction import predict
-from knitcore.answer.stored import known_repeat
+from knitcore import Fabric, InputError, StitchChart, predict
 from knitcore.batch import run_batch
-from knitcore.design.atlas import VALUES, Atlas, load_atlas, save_atlas
+from knitcore.design.atlas import STRESS_N_PER_MM, VALUES, Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
 from knitcore.design.cost import CostLimits, knitting_cost
-from knitcore.design.curves import STRESS_N_PER_MM, CurveMaker
 from knitcore.design.find import Limb, Quantity, Target, find_fabric
 from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
@@ -44,11 +40,10 @@ def test_pure_fabrics_have_their_measured_laws(fabric: Fabric) -> None:
 
 def test_repeats_of_the_store_have_their_yarn_level_law() -> None:
     basket = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
-    stored = known_repeat(basket.tile(2, 2), ACRYLIC)
-    assert stored is not None
     atlas = build_atlas(ACRYLIC, [basket])
-    assert atlas.provenance == ("yarn level",)
-    assert atlas.column("modulus_course_n_per_mm")[0] == pytest.approx(stored.law.modulus_course)
+    assert atlas.provenance == ("swept",)
+    found = predict(basket, ACRYLIC)
+    assert atlas.column("modulus_course_n_per_mm")[0] == found.modulus_course_n_per_mm
 
 
 def test_intervals_hold_their_values() -> None:
@@ -113,19 +108,6 @@ def test_curves_of_pure_fabrics_are_those_of_their_laws(fabric: Fabric) -> None:
             assert ATLAS.strain_at(direction, load)[index] == pytest.approx(exact, rel=0.005)
             back = ATLAS.stress_at(direction, exact)[index]
             assert back == pytest.approx(load, rel=0.01)
-
-
-def test_curves_of_mixed_repeats_are_near_the_full_solution() -> None:
-    """Lines of quarter cells in place of the nonlinear cell: 9 % at most in a larger study."""
-    curves = CurveMaker(ACRYLIC)
-    some = STRESS_N_PER_MM[[3, 6, 8]]
-    for text in ("KKP\nKPK", "KKPP\nPPKK\nKPKP"):
-        repeat = StitchChart.parse(text)
-        prediction = predict(repeat.tile(2, 2), ACRYLIC)
-        strains = curves.strains(repeat, prediction, None)[:, [3, 6, 8]]
-        for direction in Direction:
-            full = chart_curve(repeat.tile(2, 2), ACRYLIC, direction, some).strain
-            assert strains[direction.axis] == pytest.approx(full, rel=0.09)
 
 
 @pytest.mark.parametrize("direction", list(Direction))

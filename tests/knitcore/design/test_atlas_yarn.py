@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from knitcore import Fabric, InputError
-from knitcore.answer.composite import layout_of
+from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import build_atlas
@@ -55,7 +55,7 @@ class Relaxing:
 
 
 def yarn_level_keys(atlas: Atlas) -> set[str]:
-    return {k for k, source in zip(atlas.keys, atlas.provenance, strict=True) if "yarn" in source}
+    return {k for k, source in zip(atlas.keys, atlas.provenance, strict=True) if source == "swept"}
 
 
 def test_small_repeats_come_first_after_the_pure_fabrics(file: Path) -> None:
@@ -63,7 +63,7 @@ def test_small_repeats_come_first_after_the_pure_fabrics(file: Path) -> None:
     order = [len(key.replace("/", "")) for key in tasks]
     assert set(list(tasks)[:4]) == {key_of_pure(fabric) for fabric in Fabric}
     assert order[4:] == sorted(order[4:])
-    assert all(layout_of(StitchChart.parse(key)) is None for key in list(tasks)[4:])
+    assert all(Repeat.of(StitchChart.parse(key)).layout is None for key in list(tasks)[4:])
     assert len(yarn_level_tasks(WOOL, load_atlas(file).entries(), 4)) < len(tasks)
 
 

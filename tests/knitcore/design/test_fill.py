@@ -108,7 +108,7 @@ def test_a_wish_between_the_repeats_is_met_by_a_mixture() -> None:
     found = predict_repeat(StitchChart.parse(field.regions[0].repeat), ACRYLIC)
     for direction in Direction:
         wanted = hidden.modulus_n_per_mm(direction)
-        assert found.modulus_n_per_mm(direction) == pytest.approx(wanted, rel=0.05)
+        assert found.modulus_n_per_mm(direction) == pytest.approx(wanted, rel=0.08)
     assert field.off_share == 0
 
 

@@ -240,7 +240,7 @@ def test_the_composites_own_error_is_that_of_predictions() -> None:
     assert model_log_sd(chart_sheet(StitchChart.of_fabric("rib", 4, 4), ACRYLIC)) == 0.0
     small = chart_sheet(StitchChart.parse("KKPP\nPPKK"), ACRYLIC)
     blocks = StitchChart(np.kron([[0, 1], [1, 0]], np.ones((40, 40))) > 0)
-    assert model_log_sd(chart_sheet(blocks, ACRYLIC)) == 0.05
+    assert 0.05 < model_log_sd(chart_sheet(blocks, ACRYLIC)) < 0.1
     assert model_log_sd(small) > 0.5
 
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from knitcore.answer.prediction import Provenance, predict
+from knitcore import predict
+from knitcore.answer.answer import Source
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -95,7 +96,7 @@ def test_the_yarn_is_a_material_that_predicts(table: YarnTable, tmp_path) -> Non
     save_material_file(made, file)
     read = load_material_file(file)
     found = predict(StitchChart.of_fabric("garter", 4, 4), read)
-    assert found.provenance is Provenance.YARN_LEVEL
+    assert found.provenance is Source.SWEPT
     law = table.of(Fabric.GARTER)[1].law
     assert law is not None
     assert found.modulus_n_per_mm(Direction.WALE) == pytest.approx(law.modulus_wale, rel=1e-6)

@@ -1,0 +1,278 @@
+"""An answer: what a chart of a material does along both directions, how surely, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.answer.relaxed import RelaxedSize
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.response import LawResponse, Response, Stiffened, stress_at_strain
+from knitcore.materials.uncertainty import Z_SCORE, Interval, log_interval, normal_interval
+
+Array = NDArray[np.float64]
+
+
+class Source(StrEnum):
+    """Where an answer comes from."""
+
+    MEASURED = "measured"
+    ESTIMATED = "estimated"
+    SWEPT = "swept"
+    COMPOSITE_OF_SIZE = "composite with known size"
+    COMPOSITE = "composite"
+
+
+@dataclass(frozen=True, eq=False)
+class Along:
+    """What the cloth does when it is pulled along one direction, the other free.
+
+    Attributes
+    ----------
+    response : stretch under stress.
+    stiff, soft : the ends of its 90 % interval, as responses.
+    poisson, poisson_sd : contraction across the pull over the strain along it, at small strain.
+    relaxed_mm, relaxed_log_sd : extent of the mean stitch at rest, and the standard deviation of
+        its logarithm.
+    bounds_n_per_mm : of the modulus: Reuss and Voigt bounds of the flat composite, widened to the
+        modulus where folds put it outside.
+    """
+
+    response: Response
+    stiff: Response
+    soft: Response
+    poisson: float
+    poisson_sd: float
+    relaxed_mm: float
+    relaxed_log_sd: float
+    bounds_n_per_mm: Interval
+
+    @classmethod
+    def of_response(
+        cls,
+        response: Response,
+        log_sd: float,
+        poisson: tuple[float, float],
+        relaxed: tuple[float, float],
+        bounds: Iterable[float] = (),
+    ) -> Along:
+        """With one uncertainty of the whole scale of stress; the lock-up strain stays.
+
+        Parameters
+        ----------
+        log_sd : standard deviation of the logarithm of the stress at every strain.
+        poisson, relaxed : value and standard deviation (of the logarithm, for the size).
+        bounds : Reuss and Voigt bounds of the modulus, N/mm.
+        """
+        factor = float(np.exp(Z_SCORE * log_sd))
+        held = (response.modulus_n_per_mm, *bounds)
+        return cls(
+            response,
+            Stiffened(response, factor),
+            Stiffened(response, 1 / factor),
+            *poisson,
+            *relaxed,
+            bounds_n_per_mm=Interval(min(held), max(held)),
+        )
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Young's modulus at small strain."""
+        return self.response.modulus_n_per_mm
+
+    @property
+    def modulus_interval_n_per_mm(self) -> Interval:
+        """90 % interval of the modulus."""
+        return Interval(self.soft.modulus_n_per_mm, self.stiff.modulus_n_per_mm)
+
+    @property
+    def extensibility_interval_mm_per_n(self) -> Interval:
+        """90 % interval of 1 / Y."""
+        return Interval(1 / self.stiff.modulus_n_per_mm, 1 / self.soft.modulus_n_per_mm)
+
+    @property
+    def poisson_interval(self) -> Interval:
+        """90 % interval of the contraction."""
+        return normal_interval(self.poisson, self.poisson_sd)
+
+    @property
+    def relaxed_interval_mm(self) -> Interval:
+        """90 % interval of the relaxed extent."""
+        return log_interval(self.relaxed_mm, self.relaxed_log_sd)
+
+    def strain(self, stress_n_per_mm: ArrayLike) -> Array:
+        """Strains from the relaxed size at stresses (N/mm, at least 0)."""
+        return self.response.strain(_not_negative("stress", stress_n_per_mm))
+
+    def strain_interval(self, stress_n_per_mm: ArrayLike) -> tuple[Array, Array]:
+        """Lower and upper ends of the strains' 90 % intervals."""
+        stress = _not_negative("stress", stress_n_per_mm)
+        return self.stiff.strain(stress), self.soft.strain(stress)
+
+    def stress(self, strain: ArrayLike) -> Array:
+        """Stresses (N/mm) at strains of at least 0; at most 10 N/mm, which lock every cloth."""
+        return stress_at_strain(self.response, _not_negative("strain", strain))
+
+    def stress_interval(self, strain: ArrayLike) -> tuple[Array, Array]:
+        """Lower and upper ends of the stresses' 90 % intervals."""
+        wanted = _not_negative("strain", strain)
+        return stress_at_strain(self.soft, wanted), stress_at_strain(self.stiff, wanted)
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What a chart of a material does; intervals cover 90 %.
+
+    Attributes
+    ----------
+    course, wale : pulled along the rows, and along the columns.
+    shear_modulus_n_per_mm : an assumption of the laws unless they were calibrated.
+    provenance : the best source that answers.
+    method : how, in words.
+    relaxed_source : where the relaxed size comes from.
+    notes : what a user should know.
+    """
+
+    course: Along
+    wale: Along
+    shear_modulus_n_per_mm: float
+    provenance: Source
+    method: str
+    relaxed_source: str
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of_law(
+        cls,
+        law: ConstitutiveLaw,
+        relaxed: RelaxedSize,
+        *,
+        log_sd: tuple[float, float],
+        poisson_sd: tuple[float, float],
+        provenance: Source,
+        method: str,
+        notes: tuple[str, ...],
+    ) -> Answer:
+        """Of a sheet with one constitutive law."""
+        ratios = law.poisson_yx, law.poisson_xy
+        course, wale = (
+            Along.of_response(
+                LawResponse(law, d),
+                log_sd[d.axis],
+                (ratios[d.axis], poisson_sd[d.axis]),
+                (relaxed.extent_mm(d), relaxed.log_sd),
+            )
+            for d in Direction
+        )
+        return cls(course, wale, law.shear_modulus, provenance, method, str(relaxed.source), notes)
+
+    def along(self, direction: Direction) -> Along:
+        """The answer for a pull in a direction."""
+        return self.course if direction is Direction.COURSE else self.wale
+
+    def with_size(self, relaxed: RelaxedSize) -> Answer:
+        """The same stretch from another relaxed size."""
+        course, wale = (
+            replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
+            for d in Direction
+        )
+        return replace(self, course=course, wale=wale, relaxed_source=str(relaxed.source))
+
+    def modulus_n_per_mm(self, direction: Direction) -> float:
+        """Young's modulus in a direction."""
+        return self.along(direction).modulus_n_per_mm
+
+    # -- under the names that command line, REST and files use ------------------------------
+
+    @property
+    def modulus_course_n_per_mm(self) -> float:
+        """Young's modulus along the courses."""
+        return self.course.modulus_n_per_mm
+
+    @property
+    def modulus_wale_n_per_mm(self) -> float:
+        """Young's modulus along the wales."""
+        return self.wale.modulus_n_per_mm
+
+    @property
+    def modulus_course_interval_n_per_mm(self) -> Interval:
+        """Of the modulus along the courses."""
+        return self.course.modulus_interval_n_per_mm
+
+    @property
+    def modulus_wale_interval_n_per_mm(self) -> Interval:
+        """Of the modulus along the wales."""
+        return self.wale.modulus_interval_n_per_mm
+
+    @property
+    def modulus_course_bounds_n_per_mm(self) -> Interval:
+        """Bounds of the modulus along the courses."""
+        return self.course.bounds_n_per_mm
+
+    @property
+    def modulus_wale_bounds_n_per_mm(self) -> Interval:
+        """Bounds of the modulus along the wales."""
+        return self.wale.bounds_n_per_mm
+
+    @property
+    def extensibility_course_mm_per_n(self) -> float:
+        """1 / Y along the courses."""
+        return 1.0 / self.modulus_course_n_per_mm
+
+    @property
+    def extensibility_wale_mm_per_n(self) -> float:
+        """1 / Y along the wales."""
+        return 1.0 / self.modulus_wale_n_per_mm
+
+    @property
+    def poisson_yx(self) -> float:
+        """Contraction wale-wise under a course-wise pull."""
+        return self.course.poisson
+
+    @property
+    def poisson_xy(self) -> float:
+        """Contraction course-wise under a wale-wise pull."""
+        return self.wale.poisson
+
+    @property
+    def poisson_yx_interval(self) -> Interval:
+        """Of :attr:`poisson_yx`."""
+        return self.course.poisson_interval
+
+    @property
+    def poisson_xy_interval(self) -> Interval:
+        """Of :attr:`poisson_xy`."""
+        return self.wale.poisson_interval
+
+    @property
+    def relaxed_course_mm(self) -> float:
+        """Width of the mean stitch at rest."""
+        return self.course.relaxed_mm
+
+    @property
+    def relaxed_wale_mm(self) -> float:
+        """Height of the mean stitch at rest."""
+        return self.wale.relaxed_mm
+
+    @property
+    def relaxed_course_interval_mm(self) -> Interval:
+        """Of the width."""
+        return self.course.relaxed_interval_mm
+
+    @property
+    def relaxed_wale_interval_mm(self) -> Interval:
+        """Of the height."""
+        return self.wale.relaxed_interval_mm
+
+
+def _not_negative(field: str, values: ArrayLike) -> Array:
+    array = np.asarray(values, dtype=float)
+    if not np.all(np.isfinite(array)) or np.any(array < 0):
+        raise InputError(field, "must be finite and at least 0.", "Give, say, 0, 0.1, 0.2.")
+    return array

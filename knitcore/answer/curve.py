@@ -1,0 +1,83 @@
+"""Strains of a chart at given stresses, with their interval."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.answer.answer import Source
+from knitcore.answer.choose import choose
+from knitcore.answer.relaxed import RelaxedSize
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.materials import Material
+
+Array = NDArray[np.float64]
+
+DEFAULT_STRESS_N_PER_MM = tuple(float(s) for s in np.linspace(0.0, 0.3, 31))
+
+
+@dataclass(frozen=True, eq=False)
+class ChartCurve:
+    """A stress-strain curve of a chart, transverse direction free; arrays of one length.
+
+    Attributes
+    ----------
+    stress_n_per_mm : stresses, N/mm of relaxed width.
+    strain : from the relaxed size.
+    strain_low, strain_high : 90 % interval of the strain at each stress.
+    stress_low, stress_high : the same of the stress (N/mm) at each strain; at most 10 N/mm.
+    provenance : where it comes from.
+    """
+
+    stress_n_per_mm: Array
+    strain: Array
+    strain_low: Array
+    strain_high: Array
+    stress_low: Array
+    stress_high: Array
+    provenance: Source
+
+
+def curve(
+    chart: StitchChart,
+    material: Material,
+    direction: Direction | str,
+    stress_n_per_mm: ArrayLike = DEFAULT_STRESS_N_PER_MM,
+    *,
+    gauge: RelaxedSize | None = None,
+) -> ChartCurve:
+    """Strain of a chart at increasing stresses (N/mm).
+
+    Raises
+    ------
+    InputError
+        If the stresses are not finite, increasing and at least 0, or the chart needs a pure fabric
+        that the material lacks.
+
+    Examples
+    --------
+    >>> from knitcore.materials import material
+    >>> wide = curve(StitchChart.parse("KKPP"), material("acrylic"), "course", [0.1])
+    >>> pure = curve(StitchChart.parse("KP"), material("acrylic"), "course", [0.1])
+    >>> bool(wide.strain[0] > pure.strain[0])
+    True
+    """
+    stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
+    if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
+        raise InputError(
+            "stress", "must be finite, increasing and at least 0.", "Give, say, 0, 0.1, 0.2 N/mm."
+        )
+    answer = choose(chart, material, gauge)
+    along = answer.along(Direction.parse(direction))
+    strain = along.strain(stress)
+    return ChartCurve(
+        stress,
+        strain,
+        *along.strain_interval(stress),
+        *along.stress_interval(strain),
+        answer.provenance,
+    )

@@ -1,0 +1,38 @@
+"""Pure fabrics: their own law and gauge."""
+
+from __future__ import annotations
+
+from knitcore.answer.answer import Answer, Source
+from knitcore.answer.relaxed import RelaxedSize, SizeSource
+from knitcore.fabric import Fabric
+from knitcore.materials import Material, Origin
+
+CURL = (
+    "Stockinette curls: its sides roll to the back, its top and bottom edges to the face. The "
+    "moduli are those of a sheet held flat."
+)
+
+_SOURCES = {Origin.SIMULATED: Source.SWEPT, Origin.ESTIMATED: Source.ESTIMATED}
+
+
+def measured(fabric: Fabric, material: Material) -> Answer:
+    """What a pure fabric does, by the record of the material.
+
+    Raises
+    ------
+    InputError
+        If the material has no such fabric.
+    """
+    record = material.record(fabric)
+    spread = record.uncertainty
+    size = RelaxedSize(record.stitch_course_mm, record.stitch_wale_mm, SizeSource.MATERIAL)
+    notes = [CURL] if fabric is Fabric.STOCKINETTE else []
+    return Answer.of_law(
+        record.law,
+        size,
+        log_sd=(spread.log_modulus_course, spread.log_modulus_wale),
+        poisson_sd=(spread.poisson_yx, spread.poisson_xy),
+        provenance=_SOURCES.get(record.origin, Source.MEASURED),
+        method=f"law of {fabric}, {record.origin}; uncertainty: {spread.source}",
+        notes=(*notes, *([material.note] if material.note else [])),
+    )
