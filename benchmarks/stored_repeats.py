@@ -14,7 +14,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from knitcore.answer.relaxed import RelaxedSize, SizeSource, reference_fabric
+from knitcore.answer.composite import composite
+from knitcore.answer.folded import folded
+from knitcore.answer.relaxed import RelaxedSize, SizeSource
+from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import free_strains_at_stress
