@@ -21,9 +21,10 @@ from knitcore.materials.library import material
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.slide import SlideQuenching
-from knitcore.yarnlevel.published.sweep import stress_from_energies, sweep_published
+from knitcore.yarnlevel.published.stretch import PublishedStretch
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.samples import Sample, load_samples
+from knitcore.yarnlevel.sweep import follow
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.lawfit import SimulatedLaw, fit_law
 
@@ -71,16 +72,13 @@ def stretch(
     step = STEPS_MM[sample.fabric][direction.axis]
     rest = zero.cell_mm(direction)
     count = math.floor((0.85 * sample.loop_length_mm - rest) / step)
-    return sweep_published(
-        sample.fabric,
-        sample.yarn,
-        sample.loop_length_mm,
+    wanted = slide_quenching or SlideQuenching.default(sample.fabric, direction)
+    return follow(
+        PublishedStretch(zero, direction, wanted),
+        zero,
         direction,
-        count * step / rest,
-        count + 1,
-        slide_quenching=slide_quenching,
+        np.linspace(0.0, count * step / rest, count + 1),
         max_stress_n_per_mm=SWEEP_STRESS,
-        zero=zero,
     )
 
 
@@ -201,7 +199,7 @@ def remarks(outcomes: list[Outcome]) -> list[str]:
 
 def midpoint_difference(sweep: Sweep) -> float:
     """Largest difference (N/mm) of the two stresses in the fitted range, jumps left out."""
-    _, midpoint = stress_from_energies(sweep)
+    _, midpoint = sweep.stress_from_energies()
     exact = sweep.stress_n_per_mm
     smooth = np.array([i + 1 not in sweep.jumps for i in range(len(midpoint))])
     mean = 0.5 * (exact[1:] + exact[:-1])

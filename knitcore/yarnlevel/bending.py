@@ -42,8 +42,8 @@ from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.relax import RelaxedRepeat
 from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.splines import RelaxedRepeat
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 
 Array = NDArray[np.float64]

@@ -1,121 +1,62 @@
-"""Relax any repeat of knits and purls at the yarn level."""
+"""Relax any repeat of knits and purls at the yarn level, in any branch."""
 
 from __future__ import annotations
 
-import math
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from typing import Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from knitcore.chart import StitchChart
-from knitcore.choice import Choice
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
-from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
+from knitcore.errors import InputError
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.grip import Grip
-from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.published.relax import check_loop, check_size
-from knitcore.yarnlevel.results import RelaxedCell, StartReport
-from knitcore.yarnlevel.search import (
-    RELAXED,
-    UNSETTLED,
-    Search,
-    outcome,
-)
-from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.growth import Start
+from knitcore.yarnlevel.limits import Cancel
+from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.published.stitch import pure_fabric
+from knitcore.yarnlevel.results import Branch, RelaxedCell
 from knitcore.yarnlevel.spline import SplineGrid
-from knitcore.yarnlevel.tiling import centre_lines
+from knitcore.yarnlevel.splines import RelaxedRepeat, relax_splines
 from knitcore.yarnlevel.yarn import YarnModel
 
-Array = NDArray[np.float64]
-Cancel = Callable[[], bool]
-
-MAX_STITCHES = 100
-"""Largest cell that is solved; the unknowns fill a dense matrix."""
-FINE = SplineGrid(controls=20, per_span=4)
-COARSE = SplineGrid(controls=16, per_span=3)
-ROUGH = SplineGrid(controls=10, per_span=5)
-"""Large cells find their shape on this grid (energy within 2e-3) before they are refined."""
-ROUGH_FROM = 12
-_EXPLORED = 1e-5
-"""Tolerance of a shape that will be refined, and of its lengths."""
-FINE_UP_TO = 2
-"""Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
-SEVERAL_UP_TO = 9
-"""Cells of so many stitches get more than one start."""
-SECONDS_PER_START = 0.12
-"""CPU time of one start: this times the stitches to the power 1.5 (measured, on the high side)."""
-_STRIDE = 0.03
-"""Longest step to a prescribed size, as a part of the loop length."""
-
-MIRRORED_STARTS = (
-    Start("usual"),
-    Start("wide", course=1.15, wale=0.85),
-)
-FREE_STARTS = (
-    Start("asymmetric", noise=0.01, seed=1),
-    Start("asymmetric, narrow", course=0.85, wale=1.1, noise=0.02, seed=2),
-)
-_SHAKES = (7, 8)
-"""Seeds of the displacements with which the mirrored state is left."""
+__all__ = ["Branch", "RelaxedRepeat", "relax"]
 
 
-class Branch(Choice):
-    """Which shapes are admitted."""
+@overload
+def relax(  # type: ignore[overload-overlap]
+    chart: StitchChart,
+    yarn: YarnModel,
+    loop_length_mm: ArrayLike,
+    *,
+    branch: Literal[Branch.PUBLISHED, "published"],
+    convention: Convention | str = ...,
+    cell_course_mm: float | None = ...,
+    cell_wale_mm: float | None = ...,
+    flat: bool = ...,
+    grid: SplineGrid | None = ...,
+    starts: Sequence[Start] | None = ...,
+    time_limit_s: float | None = ...,
+    cancel: Cancel | None = ...,
+) -> RelaxedCell: ...
 
-    PUBLISHED = "published"
-    MIRRORED = "mirrored"
-    FREE = "free"
 
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class RelaxedRepeat(RelaxedCell):
-    """A relaxed repeat on splines (branches ``mirrored`` and ``free``).
-
-    Attributes
-    ----------
-    chart : the repeat that the centre lines show; in the free branch at least two stitches each
-        way, as they need not look alike there.
-    yarn : the yarn.
-    loop_lengths_mm : length of yarn per stitch of every course of the cell, (rows,), or of every
-        stitch, (rows, wales).
-    cell : shape space; ``state`` are its unknowns.
-    tension_n : tension of every course (or stitch) of the cell, then what holds it flat.
-    force_n : dE/d(size of a stitch) of one stitch, course-wise and wale-wise.
-    min_distance_mm : smallest distance of centre lines.
-    flat : the middles of all stitches were held in one plane.
-    grips : where the yarn was kept from sliding.
-    """
-
-    chart: StitchChart
-    yarn: YarnModel
-    loop_lengths_mm: Array
-    cell: YarnCell
-    tension_n: Array
-    force_n: tuple[float, float]
-    min_distance_mm: float
-    flat: bool = False
-    grips: tuple[Grip, ...] = ()
-
-    @property
-    def control_points(self) -> Array:
-        """(courses, controls, 3) of the solved cell, mm, with the drift of the cell."""
-        points = self.cell.controls(self.state)
-        count = self.cell.controls_per_course
-        points[..., 0] += self.cell_course_mm * np.arange(count) / self.cell.grid.controls
-        points[..., 1] += self.cell_wale_mm * np.arange(self.cell.rows)[:, None]
-        return points
-
-    @property
-    def energy(self) -> CellEnergy:
-        """The energy whose minimum this is."""
-        return CellEnergy(
-            self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat, self.grips
-        )
+@overload
+def relax(
+    chart: StitchChart,
+    yarn: YarnModel,
+    loop_length_mm: ArrayLike,
+    *,
+    branch: Branch | str = ...,
+    convention: Convention | str = ...,
+    cell_course_mm: float | None = ...,
+    cell_wale_mm: float | None = ...,
+    flat: bool = ...,
+    grid: SplineGrid | None = ...,
+    starts: Sequence[Start] | None = ...,
+    time_limit_s: float | None = ...,
+    cancel: Cancel | None = ...,
+) -> RelaxedRepeat: ...
 
 
 def relax(
@@ -132,7 +73,7 @@ def relax(
     starts: Sequence[Start] | None = None,
     time_limit_s: float | None = None,
     cancel: Cancel | None = None,
-) -> RelaxedRepeat:
+) -> RelaxedCell:
     """Shape of least energy of a repeat, free of force unless a size is prescribed.
 
     Parameters
@@ -143,7 +84,8 @@ def relax(
         first), or (rows, columns), one for every stitch, from the lowest point of the yarn before
         it to that after it. Where they do not repeat with the chart, the whole chart is the cell.
     branch : ``mirrored`` imposes the symmetries of the chart, ``free`` none (it also continues the
-        mirrored state, shaken, and keeps the lowest).
+        mirrored state, shaken, and keeps the lowest). ``published`` is the paper's own
+        description: a stitch of a pure fabric with one loop length.
     convention : factors of the energy.
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
     flat : hold the middles of all stitches in one plane, as a fabric laid flat; folds are kept out.
@@ -156,205 +98,26 @@ def relax(
     ------
     InputError
         If the loop is too short or too long for the yarn, a size is out of reach, the cell is too
-        large, or a name is not known.
+        large, the branch cannot do what is asked, or a name is not known.
     ConvergenceError
         If no start relaxed.
     UnravelledError
         If every start lost its topology.
     """
     kind, factors = Branch.parse(branch), Convention.parse(convention)
-    if kind is Branch.PUBLISHED:
+    if kind is not Branch.PUBLISHED:
+        return relax_splines(
+            chart, yarn, loop_length_mm, branch=kind, convention=factors,
+            sizes_mm=(cell_course_mm, cell_wale_mm), flat=flat, grid=grid, starts=starts,
+            time_limit_s=time_limit_s, cancel=cancel,
+        )  # fmt: skip
+    if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:
         raise InputError(
-            "branch", "the published ansatz is not a spline.", "Use relax_published for it."
+            "branch",
+            "the published branch has one loop length, its own curves and starts, and no plane.",
+            "Use mirrored or free.",
         )
-    repeat, lengths = _loop_lengths(loop_length_mm, chart)
-    for length in lengths.ravel():
-        check_loop(yarn, float(length))
-    uniform = bool(np.ptp(lengths) == 0.0)
-    sizes = cell_course_mm, cell_wale_mm
-    for name, size in zip(("cell_course_mm", "cell_wale_mm"), sizes, strict=True):
-        check_size(name, size, float(lengths.mean()))
-    draft = (mirrored_cell if kind is Branch.MIRRORED else free_cell)(repeat, COARSE)
-    if not uniform:
-        draft = plain_cell(repeat, COARSE)
-    if grid is None:
-        grid = FINE if draft.stitches <= FINE_UP_TO else COARSE
-    first = ROUGH if draft.stitches >= ROUGH_FROM else COARSE
-    explored = grid if grid.controls <= first.controls else first
-    if kind is Branch.FREE:  # neighbouring repeats need not look alike there
-        repeat = StitchChart(draft.purl)
-    chosen = _starts(kind, draft, starts)
-    shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else 1]
-    shakes = shakes if kind is Branch.FREE and uniform else ()
-    if not chosen and not shakes:
-        raise InputError("starts", "there is none.", "Give at least one, or leave them out.")
-    _check_cell(draft, len(chosen) + len(shakes), time_limit_s)
-    if lengths.ndim == 1:
-        lengths = np.resize(lengths, draft.rows)
-    energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, factors, flat)
-    options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
-    _compile()
-    clock = time.process_time()
-    enough = options if explored == grid else replace(options, tolerance=_EXPLORED, slack=_EXPLORED)
-    search = Search(energy, enough, cancel)
-    if shakes:
-        small = mirrored_cell(repeat, explored)
-        smaller = replace(energy, cell=small, loop_length_mm=np.resize(lengths, small.rows))
-        search.continue_from(smaller, _starts(Branch.MIRRORED, small, None), shakes)
-    search.try_starts(chosen)
-    best = search.best()
-    if explored != grid:
-        energy = replace(energy, cell=replace(draft, grid=grid))
-        best = search.refined(energy, options)
-    if any(size is not None for size in sizes):
-        best = _held_at(energy, best, sizes, options, cancel)
-    return relaxed_repeat(
-        repeat, energy, kind, best, seconds=time.process_time() - clock,
-        evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
+    return relax_published(
+        pure_fabric(chart), yarn, np.asarray(loop_length_mm, dtype=float).item(),
+        cell_course_mm, cell_wale_mm, factors, cancel=cancel,
     )  # fmt: skip
-
-
-def relaxed_repeat(
-    chart: StitchChart, energy: CellEnergy, branch: Branch, found: Minimum, *,
-    seconds: float, evaluations: int,
-    starts: tuple[StartReport, ...] = (), notes: tuple[str, ...] = (),
-) -> RelaxedRepeat:  # fmt: skip
-    """A minimum as a result, per stitch."""
-    terms, cell = found.terms, energy.cell
-    excess = terms.excess_mm[: len(energy.prescribed_mm)].sum()
-    return RelaxedRepeat(
-        branch=branch.value,
-        convention=energy.convention,
-        cell_course_mm=float(found.state[-2]),
-        cell_wale_mm=float(found.state[-1]),
-        energy_n_mm=terms.energy / cell.stitches,
-        bending_share=terms.rod / terms.energy,
-        contact_share=terms.contact / terms.energy,
-        yarn_length_mm=energy.mean_loop_mm + float(excess) / cell.stitches,
-        seconds=seconds,
-        evaluations=evaluations,
-        converged=found.converged,
-        centre_lines=centre_lines(cell, found.state, chart.rows, chart.columns),
-        state=found.state,
-        notes=notes,
-        chart=chart,
-        yarn=energy.yarn,
-        loop_lengths_mm=energy.loop_length_mm,
-        cell=cell,
-        tension_n=found.tension,
-        force_n=(float(found.force[0] / cell.stitches), float(found.force[1] / cell.stitches)),
-        min_distance_mm=found.min_distance_mm,
-        starts=starts,
-        flat=energy.flat,
-        grips=energy.grips,
-    )
-
-
-def _starts(kind: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> Sequence[Start]:
-    if starts is not None:
-        return starts
-    if kind is Branch.FREE:
-        return FREE_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
-    return MIRRORED_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
-
-
-def _check_cell(cell: YarnCell, starts: int, time_limit_s: float | None) -> None:
-    if cell.stitches > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its cell has {cell.stitches} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
-    if time_limit_s is None:
-        return
-    if not time_limit_s > 0.0:
-        raise InputError("time_limit_s", f"{time_limit_s} is no time.", "Give seconds above 0.")
-    seconds = starts * SECONDS_PER_START * cell.stitches**1.5
-    if seconds > time_limit_s:
-        most = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
-        raise InputError(
-            "chart",
-            f"its cell of {cell.stitches} stitches would take about {seconds:.0f} s, more than the "
-            f"limit of {time_limit_s:g} s.",
-            f"Use a repeat of at most {max(most, 1)} stitches, or allow more time.",
-        )
-
-
-def _held_at(
-    energy: CellEnergy, found: Minimum, sizes: tuple[float | None, float | None],
-    options: Options, cancel: Cancel | None,
-) -> Minimum:  # fmt: skip
-    """Walk from the force-free state to prescribed sizes."""
-    places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
-    goal = np.array([0.0 if size is None else size for size in sizes])
-    begin = found.state[-2:].copy()
-    natural = f"{begin[0]:.2f} x {begin[1]:.2f} mm"
-    way = np.where([size is not None for size in sizes], goal - begin, 0.0)
-    count = max(1, math.ceil(float(np.abs(way).max()) / (_STRIDE * energy.mean_loop_mm)))
-    for k in range(1, count + 1):
-        reached = found.state[-2:]
-        nearer = (
-            f"Give one nearer to the natural {natural}; {reached[0]:.2f} x {reached[1]:.2f} mm "
-            "was reached."
-        )
-        try:
-            found = minimise(
-                energy, found.state, tension=found.tension, fixed=tuple(places),
-                target=begin + way * k / count, options=options, cancel=cancel,
-            )  # fmt: skip
-        except (ConvergenceError, UnravelledError) as error:
-            raise type(error)(f"No equilibrium at this size: {error} {nearer}") from error
-        became = outcome(energy, found)
-        if became == "unravelled":
-            raise UnravelledError(f"The stitches come undone on the way to this size. {nearer}")
-        if became not in (RELAXED, UNSETTLED):
-            raise ConvergenceError(f"No equilibrium at this size: {became}. {nearer}")
-    return found
-
-
-def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[StitchChart, Array]:
-    """Repeat and its loop lengths: (rows,), or (rows, columns) where stitches differ."""
-    try:
-        lengths = np.atleast_1d(np.asarray(loop_length_mm, dtype=float))
-    except ValueError as error:
-        raise InputError(
-            "loop_length_mm", "is not a table of numbers.", "Give mm for every stitch."
-        ) from error
-    repeat = chart.repeat()
-    if lengths.ndim == 2 and lengths.shape in (chart.purl.shape, repeat.purl.shape):
-        if np.all(lengths == lengths[:, :1]):
-            return _loop_lengths(lengths[:, 0], chart)
-        small = lengths[: repeat.rows, : repeat.columns]
-        tiles = (lengths.shape[0] // repeat.rows, lengths.shape[1] // repeat.columns)
-        if np.array_equal(np.tile(small, tiles), lengths):
-            return repeat, small
-        return chart, lengths
-    if lengths.ndim != 1 or len(lengths) not in (1, chart.rows, repeat.rows):
-        raise InputError(
-            "loop_length_mm",
-            f"{' x '.join(map(str, lengths.shape))} lengths were given for {repeat.rows} courses "
-            f"of {repeat.columns} stitches.",
-            "Give one length, one for every course, or one for every stitch of the repeat.",
-        )
-    if len(lengths) == chart.rows and not np.array_equal(
-        lengths, np.resize(lengths[: repeat.rows], len(lengths))
-    ):
-        return chart, lengths
-    return repeat, np.resize(lengths, repeat.rows)
-
-
-_COMPILED: list[bool] = []
-
-
-def _compile() -> None:
-    """Compile (or load) the kernels once, so that the time of a solve is the solve's."""
-    if _COMPILED:
-        return
-    yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1)
-    cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(8, 4))
-    found = grow(
-        cell, yarn, np.array([12.0]), Convention.PUBLISHED, MIRRORED_STARTS[0],
-        options=Options(iterations=2),
-    )  # fmt: skip
-    outcome(CellEnergy(cell, yarn, np.array([12.0]), Convention.PUBLISHED), found)
-    _COMPILED.append(True)

@@ -7,30 +7,21 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from knitcore.errors import InputError
+from knitcore.chart import StitchChart
+from knitcore.choice import Choice
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.yarn import YarnModel
 
 FloatArray = npt.NDArray[np.float64]
 
-MAX_POINTS = 1000
-"""Most points of a sweep."""
 
+class Branch(Choice):
+    """Which shapes of the yarn are admitted."""
 
-def check_stress_limit(max_stress_n_per_mm: float | None) -> None:
-    """Refuse a stress that cannot end a stretch (infinity never does).
-
-    Raises
-    ------
-    InputError
-        If it is not above 0.
-    """
-    if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
-        raise InputError(
-            "max_stress_n_per_mm",
-            f"{max_stress_n_per_mm} N/mm ends no stretch.",
-            "Give a stress above 0.",
-        )
+    PUBLISHED = "published"
+    MIRRORED = "mirrored"
+    FREE = "free"
 
 
 @dataclass(frozen=True)
@@ -57,8 +48,13 @@ class RelaxedCell:
 
     Parameters
     ----------
-    branch : the shape space: ``published``, ``mirrored`` or ``free``.
+    branch : the shapes that were admitted.
     convention : the factors of the energy.
+    chart : the repeat that the centre lines show; in the free branch at least two stitches each
+        way, as they need not look alike there.
+    yarn : the yarn.
+    loop_lengths_mm : length of yarn per stitch of every course of the solved cell, (rows,), or of
+        every stitch, (rows, wales).
     cell_course_mm, cell_wale_mm : size of one stitch, mm (of a repeat: its mean stitch).
     energy_n_mm : energy of one stitch, N·mm, all terms.
     bending_share : share of bending and regularisation in it.
@@ -67,6 +63,8 @@ class RelaxedCell:
     seconds : CPU time it took.
     evaluations : evaluations of the energy with its gradient.
     converged : whether the optimiser reached its tolerance.
+    force_n : dE/d(size of a stitch) of one stitch, course-wise and wale-wise.
+    min_distance_mm : smallest distance of centre lines that may touch.
     centre_lines : centre lines, mm, shape (courses, points, 3), bottom course first: each runs
         once across the repeat.
     state : unknowns of the branch, from which it can go on.
@@ -74,8 +72,11 @@ class RelaxedCell:
     starts : all starts and what became of them.
     """
 
-    branch: str
+    branch: Branch
     convention: Convention
+    chart: StitchChart
+    yarn: YarnModel
+    loop_lengths_mm: FloatArray
     cell_course_mm: float
     cell_wale_mm: float
     energy_n_mm: float
@@ -85,6 +86,8 @@ class RelaxedCell:
     seconds: float
     evaluations: int
     converged: bool
+    force_n: tuple[float, float]
+    min_distance_mm: float
     centre_lines: FloatArray
     state: FloatArray
     notes: tuple[str, ...] = ()
@@ -140,6 +143,28 @@ class Sweep:
     def contact_share(self) -> FloatArray:
         """Share of contact in the energy at each cell."""
         return np.array([cell.contact_share for cell in self.cells])
+
+    @property
+    def contact_overtakes_at_strain(self) -> float | None:
+        """Strain at which contact first holds half of the energy (linear between points).
+
+        0 if it does so from the start, None if bending leads throughout (paper, Fig. S7).
+        """
+        above = np.flatnonzero(self.contact_share >= 0.5)
+        if not len(above):
+            return None
+        pair = slice(max(above[0] - 1, 0), above[0] + 1)
+        return float(np.interp(0.5, self.contact_share[pair], self.strain[pair]))
+
+    def stress_from_energies(self) -> tuple[FloatArray, FloatArray]:
+        """Strain and stress (N/mm) between the points, by the paper's midpoint rule.
+
+        It differs from ``stress_n_per_mm`` at jumps, and in the published branch where pairs of
+        points enter or leave the exclusion along the yarn (the energy as published steps there).
+        """
+        size, width = self.zero.cell_mm(self.direction), self.zero.cell_mm(self.direction.other)
+        middle: FloatArray = 0.5 * (self.strain[1:] + self.strain[:-1])
+        return middle, np.diff(self.energy_n_mm) / (np.diff(self.strain) * size * width)
 
     @property
     def seconds(self) -> float:

@@ -22,8 +22,8 @@ from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import SegmentGeometry
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.relax import RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.splines import RelaxedRepeat
 from knitcore.yarnlevel.tiling import centre_lines
 from knitcore.yarnlevel.yarn import YarnModel
 

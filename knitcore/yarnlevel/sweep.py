@@ -1,4 +1,4 @@
-"""Stretch a relaxed repeat course-wise or wale-wise, there and back.
+"""Stretch a relaxed repeat course-wise or wale-wise, there and back, in any branch.
 
 At every size of the stretched direction the other one is free of force. The force is the partial
 derivative of the energy with respect to the size at the minimum, so no energies are differenced.
@@ -10,45 +10,60 @@ the energy changes by other than the work done, the sweep has jumped.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.grip import grips_at
 from knitcore.yarnlevel.jumps import find_jumps
-from knitcore.yarnlevel.relax import (
-    Branch,
-    RelaxedRepeat,
-    relaxed_repeat,
-)
-from knitcore.yarnlevel.results import MAX_POINTS, Sweep, check_stress_limit
-from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
-from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
-from knitcore.yarnlevel.topology import Guard
-
-Cancel = Callable[[], bool]
+from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_stretch
+from knitcore.yarnlevel.published.stretch import PublishedStretch
+from knitcore.yarnlevel.results import FloatArray, RelaxedCell, Sweep
+from knitcore.yarnlevel.search import SAME_ENERGY
+from knitcore.yarnlevel.spline_stretch import SplineStretch
+from knitcore.yarnlevel.splines import RelaxedRepeat
 
 DEFAULT_POINTS = 25
-STRAIGHT = 0.97
-"""A stitch is pulled straight when its size nears this part of its loop length."""
 _OFF_WORK = 0.1
 """A change of energy that misses the work done by this part of it may be a jump."""
-_AT_REST = 1e-2
-"""Force times size, as a part of the energy, up to which a state counts as free of force."""
+_AT_REST = 5e-2
+"""Force times size, as a part of the energy, up to which a state counts as free of force (published
+garter rests on a constraint of its curves)."""
+_LOWER = 1e-6
+"""How much lower, relatively, the way back must be to replace the way out."""
+
+
+class Stretch(Protocol):
+    """How the states of a branch follow each other along a direction."""
+
+    @property
+    def note(self) -> str:
+        """What holds the yarn besides its lengths; empty where nothing does."""
+        ...
+
+    def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
+        """The equilibrium at a size, from the last states on the way to it (none: from rest).
+
+        Raises
+        ------
+        ConvergenceError, UnravelledError
+            If the yarn locks or comes undone before it gets there.
+        """
+        ...
 
 
 def sweep(
-    zero: RelaxedRepeat,
+    zero: RelaxedCell,
     direction: Direction | str,
     max_strain: float,
     *,
     points: int = DEFAULT_POINTS,
     max_stress_n_per_mm: float | None = None,
     back: bool = True,
-    slide_quenching: bool = False,
+    slide_quenching: bool | None = None,
     cancel: Cancel | None = None,
 ) -> Sweep:
     """Stretch in one direction, the other free of force.
@@ -61,8 +76,9 @@ def sweep(
     points : number of strains, the first of them 0.
     max_stress_n_per_mm : stop the way out beyond this nominal stress.
     back : also go back from the end and keep the lower state of each strain.
-    slide_quenching : keep the yarn from sliding where it touches at rest (the paper does so for
-        seed along the course); see :mod:`knitcore.yarnlevel.grip`.
+    slide_quenching : keep the yarn from sliding where it touches at rest; by default only in the
+        published branch, and there as the paper did, for seed along the course.
+    cancel : asked before every point; True stops with CancelledError.
 
     Raises
     ------
@@ -72,99 +88,70 @@ def sweep(
         If ``cancel`` says so.
     """
     along = Direction.parse(direction)
-    if not (np.isfinite(max_strain) and max_strain > 0.0):
-        raise InputError("max_strain", f"{max_strain} is no stretch.", "Give a strain above 0.")
-    if not 2 <= points <= MAX_POINTS:
-        raise InputError("points", f"{points} cannot be used.", f"Give 2 to {MAX_POINTS}.")
-    check_stress_limit(max_stress_n_per_mm)
+    check_stretch(max_strain, points, max_stress_n_per_mm)
     _check_rest(zero)
+    if isinstance(zero, RelaxedRepeat):
+        stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancel)
+    else:
+        stretch = PublishedStretch.of(zero, along, slide_quenching)
+    return follow(
+        stretch, zero, along, np.linspace(0.0, max_strain, points),
+        max_stress_n_per_mm=max_stress_n_per_mm, back=back, cancel=cancel,
+    )  # fmt: skip
+
+
+def follow(
+    stretch: Stretch, zero: RelaxedCell, along: Direction, strain: FloatArray, *,
+    max_stress_n_per_mm: float | None = None, back: bool = True, cancel: Cancel | None = None,
+) -> Sweep:  # fmt: skip
+    """The sweep of a relaxed state at given strains (see :func:`sweep`)."""
     rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
-    strain = np.linspace(0.0, max_strain, points)
-    notes = list(zero.notes)
-    if slide_quenching:
-        zero = gripped(zero)
-        notes.append(f"Slide quenching: {len(zero.grips)} slides are held.")
-    outward: list[RelaxedRepeat] = []
-    last = _held(zero, along, rest, cancel)
+    notes = [*zero.notes, *filter(None, [stretch.note])]
+    best: list[RelaxedCell] = []
     for target in rest * (1.0 + strain):
+        check_cancelled(cancel)
         try:
-            last = _walked(last, along, float(target), cancel)
+            best.append(_timed(stretch, best[-2:], float(target)))
         except (ConvergenceError, UnravelledError) as error:
-            reached = last.cell_mm(along) / rest - 1.0
+            reached = best[-1].cell_mm(along) / rest - 1.0 if best else 0.0
             notes.append(
                 f"Stopped between strain {reached:.3g} and {target / rest - 1.0:.3g}: {error} "
                 "Ask for less, or for more points."
             )
             break
-        outward.append(last)
-        stress = last.force_n[along.axis] / width
+        stress = best[-1].force_n[along.axis] / width
         if max_stress_n_per_mm is not None and stress > max_stress_n_per_mm:
             break
-    best = list(outward)
-    lower: set[int] = set()
-    if back and len(outward) > 1:
-        last = outward[-1]
-        for i in range(len(outward) - 2, -1, -1):
-            try:
-                last = _held(last, along, outward[i].cell_mm(along), cancel)
-            except (ConvergenceError, UnravelledError) as error:
-                notes.append(f"The way back stopped at point {i}: {error}")
-                break
-            if last.energy_n_mm < outward[i].energy_n_mm * (1.0 - SAME_ENERGY):
-                best[i] = last
-                lower.add(i)
-    if 0 in lower:
+    other: set[int] = set()
+    for i in range(len(best) - 2, -1, -1) if back else ():
+        check_cancelled(cancel)
+        try:
+            returned = _timed(stretch, best[i + 1 : i + 2], best[i].cell_mm(along))
+        except (ConvergenceError, UnravelledError) as error:
+            notes.append(f"The way back stopped at point {i}: {error}")
+            break
+        ratio = returned.energy_n_mm / best[i].energy_n_mm
+        if ratio < 1.0 - SAME_ENERGY:
+            other.add(i)
+        if ratio < 1.0 - _LOWER:
+            best[i] = returned
+    if 0 in other:
         notes.append("The way back ends in a state lower than that at rest.")
     # the way back leaves the lower states before the first of them
-    jumps = {i for i in lower if i > 0 and i - 1 not in lower} | _abrupt(best, along)
+    jumps = {i for i in other if i > 0 and i - 1 not in other} | _abrupt(best, along)
     if jumps:
         notes.append(f"{len(jumps)} jump(s): the shape changes abruptly, there or on the way back.")
     stress_n_per_mm = np.array([cell.force_n[along.axis] / width for cell in best])
     return Sweep(along, zero, tuple(best), stress_n_per_mm, tuple(sorted(jumps)), tuple(notes))
 
 
-def _walked(
-    cell: RelaxedRepeat, along: Direction, size_mm: float, cancel: Cancel | None, halvings: int = 3
-) -> RelaxedRepeat:
-    """As :func:`_held`, in smaller steps where one is too long."""
-    try:
-        return _held(cell, along, size_mm, cancel)
-    except (ConvergenceError, UnravelledError):
-        if halvings == 0:
-            raise
-        middle = (cell.cell_mm(along) + size_mm) / 2.0
-        half = _walked(cell, along, middle, cancel, halvings - 1)
-        return _walked(half, along, size_mm, cancel, halvings - 1)
-
-
-def _held(
-    cell: RelaxedRepeat, along: Direction, size_mm: float, cancel: Cancel | None
-) -> RelaxedRepeat:
-    """The relaxed state with one size prescribed, continued from another state."""
-    if size_mm > STRAIGHT * float(cell.loop_lengths_mm.max()):
-        raise ConvergenceError("the yarn is pulled straight.")
+def _timed(stretch: Stretch, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
     began = time.process_time()
-    target = np.array([size_mm, size_mm])
-    options = Options(tolerance=1e-8 if cell.cell.stitches <= 4 else 1e-6, iterations=80)
-    found: Minimum = minimise(
-        cell.energy, cell.state, tension=cell.tension_n,
-        fixed=(COURSE if along is Direction.COURSE else WALE,), target=target,
-        options=options, cancel=cancel,
-    )  # fmt: skip
-    became = outcome(cell.energy, found)
-    if became == "unravelled":
-        raise UnravelledError("the stitches come undone.")
-    if became not in (RELAXED, UNSETTLED, "pulled straight"):
-        raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
-    if abs(found.state[along.axis - 2] - size_mm) > 1e-9:
-        raise ConvergenceError("the yarn locks before it gets there.")
-    return relaxed_repeat(
-        cell.chart, cell.energy, Branch(cell.branch), found,
-        seconds=time.process_time() - began, evaluations=found.evaluations,
-    )  # fmt: skip
+    found = stretch.reach(known, size_mm)
+    return replace(found, seconds=time.process_time() - began)
 
 
-def _check_rest(zero: RelaxedRepeat) -> None:
+def _check_rest(zero: RelaxedCell) -> None:
     """Refuse a state that is held: strain and stress would not start from rest."""
     sizes = zero.cell_course_mm, zero.cell_wale_mm
     work = max(abs(f) * size for f, size in zip(zero.force_n, sizes, strict=True))
@@ -176,19 +163,22 @@ def _check_rest(zero: RelaxedRepeat) -> None:
         )
 
 
-def _abrupt(cells: list[RelaxedRepeat], along: Direction) -> set[int]:
+def _abrupt(cells: list[RelaxedCell], along: Direction) -> set[int]:
     """Steps whose shape changes far more than around them, and whose force says so too.
 
     Where two states cross in energy the work balances, but the force falls; where a stretch is
     coarse the work is missed, but the shape changes steadily.
     """
-    changed = find_jumps([c.centre_lines for c in cells], float(np.mean(cells[0].loop_lengths_mm)))
+    changed = find_jumps(
+        [c.centre_lines for c in cells],
+        float(np.mean(cells[0].loop_lengths_mm)) if cells else 0.0,
+    )
     force = [c.force_n[along.axis] for c in cells]
     falls = {i for i in range(1, len(cells)) if force[i] < force[i - 1]}
     return set(changed) & (falls | _off_work(cells, along))
 
 
-def _off_work(cells: list[RelaxedRepeat], along: Direction) -> set[int]:
+def _off_work(cells: list[RelaxedCell], along: Direction) -> set[int]:
     jumps = set()
     scale = max((c.energy_n_mm for c in cells), default=0.0)
     for i in range(1, len(cells)):
@@ -202,26 +192,3 @@ def _off_work(cells: list[RelaxedRepeat], along: Direction) -> set[int]:
         if missed > _OFF_WORK * abs(work) and missed > SAME_ENERGY * scale:
             jumps.add(i)
     return jumps
-
-
-def gripped(cell: RelaxedRepeat) -> RelaxedRepeat:
-    """The same state with its yarn kept from sliding where it touches."""
-    energy = replace(cell.energy, grips=())
-    curve = energy.curve(cell.state)
-    touch = 2.0 * cell.yarn.radius_mm
-    pairs, _ = energy.pairs(curve, cell.state, touch)
-    guard = Guard(cell.cell, cell.state, curve, pairs, touch, touch)
-    distances, _ = guard.changes(cell.state, curve)
-    grips = grips_at(cell.cell, cell.state, pairs, distances, touch, energy.mean_loop_mm)
-    tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(grips))])
-    return replace(cell, grips=grips, tension_n=tension)
-
-
-def without_jumps(curve: Sweep) -> Sweep:
-    """The sweep up to its first jump."""
-    if not curve.jumps:
-        return curve
-    end = curve.jumps[0]
-    return replace(
-        curve, cells=curve.cells[:end], stress_n_per_mm=curve.stress_n_per_mm[:end], jumps=()
-    )

@@ -12,13 +12,12 @@ from typing import Any
 import numpy as np
 
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError, KnitcoreError
+from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax
-from knitcore.yarnlevel.results import FloatArray, Sweep
-from knitcore.yarnlevel.shares import overtaking_strain
+from knitcore.yarnlevel.results import FloatArray, RelaxedCell, Sweep
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.tiling import tiled_controls
 from knitcore.yarnlevel.yarn import YarnModel
@@ -44,7 +43,7 @@ class RepeatTask:
     ----------
     chart : rows from the top, separated by ``/``.
     yarn, loop_length_mm : what it is knitted of.
-    branch : ``mirrored`` or ``free``.
+    branch : which shapes are admitted.
     convention : factors of the energy.
     max_stress_n_per_mm : the law is fitted from 0 to this.
     """
@@ -55,12 +54,6 @@ class RepeatTask:
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
     max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM
-
-    def __post_init__(self) -> None:
-        if self.branch is Branch.PUBLISHED:
-            raise InputError(
-                "branch", "the published ansatz is not a spline.", "Use mirrored or free."
-            )
 
     @property
     def key(self) -> str:
@@ -76,7 +69,8 @@ def characterise_repeat(task: RepeatTask) -> Document:
     A JSON document. Where the repeat does not relax it holds ``failure``, the reason, alone: the
     same inputs would fail again. Otherwise sizes (mm), energy (N·mm) and shares of a mean stitch,
     ``curves`` by direction, ``law`` with ``law_range`` (or None, and ``law_failure``), and
-    ``controls``, the control points of the repeat without the drift (mm).
+    ``controls``, the control points of the repeat without the drift (mm; None in the published
+    branch, whose curves are no splines).
     """
     chart = StitchChart.parse(task.chart)
     try:
@@ -100,7 +94,6 @@ def characterise_repeat(task: RepeatTask) -> Document:
         law_range = {name: _round(value) for name, value in fields.items()}
     except KnitcoreError as error:
         reason = str(error)
-    points = tiled_controls(rest.cell, rest.state, rest.chart.rows, rest.chart.columns)
     return {
         "cell_course_mm": _round(rest.cell_course_mm),
         "cell_wale_mm": _round(rest.cell_wale_mm),
@@ -113,7 +106,7 @@ def characterise_repeat(task: RepeatTask) -> Document:
         "law": law,
         "law_range": law_range,
         "law_failure": reason,
-        "controls": np.round(points, 5).tolist(),
+        "controls": _controls(rest) if isinstance(rest, RelaxedRepeat) else None,
     }
 
 
@@ -123,7 +116,13 @@ def law_of(document: Document) -> ConstitutiveLaw | None:
     return None if law is None else ConstitutiveLaw(**law)
 
 
-def _stretch(rest: RelaxedRepeat, direction: Direction, max_stress: float) -> Sweep:
+def _controls(rest: RelaxedRepeat) -> list[list[list[float]]]:
+    points = tiled_controls(rest.cell, rest.state, rest.chart.rows, rest.chart.columns)
+    rounded: list[list[list[float]]] = np.round(points, 5).tolist()
+    return rounded
+
+
+def _stretch(rest: RelaxedCell, direction: Direction, max_stress: float) -> Sweep:
     end = _BEYOND * max_stress
     far, points = _FAR_STRAIN[direction], _POINTS
     curve = sweep(rest, direction, far, points=points, max_stress_n_per_mm=end, back=False)
@@ -141,7 +140,7 @@ def _curve(stretch: Sweep) -> Document:
         "stress_n_per_mm": _rounded(stretch.stress_n_per_mm),
         "bending_share": _rounded(stretch.bending_share),
         "contact_share": _rounded(stretch.contact_share),
-        "contact_overtakes_at_strain": overtaking_strain(stretch),
+        "contact_overtakes_at_strain": stretch.contact_overtakes_at_strain,
         "jumps": list(stretch.jumps),
         "notes": [note for note in stretch.notes if note not in stretch.zero.notes],
     }

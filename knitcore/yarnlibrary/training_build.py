@@ -18,7 +18,8 @@ from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.materials import material
 from knitcore.yarnlevel.cell import mirrored_cell
-from knitcore.yarnlevel.relax import COARSE, relax
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.splines import COARSE
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.fingerprint import content_key
 from knitcore.yarnlibrary.store import stored_charts

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from knitcore.chart import StitchChart
 from knitcore.yarnlevel.clasps import is_knitted
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs, pair_changes
-from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
 from knitcore.yarnlevel.results import FloatArray
 from knitcore.yarnlevel.topology import CROSSING, SAFETY
 
@@ -30,7 +29,7 @@ def is_certified(stitch: Stitch, start: FloatArray, end: FloatArray) -> bool:
 def is_clasped(stitch: Stitch, unknowns: FloatArray) -> bool:
     """Whether the yarn of the repeat is knotted as its fabric is."""
     fabric = stitch.fabric
-    chart = StitchChart.of_fabric(fabric, 2, 2).repeat().swap()  # the ansatz shows the back
+    chart = shown_chart(fabric)
     line = stitch.centre_line(unknowns, _POINTS)[:-1]
     course, wale = float(unknowns[-2]), float(unknowns[-1])
     lines = []

@@ -4,32 +4,29 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import replace
 
-from knitcore.errors import CancelledError, ConvergenceError, InputError, UnravelledError
+import numpy as np
+
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_loop, check_size
 from knitcore.yarnlevel.published.certificate import is_clasped
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.starts import first_shapes
-from knitcore.yarnlevel.published.stitch import Stitch
+from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
 from knitcore.yarnlevel.published.walk import (
     Walk,
     free_constraints,
     has_room,
     is_knitted,
 )
-from knitcore.yarnlevel.results import FloatArray, RelaxedCell, StartReport
+from knitcore.yarnlevel.results import Branch, FloatArray, RelaxedCell, StartReport
 from knitcore.yarnlevel.yarn import YarnModel
 
-BRANCH = "published"
 STARTS = 4
 """Number of starts; the authors used four."""
-MIN_LENGTH_PER_RADIUS = 10.0
-MIN_LENGTH_PER_CORE = 27.0
-"""A shorter stitch has no room for its own yarn (the paper's tightest: 13 radii, 34 core radii)."""
-MAX_LENGTH_PER_RADIUS = 120.0
 _CLEAR = 1.02
 """A start with cores nearer than this (in 2 r_core) is first relaxed with thinner cores."""
 
@@ -43,7 +40,7 @@ def relax_published(
     convention: Convention | str = Convention.PUBLISHED,
     *,
     starts: int = STARTS,
-    cancel: Callable[[], bool] | None = None,
+    cancel: Cancel | None = None,
 ) -> RelaxedCell:
     """Shape of least energy of one stitch of a pure fabric.
 
@@ -86,7 +83,7 @@ def relax_published(
     evaluations = sum(m.evaluations for m in found)
     if cell_course_mm is not None or cell_wale_mm is not None:
         walk = Walk(stitch, loop_length_mm)
-        held = walk.go([best], cell_course_mm, cell_wale_mm)
+        held = walk.go([best.unknowns], cell_course_mm, cell_wale_mm)
         if held is None:
             raise ConvergenceError(
                 "No equilibrium at this size of the stitch: its yarn locks, or its loops jam, on "
@@ -101,14 +98,8 @@ def relax_published(
         m.converged and m.energy_n_mm > least * 1.001 and is_knitted(stitch, m) for m in found
     )
     notes = (f"{others} of {starts} starts ended in a higher minimum.",) if others else ()
-    cell = relaxed_cell(stitch, best, seconds, evaluations, notes)
+    cell = relaxed_cell(stitch, loop_length_mm, best, evaluations, seconds, notes)
     return replace(cell, starts=tuple(_report(stitch, n, m) for n, m in enumerate(found, start=1)))
-
-
-def check_cancelled(cancel: Callable[[], bool] | None) -> None:
-    """Raise CancelledError if the caller wants to stop."""
-    if cancel is not None and cancel():
-        raise CancelledError("The relaxation was stopped.")
 
 
 def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
@@ -139,17 +130,21 @@ def lowest(stitch: Stitch, found: list[Minimum]) -> Minimum:
 
 def relaxed_cell(
     stitch: Stitch,
+    loop_length_mm: float,
     minimum: Minimum,
-    seconds: float,
     evaluations: int,
+    seconds: float = 0.0,
     notes: tuple[str, ...] = (),
 ) -> RelaxedCell:
     """A minimum as the result that all branches share."""
     evaluation, unknowns = minimum.evaluation, minimum.unknowns
     energy = evaluation.energy_n_mm
     return RelaxedCell(
-        branch=BRANCH,
+        branch=Branch.PUBLISHED,
         convention=stitch.convention,
+        chart=shown_chart(stitch.fabric),
+        yarn=stitch.yarn,
+        loop_lengths_mm=np.array([loop_length_mm]),
         cell_course_mm=float(unknowns[-2]),
         cell_wale_mm=float(unknowns[-1]),
         energy_n_mm=energy,
@@ -159,53 +154,12 @@ def relaxed_cell(
         seconds=seconds,
         evaluations=evaluations,
         converged=minimum.converged,
+        force_n=(float(minimum.force_n[0]), float(minimum.force_n[1])),
+        min_distance_mm=evaluation.closest_mm,
         centre_lines=stitch.centre_lines(unknowns),
         state=unknowns.copy(),
         notes=notes,
     )
-
-
-def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
-    """Refuse a loop that the yarn cannot make.
-
-    Raises
-    ------
-    InputError
-        Naming a usable bound.
-    """
-    if not (math.isfinite(loop_length_mm) and loop_length_mm > 0):
-        raise InputError("loop_length_mm", f"{loop_length_mm} is no length.", "Give it in mm.")
-    least = max(MIN_LENGTH_PER_RADIUS * yarn.radius_mm, MIN_LENGTH_PER_CORE * yarn.core_radius_mm)
-    if loop_length_mm < least:
-        raise InputError(
-            "loop_length_mm",
-            f"{loop_length_mm:g} mm of yarn is too short for a stitch of its thickness.",
-            f"Give at least {least:.2f} mm, or a thinner yarn.",
-        )
-    most = MAX_LENGTH_PER_RADIUS * yarn.radius_mm
-    if loop_length_mm > most:
-        raise InputError(
-            "loop_length_mm",
-            f"{loop_length_mm:g} mm is too long: the loops would not touch.",
-            f"Give at most {most:.2f} mm, or a thicker yarn.",
-        )
-
-
-def check_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
-    """Refuse a size of the stitch that its yarn cannot span.
-
-    Raises
-    ------
-    InputError
-        Naming a usable range.
-    """
-    low, high = 0.05 * loop_length_mm, 0.9 * loop_length_mm
-    if size_mm is not None and not low <= size_mm <= high:
-        raise InputError(
-            name,
-            f"{size_mm:g} mm cannot be reached with {loop_length_mm:g} mm of yarn.",
-            f"Give a size from {low:.2f} to {high:.2f} mm.",
-        )
 
 
 def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:

@@ -6,11 +6,36 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarnlevel.published import contact, elastic, shape
 from knitcore.yarnlevel.results import FloatArray
 from knitcore.yarnlevel.yarn import YarnModel
+
+
+def shown_chart(fabric: Fabric) -> StitchChart:
+    """The repeat as its centre lines show it: the ansatz is seen from the back."""
+    return StitchChart.of_fabric(fabric, 2, 2).repeat().swap()
+
+
+def pure_fabric(chart: StitchChart) -> Fabric:
+    """The pure fabric that a chart repeats.
+
+    Raises
+    ------
+    InputError
+        If it is a mixed one, for which there is no published ansatz.
+    """
+    for fabric in Fabric:
+        if chart.canonical() == shown_chart(fabric).canonical():
+            return fabric
+    raise InputError(
+        "branch",
+        "the published branch knows the four pure fabrics only.",
+        "Use mirrored or free for this chart.",
+    )
 
 
 @dataclass(frozen=True, eq=False)

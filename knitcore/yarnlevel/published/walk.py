@@ -66,9 +66,9 @@ class Walk:
         return minimise(self.stitch, first, self.loop_length_mm, rules, near=True)
 
     def go(
-        self, path: Sequence[Minimum], course_mm: float | None, wale_mm: float | None
+        self, path: Sequence[FloatArray], course_mm: float | None, wale_mm: float | None
     ) -> tuple[Minimum, int] | None:
-        """Go from the last state of a path to given sizes (None: free).
+        """Go from the last unknowns of a path to given sizes (None: free).
 
         Returns
         -------
@@ -78,7 +78,7 @@ class Walk:
         target = [math.nan if size is None else size for size in (course_mm, wale_mm)]
         evaluations = 0
         while True:
-            here = known[-1].unknowns[-2:]
+            here = known[-1][-2:]
             left = np.nan_to_num(np.array(target) - here)
             count = max(1, math.ceil(np.abs(left).max() / (STEP * self.loop_length_mm) - 1e-9))
             step = None
@@ -97,18 +97,18 @@ class Walk:
             if step is None:
                 return None
             evaluations += step.evaluations
-            known = [known[-1], step]
+            known = [known[-1], step.unknowns]
             if np.nanmax(np.abs(np.array(target) - step.unknowns[-2:])) < 1e-9:
                 return step, evaluations
 
     def _step(
-        self, known: list[Minimum], course_mm: float | None, wale_mm: float | None
+        self, known: list[FloatArray], course_mm: float | None, wale_mm: float | None
     ) -> Minimum | None:
         """One minimisation, started on the line through the last two states if there are two."""
-        last = known[-1].unknowns
+        last = known[-1]
         starts = [last]
         if len(known) == 2:
-            change = last - known[0].unknowns
+            change = last - known[0]
             goal = _resized(last, course_mm, wale_mm)[-2:] - last[-2:]
             held = [size is not None for size in (course_mm, wale_mm)]
             moved = change[-2:][held]

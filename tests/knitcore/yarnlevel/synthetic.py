@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.results import RelaxedCell, Sweep
+from knitcore.yarnlevel.results import Branch, RelaxedCell, Sweep
+from knitcore.yarnlevel.yarn import YarnModel
 
 
 def cell(course_mm=3.0, wale_mm=2.0, energy=0.2, contact_share=0.2, height=1.0):
     line = np.array([[[0.0, 0.0, 0.0], [1.0, 1.0, height], [2.0, 0.0, 0.0]]])
     return RelaxedCell(
-        branch="published",
+        branch=Branch.PUBLISHED,
         convention=Convention.PUBLISHED,
+        chart=StitchChart.parse("K"),
+        yarn=YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1),
+        loop_lengths_mm=np.array([12.0]),
         cell_course_mm=course_mm,
         cell_wale_mm=wale_mm,
         energy_n_mm=energy,
@@ -23,6 +28,8 @@ def cell(course_mm=3.0, wale_mm=2.0, energy=0.2, contact_share=0.2, height=1.0):
         seconds=0.5,
         evaluations=100,
         converged=True,
+        force_n=(0.0, 0.0),
+        min_distance_mm=0.5,
         centre_lines=line,
         state=np.zeros(30),
     )

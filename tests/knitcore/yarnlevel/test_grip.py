@@ -7,7 +7,8 @@ from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
-from knitcore.yarnlevel.sweep import gripped, sweep
+from knitcore.yarnlevel.spline_stretch import gripped
+from knitcore.yarnlevel.sweep import sweep
 
 
 @pytest.fixture(scope="module")

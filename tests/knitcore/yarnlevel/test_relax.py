@@ -181,9 +181,18 @@ def test_a_cell_that_is_too_large_is_refused():
         relax(chart, STUDY_YARN, 11.28)
 
 
-def test_the_published_branch_is_named_elsewhere():
-    with pytest.raises(InputError, match="relax_published"):
-        relax(StitchChart.parse("K"), STUDY_YARN, 11.28, branch="published")
+def test_the_published_branch_relaxes_pure_fabrics_with_one_loop_length_only():
+    entry = sample("cotton", "seed")
+    found = relax(StitchChart.parse("PK/KP"), entry.yarn, entry.loop_length_mm, branch="published")
+    assert found.branch is Branch.PUBLISHED
+    assert found.chart.canonical() == StitchChart.parse("PK/KP").canonical()
+    assert found.energy_n_mm == pytest.approx(entry.energy_n_mm, rel=0.02)
+    with pytest.raises(InputError, match="four pure fabrics"):
+        relax(StitchChart.parse("KKP"), STUDY_YARN, 11.28, branch="published")
+    for wish in ({"flat": True}, {"grid": SplineGrid()}, {"loop_length_mm": [11.0, 12.0]}):
+        asked = {"loop_length_mm": 11.28} | wish
+        with pytest.raises(InputError, match="branch"):
+            relax(StitchChart.parse("K/P"), STUDY_YARN, **asked, branch="published")
 
 
 def test_a_relaxation_can_be_cancelled():

@@ -64,11 +64,6 @@ def test_every_input_counts_for_the_key() -> None:
     assert replace(task).key == task.key
 
 
-def test_the_published_ansatz_is_not_for_batches() -> None:
-    with pytest.raises(InputError, match="not a spline"):
-        RepeatTask("K", COTTON.yarn, 12.0, branch=Branch.PUBLISHED)
-
-
 def test_less_yarn_makes_a_smaller_and_stiffer_stitch(table: YarnTable) -> None:
     """Manufacturing tension as loop length (paper, Supplementary Fig. 9)."""
     for fabric in (Fabric.STOCKINETTE, Fabric.GARTER):

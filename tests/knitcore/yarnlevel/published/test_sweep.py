@@ -3,28 +3,19 @@ import pytest
 
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.yarnlevel.buckling import find_buckling
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.published.sweep import stress_from_energies, sweep_published
+from knitcore.yarnlevel.published.stretch import PublishedStretch
 from knitcore.yarnlevel.samples import sample
-from knitcore.yarnlevel.shares import overtaking_strain
+from knitcore.yarnlevel.sweep import follow, sweep
 from knitcore.yarnlibrary.lawfit import fit_law
 
 
 def stretch(yarn_id, fabric, direction, max_strain, points, **options):
     known = sample(yarn_id, fabric)
-    return sweep_published(
-        fabric,
-        known.yarn,
-        known.loop_length_mm,
-        direction,
-        max_strain,
-        points,
-        starts=1,
-        **options,
-    )
+    zero = relax_published(fabric, known.yarn, known.loop_length_mm, starts=1)
+    return sweep(zero, direction, max_strain, points=points, **options)
 
 
 @pytest.fixture(scope="module")
@@ -36,13 +27,13 @@ def cotton_stockinette():
 
 
 def test_stress_is_the_slope_of_the_energy(cotton_stockinette):
-    for sweep in cotton_stockinette:
-        assert sweep.converged
-        middle, slope = stress_from_energies(sweep)
+    for curve in cotton_stockinette:
+        assert curve.converged
+        middle, slope = curve.stress_from_energies()
         inside = slice(0, 8)
-        exact = np.interp(middle, sweep.strain, sweep.stress_n_per_mm)
+        exact = np.interp(middle, curve.strain, curve.stress_n_per_mm)
         assert slope[inside] == pytest.approx(exact[inside], rel=0.05, abs=2e-3)
-        assert abs(sweep.stress_n_per_mm[0]) < 1e-4
+        assert abs(curve.stress_n_per_mm[0]) < 1e-4
 
 
 def test_published_moduli_of_cotton_stockinette(cotton_stockinette):
@@ -62,19 +53,20 @@ def test_a_stretch_ends_beyond_the_stress_asked_for(cotton_stockinette):
 
 def test_contact_takes_over_along_the_wale_of_cotton_garter():
     # Supplementary Fig. 7b: bending leads at rest, contact at high strain
-    sweep = stretch("cotton", "garter", "wale", 1.0, 11)
-    assert sweep.contact_share[0] < 0.25
-    assert np.all(np.diff(sweep.contact_share) > 0)
-    assert 0.6 < overtaking_strain(sweep) < 1.0
+    curve = stretch("cotton", "garter", "wale", 1.0, 11)
+    assert curve.contact_share[0] < 0.25
+    assert np.all(np.diff(curve.contact_share) > 0)
+    assert 0.6 < curve.contact_overtakes_at_strain < 1.0
 
 
 def test_acrylic_seed_buckles_along_the_wale():
     # paper, "Instability in acrylic seed": at a strain of about 0.8
-    sweep = stretch("acrylic", "seed", "wale", 0.91, 14)
-    (event,) = find_buckling(sweep)
-    assert 0.7 <= event.strain[0] < event.strain[1] <= 0.9
-    assert event.transverse_strain[1] < event.transverse_strain[0] - 0.05
-    assert event.contact_share[1] < event.contact_share[0]
+    curve = stretch("acrylic", "seed", "wale", 0.91, 14)
+    (after,) = curve.jumps
+    assert 0.7 <= curve.strain[after - 1] < curve.strain[after] <= 0.9
+    assert curve.stress_n_per_mm[after] < curve.stress_n_per_mm[after - 1]
+    assert curve.transverse_strain[after] < curve.transverse_strain[after - 1] - 0.05
+    assert curve.contact_share[after] < curve.contact_share[after - 1]
 
 
 def test_quenched_slides_keep_their_lengths_and_stiffen_seed():
@@ -83,9 +75,10 @@ def test_quenched_slides_keep_their_lengths_and_stiffen_seed():
     zero = relax_published("seed", known.yarn, known.loop_length_mm, starts=1)
     stresses = {}
     for variant in SlideQuenching:
-        sweep = stretch("acrylic", "seed", "course", 0.1, 3, slide_quenching=variant, zero=zero)
-        stresses[variant] = sweep.stress_n_per_mm[-1]
-        held = [variant.weights @ stitch.evaluate(cell.state).lengths_mm for cell in sweep.cells]
+        along = PublishedStretch(zero, Direction.COURSE, variant)
+        curve = follow(along, zero, Direction.COURSE, np.linspace(0.0, 0.1, 3))
+        stresses[variant] = curve.stress_n_per_mm[-1]
+        held = [variant.weights @ stitch.evaluate(cell.state).lengths_mm for cell in curve.cells]
         assert np.ptp(held, axis=0) == pytest.approx(0.0, abs=1e-4)
     assert stresses[SlideQuenching.NONE] < 0.7 * stresses[SlideQuenching.PAPER]
     assert stresses[SlideQuenching.PAPER] < stresses[SlideQuenching.AS_CODED]
@@ -102,9 +95,9 @@ def test_only_seed_along_the_course_is_quenched_by_default():
 
 
 def test_a_locked_yarn_ends_the_stretch_and_says_so():
-    sweep = stretch("cotton", "stockinette", "course", 1.2, 3)
-    assert len(sweep.cells) == 2
-    assert any("locks" in note for note in sweep.notes)
+    curve = stretch("cotton", "stockinette", "course", 1.2, 3)
+    assert len(curve.cells) == 2
+    assert any("locks" in note for note in curve.notes)
 
 
 def test_a_stretch_can_be_stopped():
@@ -114,14 +107,14 @@ def test_a_stretch_can_be_stopped():
         asked.append(1)
         return len(asked) == 3
 
-    # asked before the only start and before each of two points
+    # asked before each point
     with pytest.raises(CancelledError):
         stretch("cotton", "rib", "course", 0.2, 5, cancel=at_the_third_time)
     assert len(asked) == 3
 
 
 def test_impossible_stretches_are_refused():
-    with pytest.raises(InputError, match="positive strain"):
+    with pytest.raises(InputError, match="strain above 0"):
         stretch("cotton", "rib", "course", 0.0, 5)
     with pytest.raises(InputError, match="2 to 1000"):
         stretch("cotton", "rib", "course", 0.5, 1)

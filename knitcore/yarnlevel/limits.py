@@ -1,0 +1,87 @@
+"""What a relaxation or a stretch may be asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from knitcore.errors import CancelledError, InputError
+from knitcore.yarnlevel.yarn import YarnModel
+
+Cancel = Callable[[], bool]
+
+MAX_POINTS = 1000
+"""Most points of a sweep."""
+MIN_LENGTH_PER_RADIUS = 10.0
+MIN_LENGTH_PER_CORE = 27.0
+"""A shorter stitch has no room for its own yarn (the paper's tightest: 13 radii, 34 core radii)."""
+MAX_LENGTH_PER_RADIUS = 120.0
+
+
+def check_cancelled(cancel: Cancel | None) -> None:
+    """Raise CancelledError if the caller wants to stop."""
+    if cancel is not None and cancel():
+        raise CancelledError("The relaxation was cancelled.")
+
+
+def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
+    """Refuse a loop that the yarn cannot make.
+
+    Raises
+    ------
+    InputError
+        Naming a usable bound.
+    """
+    if not (math.isfinite(loop_length_mm) and loop_length_mm > 0):
+        raise InputError("loop_length_mm", f"{loop_length_mm} is no length.", "Give it in mm.")
+    least = max(MIN_LENGTH_PER_RADIUS * yarn.radius_mm, MIN_LENGTH_PER_CORE * yarn.core_radius_mm)
+    if loop_length_mm < least:
+        raise InputError(
+            "loop_length_mm",
+            f"{loop_length_mm:g} mm of yarn is too short for a stitch of its thickness.",
+            f"Give at least {least:.2f} mm, or a thinner yarn.",
+        )
+    most = MAX_LENGTH_PER_RADIUS * yarn.radius_mm
+    if loop_length_mm > most:
+        raise InputError(
+            "loop_length_mm",
+            f"{loop_length_mm:g} mm is too long: the loops would not touch.",
+            f"Give at most {most:.2f} mm, or a thicker yarn.",
+        )
+
+
+def check_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
+    """Refuse a size of the stitch that its yarn cannot span.
+
+    Raises
+    ------
+    InputError
+        Naming a usable range.
+    """
+    low, high = 0.05 * loop_length_mm, 0.9 * loop_length_mm
+    if size_mm is not None and not low <= size_mm <= high:
+        raise InputError(
+            name,
+            f"{size_mm:g} mm cannot be reached with {loop_length_mm:g} mm of yarn.",
+            f"Give a size from {low:.2f} to {high:.2f} mm.",
+        )
+
+
+def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | None) -> None:
+    """Refuse a stretch without length, points or end (an infinite stress ends none).
+
+    Raises
+    ------
+    InputError
+        Naming what cannot be used.
+    """
+    if not (math.isfinite(max_strain) and max_strain > 0.0):
+        raise InputError("max_strain", f"{max_strain} is no stretch.", "Give a strain above 0.")
+    if not 2 <= points <= MAX_POINTS:
+        raise InputError("points", f"{points} cannot be used.", f"Give 2 to {MAX_POINTS}.")
+    if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
+        raise InputError(
+            "max_stress_n_per_mm",
+            f"{max_stress_n_per_mm} N/mm ends no stretch.",
+            "Give a stress above 0.",
+        )

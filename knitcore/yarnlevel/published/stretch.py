@@ -1,0 +1,57 @@
+"""Stretching one stitch in the published description."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from knitcore.errors import ConvergenceError
+from knitcore.fabric import Direction
+from knitcore.yarnlevel.published.relax import relaxed_cell
+from knitcore.yarnlevel.published.slide import SlideQuenching
+from knitcore.yarnlevel.published.stitch import Stitch, pure_fabric
+from knitcore.yarnlevel.published.walk import Walk
+from knitcore.yarnlevel.results import RelaxedCell
+
+
+@dataclass(frozen=True, eq=False)
+class PublishedStretch:
+    """How a stitch is stretched, with the lengths that slide quenching holds.
+
+    Parameters
+    ----------
+    zero : the relaxed stitch.
+    along : the direction.
+    quenching : which stretches of yarn keep their length at rest.
+    """
+
+    zero: RelaxedCell
+    along: Direction
+    quenching: SlideQuenching
+
+    @classmethod
+    def of(cls, zero: RelaxedCell, along: Direction, quenched: bool | None) -> PublishedStretch:
+        """With the paper's slide quenching, or without; by default where the paper had it."""
+        quenching = SlideQuenching.default(pure_fabric(zero.chart), along)
+        if quenched is not None:
+            quenching = SlideQuenching.PAPER if quenched else SlideQuenching.NONE
+        return cls(zero, along, quenching)
+
+    @property
+    def note(self) -> str:
+        """Which slides are held."""
+        none = self.quenching is SlideQuenching.NONE
+        return "" if none else f"Slide quenching: {self.quenching}."
+
+    def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
+        """The relaxed state with one size prescribed, continued from the last two states."""
+        zero = self.zero
+        stitch = Stitch(pure_fabric(zero.chart), zero.yarn, zero.convention)
+        held = self.quenching.weights
+        loop_mm = float(zero.loop_lengths_mm.mean())
+        walk = Walk(stitch, loop_mm, held, held @ stitch.evaluate(zero.state).lengths_mm)
+        sizes = (size_mm, None) if self.along is Direction.COURSE else (None, size_mm)
+        found = walk.go([cell.state for cell in known or [zero]], *sizes)
+        if found is None:
+            raise ConvergenceError("the yarn locks before it gets there.")
+        return relaxed_cell(stitch, loop_mm, *found)

@@ -1,0 +1,99 @@
+"""Stretching on splines: from one held size to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from knitcore.errors import ConvergenceError, UnravelledError
+from knitcore.fabric import Direction
+from knitcore.yarnlevel.grip import grips_at
+from knitcore.yarnlevel.limits import Cancel
+from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarnlevel.solver import COURSE, WALE, Options, minimise
+from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.topology import Guard
+
+STRAIGHT = 0.97
+"""A stitch is pulled straight when its size nears this part of its loop length."""
+_HALVINGS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class SplineStretch:
+    """How a repeat on splines is stretched; a step that is too long is halved.
+
+    Parameters
+    ----------
+    zero : the relaxed repeat, with what keeps its yarn from sliding.
+    along : the direction.
+    cancel : asked before every step of the solver.
+    """
+
+    zero: RelaxedRepeat
+    along: Direction
+    cancel: Cancel | None = None
+
+    @classmethod
+    def of(
+        cls, zero: RelaxedRepeat, along: Direction, slide_quenching: bool, cancel: Cancel | None
+    ) -> SplineStretch:
+        """The stretch of a relaxed repeat, its slides held or not."""
+        return cls(gripped(zero) if slide_quenching else zero, along, cancel)
+
+    @property
+    def note(self) -> str:
+        """How many slides are held."""
+        held = len(self.zero.grips)
+        return f"Slide quenching: {held} slides are held." if held else ""
+
+    def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
+        """The relaxed state with one size prescribed, continued from the last state."""
+        last = known[-1] if known else self.zero
+        assert isinstance(last, RelaxedRepeat)  # noqa: S101 - the states are this stretch's own
+        return self._reach(last, size_mm, _HALVINGS)
+
+    def _reach(self, last: RelaxedRepeat, size_mm: float, halvings: int) -> RelaxedRepeat:
+        try:
+            return self._held(last, size_mm)
+        except (ConvergenceError, UnravelledError):
+            if halvings == 0:
+                raise
+            middle = (last.cell_mm(self.along) + size_mm) / 2.0
+            return self._reach(self._reach(last, middle, halvings - 1), size_mm, halvings - 1)
+
+    def _held(self, last: RelaxedRepeat, size_mm: float) -> RelaxedRepeat:
+        if size_mm > STRAIGHT * float(last.loop_lengths_mm.max()):
+            raise ConvergenceError("the yarn is pulled straight.")
+        found = minimise(
+            last.energy, last.state, tension=last.tension_n,
+            fixed=(COURSE if self.along is Direction.COURSE else WALE,),
+            target=np.array([size_mm, size_mm]), cancel=self.cancel,
+            options=Options(tolerance=1e-8 if last.cell.stitches <= 4 else 1e-6, iterations=80),
+        )  # fmt: skip
+        became = outcome(last.energy, found)
+        if became == "unravelled":
+            raise UnravelledError("the stitches come undone.")
+        if became not in (RELAXED, UNSETTLED, "pulled straight"):
+            raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
+        if abs(found.state[self.along.axis - 2] - size_mm) > 1e-9:
+            raise ConvergenceError("the yarn locks before it gets there.")
+        return relaxed_repeat(
+            last.chart, last.energy, last.branch, found, seconds=0.0, evaluations=found.evaluations
+        )
+
+
+def gripped(cell: RelaxedRepeat) -> RelaxedRepeat:
+    """The same state with its yarn kept from sliding where it touches."""
+    energy = replace(cell.energy, grips=())
+    curve = energy.curve(cell.state)
+    touch = 2.0 * cell.yarn.radius_mm
+    pairs, _ = energy.pairs(curve, cell.state, touch)
+    guard = Guard(cell.cell, cell.state, curve, pairs, touch, touch)
+    distances, _ = guard.changes(cell.state, curve)
+    grips = grips_at(cell.cell, cell.state, pairs, distances, touch, energy.mean_loop_mm)
+    tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(grips))])
+    return replace(cell, grips=grips, tension_n=tension)
