@@ -26,10 +26,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from knitcore.answer.densities import Densities, densities
 from knitcore.answer.kernel import KernelModel, KernelSettings, Samples
-from knitcore.answer.mixture import Mixture
+from knitcore.answer.mixture import Mixture, present, pure_numbers
 from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
-from knitcore.materials import Material
+from knitcore.fabric import PHASES, Direction
+from knitcore.materials import Material, Origin
 
 Array = NDArray[np.float64]
 
@@ -42,8 +42,8 @@ fold f becomes f / (1 + |f| / MOST_FOLDED), times the square of how straight the
 folds that cross each other stay shut. This one number was fitted to the 29 swatches of KnitDB, and
 the power was chosen there from 1, 2 and 3 (benchmarks/knitdb.py)."""
 
-SHOWN_LOG_SD = 0.067
-"""What is left there: the standard deviation of the logarithm of a swatch's width or height."""
+SHOWN_LOG_SD = 0.055
+"""What is left there: standard deviation of the logarithm of a swatch's width or height."""
 
 
 _TOE = 0.15
@@ -131,7 +131,7 @@ def learned(
     --------
     >>> from knitcore.materials import material
     >>> rib = learned(StitchChart.parse("KKPP"), material("acrylic"))
-    >>> rib.size_mm[0] < material("acrylic").record("rib").stitch_course_mm  # folds more than 1x1
+    >>> bool(rib.size_mm[0] < material("acrylic").record("rib").stitch_course_mm)  # folds deeper
     True
     """
     return packaged_model().answer(densities(chart), material, known)
@@ -150,6 +150,7 @@ class LearnedModel:
     slopes : (14, 2) by output: how it follows ln width and ln height.
     folding_scale, unfolding_scale : (2,), (14,) standard deviation over the root of the
         regression's variance, such that 90 % of what was left out lies in a 90 % interval.
+    most_folded : see :data:`MOST_FOLDED`.
     """
 
     charts: tuple[str, ...]
@@ -161,23 +162,22 @@ class LearnedModel:
     slopes: Array
     folding_scale: Array
     unfolding_scale: Array
+    most_folded: float = MOST_FOLDED
 
     def answer(
         self, found: Densities, material: Material, known: KnownSize | None = None
     ) -> LearnedAnswer:
         """Size and response of a chart with these densities."""
         mixture = Mixture.of(found.shares, material)
-        sample = self.sample(found.features, mixture.numbers)
+        sample = self.sample(found.features[None], mixture.numbers)
         flat_mm = mixture.size_mm
         if known is not None:
             fold = np.log(np.array([known.course_mm, known.wale_mm]) / flat_mm)
             fold_sd = np.full(2, known.log_sd)
         else:
-            means, variance = self.folding(sample)
-            fold, fold_sd = means[0], self.folding_scale * np.sqrt(variance[0])
-            if not mixture.simulated:
-                shown = found.straight**2 / (1.0 + np.abs(fold) / MOST_FOLDED)
-                fold, fold_sd = shown * fold, np.hypot(SHOWN_LOG_SD, shown * fold_sd)
+            straight = None if mixture.simulated else found.straight
+            folds, deviations = self.folded(sample, straight)
+            fold, fold_sd = folds[0], deviations[0]
         means, variance = self.unfolding(sample)
         slopes = self.slopes * follows(mixture)
         values = means[0] + slopes @ fold
@@ -192,13 +192,49 @@ class LearnedModel:
             poisson_sd=deviations[12:],
         )
 
+    def folded(self, samples: Samples, straight: Array | None) -> tuple[Array, Array]:
+        """Logarithms of size over the mixture's and their standard deviations, (m, 2) each.
+
+        Parameters
+        ----------
+        straight : (m, 2) how straight fold lines run on in knitted cloth; None on the yarn level.
+        """
+        fold, variance = self.folding(samples)
+        deviation = self.folding_scale * np.sqrt(variance)[:, None]
+        if straight is None:
+            return fold, deviation
+        shown = straight**2 / (1.0 + np.abs(fold) / self.most_folded)
+        return shown * fold, np.hypot(SHOWN_LOG_SD, shown * deviation)
+
+    def relaxed_mm(self, found: Densities, material: Material) -> Array:
+        """(m, 2) relaxed width and height of m charts.
+
+        Raises
+        ------
+        InputError
+            If the material lacks a pure fabric with a share.
+        """
+        shares = found.shares
+        phases = present(shares)
+        records = [material.record(PHASES[phase]) for phase in phases]
+        flat = shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
+        numbers = pure_numbers(material, phases)
+        samples = self.sample(
+            found.features,
+            None if numbers is None else shares[:, phases] @ numbers[:, :-1],
+        )
+        knitted = any(record.origin is not Origin.SIMULATED for record in records)
+        fold, _ = self.folded(samples, found.straight if knitted else None)
+        return np.asarray(flat * np.exp(fold))
+
     def sample(self, features: Array, numbers: Array | None) -> Samples:
-        """One chart of one yarn in the units of the samples."""
+        """Charts (m, features) with their yarn's numbers, in the units of the samples."""
         yarn = self.number_centre if numbers is None else numbers
+        scaled = (np.atleast_2d(yarn) - self.number_centre) / self.number_scale
         return Samples(
-            (features / self.feature_scale)[None],
-            ((yarn - self.number_centre) / self.number_scale)[None],
-            np.zeros(1, dtype=bool),
+            features / self.feature_scale,
+            np.broadcast_to(scaled, (len(features), scaled.shape[1])),
+            np.zeros(len(features), dtype=bool),
         )
 
 
@@ -210,17 +246,16 @@ def follows(mixture: Mixture) -> Array:
 
 
 @cache
-def packaged_model() -> LearnedModel:
-    """The model that comes with the package, fitted to its samples as it is loaded."""
+def packaged_model(left_out: frozenset[str] = frozenset()) -> LearnedModel:
+    """The model that comes with the package, fitted to its samples as it is loaded.
+
+    Parameters
+    ----------
+    left_out : keys of charts (:attr:`StitchChart.key`, canonical) to do without, for a test.
+    """
     path = files("knitcore.answer") / "data" / "learned.npz"
     with path.open("rb") as stream, np.load(stream) as found:
-        return model_of({name: found[name] for name in found.files})
-
-
-def model_of(
-    arrays: dict[str, NDArray[np.generic]], left_out: frozenset[str] = frozenset()
-) -> LearnedModel:
-    """A model from its arrays, without the charts that are to be left out."""
+        arrays = {name: found[name] for name in found.files}
     kept = ~np.isin(arrays["charts"], list(left_out))
     samples = Samples(
         np.asarray(arrays["features"], dtype=float)[kept],

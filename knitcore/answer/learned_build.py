@@ -289,7 +289,7 @@ def _scattered(values: Array, rows_: NDArray[np.bool_]) -> Array:
 
 def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
     """Lines: median and 90 % quantile of the factor by which left-out charts are missed."""
-    kinds = np.array([_kind(str(text)) for text in arrays["charts"]])
+    kinds = np.array([kind_of(StitchChart.parse(str(text))) for text in arrays["charts"]])
     fold = np.asarray(arrays["folding_missed"], dtype=float)
     rest = np.asarray(arrays["unfolding_missed"], dtype=float)
     follow, slopes = (np.asarray(arrays[name], dtype=float) for name in ("follows", "slopes"))
@@ -305,11 +305,12 @@ def report(arrays: dict[str, NDArray[np.generic]]) -> Iterator[str]:
                 yield f"  {direction} strain, {name}: {_factors(values[of_kind][:, columns])}"
 
 
-def _kind(text: str) -> str:
-    rows_ = text.split("/")
-    if StitchChart.parse(text).canonical() in _PURE:
+def kind_of(chart: StitchChart) -> str:
+    """``pure``, ``rib``, ``welt`` or ``2-D``."""
+    repeat = chart.repeat()
+    if repeat.canonical() in _PURE:
         return "pure"
-    return "rib" if len(rows_) == 1 else "welt" if len(rows_[0]) == 1 else "2-D"
+    return "rib" if repeat.rows == 1 else "welt" if repeat.columns == 1 else "2-D"
 
 
 def _factors(logs: Array) -> str:

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 USUAL_STRESS_N_PER_MM = 2e-5
 """B / L³ of a yarn that is not known well enough: about the middle of the library."""
+_NOTHING = 1e-9
+"""A share that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +53,10 @@ class Mixture:
         InputError
             If the material lacks a fabric with a share.
         """
-        phases = np.flatnonzero(shares > 0)
+        phases = present(shares)
         parts = tuple((float(shares[k]), material.record(PHASES[k])) for k in phases)
-        try:
-            yarns = np.array([_yarn_numbers(material, record) for _, record in parts])
-        except InputError:
+        yarns = pure_numbers(material, phases)
+        if yarns is None:
             return cls(parts, None, USUAL_STRESS_N_PER_MM)
         mean = shares[phases] @ yarns
         return cls(parts, mean[:-1], math.exp(mean[-1]))
@@ -115,6 +116,16 @@ def yarn_numbers(yarn: YarnModel, loop_length_mm: float) -> Array:
     )
 
 
-def _yarn_numbers(material: Material, record: FabricRecord) -> Array:
-    used = yarn_for(material, StitchChart.of_fabric(record.fabric, 2, 2))
-    return yarn_numbers(used.yarn, used.loop_length_mm)
+def present(shares: Array) -> NDArray[np.int64]:
+    """Phase codes with a share in any of the mixtures (…, 4)."""
+    return np.flatnonzero(shares.reshape(-1, 4).max(axis=0) > _NOTHING)
+
+
+def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array | None:
+    """(phases, 5) numbers of the yarn in each pure fabric; None where too little is known of it."""
+    charts = [StitchChart.of_fabric(PHASES[phase], 2, 2) for phase in phases]
+    try:
+        used = [yarn_for(material, chart) for chart in charts]
+    except InputError:
+        return None
+    return np.array([yarn_numbers(one.yarn, one.loop_length_mm) for one in used])

@@ -1,0 +1,116 @@
+"""The learned answer against yarn-level sweeps: ``python -m benchmarks.mixed_charts FILE.json``.
+
+The file is a list of charts relaxed and swept on the yarn level: ``chart`` (rows from the top
+separated by ``/``), ``yarn`` (acrylic, cotton or a yarn of the training library), ``size`` (mm of
+the mean stitch, course and wale), ``stress_n_per_mm`` and ``strain`` by direction. A chart that the
+packaged model has learned from is judged by the model without it. Materials are the yarn level's
+own pure fabrics, so that only the mixing is judged.
+
+Printed by class are the median and the 90 % quantile of the factor by which sizes and strains are
+missed, and the share inside the 90 % interval: learned; with a gauge (3 % off at random); with the
+relaxed size known; and the null model, by which a chart is like the mean of its class among the
+charts that were learned from.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+
+from knitcore.answer.densities import densities
+from knitcore.answer.learned import STRESS_GRID, KnownSize, LearnedAnswer, packaged_model
+from knitcore.answer.learned_build import Row, kind_of, rows, simulated_materials
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.materials.uncertainty import Z_SCORE
+
+GAUGE_LOG_SD = 0.03
+RELAXED_LOG_SD = 0.003
+"""Starts of a relaxation end within it."""
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("file", type=Path)
+    entries = json.loads(parser.parse_args().file.read_text(encoding="utf-8"))
+    materials, learned_from = simulated_materials(), rows()
+    draw = np.random.default_rng(0)
+    missed = defaultdict(list)
+    seen = 0
+    for entry in entries:
+        chart = StitchChart.parse(entry["chart"])
+        key, size = chart.canonical().key, np.array(entry["size"])
+        seen += key in packaged_model().charts
+        model = packaged_model(frozenset({key}))
+        gauge = size * np.exp(GAUGE_LOG_SD * draw.standard_normal(2))
+        for name, known in (
+            ("learned", None),
+            ("gauge", KnownSize(*gauge, log_sd=GAUGE_LOG_SD)),
+            ("known size", KnownSize(*size, log_sd=RELAXED_LOG_SD)),
+        ):
+            answer = model.answer(densities(chart), materials[entry["yarn"]], known)
+            if known is None:
+                tell(
+                    missed,
+                    kind_of(chart),
+                    "null",
+                    entry,
+                    *like_the_mean(answer, chart, learned_from),
+                )
+            tell(missed, kind_of(chart), name, entry, *of_answer(answer, entry))
+    print(f"{len(entries)} charts, {seen} of them judged by a model without them")
+    for (kind, quantity, name), pairs in sorted(missed.items()):
+        off, spread = np.array(pairs).T
+        inside = np.mean(np.abs(off) <= Z_SCORE * spread)
+        cover = "" if np.isnan(spread).all() else f"  cover {inside:.2f}"
+        median, most = np.exp(np.quantile(np.abs(off), (0.5, 0.9)))
+        print(f"{kind:5} {quantity:11} {name:11} {len(off):3}  {median:.2f}/{most:.2f}{cover}")
+
+
+def of_answer(answer: LearnedAnswer, entry):
+    """Sizes, strains by direction, and the standard deviations of their logarithms."""
+    stress = np.array(entry["stress_n_per_mm"])
+    return (
+        answer.size_mm,
+        [answer.strain(d, stress) for d in Direction],
+        answer.size_log_sd,
+        [answer.strain_log_sd(d, stress) for d in Direction],
+    )
+
+
+def like_the_mean(answer: LearnedAnswer, chart: StitchChart, learned_from: list[Row]):
+    """The mixture with the mean correction of the chart's class."""
+    alike = [r for r in learned_from if kind_of(r.chart) == kind_of(chart) and r.chart != chart]
+    fold = np.mean([row.fold for row in alike], axis=0)
+    ratio = np.nanmean([row.ratio[:12] for row in alike], axis=0).reshape(2, -1)
+
+    def strain(direction: Direction, stress):
+        at = np.log(stress / answer.mixture.bending_stress_n_per_mm)
+        factor = np.exp(np.interp(at, np.log(STRESS_GRID), ratio[direction.axis]))
+        return factor * answer.mixture.strain(direction, stress)
+
+    return answer.mixture.size_mm * np.exp(fold), strain
+
+
+def tell(missed, kind: str, name: str, entry, size, strains, size_sd=None, strain_sd=None) -> None:
+    """Note by how much sizes and strains are missed."""
+    stress = np.array(entry["stress_n_per_mm"])
+    if name in ("learned", "null"):
+        for i, side in enumerate(("width", "height")):
+            spread = np.nan if size_sd is None else size_sd[i]
+            missed[kind, side, name].append((np.log(size[i] / entry["size"][i]), spread))
+    for direction in Direction:
+        true = np.array(entry["strain"][str(direction)])
+        given = strains(direction, stress) if callable(strains) else strains[direction.axis]
+        spread = np.full(len(stress), np.nan) if strain_sd is None else strain_sd[direction.axis]
+        for at, off, sd in zip(stress, np.log(given / true), spread, strict=True):
+            missed[kind, f"{direction} {at:g}", name].append((off, sd))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,44 @@
+"""Sizes that know their surroundings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from knitcore import StitchChart
+from knitcore.answer.learned import learned
+from knitcore.answer.neighbourhood import neighbourhood_sizes
+from knitcore.fabric import PHASES
+from knitcore.materials import material
+from tests.knitcore.charts import stitch_charts
+
+ACRYLIC = material("acrylic")
+
+
+@pytest.mark.parametrize("fabric", PHASES)
+def test_a_piece_of_a_pure_fabric_has_its_size_up_to_the_edge(fabric: str) -> None:
+    record = ACRYLIC.record(fabric)
+    sizes = neighbourhood_sizes(StitchChart.of_fabric(fabric, 21, 30), ACRYLIC)
+    expected = np.array([record.stitch_course_mm, record.stitch_wale_mm])
+    assert np.abs(sizes / expected - 1).max() < 0.03
+
+
+@settings(max_examples=10, deadline=None)
+@given(stitch_charts(16))
+def test_a_piece_and_its_back_have_the_same_sizes(piece: StitchChart) -> None:
+    sizes = neighbourhood_sizes(piece, ACRYLIC)
+    assert sizes.shape == (piece.rows, piece.columns, 2)
+    assert np.allclose(neighbourhood_sizes(piece.swap(), ACRYLIC), sizes)
+
+
+@pytest.mark.parametrize("above", ["K", "KP/PK", "K/P"])
+def test_a_ribbed_hem_is_narrower_than_any_texture_above_it(above: str) -> None:
+    rib, texture = StitchChart.parse("KKPP"), StitchChart.parse(above)
+    piece = StitchChart(np.vstack([rib.resized(40, 40).purl, texture.resized(40, 40).purl]))
+    sizes = neighbourhood_sizes(piece, ACRYLIC)
+    assert sizes[0, 20, 0] == pytest.approx(learned(rib, ACRYLIC).size_mm[0], rel=0.15)
+    assert sizes[75, 20, 0] == pytest.approx(learned(texture, ACRYLIC).size_mm[0], rel=0.05)
+    assert np.all(sizes[4, :, 0] < sizes[75, :, 0])
+    steps = np.abs(np.diff(np.log(sizes[:, 20, 0])))
+    assert steps.max() < 0.25  # it narrows over several rows
