@@ -1,42 +1,48 @@
-"""Which solver made a result, and a name made of everything that decides it."""
+"""Names of results, made of everything that decides them: inputs, code and data.
+
+Code decides by what it does: modules are walked along their imports, and comments, docstrings and
+layout do not count. Data files count where a module names them.
+"""
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from functools import cache
-from importlib.resources import files
-from importlib.resources.abc import Traversable
+from pathlib import Path
 from typing import Any
 
-_SOURCES = (
-    ("knitcore.yarnlevel", None),
-    ("knitcore.yarnlibrary", ("characterise.py", "lawfit.py")),
-    ("knitcore.measure", ("law_fit.py",)),
-)
-"""Packages, and the modules in them (None: all), whose code decides what a result is."""
+ROOT = Path(__file__).resolve().parents[2]
+"""Folder of the packages."""
+SOLVERS = ("knitcore.yarnlibrary.characterise",)
+"""What relaxes, stretches and fits a law reaches everything else that does."""
+_FILE_NAME = re.compile(r"[\w-]+\.\w+")
 
 
 @cache
-def solver_version() -> str:
-    """Digest of the code that decides a result of the yarn level, its law included.
+def code_version(*modules: str) -> str:
+    """Digest of the code of modules, of what they import from their packages, and of their data.
 
     Examples
     --------
-    >>> len(solver_version())
+    >>> len(code_version("knitcore.chart"))
     16
     """
     digest = hashlib.sha256()
-    for package, names in _SOURCES:
-        for name, text in sorted(_sources(files(package), f"{package}/")):
-            if names is None or name.rpartition("/")[2] in names:
-                digest.update(name.encode() + b"\0" + text + b"\0")
+    data: set[Path] = set()
+    for name, tree in sorted(_reached(modules).items()):
+        data.update(_named_data(name, tree))
+        digest.update(f"{name}\0{ast.dump(_without_docstrings(tree))}\0".encode())
+    for file in sorted(data):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def content_key(content: Mapping[str, Any]) -> str:
-    """A name made of what decides a result: JSON-able inputs, and the solver.
+def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) -> str:
+    """A name made of what decides a result: JSON-able inputs, and the modules that compute it.
 
     Examples
     --------
@@ -44,14 +50,58 @@ def content_key(content: Mapping[str, Any]) -> str:
     True
     """
     text = json.dumps(content, sort_keys=True, allow_nan=False)
-    return hashlib.sha256(f"{solver_version()}\0{text}".encode()).hexdigest()[:32]
+    return hashlib.sha256(f"{code_version(*modules)}\0{text}".encode()).hexdigest()[:32]
 
 
-def _sources(folder: Traversable, prefix: str) -> list[tuple[str, bytes]]:
-    found = []
-    for entry in folder.iterdir():
-        if entry.is_dir():
-            found += _sources(entry, f"{prefix}{entry.name}/")
-        elif entry.name.endswith(".py"):
-            found.append((prefix + entry.name, entry.read_bytes()))
+def _reached(modules: tuple[str, ...]) -> dict[str, ast.Module]:
+    """Syntax trees of modules and of all that they import, by name."""
+    packages = {name.partition(".")[0] for name in modules}
+    packages.add("knitcore")
+    found: dict[str, ast.Module] = {}
+    waiting = list(modules)
+    while waiting:
+        name = waiting.pop()
+        file = _file(name)
+        if name in found or file is None:
+            continue
+        found[name] = ast.parse(file.read_text(encoding="utf-8"))
+        waiting += [n for n in _imports(found[name]) if n.partition(".")[0] in packages]
     return found
+
+
+def _file(module: str) -> Path | None:
+    path = ROOT.joinpath(*module.split("."))
+    candidates = (path.with_suffix(".py"), path / "__init__.py")
+    return next((file for file in candidates if file.is_file()), None)
+
+
+def _imports(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{name.name}" for name in node.names)
+        elif isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+
+
+def _named_data(module: str, tree: ast.Module) -> Iterator[Path]:
+    """Files in the data folders around a module that it names."""
+    parts = module.split(".")
+    folders = [ROOT.joinpath(*parts[:k], "data") for k in range(1, len(parts))]
+    for node in ast.walk(tree):
+        named = node.value if isinstance(node, ast.Constant) else None
+        if isinstance(named, str) and _FILE_NAME.fullmatch(named):
+            yield from (folder / named for folder in folders if (folder / named).is_file())
+
+
+def _without_docstrings(tree: ast.Module) -> ast.Module:
+    """The same tree, in place, without strings that stand as statements."""
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list):
+            node.body = [  # type: ignore[attr-defined]
+                part
+                for part in body
+                if not (isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant))
+            ]
+    return tree
