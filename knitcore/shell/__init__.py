@@ -1,0 +1,1 @@
+"""Sheets of stitches in space: how a piece curls, folds, hangs and drapes."""

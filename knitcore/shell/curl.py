@@ -1,0 +1,156 @@
+"""The shape in which a piece of knitting lies: curled, folded, pleated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.materials import Material
+from knitcore.shell.relax import settle
+from knitcore.shell.sheet import Sheet, sheet_of
+
+Array = NDArray[np.float64]
+
+MAX_STITCHES = 10_000
+"""Largest piece that is calculated."""
+TIME_LIMIT_S = 120.0
+STRIP = 4.0
+"""Width of the edge whose curl is told, in thicknesses."""
+_SHAKEN_MM = 1e-3
+"""The flat sheet is shaken by so much, or one that wants to buckle would stay flat."""
+NOTE = (
+    "Without friction, set and weight: edges roll and folds close as far as they can, which real "
+    "cloth does in part. Take the direction of curls and folds, and which fabrics lie flat, rather "
+    "than the millimetres."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class CurledPiece:
+    """A piece as it lies, on the average as the flat one is: x along the rows, z towards the face.
+
+    Parameters
+    ----------
+    chart : what was knitted.
+    corners_mm : (rows + 1, columns + 1, 3), corners of the stitches, the lowest row first.
+    flat_mm : (rows + 1, columns + 1, 3), the same in the flat sheet.
+    thickness_mm : of the cloth.
+    width_mm, height_mm, depth_mm : extent of the corners.
+    curl_course_mm : how far the sides stand out, positive towards the face (the front): greatest
+        height of the outer strip, four thicknesses wide, over the plane of the cloth at its inner
+        end, mean over the middle rows.
+    curl_wale_mm : the same of top and bottom.
+    energy_n_mm : of the piece.
+    converged : whether every corner is in equilibrium; where it is not, the shape is a preview.
+    residual : largest force on a corner, in units of what turns two stitches by a radian.
+    seconds : CPU time.
+    """
+
+    chart: StitchChart
+    corners_mm: Array
+    flat_mm: Array
+    thickness_mm: float
+    width_mm: float
+    height_mm: float
+    depth_mm: float
+    curl_course_mm: float
+    curl_wale_mm: float
+    energy_n_mm: float
+    converged: bool
+    residual: float
+    seconds: float
+    notes: tuple[str, ...] = (NOTE,)
+
+
+def curl(
+    chart: StitchChart,
+    material: Material,
+    *,
+    time_limit_s: float = TIME_LIMIT_S,
+    cancel: Callable[[], bool] | None = None,
+) -> CurledPiece:
+    """The shape of a piece with free edges, on its own.
+
+    Parameters
+    ----------
+    chart : the whole piece, from the face side.
+    time_limit_s : CPU time after which the shape is given as it is, unconverged.
+    cancel : asked before every step.
+
+    Raises
+    ------
+    InputError
+        If the piece is too large, or the material lacks what is needed.
+    ConvergenceError
+        If a fabric of the material does not relax at the yarn level.
+    CancelledError
+        If ``cancel`` says so.
+    """
+    if chart.rows * chart.columns > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"it has {chart.rows * chart.columns} stitches.",
+            f"Give a piece of at most {MAX_STITCHES} stitches.",
+        )
+    sheet = sheet_of(chart, material)
+    shaken = sheet.flat_mm + _SHAKEN_MM * np.random.default_rng(0).standard_normal(
+        sheet.flat_mm.shape
+    )
+    found = settle(sheet, shaken, time_limit_s=time_limit_s, cancel=cancel)
+    shape = (chart.rows + 1, chart.columns + 1, 3)
+    corners = aligned(found.x, sheet).reshape(shape)
+    strip = STRIP * sheet.thickness_mm
+    width, height, depth = np.ptp(corners, axis=(0, 1))
+    return CurledPiece(
+        chart=chart,
+        corners_mm=corners,
+        flat_mm=sheet.flat_mm.reshape(shape),
+        thickness_mm=sheet.thickness_mm,
+        width_mm=float(width),
+        height_mm=float(height),
+        depth_mm=float(depth),
+        curl_course_mm=standing_out_mm(corners, strip),
+        # columns for rows turns the face to the other side
+        curl_wale_mm=-standing_out_mm(corners.transpose(1, 0, 2), strip),
+        energy_n_mm=found.energy_n_mm,
+        converged=found.converged,
+        residual=found.residual,
+        seconds=found.seconds,
+    )
+
+
+def aligned(x: Array, sheet: Sheet) -> Array:
+    """A shape turned and moved so that it is nearest to the flat sheet (Kabsch 1976)."""
+    middle = x - x.mean(axis=0)
+    left, _, right = np.linalg.svd(middle.T @ sheet.flat_mm)
+    proper = np.diag([1.0, 1.0, np.linalg.det(left @ right)])
+    return np.asarray(middle @ left @ proper @ right)
+
+
+def standing_out_mm(corners: Array, strip_mm: float) -> float:
+    """Mean over the rows of the greatest height of an edge strip over the plane at its inner end.
+
+    Parameters
+    ----------
+    corners : (rows, columns, 3), mm; positive heights are along columns × rows.
+    strip_mm : width of the strip at either side.
+    """
+    rows, columns = corners.shape[:2]
+    if min(rows, columns - 1) < 2:
+        return 0.0
+    stitch = float(np.linalg.norm(np.diff(corners, axis=1), axis=2).mean())
+    wide = int(np.clip(round(strip_mm / stitch), 1, (columns - 1) // 2))
+    inner = slice(rows // 4, rows - rows // 4)
+    found = []
+    for side, sign in ((corners, 1.0), (corners[:, ::-1], -1.0)):
+        at = side[:, wide]
+        normal = sign * np.cross(side[:, wide + 1] - at, np.gradient(at, axis=0))
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        height = np.einsum("ijm,im->ij", side[:, :wide] - at[:, None], normal)[inner]
+        found.append(height[np.arange(len(height)), np.abs(height).argmax(axis=1)].mean())
+    return float(np.mean(found))

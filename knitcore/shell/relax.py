@@ -1,0 +1,193 @@
+"""Shape of least energy of a sheet.
+
+A sheet is soft against bending and stiff in its plane, and free edges that roll move far. The
+descent is a quasi-Newton one (L-BFGS; Nocedal, Wright, "Numerical Optimization", algorithm 7.4)
+around the factor of a convex part of the Hessian, made anew every few steps. No step moves a corner
+by more than a part of the thickness, so that the sheet cannot pass through itself.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import SuperLU, splu
+
+from knitcore.errors import CancelledError
+from knitcore.shell.sheet import Sheet
+from knitcore.shell.tangent import Tangent
+
+Array = NDArray[np.float64]
+
+MEMORY = 16
+_STRIDE = 0.3
+"""Longest way of a corner in one step, in thicknesses."""
+_SKIN = 1.2
+"""How much farther than the thickness the list of near points reaches, in thicknesses."""
+TOLERANCE = 1e-3
+"""Largest force on a corner of a converged sheet, in units of its bending (``force_scale_n``), or
+of the load on a corner where that is less."""
+_SHIFT = 3e-3
+"""Added to the convex part of the Hessian, in units of the bending stiffness of a corner."""
+_RENEW = 16
+"""Steps with one factor."""
+_LEAST_STEP = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Where a descent ended.
+
+    Parameters
+    ----------
+    x : (corners, 3), mm.
+    energy_n_mm : of the whole sheet.
+    residual : largest force on a corner, in units of the sheet's bending.
+    converged : whether it is below the tolerance.
+    steps : evaluations of the energy.
+    seconds : CPU time.
+    """
+
+    x: Array
+    energy_n_mm: float
+    residual: float
+    converged: bool
+    steps: int
+    seconds: float
+
+
+def settle(
+    sheet: Sheet,
+    x: Array,
+    *,
+    held: NDArray[np.bool_] | None = None,
+    load_n: Array | None = None,
+    time_limit_s: float = 60.0,
+    cancel: Callable[[], bool] | None = None,
+) -> Shape:
+    """Descend from a shape.
+
+    Parameters
+    ----------
+    x : (corners, 3) to begin with, mm.
+    held : (corners,) those that do not move.
+    load_n : (corners, 3) forces that act on the corners, such as their weight.
+    time_limit_s : CPU time after which it ends unconverged.
+    cancel : asked before every step.
+
+    Raises
+    ------
+    CancelledError
+        If ``cancel`` says so.
+    """
+    clock = time.process_time()
+    descent = _Descent(sheet, x.copy(), held, load_n)
+    while descent.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
+        if cancel is not None and cancel():
+            raise CancelledError("The calculation was cancelled.")
+        if not descent.step():
+            break
+    return Shape(
+        descent.x, descent.energy, descent.residual, descent.residual <= TOLERANCE, descent.steps,
+        time.process_time() - clock,
+    )  # fmt: skip
+
+
+class _Descent:
+    def __init__(
+        self, sheet: Sheet, x: Array, held: NDArray[np.bool_] | None, load_n: Array | None
+    ) -> None:
+        self._sheet = sheet
+        self.x = x
+        self._load = load_n
+        self._free = np.ones(len(x), bool) if held is None else ~held
+        self._tangent = Tangent(sheet)
+        self._unit = sheet.force_scale_n
+        if load_n is not None:
+            self._unit = min(self._unit, float(np.linalg.norm(load_n, axis=1).max()))
+        self._shift = _SHIFT * sheet.force_scale_n / float(sheet.membrane[:, :2].mean())
+        self._stride = _STRIDE * sheet.thickness_mm
+        self.steps = self.factors = 0
+        self._past: deque[tuple[Array, Array, float]] = deque(maxlen=MEMORY)
+        self._factor: SuperLU | None = None
+        self._age = 0
+        self._list()
+        self.energy, self._gradient = self._at(x)
+
+    @property
+    def residual(self) -> float:
+        """Largest force on a corner, in units of the sheet's bending."""
+        return float(np.sqrt((self._gradient**2).sum(axis=1).max())) / self._unit
+
+    def step(self) -> bool:
+        """One step downhill; False where there is none."""
+        if self._factor is None or self._age >= _RENEW:
+            self._renew()
+        way = self._direction()
+        slope = float((way * self._gradient).sum())
+        longest = float(np.sqrt((way**2).sum(axis=1).max()))
+        fraction = min(1.0, self._stride / longest)
+        while fraction > _LEAST_STEP:
+            moved = fraction * way
+            energy, gradient = self._at(self.x + moved)
+            if energy <= self.energy + 1e-4 * fraction * slope:
+                break
+            fraction *= 0.4
+        else:
+            if self._age == 0 and not self._past:
+                return False
+            self._past.clear()
+            self._factor = None
+            return True
+        change = gradient - self._gradient
+        product = float((moved * change).sum())
+        if product > 1e-9 * float(np.linalg.norm(moved) * np.linalg.norm(change)):
+            self._past.append((moved, change, product))
+        self.x, self.energy, self._gradient = self.x + moved, energy, gradient
+        self._age += 1
+        far = 0.5 * _SKIN * self._sheet.thickness_mm - self._stride
+        if float(((self.x - self._listed) ** 2).sum(axis=1).max()) > far * far:
+            self._list()
+        return True
+
+    def _renew(self) -> None:
+        matrix = self._tangent.matrix(
+            self.x, self._pairs, self._free, convex=True, shift=self._shift
+        )
+        self._factor = splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )  # fmt: skip
+        self._age = 0
+        self.factors += 1
+
+    def _direction(self) -> Array:
+        """Two loops of L-BFGS around the factor."""
+        q = self._gradient.copy()
+        factors = []
+        for moved, change, product in reversed(self._past):
+            factor = float((moved * q).sum()) / product
+            q -= factor * change
+            factors.append(factor)
+        assert self._factor is not None  # noqa: S101 - made before
+        way = self._factor.solve(q.ravel()).reshape(-1, 3)
+        for (moved, change, product), factor in zip(self._past, reversed(factors), strict=True):
+            way += moved * (factor - float((change * way).sum()) / product)
+        return -np.asarray(way)
+
+    def _at(self, x: Array) -> tuple[float, Array]:
+        self.steps += 1
+        energy, gradient = self._sheet.energy(x, self._pairs)
+        if self._load is not None:
+            energy -= float((self._load * x).sum())
+            gradient -= self._load
+        gradient[~self._free] = 0.0
+        return energy, gradient
+
+    def _list(self) -> None:
+        self._pairs = self._sheet.pairs(self.x, (1.0 + _SKIN) * self._sheet.thickness_mm)
+        self._listed = self.x

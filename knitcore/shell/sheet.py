@@ -1,0 +1,247 @@
+"""A piece of knitting as a sheet of stitches in space.
+
+Every stitch is a quadrilateral between four corners. What it resists with comes from its quarters,
+each of which is one of the four pure fabrics (:mod:`knitcore.phases`): sizes at rest and stiffness
+of the membrane from the material, bending rigidity and free curvature from the yarn level. Two
+neighbours of one kind with even segments all around turn as stockinette does, knits with the face
+outside and purls with the back; where segments are odd (garter, rib, seed) the curvature of a
+stitch is undone by the next, and the line between them stays flat. A chart of one pure fabric is
+that fabric; folds over two stitches and more come out as shapes.
+
+Cloth cannot turn tighter than its thickness t allows: at 2 arctan(l / t) between stitches of size l
+its inner surface is closed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.chart import StitchChart
+from knitcore.fabric import PHASES, Fabric
+from knitcore.materials import Material
+from knitcore.phases import quarter_phases
+from knitcore.shell import kernels
+from knitcore.shell.bends import Bend, bends_of
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+TWIST = 0.4
+"""Rigidity of twist D₆₆ in units of the mean rigidity √(D_x D_y): that of a plate with ν = .2."""
+APART = 1.6
+"""Points of the sheet nearer in it than so many thicknesses do not touch: a hairpin's length is
+π/2 of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A sheet of stitches.
+
+    Parameters
+    ----------
+    rows, columns : of stitches; corners are numbered along the rows, the lowest first.
+    flat_mm : (corners, 3) where they are in the flat sheet.
+    quarters, membrane : see :func:`knitcore.shell.kernels.quarters`.
+    hinges, turning : see :func:`knitcore.shell.kernels.hinges`.
+    quads, twisting : see :func:`knitcore.shell.kernels.twists`.
+    thickness_mm, touch_n_per_mm : distance at which the sheet touches itself, and how stiffly.
+    """
+
+    rows: int
+    columns: int
+    flat_mm: Array
+    quarters: Ints
+    membrane: Array
+    hinges: Ints
+    turning: Array
+    quads: Ints
+    twisting: Array
+    thickness_mm: float
+    touch_n_per_mm: float
+
+    @cached_property
+    def rigidity_n_mm(self) -> float:
+        """Mean bending rigidity of the lines between stitches, as stiffness of a turn."""
+        return float(self.turning[:, 0].mean()) if len(self.turning) else 1.0
+
+    @cached_property
+    def stiffness_n_per_mm(self) -> float:
+        """Mean stiffness of the membrane."""
+        area = 0.25 * self.membrane[:, :2].prod(axis=1)
+        return float((self.membrane[:, 2:4] / area[:, None]).mean())
+
+    @property
+    def force_scale_n(self) -> float:
+        """Force that turns a line between stitches by a radian."""
+        return self.rigidity_n_mm / float(self.membrane[:, :2].mean())
+
+    @cached_property
+    def points(self) -> Ints:
+        """(k, 4) corners of the points that may touch: corners, and middles of stitches."""
+        corners = np.repeat(np.arange(len(self.flat_mm))[:, None], 4, axis=1)
+        return np.concatenate([corners, self.quads])
+
+    @cached_property
+    def home_mm(self) -> Array:
+        """(k, 2): places of these points in the flat sheet."""
+        return kernels.placed(self.flat_mm, self.points)[:, :2].copy()
+
+    def pairs(self, x: Array, reach_mm: float) -> Ints:
+        """Points nearer than ``reach_mm`` that are not neighbours in the sheet."""
+        at = kernels.placed(x, self.points)
+        return kernels.near_pairs(at, self.home_mm, reach_mm, APART * self.thickness_mm)
+
+    def energy(self, x: Array, pairs: Ints) -> tuple[float, Array]:
+        """Energy, N·mm, and its gradient (corners, 3), N."""
+        gradient = np.zeros_like(x)
+        total = kernels.quarters(x, self.quarters, self.membrane, gradient)
+        total += kernels.hinges(x, self.hinges, self.turning, gradient)
+        total += kernels.twists(x, self.quads, self.twisting, gradient)
+        total += kernels.touches(
+            x, self.points, pairs, self.thickness_mm, self.touch_n_per_mm, gradient
+        )
+        return total, gradient
+
+
+def sheet_of(chart: StitchChart, material: Material) -> Sheet:
+    """The sheet of a chart.
+
+    Raises
+    ------
+    InputError, ConvergenceError
+        If the material lacks a fabric, or its yarn does not relax.
+    """
+    rows, columns = chart.rows, chart.columns
+    phases = quarter_phases(chart)
+    of = _Fabrics.of(material)
+    size = of.size_mm[phases]  # (2 rows, 2 columns, 2)
+    corner = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
+    quads = np.stack(
+        [corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]], axis=-1
+    ).reshape(-1, 4)
+    by_stitch = phases.reshape(rows, 2, columns, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
+    quarters = np.stack([quads[:, order] for order in _QUARTERS], axis=1).reshape(-1, 3)
+    quarter_size = of.size_mm[by_stitch].reshape(-1, 2)
+    area = 0.25 * quarter_size.prod(axis=1, keepdims=True)
+    membrane = np.concatenate([quarter_size, area * of.membrane[by_stitch].reshape(-1, 4)], axis=1)
+    along = _hinges(chart.purl, phases, of, corner)
+    across = _hinges(chart.purl.T, phases.T, of.turned(), corner.T)
+    across[0][:, [0, 1]] = across[0][:, [1, 0]]  # the face stays on the same side
+    rigidity = np.sqrt(of.rigidity_n_mm.prod(axis=1))[by_stitch].mean(axis=1)
+    stitch = of.size_mm[by_stitch].mean(axis=1)
+    twisting = 4.0 * TWIST * rigidity / stitch.prod(axis=1)
+    mean = size.mean(axis=(0, 1))
+    flat = np.zeros((corner.size, 3))
+    flat[:, 0] = np.tile(_edges(size[..., 0].mean(axis=0)), rows + 1)
+    flat[:, 1] = np.repeat(_edges(size[..., 1].mean(axis=1)), columns + 1)
+    flat[:, :2] -= flat[:, :2].mean(axis=0)
+    return Sheet(
+        rows=rows,
+        columns=columns,
+        flat_mm=flat,
+        quarters=np.ascontiguousarray(quarters),
+        membrane=membrane,
+        hinges=np.ascontiguousarray(np.concatenate([along[0], across[0]])),
+        turning=np.concatenate([along[1], across[1]]),
+        quads=np.ascontiguousarray(quads),
+        twisting=twisting,
+        thickness_mm=of.thickness_mm,
+        touch_n_per_mm=float(of.membrane[..., :2].mean() * mean.prod() / of.thickness_mm**2),
+    )
+
+
+_QUARTERS = ((0, 1, 2), (1, 0, 3), (2, 3, 0), (3, 2, 1))
+"""Corner of a stitch, its neighbour along the row, and that along the column, of every quarter."""
+
+
+def _edges(halves_mm: Array) -> Array:
+    """Places of the lines between stitches, from the mean sizes of quarters."""
+    return np.append(0.0, np.cumsum(halves_mm.reshape(-1, 2).mean(axis=1)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Fabrics:
+    """Tables of the four fabrics, by phase; along the rows first, then along the columns.
+
+    Parameters
+    ----------
+    size_mm : (4, 2). membrane : (4, 4) C₁₁, C₂₂, C₁₂, G, N/mm. rigidity_n_mm : (4, 2).
+    curvature_per_mm : (4, 2) of a knit. thickness_mm : of stockinette.
+    """
+
+    size_mm: Array
+    membrane: Array
+    rigidity_n_mm: Array
+    curvature_per_mm: Array
+    thickness_mm: float
+
+    @classmethod
+    def of(cls, material: Material) -> _Fabrics:
+        bends: Mapping[Fabric, Bend] = bends_of(material)
+        records = [material.record(fabric) for fabric in PHASES]
+        laws = [record.law for record in records]
+        curvature = np.zeros((len(PHASES), 2))
+        knit = bends[Fabric.STOCKINETTE]
+        curvature[Fabric.STOCKINETTE.phase] = (
+            knit.curvature_course_per_mm, knit.curvature_wale_per_mm
+        )  # fmt: skip
+        return cls(
+            np.array([(r.stitch_course_mm, r.stitch_wale_mm) for r in records]),
+            np.array(
+                [
+                    (
+                        law.stiffness_xxxx, law.stiffness_yyyy,
+                        0.5 * (law.stiffness_xxyy + law.stiffness_yyxx), law.shear_modulus,
+                    )
+                    for law in laws
+                ]
+            ),
+            np.array(
+                [(bends[f].rigidity_course_n_mm, bends[f].rigidity_wale_n_mm) for f in PHASES]
+            ),
+            curvature,
+            knit.thickness_mm,
+        )  # fmt: skip
+
+    def turned(self) -> _Fabrics:
+        """Columns for rows; phases keep their names."""
+        return _Fabrics(
+            self.size_mm[:, ::-1], self.membrane[:, [1, 0, 2, 3]], self.rigidity_n_mm[:, ::-1],
+            self.curvature_per_mm[:, ::-1], self.thickness_mm,
+        )  # fmt: skip
+
+
+def _hinges(
+    purl: NDArray[np.bool_], phases: NDArray[np.uint8], of: _Fabrics, corner: Ints
+) -> tuple[Ints, Array]:
+    """Lines between neighbours of a row: their corners, stiffness and rest angle."""
+    nodes = np.stack(
+        [
+            corner[:-1, 1:-1], corner[1:, 1:-1], corner[:-1, :-2], corner[1:, :-2],
+            corner[:-1, 2:], corner[1:, 2:],
+        ],
+        axis=-1,
+    ).reshape(-1, 6)  # fmt: skip
+    sign = np.where(purl, -1.0, 1.0).repeat(2, axis=0).repeat(2, axis=1)
+    rows, columns = purl.shape
+
+    def beside(values: Array) -> Array:
+        """Mean over the four quarters that meet at a line."""
+        inner = values[:, 1:-1].reshape(rows, 2, columns - 1, 2)
+        return np.asarray(inner.mean(axis=(1, 3)).ravel())
+
+    length = beside(of.size_mm[phases][..., 0])
+    width = beside(of.size_mm[phases][..., 1])
+    rigidity = beside(of.rigidity_n_mm[phases][..., 0])
+    free = length * beside(sign * of.curvature_per_mm[phases][..., 0])
+    closed = 2.0 * np.arctan(length / of.thickness_mm)
+    stiffness = rigidity * width / length
+    turning = np.stack(
+        [stiffness, np.clip(free, -closed, closed), closed, 0.25 * length**2], axis=-1
+    )
+    return nodes, turning

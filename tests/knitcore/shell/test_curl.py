@@ -1,0 +1,108 @@
+"""Shapes that a knitter knows."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from knitcore.chart import StitchChart
+from knitcore.errors import CancelledError, InputError
+from knitcore.fabric import Fabric
+from knitcore.materials import material
+from knitcore.shell.curl import CurledPiece, curl
+from knitcore.yarnlevel.bending import scroll_radius_mm
+
+ACRYLIC = material("acrylic")
+
+
+def _piece(repeat: str, across: int, up: int) -> CurledPiece:
+    piece = curl(StitchChart.parse(repeat).tile(up, across), ACRYLIC)
+    assert piece.converged
+    return piece
+
+
+def test_the_sides_of_stockinette_roll_to_the_back_and_its_ends_to_the_front() -> None:
+    piece = _piece("K", 12, 12)
+    assert piece.curl_course_mm < 0.0 < piece.curl_wale_mm
+    tall, wide = _piece("K", 6, 20), _piece("K", 16, 4)
+    assert tall.curl_course_mm < -0.5 * tall.thickness_mm
+    assert wide.curl_wale_mm > 0.5 * wide.thickness_mm
+
+
+def test_reverse_stockinette_rolls_the_other_way() -> None:
+    tall = _piece("P", 6, 20)
+    assert tall.curl_course_mm > 0.5 * tall.thickness_mm
+
+
+@pytest.mark.parametrize("fabric", [Fabric.GARTER, Fabric.RIB, Fabric.SEED])
+def test_balanced_fabrics_lie_flat_at_their_size(fabric: Fabric) -> None:
+    piece = curl(StitchChart.of_fabric(fabric, rows=16, columns=16), ACRYLIC)
+    record = ACRYLIC.record(fabric)
+    assert piece.converged
+    assert piece.depth_mm < 0.1
+    assert piece.width_mm == pytest.approx(16 * record.stitch_course_mm, rel=1e-3)
+    assert piece.height_mm == pytest.approx(16 * record.stitch_wale_mm, rel=1e-3)
+
+
+def test_a_strip_rolls_up_into_scrolls_as_tight_as_it_can() -> None:
+    """From both ends: each holds half of its length."""
+    piece = _piece("K", 30, 2)
+    length = float(np.ptp(piece.flat_mm[..., 0]))
+    expected = scroll_radius_mm(0.5 * length, piece.thickness_mm)
+    assert 0.5 * piece.depth_mm == pytest.approx(expected, rel=0.2)
+
+
+def test_two_by_two_rib_draws_in_as_measured() -> None:
+    """0.61 of the width of stockinette (KnitDB, one acrylic yarn on one setting)."""
+    piece = _piece("KKPP", 5, 20)
+    width = piece.width_mm / 20 / ACRYLIC.record(Fabric.STOCKINETTE).stitch_course_mm
+    assert width == pytest.approx(0.61, rel=0.1)
+
+
+def test_welts_draw_in_along_the_columns() -> None:
+    piece = _piece("P\nP\nP\nK\nK\nK", 12, 3)
+    flat = np.ptp(piece.flat_mm, axis=(0, 1))
+    assert piece.height_mm < 0.85 * flat[1]
+    assert piece.width_mm > 0.9 * flat[0]
+
+
+def test_a_basket_pillows() -> None:
+    block = "\n".join(["KKKKPPPP"] * 4 + ["PPPPKKKK"] * 4)
+    piece = _piece(block, 2, 2)
+    assert piece.depth_mm > 2.0 * piece.thickness_mm
+
+
+def test_a_single_stitch_is_flat() -> None:
+    piece = curl(StitchChart.parse("K"), ACRYLIC)
+    assert piece.converged
+    assert piece.curl_course_mm == pytest.approx(0.0, abs=1e-6)
+
+
+def test_what_did_not_converge_says_so() -> None:
+    piece = curl(StitchChart.parse("K").tile(20, 20), ACRYLIC, time_limit_s=0.0)
+    assert not piece.converged
+
+
+def test_a_piece_too_large_is_refused() -> None:
+    with pytest.raises(InputError, match="stitches"):
+        curl(StitchChart.of_fabric("garter", rows=101, columns=100), ACRYLIC)
+
+
+def test_it_can_be_cancelled() -> None:
+    with pytest.raises(CancelledError):
+        curl(StitchChart.parse("K").tile(9, 9), ACRYLIC, cancel=lambda: True)
+
+
+def test_a_chart_of_knitted_origami_folds() -> None:
+    """Charts of Niu, Dion, Kamien (arXiv 2408.08409), fig. 3."""
+    data = os.environ.get("KNITCORE_STUDY_DATA")
+    if data is None:
+        pytest.skip("the charts are not here (KNITCORE_STUDY_DATA)")
+    text = (Path(data) / "knitogami" / "knit_3b_chains.txt").read_text().splitlines()[1:]
+    chart = StitchChart.parse("\n".join(line.replace(" ", "") for line in text if line))
+    piece = curl(chart.tile(2, 2), ACRYLIC)
+    assert piece.converged
+    assert piece.depth_mm > 2.0 * piece.thickness_mm
