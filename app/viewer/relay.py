@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import time
 from pathlib import Path
 
 import viser
@@ -22,6 +23,9 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
+OPENING_S = 8.0
+"""So long a browser waits for a view: its page is loaded while the first scene is being made."""
+LOOK_AGAIN_S = 0.05
 VIEW_STYLE = """<style>
   /* The page around the view has all controls and states; viser's own would repeat them. */
   .mantine-Paper-root, .mantine-Notifications-root { display: none !important; }
@@ -61,7 +65,7 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
     """Carry messages between a browser and the design's viser server."""
     views: Views = socket.app.state.views
     name = private_name(design)
-    view = views.get(name)
+    view = await _opened(views, name)
     if view is None:
         await socket.close(code=1013, reason="This view is not open yet.")
         return
@@ -79,6 +83,14 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
             await _carry(socket, inner, view)
         finally:
             views.watch(name, -1)
+
+
+async def _opened(views: Views, name: str) -> View | None:
+    """The view, also where the browser is a little ahead of the request that opens it."""
+    deadline = time.monotonic() + OPENING_S
+    while (view := views.get(name)) is None and time.monotonic() < deadline:
+        await asyncio.sleep(LOOK_AGAIN_S)
+    return view
 
 
 async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: View) -> None:

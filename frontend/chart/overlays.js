@@ -26,6 +26,7 @@
  * @property {(studio: Studio, palette: Palette) => SwatchLegend | ScaleLegend} legend
  */
 
+import { along } from "../core/directions.js";
 import { QUARTERS } from "../core/segments.js";
 import { batlow, vik } from "./colormaps.js";
 import { pixel } from "./palette.js";
@@ -54,13 +55,7 @@ const stitches = {
   view: "fabric",
   available: always,
   colouring: (_, { knit, purl }) => byKind((_code, _quarter, p) => pixel(p ? purl : knit)),
-  legend: (_, { knit, purl }) => ({
-    kind: "swatches",
-    items: [
-      { label: "knit", colour: css(knit) },
-      { label: "purl", colour: css(purl), dot: true },
-    ],
-  }),
+  legend: () => ({ kind: "swatches", items: [] }), // the key above the chart says it
 };
 
 /** @type {Overlay} */
@@ -116,8 +111,8 @@ function modulus(direction, label) {
   return {
     id: `modulus-${direction}`,
     label,
-    short: direction === "course" ? "Course" : "Wale",
-    hint: `Initial Young's modulus ${direction}-wise of each stitch, on a logarithmic scale`,
+    short: direction === "course" ? "Rows" : "Columns",
+    hint: `Young's modulus of each stitch ${along(direction)}, on a logarithmic scale`,
     view: direction,
     available: (studio) => studio.kinds().length === 16,
     colouring: (studio) => {
@@ -137,7 +132,7 @@ const anisotropy = {
   id: "anisotropy",
   label: "Ratio of the moduli",
   short: "Ratio",
-  hint: "Course modulus over wale modulus of each stitch, on a logarithmic scale",
+  hint: "Modulus along the rows over modulus along the columns of each stitch, on a logarithmic scale",
   view: "anisotropy",
   available: (studio) => studio.kinds().length === 16,
   colouring: (studio) => {
@@ -155,7 +150,7 @@ const anisotropy = {
       high: most,
       unit: "",
       log: true,
-      label: "Course over wale modulus",
+      label: "Modulus along rows over columns",
     };
   },
 };
@@ -168,9 +163,9 @@ function ratio(kind) {
 /** Strain along the pull, on one signed scale for the whole test. @type {Overlay} */
 const strain = {
   id: "strain",
-  label: "Strain",
-  short: "Strain",
-  hint: "Strain of each stitch along the pull, at the step on the slider",
+  label: "Stretch of each stitch",
+  short: "Stretch",
+  hint: "Stretch of each stitch along the pull, at the step on the slider",
   view: "strain",
   available: (studio) => studio.field("strain") !== null,
   colouring: (studio) => {
@@ -187,7 +182,7 @@ const strain = {
       high: most,
       unit: "%",
       log: false,
-      label: `Strain ${studio.stretchDirection()}-wise`,
+      label: `Stretch ${along(studio.stretchDirection())}`,
     };
   },
 };
@@ -220,8 +215,8 @@ export const OVERLAYS = [
   stitches,
   fabrics,
   segments,
-  modulus("course", "Course modulus"),
-  modulus("wale", "Wale modulus"),
+  modulus("course", "Modulus along rows"),
+  modulus("wale", "Modulus along columns"),
   anisotropy,
   strain,
   utilisation,

@@ -262,3 +262,22 @@ function isCount(value, least) {
 function isObject(value) {
   return typeof value === "object" && value !== null && !Array.isArray(value);
 }
+
+/**
+ * @param {string} name
+ * @param {string} chart
+ * @param {string} material
+ * @returns {DesignDocument}
+ */
+export const plainDesign = (name, chart, material) => ({
+  format: "knitcore-design",
+  version: 2,
+  name,
+  material,
+  note: "",
+  chart,
+  outline: null,
+  regions: [],
+  repeats: [],
+  shelf: [],
+});

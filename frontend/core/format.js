@@ -42,3 +42,21 @@ export function percentRange(share, margin, decimals = 0) {
 export function percent(share, decimals = 0) {
   return `${(100 * share).toFixed(decimals).replace("-", "−")} %`;
 }
+
+/**
+ * Shares of a whole in percent that add up to 100: the largest remainders are rounded up.
+ *
+ * @param {readonly number[]} shares
+ * @returns {string[]}
+ */
+export function percents(shares) {
+  const whole = shares.map((share) => Math.floor(100 * share + 1e-9));
+  const missing =
+    Math.round(100 * shares.reduce((sum, share) => sum + share, 0)) - whole.reduce((sum, n) => sum + n, 0);
+  const rest = (/** @type {number} */ i) => 100 * shares[i] - whole[i];
+  const up = new Set([...shares.keys()].sort((a, b) => rest(b) - rest(a)).slice(0, missing));
+  return shares.map((share, i) => {
+    const rounded = whole[i] + (up.has(i) ? 1 : 0);
+    return share > 0 && rounded === 0 ? "< 1 %" : `${rounded} %`;
+  });
+}

@@ -113,6 +113,17 @@ export function filling(region, { grid, regions }, added) {
 }
 
 /**
+ * Whether a region looks as its fill says, or was painted over since.
+ *
+ * @param {Region} region
+ * @param {{grid: Grid, regions: readonly Region[]}} chart
+ */
+export function isFilled(region, chart) {
+  const { touched, values } = filling(region, chart);
+  return [...touched].every((i) => chart.grid.purl[i] === values[i]);
+}
+
+/**
  * The stitches of fills that lie on top once the regions are in another order, but did not before.
  *
  * @param {{grid: Grid, regions: readonly Region[]}} chart

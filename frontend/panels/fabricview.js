@@ -9,6 +9,7 @@
 
 import { ApiError, api } from "../api.js";
 import { shownOverlay } from "../chart/overlays.js";
+import { along } from "../core/directions.js";
 import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
@@ -58,7 +59,7 @@ export function fabricview(host, studio, view) {
 
   frame.addEventListener("load", () => {
     if (!frame.contentWindow || !shown) return;
-    governor.govern(frame.contentWindow);
+    governor.govern(frame.contentWindow, () => knitted());
     governor.wake(START_MS);
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -75,6 +76,7 @@ export function fabricview(host, studio, view) {
 
   let sending = false;
   let again = false;
+  /** Address of the view in the frame. */
   let shown = "";
   let source = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -88,25 +90,37 @@ export function fabricview(host, studio, view) {
     status,
   );
 
+  let problem = false;
+  /** There is a cloth to look at. */
+  const knitted = () => {
+    if (!problem) status.replaceChildren();
+  };
+  /** @param {string} url */
+  const open = (url) => {
+    if (shown === url) return;
+    shown = url;
+    status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
+    frame.src = url;
+    link.disconnect();
+  };
   const send = async () => {
     if (sending) {
       again = true;
       return;
     }
     sending = true;
+    host.toggleAttribute("data-sending", true);
+    open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
     try {
       const answer = await api.view(studio.designId, wish());
-      status.replaceChildren();
+      if (problem) status.replaceChildren();
+      problem = false;
       studio.seeing.forgotten.value = null;
       source = answer.source;
       describe();
       governor.wake(DRAW_MS);
       studio.online.value = true;
-      if (shown !== answer.url) {
-        shown = answer.url;
-        frame.src = answer.url;
-        link.disconnect();
-      }
+      open(answer.url);
       link.connect();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -118,9 +132,11 @@ export function fabricview(host, studio, view) {
         studio.seeing.forgotten.value = id; // it is run again, and then sent again
         return;
       }
+      problem = true;
       status.replaceChildren(icon("warning"), problemText(error.problem));
     } finally {
       sending = false;
+      host.toggleAttribute("data-sending", again);
       if (again) {
         again = false;
         void send();
@@ -144,13 +160,13 @@ export function fabricview(host, studio, view) {
     const strain = stretch?.strain[studio.step.value];
     caption.replaceChildren(
       stretch && strain !== undefined
-        ? `Stretched ${studio.stretchDirection()}-wise by ${(100 * strain).toFixed(0)} %`
+        ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
         : "Relaxed",
+      h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = source && `Yarn: ${source}`;
   };
 
-  status.append(h("span", { class: "spinner" }), "Knitting …");
   studio.document.onChange(soon);
   const { yarnColours, groups, block } = studio.seeing;
   for (const signal of [studio.materialId, studio.overlay, studio.rectangles, studio.stretch, groups, block]) {

@@ -5,7 +5,8 @@
  * @import {Direction, Interval, Prediction} from "../types.js"
  */
 
-import { figure, percent, range } from "../core/format.js";
+import { LINES, along } from "../core/directions.js";
+import { figure, percents, range } from "../core/format.js";
 import { paced } from "../core/paced.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../core/segments.js";
 import { scopeOf } from "../services/scope.js";
@@ -74,8 +75,8 @@ export function inspector(host, studio) {
         class: "segment",
         role: "radio",
         id: `curve-${way}`,
-        title: `Pulled ${way}-wise`,
-        "aria-label": way,
+        title: `Pulled ${along(way)}`,
+        "aria-label": LINES[way],
         onclick: () => (studio.seeing.pull.value = way),
       },
       icon(way),
@@ -123,8 +124,7 @@ export function inspector(host, studio) {
     if (busy && shown === value) return; // asked anew: the old numbers stay, greyed, until the answer
     shown = value;
     const part = scopeOf(studio);
-    const { rows, columns } = part.kind === "chart" ? studio.document.grid : part.grid;
-    title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, `${columns} × ${rows}`));
+    title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, part.size));
     title.title = part.note;
     // While the service is away the banner says so.
     problem.hidden = !wrong || wrong.type === "offline";
@@ -144,19 +144,14 @@ export function inspector(host, studio) {
   };
   const count = () => {
     const { document: chart } = studio;
-    const part = scopeOf(studio);
-    const whole = part.kind === "chart";
-    const outline = whole && chart.shaped ? chart.outline : null;
-    const segments = countSegments(whole ? chart.grid : part.grid, outline);
-    const mix = fabricShares(whole ? chart.codes : surroundings(part.grid), outline);
+    const { grid, mask } = scopeOf(studio).counted;
+    const segments = countSegments(grid, mask);
+    const mix = fabricShares(grid === chart.grid ? chart.codes : surroundings(grid, mask), mask);
+    const rounded = percents(mix);
     shares.replaceChildren(
       shareBar(
         "share-fabrics",
-        FABRICS.map((fabric, i) => ({
-          share: mix[i],
-          colour: `var(--${fabric})`,
-          text: `${fabric} ${percent(mix[i])}`,
-        })),
+        FABRICS.map((fabric, i) => ({ share: mix[i], colour: `var(--${fabric})`, text: `${fabric} ${rounded[i]}` })),
       ),
       .../** @type {Direction[]} */ (["course", "wale"]).map((direction) => {
         const { even, odd } = segments[direction];
@@ -216,17 +211,17 @@ export function inspector(host, studio) {
  * @param {Prediction | null} value
  */
 function fill(table, value) {
-  /** @param {string} id @param {number | undefined} number @param {string} unit @param {string} [interval] */
-  const cell = (id, number, unit, interval) =>
+  /** @param {string} id @param {number | undefined} number @param {string} [interval] */
+  const cell = (id, number, interval) =>
     h(
       "td",
       { id },
       h("span", { class: "value" }, figure(number)),
-      unit && h("span", { class: "unit" }, ` ${unit}`),
       interval && h("span", { class: "interval", title: "90 % interval" }, interval),
     );
-  /** @param {string} label @param {string} hint @param {HTMLElement[]} cells */
-  const row = (label, hint, ...cells) => h("tr", {}, h("th", { scope: "row", title: hint }, label), ...cells);
+  /** @param {string} label @param {string} unit @param {string} hint @param {HTMLElement[]} cells */
+  const row = (label, unit, hint, ...cells) =>
+    h("tr", {}, h("th", { scope: "row", title: hint }, label, unit && h("span", { class: "unit" }, unit)), ...cells);
   table.replaceChildren(
     h(
       "thead",
@@ -235,8 +230,8 @@ function fill(table, value) {
         "tr",
         {},
         h("td", {}),
-        h("th", { scope: "col" }, icon("course"), "Course"),
-        h("th", { scope: "col" }, icon("wale"), "Wale"),
+        h("th", { scope: "col", title: "Pulled along the rows" }, icon("course"), "Rows"),
+        h("th", { scope: "col", title: "Pulled along the columns" }, icon("wale"), "Columns"),
       ),
     ),
     h(
@@ -244,31 +239,32 @@ function fill(table, value) {
       {},
       row(
         "Modulus",
-        "Initial Young's modulus: force per width",
-        cell("modulus-course", value?.modulus_course_n_per_mm, "N/mm", range(value?.modulus_course_interval_n_per_mm)),
-        cell("modulus-wale", value?.modulus_wale_n_per_mm, "N/mm", range(value?.modulus_wale_interval_n_per_mm)),
+        "N/mm",
+        "Young's modulus at the beginning of a pull: force per width over stretch",
+        cell("modulus-course", value?.modulus_course_n_per_mm, range(value?.modulus_course_interval_n_per_mm)),
+        cell("modulus-wale", value?.modulus_wale_n_per_mm, range(value?.modulus_wale_interval_n_per_mm)),
       ),
       row(
-        "Gives",
-        "Extensibility: one over the modulus",
+        "Extensibility",
+        "mm/N",
+        "One over the modulus: the stretch of 1 mm under 1 N per mm of width",
         cell(
           "extensibility-course",
           value?.extensibility_course_mm_per_n,
-          "mm/N",
           range(inverse(value?.modulus_course_interval_n_per_mm)),
         ),
         cell(
           "extensibility-wale",
           value?.extensibility_wale_mm_per_n,
-          "mm/N",
           range(inverse(value?.modulus_wale_interval_n_per_mm)),
         ),
       ),
       row(
-        "Poisson",
+        "Poisson ratio",
+        "",
         "Contraction across when pulled along",
-        cell("poisson-yx", value?.poisson_yx, "", range(value?.poisson_yx_interval)),
-        cell("poisson-xy", value?.poisson_xy, "", range(value?.poisson_xy_interval)),
+        cell("poisson-yx", value?.poisson_yx, range(value?.poisson_yx_interval)),
+        cell("poisson-xy", value?.poisson_xy, range(value?.poisson_xy_interval)),
       ),
     ),
   );
@@ -298,7 +294,7 @@ function shareBar(id, parts, direction) {
     key.style.backgroundColor = colour;
     return h("span", { class: "legend-item" }, key, text);
   });
-  const title = direction ? `Segments ${direction}-wise` : "Shares of the four fabrics, by quarters of stitches";
+  const title = direction ? `Segments ${along(direction)}` : "Shares of the four fabrics, by quarters of stitches";
   return h(
     "div",
     { class: direction ? "share counts" : "share", id, title },

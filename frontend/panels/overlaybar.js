@@ -9,6 +9,7 @@
 
 import { OVERLAYS, shownOverlay } from "../chart/overlays.js";
 import { groupAt, meanExtensibility } from "../chart/rectangles.js";
+import { LINES } from "../core/directions.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
 import { paced } from "../core/paced.js";
 import { h } from "../dom.js";
@@ -44,7 +45,7 @@ export function overlaybar(host, studio, view) {
     {
       class: "chip",
       id: "overlay-rectangles",
-      title: "Extensibility rectangles: as wide and as high as a stitch gives along course and wale (E)",
+      title: "Extensibility rectangles: as wide and as high as a stitch stretches along rows and columns (E)",
       onclick: () => (studio.rectangles.value = !studio.rectangles.value),
     },
     h("span", { class: "chip-rectangle", "aria-hidden": "true" }),
@@ -96,7 +97,7 @@ export function overlaybar(host, studio, view) {
           "label",
           { class: "legend-item" },
           h("span", { class: "chip-rectangle" }),
-          h("span", { class: "wide" }, "give (√ scale) of"),
+          h("span", { class: "wide", title: "Sides grow as the square root of the extensibility" }, "extensibility of"),
           grouping,
         ),
       );
@@ -125,7 +126,7 @@ export function overlaybar(host, studio, view) {
         "div",
         { class: "chips", role: "radiogroup", "aria-label": "Colours of the chart" },
         ...chips.slice(0, 3),
-        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Moduli"),
+        h("span", { class: "chip-heading", "aria-hidden": "true" }, "Modulus"),
         ...chips.slice(3, 6),
         h("span", { class: "chip-divider", "aria-hidden": "true" }),
         ...chips.slice(6),
@@ -178,13 +179,13 @@ function describe(studio, cell) {
     return interval && ` (${interval})`;
   };
   if (id === "strain" && strain !== undefined) {
-    parts.push(`strain ${percent(strain, 1)}${within("strain", strain, 1)}`);
+    parts.push(`stretch ${percent(strain, 1)}${within("strain", strain, 1)}`);
   } else if (id === "utilisation" && used !== undefined) {
     parts.push(`${percent(used)}${within("utilisation", used)} of lock-up`);
   } else if (kind) {
     const value = (/** @type {"course" | "wale"} */ direction) => {
       const interval = range(kind[`modulus_${direction}_interval`]);
-      return `${direction} ${figure(kind[`modulus_${direction}_n_per_mm`])}${interval && ` (${interval})`}`;
+      return `${LINES[direction]} ${figure(kind[`modulus_${direction}_n_per_mm`])}${interval && ` (${interval})`}`;
     };
     parts.push(`${value("course")}, ${value("wale")} N/mm`);
   }
@@ -215,6 +216,6 @@ function give(studio, row, column) {
     const text = range([low / group.count, high / group.count]);
     return Number.isFinite(low) && text ? ` (${text})` : "";
   };
-  const of = group.count > 1 ? `${group.count} stitches give` : "gives";
-  return `${of} course ${figure(course)}${interval("course")}, wale ${figure(wale)}${interval("wale")} mm/N`;
+  const of = group.count > 1 ? `${group.count} stitches stretch` : "stretches";
+  return `${of} along rows ${figure(course)}${interval("course")}, columns ${figure(wale)}${interval("wale")} mm/N`;
 }

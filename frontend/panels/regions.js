@@ -10,6 +10,7 @@
 import { action } from "../actions/registry.js";
 import { hasRoom } from "../actions/selection.js";
 import { nextRegionColour } from "../chart/palette.js";
+import { isFilled } from "../core/regions.js";
 import { KNIT, regionInk } from "../core/ink.js";
 import { motifGrid, motifText } from "../core/motif.js";
 import { selectedCells, selectionOf } from "../core/selection.js";
@@ -79,6 +80,7 @@ export function create(studio, context) {
       );
     };
     const count = region.count;
+    const filled = !fill || isFilled(region, chart);
     const painting = ink.value.target === `region:${id}`;
     return h(
       "li",
@@ -143,7 +145,7 @@ export function create(studio, context) {
                 ),
             }),
           ),
-          h("label", { class: "line-field" }, h("span", {}, "Fill"), fills(region)),
+          h("label", { class: "line-field" }, h("span", {}, "Fill"), fills(region, filled)),
           h(
             "label",
             { class: "line-field" },
@@ -181,7 +183,11 @@ export function create(studio, context) {
               disabled: !selection.value || locked,
               title: "Take the selected stitches out",
             }),
-            fill && wide("refill", "fill", "Fill again", () => chart.fillRegion(id), { disabled: locked }),
+            !filled &&
+              wide("refill", "fill", "Fill again", () => chart.fillRegion(id), {
+                disabled: locked,
+                title: "Puts the pattern back over what was painted since",
+              }),
           ),
           h(
             "div",
@@ -200,8 +206,8 @@ export function create(studio, context) {
     );
   };
 
-  /** @param {Region} region */
-  const fills = ({ id, fill, locked }) => {
+  /** @param {Region} region @param {boolean} filled whether it looks as its fill says */
+  const fills = ({ id, fill, locked }, filled) => {
     const own = fill ? motifText(fill) : "";
     const patterns = [
       ...studio.shelf.value.flatMap(({ name, repeat }) => (repeat ? [{ name, motif: motifText(repeat) }] : [])),
@@ -221,7 +227,13 @@ export function create(studio, context) {
       },
       h("option", { value: "", selected: !own }, "None: as painted"),
       own && !known && h("option", { value: own, selected: true }, "Its own pattern"),
-      ...patterns.map(({ name, motif }) => h("option", { value: motif, selected: motif === own }, name)),
+      ...patterns.map(({ name, motif }) =>
+        h(
+          "option",
+          { value: motif, selected: motif === own },
+          motif === own && !filled ? `${name}, painted over` : name,
+        ),
+      ),
     );
   };
 

@@ -6,6 +6,7 @@
  * @import {Direction, Problem} from "../types.js"
  */
 
+import { along } from "../core/directions.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
@@ -26,13 +27,13 @@ export function stretchdrawer(host, studio, stretcher) {
         class: "segment",
         role: "radio",
         id: `stretch-${which}`,
-        title: `Pull ${which}-wise: ${which === "course" ? "along the rows" : "along the columns"}`,
+        title: `Pull ${along(which)}`,
         onclick: () => choose(which),
       },
       icon(which),
       label,
     );
-  const choices = { course: choice("course", "Course"), wale: choice("wale", "Wale") };
+  const choices = { course: choice("course", "Rows"), wale: choice("wale", "Columns") };
   /** @param {Direction} which */
   const choose = (which) => {
     direction = which;
@@ -137,7 +138,7 @@ export function stretchdrawer(host, studio, stretcher) {
     const i = studio.step.value;
     slider.value = String(i);
     if (!value) return figures.replaceChildren();
-    slider.setAttribute("aria-valuetext", `${percent(value.strain[i])} strain`);
+    slider.setAttribute("aria-valuetext", `stretched by ${percent(value.strain[i])}`);
     const [low = NaN, high = NaN] = [value.force_low_n?.[i], value.force_high_n?.[i]];
     const widths = value.stress_n_per_mm[i] / value.force_n[i];
     /** @param {string} term @param {string} text @param {string} hint @param {string} [interval] */
@@ -149,7 +150,7 @@ export function stretchdrawer(host, studio, stretcher) {
         h("dd", {}, text, interval && h("span", { class: "interval", title: "90 % interval" }, interval)),
       );
     figures.replaceChildren(
-      pair("Strain", percent(value.strain[i]), "Clamp to clamp, along the pull"),
+      pair("Stretch", percent(value.strain[i]), "Clamp to clamp, along the pull"),
       pair("Force", `${figure(value.force_n[i])} N`, "On the clamp, for this many stitches", range([low, high])),
       pair(
         "Stress",

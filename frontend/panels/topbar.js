@@ -70,8 +70,7 @@ export function topbar(host, studio, context) {
     const { columns, rows } = studio.document.grid;
     size.replaceChildren(
       icon("resize"),
-      h("span", {}, `${columns} × ${rows}`),
-      h("span", { class: "label" }, "sts"),
+      h("span", { title: "Stitches × rows" }, `${columns} × ${rows}`),
       h("span", { class: "visually-hidden" }, "change size"),
     );
   };

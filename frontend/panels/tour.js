@@ -31,7 +31,7 @@ const STOPS = [
   {
     at: "#inspector",
     title: "The whole cloth in numbers",
-    text: "How stiff it is along its courses and its wales, with an interval and where the numbers come from, and your cloth among the four fabrics that were measured.",
+    text: "How stiff it is along its rows and its columns, with an interval and where the numbers come from, and your cloth among the four fabrics that were measured.",
   },
   {
     at: "#stretch",

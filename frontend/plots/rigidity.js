@@ -71,12 +71,12 @@ export function rigidityPlot(host, studio) {
     add(
       "text",
       { x: (PAD.left + width - PAD.right) / 2, y: height - 6, class: "axis middle" },
-      "Course modulus (N/mm)",
+      "Modulus along rows (N/mm)",
     );
     add(
       "text",
       { transform: `translate(11 ${(PAD.top + height - PAD.bottom) / 2}) rotate(-90)`, class: "axis middle" },
-      "Wale modulus (N/mm)",
+      "along columns (N/mm)",
     );
     for (const point of points) {
       const chosen = point.id === studio.materialId.value;
@@ -119,7 +119,7 @@ export function rigidityPlot(host, studio) {
     svg.setAttribute(
       "aria-label",
       own
-        ? `This ${scope}: ${figure(own.x)} N/mm course-wise, ${figure(own.y)} N/mm wale-wise, among the fabrics of all materials.`
+        ? `This ${scope}: ${figure(own.x)} N/mm along the rows, ${figure(own.y)} N/mm along the columns, among the fabrics of all materials.`
         : "Stiffness of the fabrics of all materials.",
     );
   };

@@ -79,7 +79,7 @@ export async function importFile(context, file) {
   if (!file.size) return refusal(`${file.name} is empty.`, "Choose a text, a PNG or a project file.");
   if (file.type.startsWith("image/")) {
     const { importPicture } = await import("../panels/dialogs/picture.js");
-    return importPicture(context.studio, file);
+    return importPicture(context, file);
   }
   const text = await file.text();
   if (text.includes("\0")) {

@@ -2,12 +2,15 @@
  * What the numbers are of: the whole chart, the selection, or a region.
  *
  * @import {Grid} from "../core/grid.js"
+ * @import {Selection} from "../core/selection.js"
  * @import {Studio} from "../studio.js"
  *
  * @typedef {object} Scope
  * @property {"chart" | "selection" | "region"} kind
  * @property {string} title
- * @property {Grid} grid the stitches, as a chart of their own
+ * @property {string} size in words
+ * @property {Grid} grid the stitches whose moduli are told, as a chart of their own
+ * @property {{grid: Grid, mask: Uint8Array | null}} counted the stitches whose segments are counted
  * @property {string} note how the grid stands for stitches that are no rectangle; "" where it is them
  */
 
@@ -22,23 +25,40 @@ export function scopeOf(studio) {
   const { document: chart, selection, seeing } = studio;
   const { grid } = chart;
   const box = selection.value;
-  if (box) {
-    const note = box.mask ? "Of the rectangle around the selected stitches." : "";
-    return { kind: "selection", title: "Selection", grid: grid.region(box), note };
-  }
+  if (box) return partOf(box, grid, "selection", "Selection");
   const region = seeing.region.value === null ? null : chart.region(seeing.region.value);
   if (!region?.count) {
+    const size = `${grid.columns} × ${grid.rows}`;
+    const counted = { grid, mask: chart.shaped ? chart.outline : null };
     const inside = chart.shaped ? largestRectangle(chart.outline, grid.columns) : null;
-    if (!inside) return { kind: "chart", title: "Whole chart", grid, note: "" };
-    const part = grid.region(inside);
-    const note = `Of the largest rectangle inside the fabric, ${part.columns} × ${part.rows} stitches: its other parts are regions.`;
-    return { kind: "chart", title: "Whole chart", grid: part, note };
+    const part = inside ? grid.region(inside) : grid;
+    const note = inside
+      ? `Of the largest rectangle inside the fabric, ${part.columns} × ${part.rows} stitches: its other parts are regions.`
+      : "";
+    return { kind: "chart", title: "Whole chart", size, grid: part, counted, note };
   }
-  const title = region.name;
-  if (region.fill) return { kind: "region", title, grid: region.fill, note: "Of the repeat that fills it." };
-  const around = /** @type {import("../core/selection.js").Selection} */ (selectionOf(region.cells, grid));
-  const note = around.mask ? "Of the rectangle around the region." : "";
-  return { kind: "region", title, grid: grid.region(around), note };
+  const around = /** @type {Selection} */ (selectionOf(region.cells, grid));
+  const part = partOf(around, grid, "region", region.name);
+  return region.fill ? { ...part, grid: region.fill, note: "Of the repeat that fills it." } : part;
+}
+
+/**
+ * @param {Selection} box
+ * @param {Grid} chart
+ * @param {"selection" | "region"} kind
+ * @param {string} title
+ * @returns {Scope}
+ */
+function partOf(box, chart, kind, title) {
+  const grid = chart.region(box);
+  const { mask = null } = box;
+  const counted = { grid, mask };
+  const inside = mask && largestRectangle(mask, grid.columns);
+  if (!mask || !inside) return { kind, title, size: `${grid.columns} × ${grid.rows}`, grid, counted, note: "" };
+  const part = grid.region(inside);
+  const stitches = mask.reduce((sum, one) => sum + one, 0);
+  const note = `Moduli of the largest rectangle inside it, ${part.columns} × ${part.rows} stitches.`;
+  return { kind, title, size: `${stitches} stitches`, grid: part, counted, note };
 }
 
 /**

@@ -4,6 +4,7 @@ import { ChartDocument } from "../core/document.js";
 import { Grid } from "../core/grid.js";
 import { flip, pack, toRuns, unpack } from "../core/bits.js";
 import { History } from "../core/history.js";
+import { isFilled } from "../core/regions.js";
 import { surroundings } from "../core/segments.js";
 import { Brush } from "../core/stroke.js";
 import { random } from "./random.js";
@@ -127,4 +128,22 @@ test("the history is kept across a reload, and shortened from its old end", () =
   assert.ok(short.done.length > 0 && short.done.length < 40);
   assert.deepEqual(short.done.at(-1), chart.history.done.at(-1));
   assert.equal(History.parse("spoilt").done.length, 0);
+});
+
+test("a region knows whether it was painted over since it was filled", () => {
+  const chart = new ChartDocument(new Grid(2, 4));
+  const id = chart.addRegion({ name: "cuff", colour: "#336699" });
+  chart.set(
+    [0, 1, 4, 5].map((i) => [i, 1]),
+    "Region",
+    `region:${id}`,
+  );
+  const region = () => /** @type {import("../core/regions.js").Region} */ (chart.region(id));
+  chart.changeRegion(id, { fill: Grid.fromText("KP") }, "Fill");
+  assert.equal(chart.grid.text, "KPKK\nKPKK");
+  assert.ok(isFilled(region(), chart));
+  chart.set([[0, 1]], "Paint");
+  assert.ok(!isFilled(region(), chart));
+  chart.fillRegion(id);
+  assert.ok(isFilled(region(), chart));
 });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { batlow, vik } from "../chart/colormaps.js";
 import { logScale } from "../chart/overlays.js";
-import { figure, percent, percentRange, range } from "../core/format.js";
+import { figure, percent, percentRange, percents, range } from "../core/format.js";
 
 test("three figures, with the zeros that count", () => {
   assert.equal(figure(0.223147), "0.223");
@@ -38,4 +38,10 @@ test("a logarithmic scale halves ratios", () => {
   assert.deepEqual([low, high], [0.01, 1]);
   assert.ok(Math.abs(at(0.1) - 0.5) < 1e-12);
   assert.equal(logScale([2, 2]).at(2), 0);
+});
+
+test("shares in percent add up, and what is there is never nothing", () => {
+  assert.deepEqual(percents([0.525, 0.475]), ["53 %", "47 %"]);
+  assert.deepEqual(percents([1 / 3, 1 / 3, 1 / 3]), ["34 %", "33 %", "33 %"]);
+  assert.deepEqual(percents([0.998, 0.002, 0, 0]), ["100 %", "< 1 %", "0 %", "0 %"]);
 });

@@ -2,11 +2,29 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Grid } from "../core/grid.js";
-import { repeatSize } from "../services/scope.js";
+import { repeatSize, scopeOf } from "../services/scope.js";
 
 test("the size of a repeat is that of its smallest continuation, also where it is cut off", () => {
   assert.equal(repeatSize(Grid.fromText("KKK\nKKK")), 1);
   assert.equal(repeatSize(Grid.fromText("KPKPK\nPKPKP\nKPKPK\nPKPKP\nKPKPK")), 4);
   assert.equal(repeatSize(Grid.fromText("KKPPKKPP\nKKPPKKPP")), 4);
   assert.equal(repeatSize(Grid.fromText("KPPK\nKKPP\nPKKK")), 12);
+});
+
+/** @param {Partial<{purl: string, mask: number[]}>} options */
+function lassoed({ purl = "KKKK\nKPPK\nKKKK", mask } = {}) {
+  const grid = Grid.fromText(purl);
+  const box = { row0: 0, row1: 3, column0: 0, column1: 3, mask: mask && Uint8Array.from(mask) };
+  const studio = { document: { grid, shaped: false }, selection: { value: box }, seeing: {} };
+  return scopeOf(/** @type {import("../studio.js").Studio} */ (/** @type {unknown} */ (studio)));
+}
+
+test("numbers of a lasso are those of its stitches, not of the box around it", () => {
+  const lasso = lassoed({ mask: [1, 1, 0, 1, 1, 0, 0, 1, 1] });
+  assert.equal(lasso.size, "6 stitches");
+  assert.deepEqual([lasso.grid.rows, lasso.grid.columns], [2, 2]);
+  assert.equal(lasso.counted.mask?.length, 9);
+  assert.match(lasso.note, /2 × 2/);
+  const box = lassoed();
+  assert.deepEqual([box.size, box.note, box.counted.mask], ["3 × 3", "", null]);
 });

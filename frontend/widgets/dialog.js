@@ -5,6 +5,9 @@ import { icon } from "../icons.js";
 import { iconButton } from "./buttons.js";
 import { problemText } from "./problem.js";
 
+/** Inputs that Enter itself works on. */
+const PRESSED = ["button", "checkbox", "file", "radio"];
+
 /**
  * @param {string} id
  * @param {string} title
@@ -24,6 +27,16 @@ export function dialog(id, title, ...content) {
   );
   element.addEventListener("click", (event) => {
     if (event.target === element) element.close();
+  });
+  // As in a form, Enter in a field does what the main button says.
+  element.addEventListener("keydown", (event) => {
+    const { target, key, defaultPrevented } = event;
+    const field = target instanceof HTMLInputElement && !target.form && !PRESSED.includes(target.type);
+    if (key !== "Enter" || defaultPrevented || !field) return;
+    const main = element.querySelector(".dialog-buttons .primary");
+    if (!(main instanceof HTMLButtonElement)) return;
+    event.preventDefault();
+    main.click();
   });
   document.body.append(element);
   return element;

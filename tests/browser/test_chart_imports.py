@@ -9,7 +9,6 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import CHART
 from tests.browser.page import drop, kept_chart, kept_design
 
 
@@ -37,15 +36,20 @@ def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
     flat_studio.fill("#picture-columns", "0")
     expect(flat_studio.locator("#picture-apply")).to_be_disabled()
     flat_studio.click("#picture-found")
-    flat_studio.click("#picture-apply")
+    before = kept_design(flat_studio)["id"]
+    flat_studio.press("#picture-columns", "Enter")
     assert kept_chart(flat_studio) == TEXT
+    assert kept_design(flat_studio)["id"] != before
+    expect(flat_studio.locator(".design-name")).to_have_value("chart")
 
     drop(flat_studio, "small.png", "image/png", picture(CELLS, 1))
     expect(flat_studio.locator("#picture-rows")).to_have_value("3")
-    flat_studio.keyboard.press("Escape")
+    flat_studio.fill("#picture-columns", "4")
+    flat_studio.click("#picture-replace")
     expect(dialog).to_have_count(0)
+    assert kept_chart(flat_studio) != TEXT
     flat_studio.click("#action-undo")
-    assert kept_chart(flat_studio) == CHART
+    assert kept_chart(flat_studio) == TEXT
 
 
 def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> None:

@@ -1,23 +1,75 @@
 /**
- * Every tool and command, found by its name.
+ * Every tool and command, yarn, pattern and colouring, found by its name.
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
+ * @import {IconName} from "../../icons.js"
+ *
+ * @typedef {{label: string, words: string, icon?: IconName, key?: string, perform: () => void}} Entry
  */
 
 import { ACTIONS, shown } from "../../actions/registry.js";
+import { OVERLAYS } from "../../chart/overlays.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { dialog } from "../../widgets/dialog.js";
 
+/** What people look for that an action's name does not say. @type {Record<string, string>} */
+const WORDS = {
+  garments: "measure measurements pressure glove sock sleeve brace plan",
+  "open-find": "pressure search wish stretch stiffness",
+  "open-fill": "wish stiffness softer stiffer relax region",
+  "open-atlas": "compare repeats patterns",
+  stretch: "pull test force load compare",
+  versions: "compare history",
+  exports: "print pdf knitout written download save",
+};
+
+/**
+ * @param {ActionContext} context
+ * @returns {Entry[]}
+ */
+function entries(context) {
+  const { studio } = context;
+  const patterns = studio.shelf.value.filter(({ repeat }) => repeat);
+  return [
+    ...ACTIONS.filter(({ id, enabled }) => id !== "palette" && enabled?.(studio) !== false).map((one) => ({
+      label: one.label,
+      words: WORDS[one.id] ?? "",
+      icon: one.icon,
+      key: one.keys[0],
+      perform: () => one.perform(context),
+    })),
+    ...OVERLAYS.filter((overlay) => overlay.available(studio)).map((overlay) => ({
+      label: `Colour the chart by: ${overlay.label.toLowerCase()}`,
+      words: "colours show",
+      perform: () => (studio.overlay.value = overlay),
+    })),
+    ...patterns.map((ink) => ({
+      label: `Paint with ${ink.name}`,
+      words: "pattern rib",
+      perform: () => (studio.ink.value = ink),
+    })),
+    ...studio.materials.value
+      .filter(({ fabrics }) => Object.keys(fabrics).length === 4)
+      .map(({ id, name }) => ({
+        label: `Yarn: ${name}`,
+        words: "material",
+        icon: /** @type {IconName} */ ("yarn"),
+        perform: () => (studio.materialId.value = id),
+      })),
+  ];
+}
+
 /** @param {Studio} _studio @param {ActionContext} context */
 export function create(_studio, context) {
+  const nothing = h("p", { class: "muted command-none", role: "status" });
   const list = h("div", { class: "command-list", role: "listbox", "aria-label": "Commands" });
   const search = h("input", {
     type: "text",
     id: "command-search",
     class: "command-search",
-    placeholder: "Find a tool or command",
+    placeholder: "Find a tool, command, yarn, pattern or colouring",
     "aria-label": "Find a tool or command",
     oninput: () => show(),
     onkeydown: (/** @type {KeyboardEvent} */ event) => {
@@ -38,10 +90,11 @@ export function create(_studio, context) {
   });
   const show = () => {
     const wanted = search.value.trim().toLowerCase();
-    const found = ACTIONS.filter(
-      ({ label, enabled, id }) =>
-        id !== "palette" && label.toLowerCase().includes(wanted) && enabled?.(context.studio) !== false,
-    );
+    const all = entries(context);
+    const named = all.filter(({ label }) => label.toLowerCase().includes(wanted));
+    const meant = wanted ? all.filter((one) => !named.includes(one) && one.words.includes(wanted)) : [];
+    const found = [...named, ...meant];
+    nothing.textContent = found.length ? "" : "Nothing of that name. Try a tool, a yarn, a pattern or a colouring.";
     list.replaceChildren(
       ...found.map((one, i) =>
         h(
@@ -53,17 +106,17 @@ export function create(_studio, context) {
             "aria-selected": String(i === 0),
             onclick: () => {
               element.close();
-              one.perform(context);
+              one.perform();
             },
           },
           one.icon ? icon(one.icon) : h("span", { class: "icon" }),
           h("span", {}, one.label),
-          one.keys[0] && h("kbd", {}, shown(one.keys[0])),
+          one.key && h("kbd", {}, shown(one.key)),
         ),
       ),
     );
   };
-  const element = dialog("palette-dialog", "Commands", search, list);
+  const element = dialog("palette-dialog", "Commands", search, nothing, list);
   return () => {
     search.value = "";
     show();

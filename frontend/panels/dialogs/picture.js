@@ -1,11 +1,13 @@
 /**
  * A picture becomes a chart: how its cells lie, what is dark, and how that looks, before it is taken.
  *
+ * @import {Grid} from "../../core/grid.js"
  * @import {Problem} from "../../types.js"
- * @import {Studio} from "../../studio.js"
+ * @import {ActionContext} from "../../actions/action.js"
  */
 
 import { pixel, readPalette } from "../../chart/palette.js";
+import { plainDesign } from "../../core/design.js";
 import { MAX_SIDE } from "../../core/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/picture.js";
 import { h } from "../../dom.js";
@@ -16,11 +18,11 @@ import { dialog } from "../../widgets/dialog.js";
 const MOST_PIXELS = 1600;
 
 /**
- * @param {Studio} studio
+ * @param {ActionContext} context
  * @param {File} file
  * @returns {Promise<Problem | null>} when the dialog is open, or what is wrong
  */
-export async function importPicture(studio, file) {
+export async function importPicture(context, file) {
   /** @type {ImageBitmap} */
   let bitmap;
   try {
@@ -32,25 +34,25 @@ export async function importPicture(studio, file) {
   const width = Math.max(1, Math.round(bitmap.width * scale));
   const height = Math.max(1, Math.round(bitmap.height * scale));
   const canvas = new OffscreenCanvas(width, height);
-  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  context.drawImage(bitmap, 0, 0, width, height);
-  pictureDialog(studio, file.name, bitmap, {
-    values: greys(context.getImageData(0, 0, width, height)),
+  const drawing = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  drawing.drawImage(bitmap, 0, 0, width, height);
+  pictureDialog(context, file.name, bitmap, {
+    values: greys(drawing.getImageData(0, 0, width, height)),
     width,
     height,
-    aspect: studio.material.value?.fabrics.stockinette ?? null,
+    aspect: context.studio.material.value?.fabrics.stockinette ?? null,
   });
   return null;
 }
 
 /**
- * @param {Studio} studio
+ * @param {ActionContext} context
  * @param {string} name
  * @param {ImageBitmap} bitmap
  * @param {{values: Uint8Array, width: number, height: number,
  *   aspect: {stitch_course_mm: number | null, stitch_wale_mm: number | null} | null}} picture
  */
-function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) {
+function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height, aspect }) {
   document.getElementById("picture-dialog")?.remove();
   const stitch = (aspect?.stitch_wale_mm ?? 0.8) / (aspect?.stitch_course_mm ?? 1);
   const each = Math.max(bitmap.width, bitmap.height) <= MAX_SIDE;
@@ -91,22 +93,39 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
   const preview = h("canvas", { class: "picture-preview", id: "picture-preview", role: "img" });
   const source = h("canvas", { class: "picture-preview", role: "img", "aria-label": `The picture ${name}` });
   const problem = h("p", { class: "problem-text", role: "alert" });
+  /** @param {(grid: Grid) => string} use says where the old chart is */
+  const take = (use) => {
+    const grid = read();
+    if (!grid) return;
+    element.close();
+    const before = use(grid);
+    studio.tell(`Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. ${before}`);
+  };
   const apply = h(
     "button",
     {
       class: "button primary",
       id: "picture-apply",
-      onclick: () => {
-        const grid = read();
-        if (!grid) return;
-        element.close();
-        studio.document.replace(grid, "Import");
-        studio.tell(
-          `Imported ${grid.columns} stitches × ${grid.rows} rows from ${name}. Undo brings the old chart back.`,
-        );
-      },
+      onclick: () =>
+        take((grid) => {
+          keeper.openNew(plainDesign(name.replace(/\.[^.]*$/, "") || "Picture", grid.text, studio.materialId.value));
+          return "The design before it is still among your designs.";
+        }),
     },
-    "Import",
+    "New design",
+  );
+  const replace = h(
+    "button",
+    {
+      class: "button",
+      id: "picture-replace",
+      onclick: () =>
+        take((grid) => {
+          studio.document.replace(grid, "Import");
+          return "Undo brings the old chart back.";
+        }),
+    },
+    "Replace this chart",
   );
 
   /** @param {string} id @param {string} label @param {{columns: number, rows: number}} size */
@@ -129,7 +148,7 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
     const [across, up] = [columns.input.valueAsNumber, rows.input.valueAsNumber];
     const well = [across, up].every((n) => Number.isInteger(n) && n >= 1 && n <= MAX_SIDE);
     problem.textContent = well ? "" : `Use whole numbers from 1 to ${MAX_SIDE}.`;
-    apply.disabled = !well;
+    apply.disabled = replace.disabled = !well;
     return well
       ? stitchesOf(values, width, height, {
           columns: across,
@@ -205,6 +224,7 @@ function pictureDialog(studio, name, bitmap, { values, width, height, aspect }) 
       "div",
       { class: "dialog-buttons" },
       h("button", { class: "button", onclick: () => element.close() }, "Cancel"),
+      replace,
       apply,
     ),
   );

@@ -15,7 +15,7 @@ import { download } from "../../services/exporter.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled } from "../../widgets/fields.js";
-import { KINDS } from "./kinds.js";
+import { KINDS, hindrance } from "./kinds.js";
 
 /** Characters of a text file that are shown. */
 const MOST_SHOWN = 6000;
@@ -92,6 +92,17 @@ export function create(studio) {
     outcome.replaceChildren();
     status.replaceChildren();
   };
+  const entries = KINDS.map((one) => ({
+    one,
+    input: h("input", {
+      type: "radio",
+      name: "export-kind",
+      value: one.to,
+      checked: one === kind,
+      onchange: () => choose(one),
+    }),
+    note: h("span", { class: "muted" }),
+  }));
   const groups = [...new Set(KINDS.map(({ group }) => group))];
   const element = dialog(
     "export-dialog",
@@ -107,20 +118,11 @@ export function create(studio) {
             "fieldset",
             { class: "exports-kinds" },
             h("legend", {}, group),
-            ...KINDS.filter((one) => one.group === group).map((one) =>
-              h(
-                "label",
-                { class: "exports-kind" },
-                h("input", {
-                  type: "radio",
-                  name: "export-kind",
-                  value: one.to,
-                  checked: one === kind,
-                  onchange: () => choose(one),
-                }),
-                h("span", {}, one.name, h("span", { class: "muted" }, one.note)),
+            ...entries
+              .filter(({ one }) => one.group === group)
+              .map(({ one, input, note }) =>
+                h("label", { class: "exports-kind" }, input, h("span", {}, one.name, note)),
               ),
-            ),
           ),
         ),
       ),
@@ -160,9 +162,11 @@ export function create(studio) {
   /** @param {ExportedFile} file */
   function show(file) {
     const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
-    const save = () => download(file.name, new Blob([bytes], { type: file.media_type }));
+    // A report and a chart of one design are both PDF.
+    const name = kind.to === "report" ? file.name.replace(/\.pdf$/, " report.pdf") : file.name;
+    const save = () => download(name, new Blob([bytes], { type: file.media_type }));
     const found = [
-      `${file.name}, ${(file.bytes / 1000).toFixed(1)} kB`,
+      `${name}, ${(file.bytes / 1000).toFixed(1)} kB`,
       ...(file.transfers === null
         ? []
         : [
@@ -182,6 +186,16 @@ export function create(studio) {
   choose(kind);
   return () => {
     const { regions, outline } = studio.toDocument();
+    const { document: chart } = studio;
+    for (const { one, input, note: words } of entries) {
+      const why = hindrance(one.to, { shaped: chart.shaped, stitches: chart.grid.purl.length });
+      input.disabled = why !== "";
+      words.textContent = why || one.note;
+    }
+    if (entries.some(({ input }) => input.checked && input.disabled)) {
+      entries[0].input.checked = true;
+      choose(entries[0].one);
+    }
     const yarns = new Set(regions.flatMap(({ yarn }) => yarn ?? []));
     note.textContent = [
       studio.note.value ? "The design's note goes with it." : "A note of the design would go with it.",

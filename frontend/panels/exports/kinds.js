@@ -5,6 +5,21 @@
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
+/** Stitches of the largest chart that the service makes solids, or programs, of. */
+const MOST = { glb: 2500, stl: 2500, knitout: 20_000 };
+
+/**
+ * Why a chart cannot become a file of a kind; "" where it can.
+ *
+ * @param {string} to
+ * @param {{shaped: boolean, stitches: number}} chart
+ */
+export function hindrance(to, { shaped, stitches }) {
+  if (shaped && ["knitspeak", "text"].includes(to)) return "holds no outline: rectangular charts only";
+  const most = MOST[/** @type {keyof typeof MOST} */ (to)] ?? Infinity;
+  return stitches > most ? `at most ${most.toLocaleString("en")} stitches` : "";
+}
+
 /** @type {ExportKind[]} */
 export const KINDS = [
   {
@@ -33,7 +48,7 @@ export const KINDS = [
   {
     to: "knitspeak",
     name: "KnitSpeak",
-    note: "for Stitch Maps and other tools; rectangles only",
+    note: "for Stitch Maps and other tools; rectangular charts only",
     group: "To knit by hand",
     options: ["worked"],
     text: true,
@@ -71,7 +86,7 @@ export const KINDS = [
   {
     to: "text",
     name: "Lines of K and P",
-    note: "rectangles only",
+    note: "rectangular charts only",
     group: "To keep and to compute with",
     options: [],
     text: true,

@@ -13,6 +13,8 @@ const SLOW_MS = 45;
  */
 const HEARTBEAT_MS = 2500;
 const LONGEST_HEARTBEAT_MS = 5000;
+/** Side of the small picture that tells whether something is drawn. */
+const SAMPLE = 24;
 
 export class FrameGovernor {
   /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */ #waiting = new Map();
@@ -25,13 +27,20 @@ export class FrameGovernor {
   /** Mean time between frames, in ms; begins neither slow nor fast. */
   #pace = SLOW_MS;
 
+  /** What to call when the viewer shows something; null once it was called. @type {(() => void) | null} */ #seen =
+    null;
+  /** @type {Document | null} */ #document = null;
+
   /**
    * Take over the frames of a viewer that was just loaded.
    *
    * @param {Window} viewer of our own origin
+   * @param {() => void} seen called when its first picture is there
    */
-  govern(viewer) {
+  govern(viewer, seen) {
     this.#waiting.clear();
+    this.#seen = seen;
+    this.#document = viewer.document;
     const own = viewer.requestAnimationFrame.bind(viewer);
     const cancel = viewer.cancelAnimationFrame.bind(viewer);
     this.#request = own;
@@ -107,5 +116,23 @@ export class FrameGovernor {
     if (gap > 0 && gap < 2000) this.#pace += 0.1 * (gap - this.#pace);
     this.#lastFrame = time;
     callback(time);
+    if (this.#seen && hasPicture(this.#document)) {
+      this.#seen();
+      this.#seen = null;
+    }
   }
+}
+
+/**
+ * Whether anything is drawn; only to be asked within a frame, as a drawing buffer is empty afterwards.
+ *
+ * @param {Document | null} viewer
+ */
+function hasPicture(viewer) {
+  const drawn = [...(viewer?.querySelectorAll("canvas") ?? [])].find(({ width, height }) => width && height);
+  if (!drawn) return false;
+  const small = new OffscreenCanvas(SAMPLE, SAMPLE);
+  const context = /** @type {OffscreenCanvasRenderingContext2D} */ (small.getContext("2d"));
+  context.drawImage(drawn, 0, 0, SAMPLE, SAMPLE);
+  return context.getImageData(0, 0, SAMPLE, SAMPLE).data.some((value, i) => i % 4 === 3 && value > 0);
 }

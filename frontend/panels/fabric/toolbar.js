@@ -13,7 +13,7 @@ import { menu } from "../../widgets/menu.js";
 const SIDES = [
   { side: "face", label: "Face", hint: "Look at the face" },
   { side: "back", label: "Back", hint: "Look at the back" },
-  { side: "edge", label: "Edge", hint: "Look along the wales, from the cast-on edge" },
+  { side: "edge", label: "Edge", hint: "Look along the columns, from the cast-on edge" },
   { side: "angle", label: "Angle", hint: "Look from below right" },
 ];
 

@@ -18,6 +18,7 @@
  * @property {object} garment what the service is asked for
  */
 
+import { plainDesign } from "../../core/design.js";
 import { exampleGrid } from "../../core/example.js";
 import { Grid } from "../../core/grid.js";
 
@@ -37,7 +38,7 @@ export const EXAMPLES = [
   {
     id: "garter",
     name: "Garter",
-    note: "Odd segments along the wales: stretches lengthwise.",
+    note: "Odd segments along the columns: stretches lengthwise.",
     chart: tiled("P/K", 24, 30),
   },
   { id: "rib", name: "1×1 rib", note: "Odd segments along the course: stretches across.", chart: tiled("KP", 24, 30) },
@@ -81,25 +82,6 @@ export const GARMENTS = [
     garment: { template: "glove" },
   },
 ];
-
-/**
- * @param {string} name
- * @param {string} chart
- * @param {string} material
- * @returns {DesignDocument}
- */
-export const plainDesign = (name, chart, material) => ({
-  format: "knitcore-design",
-  version: 2,
-  name,
-  material,
-  note: "",
-  chart,
-  outline: null,
-  regions: [],
-  repeats: [],
-  shelf: [],
-});
 
 /**
  * @typedef {{name: string, chart: string, outline: string, notes: string[], warnings: string[],

@@ -7,13 +7,14 @@
  */
 
 import { call } from "../../api.js";
+import { plainDesign } from "../../core/design.js";
 import { Grid } from "../../core/grid.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
-import { EXAMPLES, GARMENTS, garmentDesign, plainDesign } from "./examples.js";
+import { EXAMPLES, GARMENTS, garmentDesign } from "./examples.js";
 
 /**
  * @param {Studio} studio
@@ -57,11 +58,11 @@ export function create(studio, { keeper, open }) {
       { class: "card" },
       h(
         "button",
-        { class: "card-open", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
+        { class: "card-open whole", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
         h("span", { class: "card-picture" }, picture),
+        h("span", { class: "card-name" }, name),
+        h("span", { class: "card-facts muted" }, note),
       ),
-      h("span", { class: "card-name" }, name),
-      h("span", { class: "card-facts muted" }, note),
     );
 
   const show = () => {

@@ -71,7 +71,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
       stroke(context, scales.x.at(tick), PAD.top, scales.x.at(tick), height - PAD.bottom);
       context.fillText(String(tick), scales.x.at(tick), height - PAD.bottom + 16);
     }
-    context.fillText("Stiffness along rows (course), N/mm", (PAD.left + width) / 2, height - 6);
+    context.fillText("Modulus along rows, N/mm", (PAD.left + width) / 2, height - 6);
     context.textAlign = "right";
     for (const tick of scales.y.ticks) {
       stroke(context, PAD.left, scales.y.at(tick), width - PAD.right, scales.y.at(tick));
@@ -81,7 +81,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     context.translate(13, (PAD.top + height - PAD.bottom) / 2);
     context.rotate(-Math.PI / 2);
     context.textAlign = "center";
-    context.fillText("along columns (wale), N/mm", 0, 0);
+    context.fillText("along columns, N/mm", 0, 0);
     context.restore();
     for (const { key, index, x, y } of points) {
       if (PURE.includes(key)) continue;

@@ -24,6 +24,7 @@ from app.http.security import LOGIN_FAILURES, MOST_VALUES, PAGE_POLICY
 from app.http.tokens import Tokens
 from app.main import create_app
 from app.settings import Settings
+from app.viewer import relay
 from app.viewer.private_port import RELAY_HEADERS, private_server
 from app.viewer.views import Views
 from knitcore import InputError
@@ -182,7 +183,8 @@ def test_users_see_only_their_own(lab: TestClient) -> None:
     assert lab.get(f"/api/v1/shared/{share}").status_code == 403
 
 
-def test_views_are_private_too(lab: TestClient) -> None:
+def test_views_are_private_too(lab: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(relay, "OPENING_S", 0.1)
     ada, bob = (_as(_tokens(lab).create(name).token) for name in ("ada", "bob"))
     body = {"chart": "KP", "material": "acrylic"}
     assert lab.put("/api/v1/views/one-name", json=body, headers=ada).status_code == 200
