@@ -66,9 +66,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         )
         app.state.viewer_page = relay.viewer_page()
         job_store = JobStore(app.state.database, chosen.process_name)
-        app.state.jobs = JobRunner(
-            job_store, app.state.compute, app.state.recent, chosen.background_timeout_s
-        )
+        app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)
         await app.state.jobs.resume()
         janitors = [
             asyncio.create_task(_close_idle_views(app.state.views, chosen.viewer_idle_s)),

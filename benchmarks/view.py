@@ -11,16 +11,19 @@ import contextlib
 import io
 import time
 from collections.abc import Callable
+from pathlib import Path
 from statistics import median
 
 import numpy as np
 import zstandard
 
-from app.operations.stretch import StretchRequest, run_stretch
-from app.operations.view import StretchStep, ViewRequest, build_scene
+from app.operations.context import Context
+from app.operations.stretch import StretchRequest, stretch
+from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.views import View, new_view
 from knitcore.chart import StitchChart
 
+HERE = Context(Path())
 RUNS = 5
 
 
@@ -49,7 +52,7 @@ def first_scene_s(rows: int, columns: int) -> float:
     view = new_view()
     try:
         start = time.process_time()
-        view.show(build_scene(request, None))
+        view.show(build_scene(request, None, HERE))
         return time.process_time() - start
     finally:
         view.server.stop()
@@ -60,12 +63,12 @@ def stretch_bytes() -> tuple[int, float]:
     chart = patterned(32, 32)
     asked = {"chart": chart, "material": "acrylic"}
     test = StretchRequest(**asked, direction="wale", strain=0.3, steps=20)
-    run = run_stretch(test, cancelled=lambda: False)
+    run = stretch(test, HERE).view
     view = new_view()
 
     def frame(step: int) -> None:
         at = StretchStep(id="test", step=step)
-        view.show(build_scene(ViewRequest(**asked, colour="strain", stretch=at), run))
+        view.show(build_scene(ViewRequest(**asked, colour="strain", stretch=at), run, HERE))
 
     def play() -> None:
         for step in range(20):
@@ -83,7 +86,7 @@ def stretch_bytes() -> tuple[int, float]:
 def main() -> None:
     """Print the figures."""
     with contextlib.redirect_stdout(io.StringIO()):  # viser greets and says good-bye
-        build_scene(ViewRequest(chart="KP\nPK", material="acrylic"), None)
+        build_scene(ViewRequest(chart="KP\nPK", material="acrylic"), None, HERE)
         scenes = {n: median(first_scene_s(n, n) for _ in range(RUNS)) for n in (32, 100, 200)}
         total, seconds = stretch_bytes()
     for side, value in scenes.items():

@@ -13,7 +13,6 @@ from pydantic import BaseModel
 from app.compute.answers import Answers
 from app.http.packed import json_response
 from app.http.problems import Problem
-from app.operations.context import Context
 from app.operations.registry import Operation, operations
 
 MISSING: dict[int | str, dict[str, Any]] = {
@@ -34,7 +33,7 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
 
     def light(request: Request, body: BaseModel | None = None, **fields: Any) -> Any:
         asked = operation.request(**fields) if body is None else body
-        return operation.run(asked, Context(request.app.state.answers.data_dir))
+        return operation.run(asked, request.app.state.answers.context())
 
     if operation.method == "POST":
         return _typed(light, body=operation.request, request=Request)

@@ -10,16 +10,19 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from app.http.problems import NotFoundError, Problem
-from app.operations.share import ShareRequest, shared_page, shared_recording, shared_solid
-from app.operations.stretch import StretchRun
-from app.operations.view import ViewRequest, ViewResult, build_scene
+from app.models.base import RequestModel
+from app.operations.context import Context
+from app.operations.perform import Answer
+from app.operations.stretch import StretchView
 from app.viewer.camera import Side
 from app.viewer.design_id import DesignId, private_name
+from app.viewer.design_view import ViewRequest, ViewResult, build_scene
 from app.viewer.fabric import Box
 from app.viewer.share import picture_png
+from app.viewer.shared import ShareRequest, shared_page, shared_recording, shared_solid
 from app.viewer.views import View
 
 EVENT_PERIOD_S = 0.5
@@ -37,10 +40,8 @@ _pictures = ThreadPoolExecutor(4, "pictures")  # waiting for browsers, up to 25 
 router = APIRouter(tags=["views"], responses=MISSING)
 
 
-class BoxInput(BaseModel):
+class BoxInput(RequestModel):
     """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
-
-    model_config = ConfigDict(extra="forbid")
 
     row0: int = Field(ge=0, lt=100_000)
     column0: int = Field(ge=0, lt=100_000)
@@ -48,18 +49,14 @@ class BoxInput(BaseModel):
     column1: int = Field(ge=1, le=100_000)
 
 
-class MarkRequest(BaseModel):
+class MarkRequest(RequestModel):
     """What to outline."""
-
-    model_config = ConfigDict(extra="forbid")
 
     box: BoxInput | None = None
 
 
-class CameraRequest(BaseModel):
+class CameraRequest(RequestModel):
     """From where to look."""
-
-    model_config = ConfigDict(extra="forbid")
 
     side: Side
 
@@ -69,9 +66,10 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     """Draw the design's scene; whoever watches `/view/{design}/` sees it change at once."""
     state = request.app.state
     stretch, name = _stretch(body, request), private_name(design)
+    context = state.answers.context()
 
     def draw() -> ViewResult:
-        scene = build_scene(body, stretch)
+        scene = build_scene(body, stretch, context)
         drawn = state.views.open(name).show(scene)
         return ViewResult(stitches=drawn, source=scene.shapes.source, url=f"/view/{design}/")
 
@@ -171,13 +169,14 @@ async def post_solid(body: ShareRequest, request: Request) -> Response:
 
 
 async def _shared(
-    make: Callable[[ShareRequest, StretchRun | None], bytes],
+    make: Callable[[ShareRequest, StretchView | None, Context], bytes],
     body: ShareRequest,
     request: Request,
     media: str,
     ending: str,
 ) -> Response:
-    content = await _in(_drawing, make, body, _stretch(body, request))
+    context = request.app.state.answers.context()
+    content = await _in(_drawing, make, body, _stretch(body, request), context)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 
@@ -189,11 +188,11 @@ async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: An
     return await loop.run_in_executor(threads, context.run, function, *args)
 
 
-def _stretch(body: ViewRequest, request: Request) -> StretchRun | None:
+def _stretch(body: ViewRequest, request: Request) -> StretchView | None:
     if body.stretch is None:
         return None
-    run: StretchRun | None = request.app.state.recent.get(body.stretch.id)
-    return run
+    answer: Answer | None = request.app.state.recent.get(body.stretch.id)
+    return answer.view if answer and isinstance(answer.view, StretchView) else None
 
 
 def _view(design: str, request: Request) -> View:

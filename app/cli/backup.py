@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import emit, json_option
-from app.settings import Settings
+from app.cli.common import emit, json_option, user_settings
 
 
 @click.command("backup")
@@ -19,7 +18,7 @@ def command(file: Path, as_json: bool) -> None:
     from app.store.database import Database
     from app.store.schema import migrate
 
-    database = Database(Settings().store_url)
+    database = Database(user_settings().store_url)
     try:
         migrate(database)
         report = back_up(database, file)

@@ -18,12 +18,13 @@ import click
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from app.cli.common import emit, json_option, resolve_piece, resolve_repeat, user_data_dir
-from app.models.charts import IS_REPEAT
+from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user_data_dir
+from app.models.charts import IS_REPEAT, fabric_repeat
 from app.models.uploads import UploadedFile
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
+from knitcore.fabric import Fabric
 
 FILE = click.Path(path_type=Path)
 MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
@@ -94,20 +95,19 @@ class _Options:
         InputError
             Naming the option that it does not take.
         """
-        asked: dict[str, Any] = {}
+        asked = self._chart(given) if "chart" in self._fields else {}
         for name in self._fields:
             if name in self._groups:
                 parts = {part: given[part] for part in self._groups[name].model_fields}
-                asked[name] = _given(parts) or None
-            elif name == "chart":
-                asked |= self._chart(given)
-            else:
-                asked[name] = _value(given[name])
+                if group := {part: value for part, value in parts.items() if value is not None}:
+                    asked[name] = group
+            elif name != "chart" and (value := _value(given[name])) is not None:
+                asked[name] = value
         if self._described.fields is not None:
             own = {name: given[name] for name in _parameters(self._described.fields)}
             asked |= self._described.fields(**own)
         try:
-            return self._model.model_validate(_given(asked))
+            return self._model.model_validate(asked)
         except ValidationError as error:
             first = error.errors()[0]
             place = [str(part) for part in first["loc"]]
@@ -116,12 +116,21 @@ class _Options:
             raise InputError(name, f"{first['msg']}.", "See --help for what it takes.") from None
 
     def _chart(self, given: dict[str, Any]) -> dict[str, Any]:
+        """The chart, and what of the request its file holds as well."""
         chart, size = given["chart"], given["size"]
-        if IS_REPEAT in self._fields["chart"].metadata:
-            return {"chart": resolve_repeat(chart, size).text}
+        fields = self._model.model_fields
+        if "regions" in fields and size is None and Path(chart).suffix:
+            from app.operations.import_ import design_in
+
+            return {name: value for name, value in design_in(Path(chart)) if name in fields}
+        if chart.lower() in set(Fabric):
+            if size is None and IS_REPEAT in self._fields["chart"].metadata:
+                return {"chart": fabric_repeat(Fabric.parse(chart)).text}
+            of = resolve_chart(chart, size)
+            return {"chart": {"fabric": chart.lower(), "columns": of.columns, "rows": of.rows}}
         piece = resolve_piece(chart, size)
         asked: dict[str, Any] = {"chart": piece.chart.text}
-        if "outline" in self._model.model_fields and not piece.is_rectangle:
+        if "outline" in fields and not piece.is_rectangle:
             asked["outline"] = piece.shaped.outline
         return asked
 
@@ -148,13 +157,18 @@ class _Options:
         elif field.annotation is bool:
             off = f"/--no-{self._named(name)}" if field.default else ""
             yield click.Option(
-                [f"--{self._named(name)}{off}", name], default=field.default, help=field.description
+                [f"--{self._named(name)}{off}", name],
+                is_flag=True,
+                default=field.default,
+                help=field.description,
             )
         else:
             default = field.get_default(call_default_factory=True)
             more: dict[str, Any] = {}
-            if isinstance(default, str | float) and default != "":
-                more = {"default": str(default), "show_default": True}
+            if get_origin(_kinds(field)[0]) is list:
+                more = {"multiple": True}
+            elif isinstance(default, str | float) and default != "":
+                more = {"show_default": str(default)}
             yield click.Option(
                 [f"--{self._named(name)}", name],
                 type=_type(field),
@@ -164,16 +178,12 @@ class _Options:
             )
 
 
-def _given(values: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in values.items() if value is not None}
-
-
 def _value(value: Any) -> Any:
-    """Files are taken where they are."""
+    """As the request takes it: files where they are, and nothing for an option not given."""
     if isinstance(value, Path):
         return UploadedFile.at(value)
     if isinstance(value, tuple):
-        return [_value(one) for one in value]
+        return [_value(one) for one in value] or None
     return value
 
 
@@ -200,6 +210,8 @@ def _is_file(field: FieldInfo) -> bool:
 def _type(field: FieldInfo) -> Any:
     """A type of click."""
     kind = _kinds(field)[0]
+    if get_origin(kind) is list:
+        kind = get_args(kind)[0]
     if kind is UploadedFile:
         return FILE
     if get_origin(kind) is Literal:

@@ -8,13 +8,14 @@ from typing import Any
 
 import click
 from pydantic import ValidationError
-from pydantic_settings import SettingsError
 
-import app.cli as commands
-from app.operations.registry import names_of_commands, operation_of_command
+import app.cli as package
+from app.operations.registry import commands, operation_of_command
 from knitcore.errors import KnitcoreError
 
-NO_COMMANDS = {"main", "common", "commands"}
+GROUPS = {"measure": "Measure a yarn: its bending modulus and its compressibility."}
+"""Commands with commands of their own, which are operations."""
+NO_COMMANDS = {"main", "common", "commands", "options"}
 """Modules of this package that hold none."""
 
 
@@ -28,27 +29,44 @@ class Failure(click.ClickException):
         click.echo(f"Error: {self.message}", file=file, err=True)
 
 
-class Commands(click.Group):
-    """The operations, and what runs the service (a module here each); loaded when called."""
+class Operations(click.Group):
+    """Commands made of the operations of a group, each loaded when it is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands."""
-        modules = {m.name for m in pkgutil.iter_modules(commands.__path__)}
-        return sorted(modules - NO_COMMANDS | names_of_commands())
+        return sorted(commands(self.operations_of))
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of that name."""
-        operation = operation_of_command(cmd_name)
-        if operation is not None:
-            from app.cli.commands import command_of
-
-            return command_of(operation, cmd_name)
-        if cmd_name not in {m.name for m in pkgutil.iter_modules(commands.__path__)} - NO_COMMANDS:
+        operation = operation_of_command(cmd_name, self.operations_of)
+        if operation is None:
             return None
-        module = importlib.import_module(f"{commands.__name__}.{cmd_name}")
-        command = module.command
-        assert isinstance(command, click.Command)  # noqa: S101 - a mistake of ours, not the user's
-        return command
+        from app.cli.commands import command_of
+
+        return command_of(operation, cmd_name)
+
+    @property
+    def operations_of(self) -> str:
+        """The group of its operations."""
+        return self.name if self.name in GROUPS else ""
+
+
+class Commands(Operations):
+    """All commands: operations, and what runs the service, of which each has a module here."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all commands."""
+        return sorted({*super().list_commands(ctx), *_own_commands(), *GROUPS})
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of that name."""
+        if cmd_name in GROUPS:
+            return Operations(cmd_name, help=GROUPS[cmd_name])
+        if cmd_name in _own_commands():
+            module = importlib.import_module(f"{package.__name__}.{cmd_name}")
+            found: click.Command = module.command
+            return found
+        return super().get_command(ctx, cmd_name)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what goes wrong on purpose is told in one line."""
@@ -56,12 +74,14 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except KnitcoreError as error:
             raise Failure(str(error)) from error
-        except SettingsError as error:
-            raise Failure(f'{error}. Write a list as JSON, such as ["knit.example"].') from error
         except ValidationError as error:
             first = error.errors()[0]
             field = ".".join(str(part) for part in first["loc"])
             raise Failure(f"{field}: {first['msg']} (given: {first['input']!r}).") from error
+
+
+def _own_commands() -> set[str]:
+    return {module.name for module in pkgutil.iter_modules(package.__path__)} - NO_COMMANDS
 
 
 @click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

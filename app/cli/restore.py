@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import emit, json_option
-from app.settings import Settings
+from app.cli.common import emit, json_option, user_settings
 
 
 @click.command("restore")
@@ -18,7 +17,7 @@ def command(file: Path, as_json: bool) -> None:
     from app.store.backup import restore
     from app.store.database import Database
 
-    database = Database(Settings().store_url)
+    database = Database(user_settings().store_url)
     try:
         report = restore(database, file)
     finally:

@@ -13,7 +13,7 @@ from types import FrameType
 
 import click
 
-from app.cli.common import json_option
+from app.cli.common import json_option, user_settings
 from app.settings import Settings
 from knitcore.errors import InputError
 
@@ -29,7 +29,7 @@ SPARE_HANDLES = 400
 def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
-    settings = Settings.model_validate(Settings().model_dump() | given).check()
+    settings = Settings.model_validate(user_settings().model_dump() | given).check()
     _ = settings.store_url  # told in one line if there is no place for the data
     import uvicorn
 

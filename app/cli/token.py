@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.cli.common import emit, json_option
-from app.settings import Settings
+from app.cli.common import emit, json_option, user_settings
 
 if TYPE_CHECKING:
     from app.http.tokens import Tokens
@@ -21,7 +20,7 @@ def _tokens() -> Iterator[Tokens]:
     from app.store.database import Database
     from app.store.schema import migrate
 
-    database = Database(Settings().store_url)
+    database = Database(user_settings().store_url)
     try:
         migrate(database)
         yield Tokens(database)

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from app.compute.compute import Compute
+from app.operations.context import Context
 from app.operations.perform import Answer, perform
 from app.operations.registry import Operation
 from app.results.recent import RecentResults
@@ -27,7 +28,11 @@ class Answers:
     def __init__(self, compute: Compute, recent: RecentResults, data_dir: Path) -> None:
         self.compute = compute
         self._recent = recent
-        self.data_dir = data_dir
+        self._data_dir = data_dir
+
+    def context(self) -> Context:
+        """What operations work with that need no worker."""
+        return Context(self._data_dir)
 
     async def answer(
         self,
@@ -46,7 +51,7 @@ class Answers:
         known: Answer | None = self._recent.get(key)
         if known is not None:
             return known
-        args = operation.run, request, self.data_dir
+        args = operation.run, request, self._data_dir
         answer: Answer = await self.compute.run(abandoned, perform, *args, **turn)
         self._recent.put(key, answer, answer.size_bytes)
         return answer

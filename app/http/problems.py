@@ -13,6 +13,7 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 
+from app.models.base import MissingError
 from knitcore.errors import (
     CancelledError,
     ConvergenceError,
@@ -130,6 +131,9 @@ def problem_of(error: Exception) -> Problem:
     """Any error as a problem; what is not foreseen keeps its details to itself."""
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         error = NoRoomError("The disk of the service is full.")
+    if isinstance(error, MissingError):
+        missing = f"{error.field}: {error.problem}"
+        error = NotFoundError(missing, field=error.field, remedy=error.remedy)
     if isinstance(error, ServiceError):
         return error.problem
     if isinstance(error, InputError):

@@ -8,15 +8,13 @@ import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.compute.compute import Compute
+from app.compute.answers import Answers
 from app.compute.places import AbandonedError
 from app.designs.idempotency import Retry
 from app.http.problems import Problem, ServiceError, problem_of
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, content_key
 from app.jobs.store import JobStore
-from app.operations.stretch import StretchRequest, stretch_key
-from app.results.recent import RecentResults
 from app.store.database import StoreError
 
 log = logging.getLogger("knitcore.jobs")
@@ -42,17 +40,14 @@ class JobRunner:
     Parameters
     ----------
     store : what a restart must not forget.
-    compute : where the work is done.
-    recent : where the 3D view finds stretch tests.
+    answers : where operations are asked.
     timeout_s : longest run of one job.
     """
 
-    def __init__(
-        self, store: JobStore, compute: Compute, recent: RecentResults, timeout_s: float
-    ) -> None:
+    def __init__(self, store: JobStore, answers: Answers, timeout_s: float) -> None:
         self.store = store
-        self._compute = compute
-        self._recent = recent
+        self._answers = answers
+        self._compute = answers.compute
         self._timeout_s = timeout_s
         self._runs: dict[str, _Run] = {}
         self._stopping = False
@@ -170,19 +165,17 @@ class JobRunner:
         log.info("job waits", extra=extra)
         try:
             wanted = described.request.model_validate_json(request)
-            answer = await self._compute.run(
+            answer = await self._answers.answer(
                 abandoned,
-                described.function,
+                described,
                 wanted,
                 owner=owner,
                 background=True,
                 timeout_s=self._timeout_s,
                 told=told,
             )
-            if isinstance(wanted, StretchRequest):
-                self._recent.put(stretch_key(wanted), answer, answer.size_bytes)
-            body = await asyncio.to_thread(described.told, answer)
-            await self._keep(lambda: self.store.finish(job, kind, content_key(kind, request), body))
+            key = content_key(kind, request)
+            await self._keep(lambda: self.store.finish(job, kind, key, answer.body))
             log.info("job done", extra=extra)
         except asyncio.CancelledError:
             if self._stopping:

@@ -8,7 +8,13 @@ from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from knitcore.errors import InputError
+
 UNIT = "_n_per_mm"
+
+
+class MissingError(InputError):
+    """There is none of the name in the address."""
 
 
 class RequestModel(BaseModel):

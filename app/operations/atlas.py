@@ -2,53 +2,46 @@
 
 from __future__ import annotations
 
-import hashlib
-import logging
-import os
-from collections.abc import Callable
-from functools import lru_cache
-from importlib.resources import files
+from collections import Counter
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Literal
+from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+import click
+from pydantic import BeforeValidator, Field
 
-from app.results.own_materials import find_material
-from knitcore.chart import StitchChart
-from knitcore.design.atlas import Atlas, load_atlas, save_atlas
-from knitcore.design.atlas_build import build_atlas, material_fingerprint
-from knitcore.design.repeats import known_larger_repeats, repeats_up_to, striped_repeats
+from app.cli.common import emit, json_option, material_option, user_data_dir
+from app.cli.options import out_option
+from app.models.base import RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Operation
+from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
+from knitcore.design.atlas import Atlas
+from knitcore.design.atlas_build import build_atlas
+from knitcore.design.atlas_yarn import improve_atlas
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
-from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
-log = logging.getLogger("knitcore.atlas")
-
-Extent = Literal["small", "all"]
-SMALL = (3, 3)
 DIGITS = 5
-
-Cancelled = Callable[[], bool]
-Progress = Callable[[int, int], None]
-Column = list[float]
+MOST_STITCHES = 8
 
 
-class AtlasRequest(BaseModel):
+def _rounded(values: Iterable[float]) -> list[float]:
+    return [float(f"{value:.{DIGITS}g}") for value in values]
+
+
+Column = Annotated[list[float], BeforeValidator(_rounded)]
+
+
+class AtlasRequest(RequestModel):
     """Which atlas."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    material: str = Field(max_length=80, examples=["acrylic"])
-    repeats: Extent = Field(
-        "small",
-        description="small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of "
-        "two fabrics.",
-    )
+    material: MaterialName
+    repeats: Extent = Field("small", description=EXTENTS)
 
 
-class AtlasResult(BaseModel):
+class AtlasResult(ResultModel):
     """An atlas as columns, for the rigidity-rigidity scatter."""
 
     material: str
@@ -63,111 +56,116 @@ class AtlasResult(BaseModel):
     poisson_xy: Column
     stretch_course: Column = Field(description="Strain at 0.1 N/mm.")
     stretch_wale: Column
-    relaxed_course_mm: list[float] = Field(description="Width of the mean stitch at rest.")
-    relaxed_wale_mm: list[float] = Field(description="Height of the mean stitch at rest.")
+    relaxed_course_mm: Column = Field(description="Width of the mean stitch at rest.")
+    relaxed_wale_mm: Column = Field(description="Height of the mean stitch at rest.")
     transfers_per_stitch: Column
     crossings_per_stitch: Column
     curl: Column
     provenance: list[str]
 
 
-def repeats_of(extent: Extent) -> tuple[StitchChart, ...]:
-    """The repeats of an atlas."""
-    if extent == "small":
-        return tuple(dict.fromkeys((*repeats_up_to(*SMALL), *known_larger_repeats())))
-    larger = (*known_larger_repeats(), *striped_repeats())
-    return tuple(dict.fromkeys((*repeats_up_to(4, 4), *larger)))
+COLUMNS = [name for name in AtlasResult.model_fields if name.startswith(("mod", "poi", "relaxed"))]
+COSTS = ("transfers_per_stitch", "crossings_per_stitch", "curl")
 
 
-def run_atlas(
-    request: AtlasRequest, *, cancelled: Cancelled, progress: Progress | None = None
-) -> AtlasResult:
-    """The atlas of a library material."""
-    return atlas_result(cached_atlas(request.material, request.repeats, cancelled, progress))
+def atlas(request: AtlasRequest, context: Context) -> AtlasResult:
+    """Columns for a scatter of stiffness course-wise against wale-wise."""
+    return _result(atlas_of(request.material, request.repeats, context))
 
 
-def atlas_result(atlas: Atlas) -> AtlasResult:
-    """An atlas at the border."""
-    names = (
-        *(f"modulus_{d}_{part}" for d in Direction for part in ("n_per_mm", "low", "high")),
-        "poisson_yx",
-        "poisson_xy",
-    )
-    return AtlasResult(
-        material=atlas.material,
-        repeats=list(atlas.keys),
-        **{name: _rounded(atlas.column(name)) for name in names},
-        stretch_course=_rounded(atlas.strain_at(Direction.COURSE, USUAL_LOAD_N_PER_MM)),
-        stretch_wale=_rounded(atlas.strain_at(Direction.WALE, USUAL_LOAD_N_PER_MM)),
-        relaxed_course_mm=_rounded(atlas.column("relaxed_course_mm")),
-        relaxed_wale_mm=_rounded(atlas.column("relaxed_wale_mm")),
-        transfers_per_stitch=[round(c.transfers_per_stitch, DIGITS) for c in atlas.costs],
-        crossings_per_stitch=[round(c.crossings_per_stitch, DIGITS) for c in atlas.costs],
-        curl=[round(c.curl, DIGITS) for c in atlas.costs],
-        provenance=list(atlas.provenance),
+def _result(found: Atlas) -> AtlasResult:
+    return AtlasResult.of(
+        found,
+        repeats=found.keys,
+        **{name: found.column(name) for name in COLUMNS},
+        **{name: [getattr(cost, name) for cost in found.costs] for name in COSTS},
+        **{f"stretch_{d}": found.strain_at(d, USUAL_LOAD_N_PER_MM) for d in Direction},
     )
 
 
-def cached_atlas(
-    name: str, extent: Extent, cancelled: Cancelled | None, progress: Progress | None = None
-) -> Atlas:
-    """The atlas of a library material, from memory or the user's cache folder if it is there."""
-    built = _built()
-    if (name, extent) not in built:
-        material = find_material(name)
-        version = f"{material_fingerprint(material)}-{_code_version()}"
-        file = cache_folder() / f"{name}-{extent}-{version}.npz"
-        repeats = repeats_of(extent)
-        found = _load(file, len(repeats))
-        if found is None:
-            found = build_atlas(material, repeats, cancelled=cancelled, progress=progress)
-            _save(found, file)
-        built[name, extent] = found
-    return built[name, extent]
+@click.command("atlas")
+@material_option
+@out_option("-o", "--out", required=True, help="FILE.npz", suffixes=(".npz",))
+@click.option(
+    "--repeats",
+    type=click.Choice(["small", "all"]),
+    default="all",
+    show_default=True,
+    help=EXTENTS,
+)
+@click.option(
+    "--yarn-level",
+    is_flag=True,
+    help="Then relax and stretch repeats on the yarn level, small ones first.",
+)
+@click.option(
+    "--most-stitches",
+    type=click.IntRange(1, 64),
+    default=MOST_STITCHES,
+    show_default=True,
+    help="Of the largest repeat that goes to the yarn level.",
+)
+@click.option("--workers", type=click.IntRange(1), help="Processes; all cores if left out.")
+@click.option("--scheduler", metavar="tcp://…", help="Address of a Dask cluster to work on.")
+@json_option
+def _command(
+    material: str,
+    out: Path,
+    repeats: Extent,
+    yarn_level: bool,
+    most_stitches: int,
+    workers: int | None,
+    scheduler: str | None,
+    as_json: bool,
+) -> None:
+    """Predict all repeats of a material; stopped at any point, it goes on where it was."""
+    yarn = Context(user_data_dir, local=True).material(material)
+    found = build_atlas(
+        yarn,
+        repeats_of(repeats),
+        file=out,
+        workers=workers,
+        scheduler=scheduler,
+        progress=None if as_json else _teller("repeats"),
+    )
+    if yarn_level:
+        found = improve_atlas(
+            yarn,
+            out,
+            most_stitches=most_stitches,
+            workers=workers,
+            scheduler=scheduler,
+            progress=None if as_json else _teller("repeats on the yarn level"),
+        )
+    result = _result(found)
+    emit(result, f"{out}: {_text(result)}", as_json=as_json)
 
 
-def cache_folder() -> Path:
-    """Where atlases of the library are kept between runs; it may be emptied at any time."""
-    home = os.environ.get("XDG_CACHE_HOME")
-    return (Path(home) if home else Path.home() / ".cache") / "knitcore" / "atlas"
+def _teller(what: str) -> Callable[[int, int], None]:
+    def progress(done: int, total: int) -> None:
+        click.echo(f"\r{done} of {total} {what}", nl=done == total, err=True)
+
+    return progress
 
 
-@lru_cache(maxsize=1)
-def _code_version() -> str:
-    """Changes with whatever could change a prediction of the same laws."""
-    digest = hashlib.sha256()
-    for part in ("mechanics", "design"):
-        sources = files("knitcore").joinpath(part).iterdir()
-        for file in sorted(sources, key=lambda found: found.name):
-            if file.name.endswith(".py"):
-                digest.update(file.read_bytes())
-    return digest.hexdigest()[:8]
+def _text(r: AtlasResult) -> str:
+    course, wale = r.modulus_course_n_per_mm, r.modulus_wale_n_per_mm
+    sources = ", ".join(f"{n} {source}" for source, n in Counter(r.provenance).most_common())
+    return (
+        f"{len(r.repeats)} repeats of {r.material}; "
+        f"course {min(course):.4f} to {max(course):.4f} N/mm, "
+        f"wale {min(wale):.4f} to {max(wale):.4f} N/mm; laws: {sources}"
+    )
 
 
-@lru_cache(maxsize=1)
-def _built() -> dict[tuple[str, Extent], Atlas]:
-    """Atlases of the library that this process has built; at most two of each material."""
-    return {}
-
-
-def _load(file: Path, repeats: int) -> Atlas | None:
-    if not file.is_file():
-        return None
-    try:
-        atlas = load_atlas(file)
-    except InputError as error:
-        log.warning("the cached atlas is made again: %s", error)
-        return None
-    return atlas if len(atlas) == repeats else None
-
-
-def _save(atlas: Atlas, file: Path) -> None:
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        save_atlas(atlas, file)
-    except OSError as error:
-        log.warning("the atlas cannot be kept for the next run: %s", error)
-
-
-def _rounded(values: NDArray[np.float64]) -> Column:
-    return [float(f"{value:.{DIGITS}g}") for value in values]
+OPERATION = Operation(
+    name="atlas",
+    tag="design",
+    summary="Predicted constants of all small repeats of a material",
+    request=AtlasRequest,
+    result=AtlasResult,
+    run=atlas,
+    heavy=True,
+    job=True,
+    command=_command,
+)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
-from app.models.charts import ChartInput, to_repeat
-from app.operations.relax import Cancelled, YarnResult, yarn_result
-from app.results.own_materials import find_material
-from knitcore.chart import StitchChart
+from app.models.base import RequestModel, ResultModel
+from app.models.charts import MaterialName, RepeatInput, to_repeat
+from app.models.yarn_level import YarnResult
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
-from knitcore.materials import Material
 from knitcore.yarnlevel.bending import (
     MAX_STITCHES,
     BendingResponse,
@@ -32,11 +32,11 @@ _FRICTIONLESS = (
 )
 
 
-class BendOptions(BaseModel):
-    """The yarn in the stitches."""
+class BendRequest(RequestModel):
+    """A repeat and its yarn."""
 
-    model_config = ConfigDict(extra="forbid")
-
+    chart: RepeatInput
+    material: MaterialName
     loop_length_mm: float | None = Field(
         None, gt=0, le=1000, allow_inf_nan=False, description="Yarn per stitch; the material's."
     )
@@ -45,14 +45,7 @@ class BendOptions(BaseModel):
     )
 
 
-class BendRequest(BendOptions):
-    """A repeat and its yarn."""
-
-    chart: ChartInput
-    material: str = Field(max_length=80, examples=["acrylic"])
-
-
-class BendResult(BaseModel):
+class BendResult(ResultModel):
     """Linear response of the relaxed repeat; course: bent along the rows."""
 
     moment_course_n: float = Field(
@@ -86,20 +79,9 @@ class BendResult(BaseModel):
     notes: list[str]
 
 
-def run_bend(request: BendRequest, *, cancelled: Cancelled) -> BendResult:
-    """Bend for the service."""
-    material = find_material(request.material)
-    return bend_chart(to_repeat(request.chart), material, request, cancelled=cancelled)
-
-
-def bend_chart(
-    chart: StitchChart,
-    material: Material,
-    options: BendOptions,
-    *,
-    cancelled: Cancelled | None = None,
-) -> BendResult:
-    """Bending of a chart's repeat, relaxed with its symmetries and compared with it free of them.
+def bend(request: BendRequest, context: Context) -> BendResult:
+    """Bending rigidity, curl and shear of the repeat, relaxed with its symmetries and compared
+    with it free of them.
 
     Raises
     ------
@@ -108,18 +90,18 @@ def bend_chart(
     ConvergenceError
         If no state of it bears bending.
     """
-    repeat = chart.repeat()
+    repeat = to_repeat(request.chart).repeat()
     if repeat.rows * repeat.columns > MAX_STITCHES:
         raise InputError(
             "chart",
             f"its repeat has {repeat.rows * repeat.columns} stitches.",
             f"Use a repeat of at most {MAX_STITCHES} stitches.",
         )
-    used = yarn_for(material, repeat, options.loop_length_mm)
-    loop = options.loop_length_mm or used.loop_length_mm
+    used = yarn_for(context.material(request.material), repeat, request.loop_length_mm)
+    loop = request.loop_length_mm or used.loop_length_mm
 
     def relaxed(branch: Branch) -> RelaxedRepeat:
-        return relax(repeat, used.yarn, loop, branch=branch, cancel=cancelled)
+        return relax(repeat, used.yarn, loop, branch=branch, cancel=context.cancelled)
 
     mirrored = relaxed(Branch.MIRRORED)
     notes = [_FRICTIONLESS]
@@ -139,7 +121,7 @@ def bend_chart(
     branch = "mirrored" if shown is found else "free"
     notes += _compared(found, free)
     stable = free if free is not None and not shown.minimum else shown
-    density = options.linear_density_g_per_m
+    density = request.linear_density_g_per_m
     area = mirrored.cell_course_mm * mirrored.cell_wale_mm
     weight = None if density is None else 1e-6 * STANDARD_GRAVITY * density * loop / area  # N/mm²
     shear, twist = stable.shear_modulus_n_per_mm, stable.twist_n_mm
@@ -165,7 +147,7 @@ def bend_chart(
         stable=shown.minimum,
         provenance=f"yarn level, linear response of the relaxed repeat ({branch} branch); yarn: "
         f"{used.provenance}",
-        yarn=yarn_result(used),
+        yarn=YarnResult.of(used, used.yarn),
         notes=notes,
     )
 
@@ -190,3 +172,46 @@ def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> lis
         for way, (first, second) in both.items()
         if max(first / second, second / first) > FAR_APART
     ]
+
+
+def _text(r: BendResult) -> str:
+    shear = (
+        "unknown" if r.shear_modulus_n_per_mm is None else f"{r.shear_modulus_n_per_mm:.4f} N/mm"
+    )
+    lines = [
+        "                          along rows  along columns",
+        f"curling moment [N]        {r.moment_course_n:10.4f} {r.moment_wale_n:14.4f}",
+        f"bending rigidity [N·mm]   {r.bending_course_n_mm:10.4f} {r.bending_wale_n_mm:14.4f}",
+        f"  other size held [N·mm]  {r.bending_held_course_n_mm:10.4f} "
+        f"{r.bending_held_wale_n_mm:14.4f}",
+    ]
+    if r.bending_length_course_mm is not None and r.bending_length_wale_mm is not None:
+        lines.append(
+            f"bending length [mm]       {r.bending_length_course_mm:10.1f} "
+            f"{r.bending_length_wale_mm:14.1f}"
+        )
+    return "\n".join(
+        [
+            *lines,
+            f"shear modulus   {shear}",
+            f"thickness       {r.thickness_mm:.2f} mm",
+            f"free edges      {r.curl}",
+            f"source          {r.provenance}",
+            *(f"note: {note}" for note in r.notes),
+        ]
+    )
+
+
+OPERATION = Operation(
+    name="bend",
+    tag="yarn level",
+    summary="Bending, curl and shear of a repeat at the yarn level",
+    request=BendRequest,
+    result=BendResult,
+    run=bend,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text, help="Bending rigidity, curl and shear of the repeat CHART, without friction."
+    ),
+)

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import csv
+import shutil
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+import click
+from pydantic import Field, model_validator
 
-from app.results.own_materials import find_material
+from app.cli.common import json_option, user_data_dir
+from app.models.base import Positive, RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Operation
 from knitcore.batch import BatchProgress
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
 from knitcore.materials.document import MaterialDocument
+from knitcore.materials.files import save_material_file
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.yarn import YarnModel
@@ -30,15 +38,16 @@ from knitcore.yarnlibrary.yarn_table import (
     plan_for_yarn,
 )
 
-Cancelled = Callable[[], bool]
-Positive = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+Item = TypeVar("Item")
 MAX_SETTINGS = 24
+BRANCHES = click.Choice([branch.value for branch in Branch])
+CONVENTIONS = click.Choice([convention.value for convention in Convention])
+FINISHED = "finished"
+"""Folder of finished stitches within the results, from which a stopped batch goes on."""
 
 
-class YarnInput(BaseModel):
+class YarnInput(RequestModel):
     """A yarn by its parameters."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: str = Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$", examples=["my-merino"])
     bending_modulus_n_mm2: Positive
@@ -52,10 +61,8 @@ class YarnInput(BaseModel):
         return YarnModel(**{f.name: getattr(self, f.name) for f in fields(YarnModel)})
 
 
-class CharacteriseOptions(BaseModel):
+class CharacteriseOptions(RequestModel):
     """Which stitches of a yarn, and which model."""
-
-    model_config = ConfigDict(extra="forbid")
 
     fabrics: list[Fabric] = Field(default_factory=lambda: list(Fabric), min_length=1)
     loop_lengths_mm: list[Positive] = Field(
@@ -79,7 +86,7 @@ class CharacteriseOptions(BaseModel):
 class CharacteriseRequest(CharacteriseOptions):
     """A yarn, of a material or by its parameters."""
 
-    material: str | None = Field(None, max_length=80, examples=["acrylic"])
+    material: MaterialName | None = None
     yarn: YarnInput | None = None
 
     @model_validator(mode="after")
@@ -89,7 +96,7 @@ class CharacteriseRequest(CharacteriseOptions):
         return self
 
 
-class FabricCurve(BaseModel):
+class FabricCurve(ResultModel):
     """A stretch, free across."""
 
     strain: list[float]
@@ -104,7 +111,7 @@ class FabricCurve(BaseModel):
     notes: list[str]
 
 
-class FabricRow(BaseModel):
+class FabricRow(ResultModel):
     """A pure fabric at one stitch setting: rest, law with its range, shares of the energy."""
 
     fabric: Fabric
@@ -143,7 +150,7 @@ class CharacterisedFabric(FabricRow):
     curves: dict[Direction, FabricCurve]
 
 
-class CharacteriseResult(BaseModel):
+class CharacteriseResult(ResultModel):
     """The table of a yarn; `material` holds its laws at the reference setting."""
 
     identifier: str
@@ -159,41 +166,19 @@ class CharacteriseResult(BaseModel):
     materials: dict[str, MaterialDocument] = Field(description="The same at every setting.")
 
 
-def run_characterise(
-    request: CharacteriseRequest,
-    *,
-    cancelled: Cancelled,
-    progress: Callable[[int, int], None] | None = None,
-) -> CharacteriseResult:
-    """Characterise one yarn in this process, for the service."""
-    found = find_material(request.material) if request.material is not None else None
-    (result,) = characterise(
-        [plan_of(found or request.yarn, request)],
+def characterise(request: CharacteriseRequest, context: Context) -> CharacteriseResult:
+    """Every fabric is relaxed at every loop length and stretched both ways."""
+    yarn = request.yarn if request.material is None else context.material(request.material)
+    (table,) = characterise_yarns(
+        [_plan(yarn, request)],
         workers=1,
-        on_progress=None if progress is None else lambda told: progress(told.done, told.total),
-        should_stop=cancelled,
+        on_progress=lambda at: context.progress(at.done, at.total),
+        should_stop=context.cancelled,
     )
-    return result
+    return _result(table)
 
 
-def characterise(
-    plans: list[YarnPlan],
-    *,
-    scheduler: str | None = None,
-    workers: int | None = None,
-    keep: Path | None = None,
-    on_progress: Callable[[BatchProgress], None] | None = None,
-    should_stop: Cancelled | None = None,
-) -> list[CharacteriseResult]:
-    """Characterise any number of yarns as one batch."""
-    tables = characterise_yarns(
-        plans, scheduler=scheduler, workers=workers, keep=keep, on_progress=on_progress,
-        should_stop=should_stop,
-    )  # fmt: skip
-    return [_result(table) for table in tables]
-
-
-def plan_of(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> YarnPlan:
+def _plan(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> YarnPlan:
     """What to compute of a yarn.
 
     Raises
@@ -224,12 +209,8 @@ def _result(table: YarnTable) -> CharacteriseResult:
             made = material_of(table, setting.name)
             materials[setting.name] = MaterialDocument.from_material(made)
     reference = plan.settings[plan.reference].name
-    return CharacteriseResult(
-        identifier=plan.identifier,
-        provenance=plan.provenance,
-        estimated=plan.estimated,
-        branch=plan.branch,
-        convention=plan.convention,
+    return CharacteriseResult.of(
+        plan,
         reference=reference,
         rows=[_row(row) for row in table.rows],
         material=materials.get(reference),
@@ -241,3 +222,172 @@ def _row(row: YarnRow) -> CharacterisedFabric:
     return CharacterisedFabric.model_validate(
         {**row.flat(), "curves": row.document.get("curves", {})}
     )
+
+
+@click.command("characterise")
+@click.argument("materials", nargs=-1, metavar="[MATERIAL]...")
+@click.option("--yarn", metavar="NAME", help="A yarn by the five numbers below instead.")
+@click.option("--bending-modulus-n-mm2", type=float, help="B of --yarn, N·mm².")
+@click.option("--contact-stiffness-n-per-mm3", type=float, help="k of --yarn, N/mm³.")
+@click.option("--contact-exponent", type=float, help="p of --yarn.")
+@click.option("--radius-mm", type=float, help="Outer radius of --yarn.")
+@click.option("--core-radius-mm", type=float, help="Core radius of --yarn.")
+@click.option("--fabrics", metavar="A,B", help="Pure fabrics; all four if left out.")
+@click.option("--loop-lengths", metavar="MM,MM", help="Yarn per stitch, for all fabrics.")
+@click.option("--tensions", metavar="X,X", help="Loop lengths as parts of the material's own.")
+@click.option("--branch", type=BRANCHES, default=Branch.MIRRORED.value, show_default=True)
+@click.option("--convention", type=CONVENTIONS, default=Convention.PUBLISHED.value)
+@click.option("--max-stress-n-per-mm", type=float, default=MAX_STRESS_N_PER_MM, show_default=True)
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask cluster to work on.")
+@click.option("--workers", type=click.IntRange(1), help="Processes here; all cores if left out.")
+@click.option("--fresh", is_flag=True, help="Forget what an earlier run left in the folder.")
+@click.option("--out", required=True, type=click.Path(path_type=Path), help="FOLDER of results.")
+@json_option
+def _command(
+    materials: tuple[str, ...],
+    yarn: str | None,
+    fabrics: str | None,
+    loop_lengths: str | None,
+    tensions: str | None,
+    branch: str,
+    convention: str,
+    max_stress_n_per_mm: float,
+    scheduler: str | None,
+    workers: int | None,
+    fresh: bool,
+    out: Path,
+    as_json: bool,
+    **parameters: float | None,
+) -> None:
+    """Characterise yarns at the yarn level: laws, sizes and energies of their pure fabrics.
+
+    Every fabric is relaxed at every loop length and stretched both ways. Stopped, the command goes
+    on where it was. FOLDER holds table.csv, curves.csv, and material files that every other command
+    takes for --material.
+    """
+    given = {
+        "fabrics": _listed("fabrics", fabrics, Fabric.parse),
+        "loop_lengths_mm": _listed("loop-lengths", loop_lengths, float),
+        "tensions": _listed("tensions", tensions, float),
+    }
+    options = CharacteriseOptions(
+        **{name: value for name, value in given.items() if value is not None},
+        branch=Branch(branch),
+        convention=Convention(convention),
+        max_stress_n_per_mm=max_stress_n_per_mm,
+    )
+    context = Context(user_data_dir, local=True)
+    plans = [_plan(context.material(name), options) for name in materials]
+    if yarn is not None:
+        plans.append(_plan(YarnInput.model_validate({"name": yarn, **parameters}), options))
+    names = [plan.identifier for plan in plans]
+    if not plans or len(set(names)) < len(names):
+        raise InputError(
+            "material", "is missing or named twice.", "Name materials, or give a --yarn."
+        )
+    if fresh:
+        shutil.rmtree(out / FINISHED, ignore_errors=True)
+    tables = characterise_yarns(
+        plans, scheduler=scheduler, workers=workers, keep=out / FINISHED, on_progress=_show
+    )
+    results = [_result(table) for table in tables]
+    for result in results:
+        _write_materials(result, out)
+    _write_table(results, out / "table.csv")
+    _write_curves(results, out / "curves.csv")
+    if as_json:
+        click.echo("[" + ",\n".join(result.model_dump_json() for result in results) + "]")
+    else:
+        click.echo("\n\n".join(_text(result) for result in results))
+
+
+def _listed(field: str, text: str | None, read: Callable[[str], Item]) -> list[Item] | None:
+    if text is None:
+        return None
+    try:
+        return [read(part.strip()) for part in text.split(",")]
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(field, f"{text!r} is no list of numbers.", "Write 10.5,11,11.5.") from None
+
+
+def _show(told: BatchProgress) -> None:
+    failed = f", {told.failed} failed" if told.failed else ""
+    label = told.key.rpartition(".")[0]  # without the digest
+    click.echo(f"{told.done} of {told.total} stitches{failed} {label}".rstrip(), err=True)
+
+
+def _write_materials(result: CharacteriseResult, folder: Path) -> None:
+    for setting, document in result.materials.items():
+        suffix = "" if setting == result.reference else f"-{setting}"
+        save_material_file(document.to_material(), folder / f"{result.identifier}{suffix}.json")
+
+
+def _write_table(results: list[CharacteriseResult], file: Path) -> None:
+    columns = list(FabricRow.model_fields)
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, ["yarn", *columns])
+        writer.writeheader()
+        for result in results:
+            for row in result.rows:
+                told = row.model_dump(mode="json", include=set(columns))
+                writer.writerow({"yarn": result.identifier, **told})
+
+
+def _write_curves(results: list[CharacteriseResult], file: Path) -> None:
+    quantities = (
+        "strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share",
+    )  # fmt: skip
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["yarn", "fabric", "setting", "direction", *quantities])
+        for result in results:
+            for row in result.rows:
+                for direction, curve in row.curves.items():
+                    head = [result.identifier, str(row.fabric), row.setting, str(direction)]
+                    points = zip(*(getattr(curve, name) for name in quantities), strict=True)
+                    writer.writerows([*head, *point] for point in points)
+
+
+def _text(result: CharacteriseResult) -> str:
+    lines = [
+        f"{result.identifier}: {result.provenance}",
+        f"{result.branch} branch, {result.convention} convention; "
+        + (f"material file at {result.reference}" if result.material else "no material file"),
+        "fabric      setting   L mm   wide   high  /cm2   E N·mm contact   Y course     Y wale"
+        "   v yx  v xy  strains fitted",
+    ]
+    lines += [_line(row) for row in result.rows]
+    return "\n".join(lines)
+
+
+def _line(row: CharacterisedFabric) -> str:
+    head = f"{row.fabric:11} {row.setting:8} {row.loop_length_mm:5.2f}"
+    if row.stitch_course_mm is None:
+        return f"{head}  {row.remark}"
+    line = (
+        f"{head} {row.stitch_course_mm:6.3f} {row.stitch_wale_mm:6.3f} {row.stitches_per_cm2:5.1f} "
+        f"{row.energy_n_mm:8.4f} {row.contact_share:7.3f}"
+    )
+    if row.modulus_course_n_per_mm is None:
+        return f"{line}  no law: {row.remark}"
+    return (
+        f"{line} {row.modulus_course_n_per_mm:10.4f} {row.modulus_wale_n_per_mm:10.4f} "
+        f"{row.poisson_yx:6.2f} {row.poisson_xy:5.2f}  to {row.largest_strain_course:.2f} and "
+        f"{row.largest_strain_wale:.2f}{'' if row.converged else '; NOT converged'}"
+    )
+
+
+OPERATION = Operation(
+    name="characterise",
+    path=None,
+    tag="yarn level",
+    summary="The pure fabrics of a yarn at many stitch settings",
+    request=CharacteriseRequest,
+    result=CharacteriseResult,
+    run=characterise,
+    heavy=True,
+    job=True,
+    command=_command,
+)

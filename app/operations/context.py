@@ -68,6 +68,10 @@ class Context:
             return load_material_file(name)
         return find_own_material(name, self.data_dir) if name.startswith(PREFIX) else material(name)
 
+    def share(self, done: float) -> None:
+        """Tell how much is done, 0 to 1."""
+        self.progress(done, 1.0)
+
     def within(self, start: float, share: float) -> Context:
         """For a part of the work: its progress from 0 to 1 is ``share`` of the whole's."""
 

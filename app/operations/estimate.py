@@ -3,32 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, Field
+import click
+from pydantic import Field
 
-from app.operations.materials import LawResult
+from app.cli.common import emit, json_option, user_data_dir
+from app.cli.options import out_option
+from app.models.base import RequestModel, ResultModel
+from app.models.laws import LawResult
+from app.operations.context import Context
+from app.operations.estimate_report import LeftOutResult, report, text_of_left_out
+from app.operations.estimate_report import text as report_text
+from app.operations.registry import Operation
+from knitcore.errors import InputError
 from knitcore.estimate.estimate import (
-    Estimate,
     FabricEstimate,
     MeasuredSwatch,
     YarnEstimate,
     estimate_yarn,
 )
-from knitcore.estimate.model import left_out, library_table
+from knitcore.estimate.model import left_out
 from knitcore.fabric import Direction, Fabric
-from knitcore.formats.law_files import law_from_mapping
+from knitcore.formats.law_files import law_from_mapping, load_law
 from knitcore.materials import FabricRecord, Material, Origin, Yarn
+from knitcore.materials.files import save_material_file
 from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
 
 MEASURED_LOG_SD = 0.1
 """Of the moduli of a measured swatch in a saved material: the paper's median."""
 
 
-class SwatchInput(BaseModel):
+class SwatchInput(RequestModel):
     """A measured swatch of the yarn."""
-
-    model_config = ConfigDict(extra="forbid")
 
     fabric: Fabric
     law: dict[str, float] = Field(description="Constants of its law, by name.")
@@ -36,18 +43,18 @@ class SwatchInput(BaseModel):
     setting: str = Field("", max_length=200, description="Needle or stitch setting.")
 
 
-class EstimateRequest(BaseModel):
+class EstimateRequest(RequestModel):
     """What is known of the yarn and of the product."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    bending_modulus_n_mm2: float
+    bending_modulus_n_mm2: float = Field(description="B of the yarn (`measure bending`).")
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
     swatches: list[SwatchInput] = Field(default_factory=list, max_length=4)
-    product_setting: str = Field("", max_length=200)
+    product_setting: str = Field(
+        "", max_length=200, description="Needle or stitch setting of the product."
+    )
 
 
-class EstimateInterval(BaseModel):
+class EstimateInterval(ResultModel):
     """A value and its 90 % interval (of no width where it is measured)."""
 
     value: float
@@ -55,7 +62,7 @@ class EstimateInterval(BaseModel):
     high: float
 
 
-class FabricEstimateResult(BaseModel):
+class FabricEstimateResult(ResultModel):
     """One fabric: extension under load first, because it is predicted best."""
 
     strain_at_0_1_n_per_mm: dict[Direction, EstimateInterval]
@@ -67,22 +74,7 @@ class FabricEstimateResult(BaseModel):
     measured: bool
 
 
-class LeftOutResult(BaseModel):
-    """How well the library's yarns are predicted when they are left out; factors of the rms."""
-
-    measured: list[Fabric]
-    values: int
-    strain_rms_factor: float
-    modulus_rms_factor: float
-    modulus_median_factor: float
-    modulus_within_two: float = Field(description="Share predicted within a factor of two.")
-    alpha_rms_factor: float
-    beta_rms_factor: float
-    modulus_coverage: float = Field(description="Of the 90 % intervals.")
-    strain_coverage: float
-
-
-class EstimateResult(BaseModel):
+class EstimateResult(ResultModel):
     """All four fabrics of the yarn."""
 
     fabrics: dict[Fabric, FabricEstimateResult]
@@ -90,91 +82,44 @@ class EstimateResult(BaseModel):
     warnings: list[str]
 
 
-class ModelReport(BaseModel):
-    """The model refitted from the packaged tables, and its leave-one-yarn-out figures."""
-
-    yarns: int
-    modulus_constant: dict[Fabric, dict[Direction, float]] = Field(
-        description="K in Y = K B / L³, geometric mean."
-    )
-    alpha: dict[Fabric, dict[Direction, float]]
-    beta_n_per_mm: dict[Fabric, dict[Direction, float]]
-    left_out: list[LeftOutResult]
+def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
+    """Extension under load first, then moduli and laws, with 90 % intervals."""
+    del context
+    swatches = [
+        MeasuredSwatch(s.fabric, law_from_mapping(s.law).law, s.loop_length_mm, s.setting)
+        for s in request.swatches
+    ]
+    return _result(_estimate(request, swatches))
 
 
-def run_estimate(request: EstimateRequest) -> EstimateResult:
-    """The estimate that a request asks for."""
-    return estimate_result(
-        make_estimate(
-            request.bending_modulus_n_mm2,
-            request.loop_length_mm,
-            [
-                MeasuredSwatch(s.fabric, law_from_mapping(s.law).law, s.loop_length_mm, s.setting)
-                for s in request.swatches
-            ],
-            request.product_setting,
-        )
-    )
-
-
-def make_estimate(
-    bending_modulus_n_mm2: float,
-    loop_length_mm: float | Mapping[Fabric, float],
-    swatches: list[MeasuredSwatch],
-    product_setting: str,
-) -> YarnEstimate:
-    """Laws of all four fabrics."""
+def _estimate(request: EstimateRequest, swatches: list[MeasuredSwatch]) -> YarnEstimate:
     return estimate_yarn(
-        bending_modulus_n_mm2, loop_length_mm, swatches, product_setting=product_setting
+        request.bending_modulus_n_mm2,
+        request.loop_length_mm,
+        swatches,
+        product_setting=request.product_setting,
     )
 
 
-def estimate_result(estimate: YarnEstimate) -> EstimateResult:
-    """The numbers of an estimate."""
-    measured = tuple(f for f, e in estimate.fabrics.items() if e.measured)
-    return EstimateResult(
-        fabrics={fabric: _fabric(found) for fabric, found in estimate.fabrics.items()},
-        left_out=_left_out(measured) if len(measured) < len(Fabric) else None,
-        warnings=list(estimate.warnings),
+def _result(found: YarnEstimate) -> EstimateResult:
+    measured = tuple(f for f, e in found.fabrics.items() if e.measured)
+    return EstimateResult.of(
+        found,
+        fabrics={
+            fabric: FabricEstimateResult.of(f, strain_at_0_1_n_per_mm=f.strain_at_load)
+            for fabric, f in found.fabrics.items()
+        },
+        left_out=left_out(measured) if len(measured) < len(Fabric) else None,
     )
 
 
-def model_report() -> ModelReport:
-    """Refit the model and leave one yarn out, with nothing, one and two swatches measured."""
-    table = library_table()
-
-    def means(name: str) -> dict[Fabric, dict[Direction, float]]:
-        mean = getattr(table, name).mean(axis=0)
-        return {
-            fabric: {d: math.exp(mean[i, d.axis]) for d in Direction}
-            for i, fabric in enumerate(Fabric)
-        }
-
-    return ModelReport(
-        yarns=len(table.modulus),
-        modulus_constant=means("modulus"),
-        alpha=means("alpha"),
-        beta_n_per_mm=means("beta"),
-        left_out=[
-            _left_out(measured)
-            for measured in (
-                (),
-                *((fabric,) for fabric in Fabric),
-                (Fabric.STOCKINETTE, Fabric.RIB),
-            )
-        ],
-    )
-
-
-def estimated_material(
-    estimate: YarnEstimate, identifier: str, bending_modulus_n_mm2: float, setting: str = ""
-) -> Material:
+def _material(found: YarnEstimate, request: EstimateRequest, identifier: str) -> Material:
     """A material of an estimate, to save and to design with."""
     return Material(
         identifier,
         identifier,
-        Yarn(bending_modulus_n_mm2=bending_modulus_n_mm2),
-        {fabric: _record(found, setting) for fabric, found in estimate.fabrics.items()},
+        Yarn(bending_modulus_n_mm2=request.bending_modulus_n_mm2),
+        {fabric: _record(f, request.product_setting) for fabric, f in found.fabrics.items()},
         note="Estimated from the library's yarns: see the intervals of `knitcore estimate`.",
     )
 
@@ -208,24 +153,140 @@ def _record(found: FabricEstimate, setting: str) -> FabricRecord:
     )
 
 
-def _fabric(found: FabricEstimate) -> FabricEstimateResult:
-    return FabricEstimateResult(
-        strain_at_0_1_n_per_mm=_intervals(found.strain_at_load),
-        modulus_n_per_mm=_intervals(found.modulus),
-        alpha=_intervals(found.alpha),
-        beta_n_per_mm=_intervals(found.beta),
-        law=LawResult.of(found.law),
-        loop_length_mm=found.loop_length_mm,
-        measured=found.measured,
+@click.command("estimate")
+@click.option("--bending-modulus-n-mm2", type=float, help="B of the yarn (`measure bending`).")
+@click.option(
+    "--loop-length-mm",
+    "lengths",
+    multiple=True,
+    metavar="MM | FABRIC=MM",
+    help="Yarn per stitch of the product: one for all, or once per fabric.",
+)
+@click.option(
+    "--swatch",
+    "swatches",
+    multiple=True,
+    metavar="FABRIC=LAW",
+    help="A measured swatch: LAW.json, a material file or a library id.",
+)
+@click.option(
+    "--swatch-loop-length-mm",
+    "swatch_lengths",
+    multiple=True,
+    metavar="MM | FABRIC=MM",
+    help="Of the swatches; otherwise as the product's, or as in the material.",
+)
+@click.option("--swatch-setting", default="", help="Needle or stitch setting of the swatches.")
+@click.option("--product-setting", default="", help="Needle or stitch setting of the product.")
+@out_option("--out", help="Write a material file.")
+@click.option(
+    "--report",
+    "with_report",
+    is_flag=True,
+    help="Refit the model and leave one yarn out at a time.",
+)
+@json_option
+def _command(
+    bending_modulus_n_mm2: float | None,
+    lengths: tuple[str, ...],
+    swatches: tuple[str, ...],
+    swatch_lengths: tuple[str, ...],
+    swatch_setting: str,
+    product_setting: str,
+    out: Path | None,
+    with_report: bool,
+    as_json: bool,
+) -> None:
+    """Estimate the four fabrics of a yarn that is not in the library."""
+    if with_report:
+        found = report()
+        emit(found, report_text(found), as_json=as_json)
+        return
+    if bending_modulus_n_mm2 is None or not lengths:
+        raise InputError(
+            "bending_modulus_n_mm2",
+            "the bending modulus and a loop length are needed.",
+            "Measure them: `knitcore measure bending`, and unravel ten stitches.",
+        )
+    product = _lengths(lengths, "loop_length_mm")
+    own = _lengths(swatch_lengths, "swatch_loop_length_mm") if swatch_lengths else {}
+    measured = [_swatch(text, own, product, swatch_setting) for text in swatches]
+    request = EstimateRequest(
+        bending_modulus_n_mm2=bending_modulus_n_mm2,
+        loop_length_mm=product,
+        product_setting=product_setting,
     )
+    made = _estimate(request, measured)
+    if out is not None:
+        save_material_file(_material(made, request, out.stem.lower().replace(" ", "-")), out)
+    result = _result(made)
+    emit(result, _text(result), as_json=as_json)
 
 
-def _intervals(estimates: Mapping[Direction, Estimate]) -> dict[Direction, EstimateInterval]:
-    return {
-        d: EstimateInterval(value=e.value, low=e.low, high=e.high) for d, e in estimates.items()
-    }
+def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
+    found: dict[Fabric, float] = {}
+    for text in texts:
+        name, _, number = text.rpartition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            raise InputError(field, f"{text!r} is no length.", "Write MM or FABRIC=MM.") from None
+        if name:
+            found[Fabric.parse(name)] = value
+        else:
+            found = {fabric: found.get(fabric, value) for fabric in Fabric}
+    return found
 
 
-def _left_out(measured: tuple[Fabric, ...]) -> LeftOutResult:
-    found = left_out(measured)
-    return LeftOutResult(**{name: getattr(found, name) for name in LeftOutResult.model_fields})
+def _swatch(
+    text: str, own: dict[Fabric, float], product: dict[Fabric, float], setting: str
+) -> MeasuredSwatch:
+    name, separator, source = text.partition("=")
+    if not separator:
+        raise InputError("swatch", f"{text!r} names no fabric.", "Write FABRIC=LAW.json.")
+    fabric = Fabric.parse(name)
+    path = Path(source)
+    if path.suffix.lower() == ".json" and path.is_file() and '"fabrics"' not in path.read_text():
+        file = load_law(path)
+        law, length, known, curves = file.law, None, "", file.curves
+    else:
+        record = Context(user_data_dir, local=True).material(source).record(fabric)
+        law, length, known = record.law, record.loop_length_mm, record.setting
+        curves = record.measured
+    length = own.get(fabric) or length or product.get(fabric)
+    if length is None:
+        raise InputError(
+            "swatch_loop_length_mm", f"is missing for {fabric}.", "Unravel ten stitches."
+        )
+    return MeasuredSwatch(fabric, law, length, setting or known, curves)
+
+
+def _text(r: EstimateResult) -> str:
+    lines = ["extension at 0.1 N/mm (90 % interval), then Young's modulus in N/mm"]
+    for fabric, f in r.fabrics.items():
+        kind = " (measured)" if f.measured else ""
+        for d in Direction:
+            strain = _percent(f.strain_at_0_1_n_per_mm[d])
+            modulus = f.modulus_n_per_mm[d]
+            lines.append(
+                f"{fabric + kind:22} {d:6} {strain:24} {modulus.value:.4f}"
+                f" ({modulus.low:.4f} to {modulus.high:.4f})"
+            )
+    if r.left_out is not None:
+        lines += ["", text_of_left_out(r.left_out)]
+    return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
+
+
+def _percent(e: EstimateInterval) -> str:
+    return f"{e.value:.0%} ({e.low:.0%} to {e.high:.0%})"
+
+
+OPERATION = Operation(
+    name="estimate",
+    tag="materials",
+    summary="The four fabrics of a yarn that is not in the library",
+    request=EstimateRequest,
+    result=EstimateResult,
+    run=estimate,
+    command=_command,
+)

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
+from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
-from app.models.charts import ChartInput, to_chart
-from app.results.own_materials import find_material
+from app.cli.options import out_option
+from app.models.base import ResultModel
+from app.models.charts import ChartInput, MaterialName, to_chart
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.formats.export import (
-    ExportedFile,
-    ExportKind,
-    ExportOptions,
-    export_chart,
-)
+from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
 from knitcore.worked import Construction, Side
 
-MAX_KNITOUT_STITCHES = 20_000
-MAX_MESH_STITCHES = 2_500
+MAX_STITCHES = {ExportKind.KNITOUT: 20_000, ExportKind.GLB: 2_500, ExportKind.STL: 2_500}
 """Over REST; the command line takes larger ones."""
 
 
@@ -33,7 +30,7 @@ class ExportRequest(DesignLayout):
 
     chart: ChartInput
     to: ExportKind
-    material: str = Field("acrylic", max_length=80, description="For sizes and values.")
+    material: MaterialName = Field("acrylic", description="For sizes and values.")
     construction: Construction = Construction.FLAT
     first_side: Side = Field(Side.RS, description="Side of row 1 in flat knitting.")
     finish: Finish = Field(Finish.WASTE, description="How a knitout program ends.")
@@ -44,7 +41,7 @@ class ExportRequest(DesignLayout):
     )
 
 
-class ExportFacts(BaseModel):
+class ExportFacts(ResultModel):
     """What was written."""
 
     kind: ExportKind
@@ -64,21 +61,8 @@ class ExportResult(ExportFacts):
     content: str = Field(description="The file, base64.")
 
 
-def export_facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
-    """The facts of a file."""
-    return ExportFacts(
-        kind=file.kind,
-        rows=chart.rows,
-        columns=chart.columns,
-        bytes=len(file.content),
-        transfers=file.transfers,
-        carriers=file.carriers,
-        notes=list(file.notes),
-    )
-
-
-def run_export(request: ExportRequest, *, cancelled: Callable[[], bool]) -> ExportResult:
-    """Export for the service.
+def export(request: ExportRequest, context: Context) -> ExportResult:
+    """Knitout (checked on a virtual machine), PNG, SVG, PDF, text, written rows, glTF and more.
 
     Raises
     ------
@@ -86,15 +70,23 @@ def run_export(request: ExportRequest, *, cancelled: Callable[[], bool]) -> Expo
         If the chart is too large for this format here.
     """
     chart = to_chart(request.chart)
-    mesh = request.to in (ExportKind.GLB, ExportKind.STL)
-    limit = {ExportKind.KNITOUT: MAX_KNITOUT_STITCHES}.get(request.to, 10**6)
-    limit = MAX_MESH_STITCHES if mesh else limit
-    if chart.rows * chart.columns > limit:
+    limit = MAX_STITCHES.get(request.to)
+    if limit is not None and chart.rows * chart.columns > limit:
         raise InputError(
             "chart",
             f"{chart.columns}x{chart.rows} stitches are too many for {request.to} here.",
             f"Use at most {limit} stitches, or the command line.",
         )
+    file = _export(chart, request, context)
+    return ExportResult.of(
+        file,
+        _facts(chart, file),
+        name=_file_name(request.name) + file.suffix,
+        content=base64.b64encode(file.content).decode(),
+    )
+
+
+def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
     options = ExportOptions(
         construction=request.construction,
         first_side=request.first_side,
@@ -104,16 +96,50 @@ def run_export(request: ExportRequest, *, cancelled: Callable[[], bool]) -> Expo
         layout=request,
         linear_density_tex=request.linear_density_tex,
     )
-    file = export_chart(chart, request.to, find_material(request.material), options)
-    return ExportResult(
-        **export_facts(chart, file).model_dump(),
-        name=_file_name(request.name) + file.suffix,
-        media_type=file.media_type,
-        content=base64.b64encode(file.content).decode(),
-    )
+    return export_chart(chart, request.to, context.material(request.material), options)
+
+
+def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
+    return ExportFacts.of(file, chart, bytes=len(file.content))
 
 
 def _file_name(name: str) -> str:
     """A design's name as a file's: letters, digits and a few signs."""
     kept = "".join(c if c.isalnum() or c in " -_." else "-" for c in name).strip(" .")
     return kept[:80] or "chart"
+
+
+@out_option("-o", "--out", required=True, help="FILE to write.")
+def _command(request: ExportRequest, context: Context, out: Path) -> ExportFacts:
+    if "name" not in request.model_fields_set:
+        request = request.model_copy(update={"name": out.stem or "Untitled"})
+    chart = to_chart(request.chart)
+    file = _export(chart, request, context)
+    out.write_bytes(file.content)
+    return _facts(chart, file)
+
+
+def _text(facts: ExportFacts) -> str:
+    lines = [f"{facts.columns} columns x {facts.rows} rows, {facts.bytes} bytes of {facts.kind}"]
+    if facts.transfers is not None:
+        lines.append(f"{facts.transfers} transfers")
+    if facts.carriers is not None:
+        lines.append(f"{facts.carriers} carriers")
+    return "\n".join([*lines, *facts.notes])
+
+
+OPERATION = Operation(
+    name="export",
+    tag="files",
+    summary="A chart as a file",
+    request=ExportRequest,
+    result=ExportResult,
+    run=export,
+    heavy=True,
+    command=Command(
+        _text,
+        help="Write CHART to a file: knitout is checked on a virtual machine before it is written.",
+        names={"linear_density_tex": "--tex", "regions": None, "repeats": None, "shelf": None},
+        run=_command,
+    ),
+)

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated
 
+import click
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from app.models.charts import MAX_TEXT, ChartText
-from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
-from app.results.own_materials import find_material
+from app.cli.common import resolve_chart
+from app.cli.options import atlas_option, design_option, write_design_of
+from app.models.base import Known, RequestModel, ResultModel
+from app.models.charts import ChartText, MaterialName, OutlineInput
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart
+from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import InputError
+from knitcore.formats.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
 
+Maps = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+MAPS = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 MAX_STITCHES = 40_000
 """Over REST; the command line takes larger maps."""
 MAX_WISHES = 200
@@ -29,10 +38,8 @@ Map = Annotated[list[list[Modulus]], Field(min_length=1, max_length=1000)]
 Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
 
 
-class WishInput(BaseModel):
+class WishInput(RequestModel):
     """Stiffness wanted in one part of the chart."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: str = Field("part", min_length=1, max_length=80)
     runs: list[Run] = Field(
@@ -53,12 +60,10 @@ class WishInput(BaseModel):
         )
 
 
-class FillRequest(BaseModel):
+class FillRequest(RequestModel):
     """Wanted moduli, stitch by stitch or part by part."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    material: str = Field(max_length=80, examples=["acrylic"])
+    material: MaterialName
     modulus_course_n_per_mm: Map | None = Field(
         None, description="[row][column], the bottom row first; null is no wish."
     )
@@ -71,12 +76,7 @@ class FillRequest(BaseModel):
     chart: ChartText | None = Field(
         None, description="Stitches without a wish stay as they are here; filled, too, otherwise."
     )
-    outline: str | None = Field(
-        None,
-        max_length=MAX_TEXT,
-        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
-        "left out. Wishes are for stitches alone.",
-    )
+    outline: OutlineInput = None
     repeats: Extent = "small"
     smallest_patch: int = Field(4, ge=1, le=100, description="Smallest side of a patch.")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
@@ -86,22 +86,22 @@ class FillRequest(BaseModel):
     )
 
 
-class PatchResult(BaseModel):
+class PatchResult(ResultModel):
     """A region of one repeat."""
 
     repeat: str
     stitches: int
     row: int = Field(description="Of its first stitch, from 1 at the bottom left.")
     column: int
-    deviation_course: float | None = Field(description="Of the repeat; null without a wish.")
-    deviation_wale: float | None
-    swatch_course: float | None = Field(
+    deviation_course: Known = Field(description="Of the repeat; null without a wish.")
+    deviation_wale: Known
+    swatch_course: Known = Field(
         description="The same of the patch as the finite swatch has it; null if it was not pulled."
     )
-    swatch_wale: float | None
+    swatch_wale: Known
 
 
-class FillResult(BaseModel):
+class FillResult(ResultModel):
     """A chart, and how near it comes."""
 
     rows: int
@@ -114,63 +114,47 @@ class FillResult(BaseModel):
     messages: list[str]
 
 
-def run_fill(
-    request: FillRequest, *, cancelled: Cancelled, progress: Progress | None = None
-) -> FillResult:
-    """Fill a field for the service.
+def fill(request: FillRequest, context: Context) -> FillResult:
+    """Patches from the atlas, fitted to each other; tells what is not reached.
 
     Raises
     ------
     InputError
         If the maps or wishes cannot be used, or are too large here.
     """
-    course, wale = _wanted(request)
-    if course.size > MAX_STITCHES:
+    wanted = _wanted(request)
+    if wanted[0].size > MAX_STITCHES:
         raise InputError(
             "target",
-            f"{course.size} stitches are too many here.",
+            f"{wanted[0].size} stitches are too many here.",
             f"Use at most {MAX_STITCHES}, or the command line.",
         )
+    atlas = atlas_of(request.material, request.repeats, context.within(0.0, 0.3))
+    return _filled(request, wanted, atlas, context.within(0.3, 0.7))
 
-    def tell(start: float, share: float) -> Callable[[float], None] | None:
-        if progress is None:
-            return None
-        return lambda done: progress(round(1000 * (start + share * done)), 1000)
 
-    building = tell(0.0, 0.3)
-    atlas = cached_atlas(
-        request.material,
-        request.repeats,
-        cancelled,
-        None if building is None else lambda done, of: building(done / of),
-    )
-    field = fill_field(
-        course,
-        wale,
-        find_material(request.material),
+def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) -> FillResult:
+    found: FilledField = fill_field(
+        *wanted,
+        context.material(request.material),
         atlas,
         kept=None if request.chart is None else StitchChart.parse(request.chart),
         stitch=None if request.outline is None else outline_marks(request.outline),
         smallest_patch=request.smallest_patch,
         seed=request.seed,
         check=request.check,
-        progress=tell(0.3, 0.7),
-        cancelled=cancelled,
+        progress=context.share,
+        cancelled=context.cancelled,
     )
-    return fill_result(field)
+    return FillResult.of(found, found.chart, chart=found.chart.text, patches=found.regions)
 
 
-def _wanted(request: FillRequest) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    given = [request.modulus_course_n_per_mm, request.modulus_wale_n_per_mm]
+def _wanted(request: FillRequest) -> Maps:
+    maps = {name: getattr(request, name) for name in MAPS}
     if request.wishes is None:
-        maps = [
-            _array(rows, name)
-            for rows, name in zip(
-                given, ("modulus_course_n_per_mm", "modulus_wale_n_per_mm"), strict=True
-            )
-        ]
-        return maps[0], maps[1]
-    if any(rows is not None for rows in given):
+        course, wale = (_array(rows, name) for name, rows in maps.items())
+        return course, wale
+    if any(rows is not None for rows in maps.values()):
         raise InputError("wishes", "are given beside maps.", "Give either.")
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
@@ -182,37 +166,57 @@ def _wanted(request: FillRequest) -> tuple[NDArray[np.float64], NDArray[np.float
     )
 
 
-def fill_result(field: FilledField) -> FillResult:
-    """A filled field at the border."""
-    return FillResult(
-        rows=field.chart.rows,
-        columns=field.chart.columns,
-        chart=field.chart.text,
-        off_share=field.off_share,
-        patches=[
-            PatchResult(
-                repeat=p.repeat,
-                stitches=p.stitches,
-                row=p.row,
-                column=p.column,
-                deviation_course=_number(p.deviation_course),
-                deviation_wale=_number(p.deviation_wale),
-                swatch_course=_number(p.swatch_course),
-                swatch_wale=_number(p.swatch_wale),
-            )
-            for p in field.regions
-        ],
-        messages=list(field.messages),
-    )
-
-
-def _number(value: float) -> float | None:
-    return None if math.isnan(value) else value
-
-
 def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:
     if rows is None:
         raise InputError(name, "is missing.", "Give both maps, or wishes for parts of the chart.")
     if len({len(row) for row in rows}) > 1 or not rows[0]:
         raise InputError(name, "its rows differ in length.", "Give one number or null a stitch.")
     return np.array([[np.nan if v is None else v for v in row] for row in rows], dtype=float)
+
+
+@click.argument("target", type=click.Path(path_type=Path))
+@click.option("--chart", "kept", help="Stitches without a wish stay as they are in this file.")
+@atlas_option
+@design_option
+def _command(
+    request: FillRequest,
+    context: Context,
+    target: Path,
+    kept: str | None,
+    atlas: Path | None,
+    out: Path | None,
+) -> FillResult:
+    wanted = read_wanted_moduli(target)
+    if kept is not None:
+        request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
+    table = load_atlas(atlas) if atlas else atlas_of(request.material, request.repeats, context)
+    result = _filled(request, wanted, table, context)
+    write_design_of(result.chart, request.material, target.stem, out)
+    return result
+
+
+def _text(r: FillResult) -> str:
+    head = (
+        f"{r.columns} columns x {r.rows} rows in {len(r.patches)} patches; "
+        f"{r.off_share:.1%} of the stitches with a wish are off by more than 10 %"
+    )
+    return "\n".join([r.chart, head, *r.messages])
+
+
+OPERATION = Operation(
+    name="fill",
+    tag="design",
+    summary="A chart for a map of wanted stiffness",
+    request=FillRequest,
+    result=FillResult,
+    run=fill,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Make a chart for TARGET: a CSV of row, column and wanted moduli, such as "
+        "`export --to csv` writes.",
+        names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),
+        run=_command,
+    ),
+)

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+import click
+from pydantic import BeforeValidator, Field
 
-from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
-from knitcore.design.atlas import Atlas
+from app.cli.common import emit, json_option, user_data_dir
+from app.models.base import Ends, Known, RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Operation
+from app.results.atlases import EXTENTS, Extent, atlas_of
+from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.cost import CostLimits
-from knitcore.design.find import Candidate, FoundFabrics, find_fabric
+from knitcore.design.find import Candidate, find_fabric
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Limb, Quantity, Target
-from knitcore.materials import Interval, load_library
+from knitcore.errors import InputError
+from knitcore.materials import load_library
 
 MAX_MATERIALS = 16
 MAX_TARGETS = 20
@@ -20,19 +29,22 @@ ELSEWHERE = 3
 """Fabrics of other yarns that are offered where the wanted ones reach nothing."""
 
 
-class LimbInput(BaseModel):
-    """A tube on a limb."""
+def _ends(interval: Any) -> Any:
+    return (interval.low, interval.high) if hasattr(interval, "low") else interval
 
-    model_config = ConfigDict(extra="forbid")
+
+KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
+
+
+class LimbInput(RequestModel):
+    """A tube on a limb."""
 
     rest_mm: float = Field(gt=0, le=5000, allow_inf_nan=False, description="Of the unworn tube.")
     worn_mm: float = Field(gt=0, le=5000, allow_inf_nan=False, description="Of the limb.")
 
 
-class TargetInput(BaseModel):
+class TargetInput(RequestModel):
     """One wish for a fabric."""
-
-    model_config = ConfigDict(extra="forbid")
 
     quantity: Quantity
     value: float = Field(
@@ -55,10 +67,8 @@ class TargetInput(BaseModel):
         )
 
 
-class LimitsInput(BaseModel):
+class LimitsInput(RequestModel):
     """The most that knitting may ask; null is no limit."""
-
-    model_config = ConfigDict(extra="forbid")
 
     transfers_per_stitch: float | None = Field(None, ge=0, le=1)
     crossings_per_stitch: float | None = Field(None, ge=0, le=1)
@@ -71,42 +81,34 @@ class LimitsInput(BaseModel):
         return CostLimits(self.transfers_per_stitch, self.crossings_per_stitch, self.curl)
 
 
-class FindRequest(BaseModel):
+class FindRequest(RequestModel):
     """Wishes, and the yarns to search."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    materials: list[str] = Field(min_length=1, max_length=MAX_MATERIALS)
+    materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)
     targets: list[TargetInput] = Field(min_length=1, max_length=MAX_TARGETS)
     limits: LimitsInput | None = None
-    repeats: Extent = Field(
-        "small",
-        description="small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of "
-        "two fabrics.",
-    )
+    repeats: Extent = Field("small", description=EXTENTS)
     count: int = Field(10, ge=1, le=100)
     elsewhere: bool = Field(
         True, description="Where nothing reaches the wishes, look into the other yarns too."
     )
 
 
-class CandidateResult(BaseModel):
+class CandidateResult(ResultModel):
     """A repeat and how near it comes."""
 
     material: str
     chart: str = Field(description="K/P lines of one repeat, the top row first.")
-    values: dict[str, float | None] = Field(
+    values: dict[str, Known] = Field(
         description="By quantity, with @load or @rest/worn; null beyond the lock-up."
     )
-    intervals: dict[str, tuple[float | None, float | None]] = Field(
+    intervals: dict[str, KnownEnds] = Field(
         description="90 % intervals; null where an end lies beyond the computed curve."
     )
-    deviations: dict[str, float | None] = Field(
+    deviations: dict[str, Known] = Field(
         description="Predicted over wanted, minus one; the difference for Poisson's ratios."
     )
-    misfit: float | None = Field(
-        description="Weighted rms of deviations in units of their tolerances."
-    )
+    misfit: Known = Field(description="Weighted rms of deviations in units of their tolerances.")
     reached: bool
     provenance: str
     transfers_per_stitch: float
@@ -114,113 +116,188 @@ class CandidateResult(BaseModel):
     curl: float = Field(description="Knits minus purls over all stitches; far from 0 it curls.")
 
 
-class FindResult(BaseModel):
+class FindResult(ResultModel):
     """Ranked repeats; the best first."""
 
     reached: bool
     message: str
     searched: int
-    ranges: dict[str, tuple[float, float]] = Field(description="What all repeats span.")
+    ranges: dict[str, Ends] = Field(description="What all repeats span.")
     candidates: list[CandidateResult]
     elsewhere: list[CandidateResult] = Field(
         description="Nearest in yarns that were not asked for, if those asked for reach nothing."
     )
 
 
-def run_find(
-    request: FindRequest, *, cancelled: Cancelled, progress: Progress | None = None
+def find(request: FindRequest, context: Context) -> FindResult:
+    """Ranked repeats with intervals and knitting cost; says so when nothing reaches the wishes."""
+    names = list(dict.fromkeys(request.materials))
+    others = [name for name in load_library() if name not in names] if request.elsewhere else []
+    share = len(names) / (len(names) + len(others))
+    return _ranked(
+        _atlases(names, request.repeats, context.within(0.0, share)),
+        request,
+        others,
+        context.within(share, 1 - share),
+    )
+
+
+def _ranked(
+    atlases: Sequence[Atlas], request: FindRequest, others: Sequence[str], context: Context
 ) -> FindResult:
-    """Find fabrics for the service."""
-    names = tuple(dict.fromkeys(request.materials))
+    """The best of some atlases, and of other yarns where those reach nothing."""
     targets = [target.target() for target in request.targets]
     limits = request.limits.limits() if request.limits else None
-    others = [name for name in load_library() if name not in names] if request.elsewhere else []
-    steps = len(names) + len(others)
-    atlases = _atlases(names, request.repeats, cancelled, progress, (0, steps))
     found = find_fabric(atlases, targets, count=request.count, limits=limits)
-    if found.reached or not others:
-        return find_result(atlases, found)
-    more = _atlases(others, request.repeats, cancelled, progress, (len(names), steps))
-    return find_result(atlases, found, nearest_elsewhere(more, targets, limits))
-
-
-def find_in(
-    atlases: Sequence[Atlas],
-    targets: Sequence[Target],
-    count: int,
-    limits: CostLimits | None = None,
-) -> FindResult:
-    """Find fabrics in atlases."""
-    return find_result(atlases, find_fabric(atlases, targets, count=count, limits=limits))
-
-
-def nearest_elsewhere(
-    atlases: Sequence[Atlas], targets: Sequence[Target], limits: CostLimits | None
-) -> list[Candidate]:
-    """The best fabric of each other yarn, the nearest first."""
-    best = [
-        find_fabric([atlas], targets, count=1, limits=limits).candidates[0] for atlas in atlases
-    ]
-    return sorted(best, key=lambda c: (not c.reached, c.misfit))[:ELSEWHERE]
-
-
-def find_result(
-    atlases: Sequence[Atlas], found: FoundFabrics, others: Sequence[Candidate] = ()
-) -> FindResult:
-    """The answer at the border."""
-    message = found.message
-    if others and others[0].reached:
-        message += f" In {others[0].material}, {others[0].repeat} is within all tolerances."
-    elif others:
-        message += " Nor does any other yarn of the library reach it."
-    return FindResult(
-        reached=found.reached,
+    message, elsewhere = found.message, list[Candidate]()
+    if others and not found.reached:
+        best = [
+            find_fabric([atlas], targets, count=1, limits=limits).candidates[0]
+            for atlas in _atlases(others, request.repeats, context)
+        ]
+        elsewhere = sorted(best, key=lambda c: (not c.reached, c.misfit))[:ELSEWHERE]
+        if elsewhere[0].reached:
+            first = elsewhere[0]
+            message += f" In {first.material}, {first.repeat} is within all tolerances."
+        else:
+            message += " Nor does any other yarn of the library reach it."
+    return FindResult.of(
+        found,
         message=message,
         searched=sum(len(atlas) for atlas in atlases),
-        ranges={label: (i.low, i.high) for label, i in found.ranges.items()},
-        candidates=[candidate_result(c) for c in found.candidates],
-        elsewhere=[candidate_result(c) for c in others],
+        candidates=[_candidate(c) for c in found.candidates],
+        elsewhere=[_candidate(c) for c in elsewhere],
     )
 
 
-def candidate_result(c: Candidate) -> CandidateResult:
-    """A candidate at the border."""
-    return CandidateResult(
-        material=c.material,
-        chart=c.repeat.replace("/", "\n"),
-        values={label: _number(v) for label, v in c.values.items()},
-        intervals={label: _ends(i) for label, i in c.intervals.items()},
-        deviations={label: _number(v) for label, v in c.deviations.items()},
-        misfit=_number(c.misfit),
-        reached=c.reached,
-        provenance=c.provenance,
-        transfers_per_stitch=c.cost.transfers_per_stitch,
-        crossings_per_stitch=c.cost.crossings_per_stitch,
-        curl=c.cost.curl,
+def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atlas]:
+    part = 1 / max(len(names), 1)
+    return [
+        atlas_of(name, extent, context.within(number * part, part))
+        for number, name in enumerate(names)
+    ]
+
+
+def _candidate(found: Candidate) -> CandidateResult:
+    return CandidateResult.of(found, found.cost, chart=found.repeat.replace("/", "\n"))
+
+
+_TARGET = re.compile(
+    r"([a-z_]+)(?:@(?:([\d.]+)/([\d.]+)|([\d.]+)))?=(-?[\d.]+(?:[eE][+-]?\d+)?)"
+    r"(?:~([\d.]+)(%)?)?(?:\*([\d.]+))?"
+)
+_SHORT = {
+    "course": Quantity.MODULUS_COURSE,
+    "wale": Quantity.MODULUS_WALE,
+    "anisotropy": Quantity.ANISOTROPY,
+    "pressure_course": Quantity.PRESSURE_COURSE,
+    "pressure_wale": Quantity.PRESSURE_WALE,
+}
+
+
+@click.command("find")
+@click.option("--material", "materials", multiple=True, help="Library id or file; repeatable.")
+@click.option("--atlas", "atlases", multiple=True, type=click.Path(path_type=Path))
+@click.option(
+    "--target",
+    "targets",
+    multiple=True,
+    required=True,
+    metavar="QUANTITY[@LOAD|@REST/WORN]=VALUE[~TOLERANCE%][*WEIGHT]",
+    help="Such as course=0.1~10%, stretch_wale@0.05=0.4 or pressure_course@180/240=20~15%*2.",
+)
+@click.option("--most-transfers", type=float, help="Loops moved between the beds, per stitch.")
+@click.option("--most-crossings", type=float, help="Yarn between face and back, per stitch.")
+@click.option("--most-curl", type=float, help="Knits minus purls over all stitches, either way.")
+@click.option(
+    "--elsewhere", is_flag=True, help="If nothing reaches it, look into the library's other yarns."
+)
+@click.option("--count", type=click.IntRange(1, 100), default=10, show_default=True)
+@json_option
+def _command(
+    materials: tuple[str, ...],
+    atlases: tuple[Path, ...],
+    targets: tuple[str, ...],
+    most_transfers: float | None,
+    most_crossings: float | None,
+    most_curl: float | None,
+    elsewhere: bool,
+    count: int,
+    as_json: bool,
+) -> None:
+    """Rank the repeats of atlases (or of materials, up to 3x3) by how near they come."""
+    context = Context(user_data_dir, local=True)
+    tables = [load_atlas(file) for file in atlases] + _atlases(materials, "small", context)
+    if not tables:
+        raise InputError("material", "there is nothing to search.", "Add --material or --atlas.")
+    asked = [table.material for table in tables]
+    request = FindRequest(
+        materials=asked,
+        targets=[_target(text) for text in targets],
+        limits=LimitsInput(
+            transfers_per_stitch=most_transfers,
+            crossings_per_stitch=most_crossings,
+            curl=most_curl,
+        ),
+        count=count,
+    )
+    others = [name for name in load_library() if name not in asked] if elsewhere else []
+    result = _ranked(tables, request, others, context)
+    emit(result, _text(result), as_json=as_json)
+
+
+def _target(text: str) -> TargetInput:
+    match = _TARGET.fullmatch(text.strip())
+    if match is None or match[1] not in {*_SHORT, *Quantity}:
+        names = ", ".join([*_SHORT, *(q for q in Quantity if q not in _SHORT.values())])
+        raise InputError(
+            "target", f"{text!r} cannot be read.", f"Write QUANTITY=VALUE~10%; known: {names}."
+        )
+    name, rest, worn, load, value, tolerance, percent, weight = match.groups()
+    given = {"load_n_per_mm": float(load)} if load else {}
+    return TargetInput(
+        quantity=_SHORT.get(name) or Quantity(name),
+        value=float(value),
+        tolerance=float(tolerance) / (100 if percent else 1) if tolerance else 0.10,
+        weight=float(weight) if weight else 1.0,
+        limb=LimbInput(rest_mm=float(rest), worn_mm=float(worn)) if rest else None,
+        **given,
     )
 
 
-def _atlases(
-    names: Sequence[str],
-    extent: Extent,
-    cancelled: Cancelled,
-    progress: Progress | None,
-    steps: tuple[int, int],
-) -> list[Atlas]:
-    """Atlases of some yarns; ``steps`` are those done before and in all."""
-    before, total = steps
-
-    def part(number: int) -> Callable[[int, int], None] | None:
-        if progress is None:
-            return None
-        return lambda done, of: progress(100 * (before + number) + 100 * done // of, 100 * total)
-
-    return [cached_atlas(name, extent, cancelled, part(k)) for k, name in enumerate(names)]
+def _text(r: FindResult) -> str:
+    lines = [r.message, "", *map(_line, r.candidates)]
+    if r.elsewhere:
+        lines += ["", "In other yarns:", *map(_line, r.elsewhere)]
+    return "\n".join(lines)
 
 
-def _number(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+def _line(c: CandidateResult) -> str:
+    values = "  ".join(_value(c, label) for label in c.values)
+    return (
+        f"{c.chart.replace(chr(10), '/'):20} {c.material}: {values}; "
+        f"{c.transfers_per_stitch:.2f} transfers and {c.crossings_per_stitch:.2f} crossings a "
+        f"stitch, curl {c.curl:+.2f}; {c.provenance}"
+    )
 
 
-def _ends(interval: Interval) -> tuple[float | None, float | None]:
-    return _number(interval.low), _number(interval.high)
+def _value(c: CandidateResult, label: str) -> str:
+    value, off, (low, high) = c.values[label], c.deviations[label], c.intervals[label]
+    if value is None or off is None:
+        return f"{label} beyond the lock-up"
+    shown = f"{off:+.2f}" if label.startswith("poisson") else f"{off:+.0%}"
+    ends = [("beyond the curve" if end is None else f"{end:.3g}") for end in (low, high)]
+    return f"{label} {value:.4g} ({shown}; {ends[0]} to {ends[1]})"
+
+
+OPERATION = Operation(
+    name="find",
+    tag="design",
+    summary="Fabrics that do what is wanted",
+    request=FindRequest,
+    result=FindResult,
+    run=find,
+    heavy=True,
+    job=True,
+    command=_command,
+)

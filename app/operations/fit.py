@@ -2,36 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import csv
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from app.cli.options import out_option
+from app.models.base import Floats, RequestModel, ResultModel
+from app.models.laws import LawResult
 from app.models.uploads import UploadedFile, stored
-from app.operations.materials import LawResult
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
+from knitcore.formats.law_files import LawFile, save_law
 from knitcore.materials.document import CurveDocument
 from knitcore.measure.uniaxial import LawFit, Reduction, Residuals, fit_files
 
-FileFormat = Literal["csv", "h5"]
 PLOTTED_POINTS = 2000
 """Points of a residual plot; more than a screen shows."""
 
 
-class FitRequest(BaseModel):
+class FitRequest(RequestModel):
     """Two stretch tests of one fabric."""
-
-    model_config = ConfigDict(extra="forbid")
 
     test_course: UploadedFile = Field(description="Pulled along the rows; HDF5 or CSV.")
     test_wale: UploadedFile = Field(description="Pulled along the columns.")
-    format: FileFormat | None = Field(None, description="Found out from the content if not given.")
-    reduction: Reduction = Reduction.RECOMMENDED
+    format: Literal["csv", "h5"] | None = Field(
+        None, description="Found out from the content if not given."
+    )
+    reduction: Reduction = Field(
+        Reduction.RECOMMENDED,
+        description="published: as in the paper; recommended: clamp to clamp, every pull counts "
+        "the same.",
+    )
     residuals: bool = Field(False, description="Whether to return points beside the fit.")
 
 
-class LawErrors(BaseModel):
+class LawErrors(ResultModel):
     """Standard errors of a law's constants."""
 
     stiffness_xxxx_n_per_mm: float
@@ -48,13 +56,13 @@ class LawErrors(BaseModel):
     modulus_wale_n_per_mm: float
 
 
-class ResidualPoints(BaseModel):
+class ResidualPoints(ResultModel):
     """Measured points and the fitted stress there."""
 
-    strain_along: list[float]
-    strain_across: list[float]
-    stress_n_per_mm: list[float]
-    fitted_n_per_mm: list[float]
+    strain_along: Floats
+    strain_across: Floats
+    stress_n_per_mm: Floats
+    fitted_n_per_mm: Floats
 
 
 class FitResult(LawResult):
@@ -79,52 +87,95 @@ class FitResult(LawResult):
     )
 
 
-def run_fit(request: FitRequest, *, cancelled: Callable[[], bool] | None = None) -> FitResult:
-    """The fit that a request asks for (a tenth of a second: it does not look at ``cancelled``)."""
-    del cancelled
+def fit(request: FitRequest, context: Context) -> FitResult:
+    """Eight constants with standard errors from a course-wise and a wale-wise test."""
+    del context  # a tenth of a second
+    return _result(_fit(request), residuals=request.residuals)
+
+
+def _fit(request: FitRequest) -> LawFit:
     with stored([request.test_course, request.test_wale]) as (course, wale):
-        fit = fit_paths(course, wale, request.reduction, request.format)
-    return fit_result(fit, residuals=request.residuals)
+        return fit_files(course, wale, reduction=request.reduction, file_format=request.format)
 
 
-def fit_paths(
-    course: Path, wale: Path, reduction: Reduction, file_format: FileFormat | None = None
-) -> LawFit:
-    """The fit to two files."""
-    return fit_files(course, wale, reduction=reduction, file_format=file_format)
-
-
-def fit_result(fit: LawFit, *, residuals: bool = False) -> FitResult:
-    """The numbers of a fit."""
-    errors = fit.standard_errors
-    return FitResult(
-        **LawResult.of(fit.law).model_dump(),
-        standard_errors=LawErrors(
-            **{name: errors[name.removesuffix("_n_per_mm")] for name in LawErrors.model_fields}
-        ),
-        poisson_yx=fit.law.poisson_yx,
-        poisson_xy=fit.law.poisson_xy,
-        modulus_course_n_per_mm=fit.law.modulus_course,
-        modulus_wale_n_per_mm=fit.law.modulus_wale,
-        rms_n_per_mm=fit.rms_n_per_mm,
-        rms_course_n_per_mm=fit.rms_course_n_per_mm,
-        rms_wale_n_per_mm=fit.rms_wale_n_per_mm,
-        largest_strain=fit.largest_strain,
-        runs=fit.runs,
-        reduction=fit.reduction,
-        error_method=fit.error_method,
-        notes=list(fit.notes),
-        residuals={d: _points(r) for d, r in fit.residuals.items()} if residuals else None,
-        curves={d: CurveDocument.from_curve(c) for d, c in fit.curves.items()},
+def _result(found: LawFit, *, residuals: bool) -> FitResult:
+    errors = found.standard_errors
+    names = {name: name.removesuffix("_n_per_mm") for name in LawErrors.model_fields}
+    return FitResult.of(
+        found,
+        found.law,
+        standard_errors={name: errors[constant] for name, constant in names.items()},
+        residuals={d: _points(r) for d, r in found.residuals.items()} if residuals else None,
+        curves={d: CurveDocument.from_curve(c) for d, c in found.curves.items()},
     )
 
 
 def _points(residuals: Residuals) -> ResidualPoints:
     step = max(1, -(-len(residuals.stress) // PLOTTED_POINTS))
-    part = slice(None, None, step)
     return ResidualPoints(
-        strain_along=residuals.strain_along[part].tolist(),
-        strain_across=residuals.strain_across[part].tolist(),
-        stress_n_per_mm=residuals.stress[part].tolist(),
-        fitted_n_per_mm=residuals.fitted[part].tolist(),
+        **{
+            name: getattr(residuals, name.removesuffix("_n_per_mm"))[::step]
+            for name in ResidualPoints.model_fields
+        }
     )
+
+
+@out_option("--residuals", help="Write points and fit to FILE.csv.")
+@out_option("--out", help="Write the law to LAW.json.")
+def _command(
+    request: FitRequest, context: Context, out: Path | None, residuals: Path | None
+) -> FitResult:
+    del context
+    found = _fit(request)
+    if out is not None:
+        tests = f"{request.test_course.name} and {request.test_wale.name}"
+        source = f"fitted to {tests}, {found.reduction} reduction"
+        file = LawFile(found.law, source, found.standard_errors, found.largest_strain, found.curves)
+        save_law(file, out)
+    if residuals is not None:
+        _write_residuals(found, residuals)
+    return _result(found, residuals=False)
+
+
+def _write_residuals(found: LawFit, path: Path) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            ["direction", "strain_along", "strain_across", "stress_n_per_mm", "fitted_n_per_mm"]
+        )
+        for direction, r in found.residuals.items():
+            columns = zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
+            writer.writerows([str(direction), *map(float, row)] for row in columns)
+
+
+def _text(r: FitResult) -> str:
+    lines = []
+    for name, error in r.standard_errors.model_dump().items():
+        unit = " N/mm" if name.endswith("_n_per_mm") else ""
+        value = getattr(r, name)
+        lines.append(f"{name.removesuffix('_n_per_mm'):16} {value:9.4f} ± {error:.4f}{unit}")
+    lines += [
+        f"residuals        {r.rms_n_per_mm:.4f} N/mm rms "
+        f"(course {r.rms_course_n_per_mm:.4f}, wale {r.rms_wale_n_per_mm:.4f})",
+        f"reduction        {r.reduction}; errors: {r.error_method}",
+        *(f"note: {note}" for note in r.notes),
+    ]
+    return "\n".join(lines)
+
+
+OPERATION = Operation(
+    name="fit",
+    tag="measure",
+    summary="A law from two stretch tests",
+    request=FitRequest,
+    result=FitResult,
+    run=fit,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Fit a law to a course-wise and a wale-wise stretch test (HDF5 or CSV).",
+        names={"residuals": None},
+        run=_command,
+    ),
+)

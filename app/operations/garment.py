@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import fields
+from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+import click
+from pydantic import Field
 
-from app.results.own_materials import find_material
+from app.cli.options import out_option
+from app.models.base import IntervalResult, RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.formats.design import DesignFile
+from knitcore.formats.design import DesignFile, write_design
 from knitcore.formats.garment_design import design_of_plan
 from knitcore.garment.gauge import Gauge, GaugeLength, GaugeSet
 from knitcore.garment.glove import Finger, Hand, glove
@@ -25,10 +34,8 @@ Target = Annotated[
 ]
 
 
-class GaugeCount(BaseModel):
+class GaugeCount(RequestModel):
     """A swatch's gauge, as it is counted."""
-
-    model_config = ConfigDict(extra="forbid")
 
     stitches: float = Field(gt=0, le=1000, allow_inf_nan=False)
     rows: float = Field(gt=0, le=1000, allow_inf_nan=False)
@@ -47,10 +54,8 @@ _LENGTHS = {
 }
 
 
-class WristBrace(BaseModel):
+class WristBrace(RequestModel):
     """A brace knitted sideways and grafted."""
-
-    model_config = ConfigDict(extra="forbid")
 
     template: Literal["wrist-brace"]
     wrist_mm: Length
@@ -72,10 +77,8 @@ class WristBrace(BaseModel):
         )
 
 
-class SockLeg(BaseModel):
+class SockLeg(RequestModel):
     """The leg of a sock."""
-
-    model_config = ConfigDict(extra="forbid")
 
     template: Literal["sock-leg"]
     ankle_mm: Length
@@ -97,10 +100,8 @@ class SockLeg(BaseModel):
         )
 
 
-class Limb(BaseModel):
+class Limb(RequestModel):
     """A sleeve along any limb."""
-
-    model_config = ConfigDict(extra="forbid")
 
     template: Literal["limb"]
     profile: list[tuple[float, Length]] = Field(
@@ -128,10 +129,8 @@ class Limb(BaseModel):
         )
 
 
-class FingerSize(BaseModel):
+class FingerSize(RequestModel):
     """Of one finger."""
-
-    model_config = ConfigDict(extra="forbid")
 
     length_mm: Length
     circumference_mm: Length
@@ -144,10 +143,8 @@ class FingerSize(BaseModel):
 _HAND = Hand()
 
 
-class Glove(BaseModel):
+class Glove(RequestModel):
     """The therapeutic glove; an adult's hand unless measured."""
-
-    model_config = ConfigDict(extra="forbid")
 
     template: Literal["glove"]
     cuff_mm: Length = _HAND.cuff_mm
@@ -165,15 +162,9 @@ class Glove(BaseModel):
 
     def plan(self, material: Material, gauges: GaugeSet, tex: float | None) -> GarmentPlan:
         """Make it."""
+        sizes = {f.name: getattr(self, f.name) for f in fields(Hand) if f.name.endswith("_mm")}
         hand = Hand(
-            cuff_mm=self.cuff_mm,
-            wrist_mm=self.wrist_mm,
-            wrist_circumference_mm=self.wrist_circumference_mm,
-            palm_mm=self.palm_mm,
-            thumb_crotch_mm=self.thumb_crotch_mm,
-            palm_circumference_mm=self.palm_circumference_mm,
-            gusset_mm=self.gusset_mm,
-            gusset_girth_mm=self.gusset_girth_mm,
+            **sizes,
             thumb=self.thumb.finger() if self.thumb else _HAND.thumb,
             fingers=tuple(f.finger() for f in self.fingers) if self.fingers else _HAND.fingers,
         )
@@ -187,19 +178,23 @@ class Glove(BaseModel):
         )
 
 
-class GarmentRequest(BaseModel):
+class GarmentRequest(RequestModel):
     """A template with measurements, and the yarn."""
 
-    model_config = ConfigDict(extra="forbid")
-
     garment: Annotated[WristBrace | SockLeg | Limb | Glove, Field(discriminator="template")]
-    material: str = Field(max_length=80, examples=["glove-wool"])
+    material: MaterialName
     gauge: GaugeCount | None = Field(None, description="The knitter's; else the material's.")
-    linear_density_tex: float | None = Field(None, gt=0, lt=1e5, allow_inf_nan=False)
+    linear_density_tex: float | None = Field(
+        None,
+        gt=0,
+        lt=1e5,
+        allow_inf_nan=False,
+        description="Linear density of the yarn (g/km), for its mass.",
+    )
     intarsia: bool = Field(False, description="Give each fabric a yarn of its own.")
 
 
-class RegionResult(BaseModel):
+class RegionResult(ResultModel):
     """One region: the fabric's repeat, its colour, its size, and means over its stitches."""
 
     name: str
@@ -219,7 +214,7 @@ class RegionResult(BaseModel):
     cells: str = Field(description="Lines of x (in the region) and ., the top row first.")
 
 
-class GaugeResult(BaseModel):
+class GaugeResult(ResultModel):
     """The gauge of a fabric."""
 
     fabric: Fabric
@@ -232,14 +227,7 @@ class GaugeResult(BaseModel):
     source: str
 
 
-class Span(BaseModel):
-    """From axially free to axially fixed."""
-
-    low: float
-    high: float
-
-
-class WornResult(BaseModel):
+class WornResult(ResultModel):
     """Pressure at one place along the limb."""
 
     at_mm: float
@@ -248,12 +236,12 @@ class WornResult(BaseModel):
     worn_mm: float
     ease: float
     strain: float | None
-    mmhg: Span | None
-    kpa: Span | None
+    mmhg: IntervalResult | None
+    kpa: IntervalResult | None
     warnings: list[str]
 
 
-class GarmentResult(BaseModel):
+class GarmentResult(ResultModel):
     """A garment as a chart with an outline."""
 
     name: str
@@ -274,48 +262,31 @@ class GarmentResult(BaseModel):
     design: DesignFile = Field(description="The same as a project file, ready to be edited.")
 
 
-def run_garment(request: GarmentRequest) -> GarmentResult:
-    """Plan a garment.
+def garment(request: GarmentRequest, context: Context) -> GarmentResult:
+    """Outline, regions, fills, yarn and warnings of a template.
 
     Raises
     ------
     InputError
         From measurements or the material.
     """
-    return plan_garment(request, find_material(request.material))
-
-
-def plan_garment(request: GarmentRequest, material: Material) -> GarmentResult:
-    """Plan a garment in a material that need not be of the library.
-
-    Raises
-    ------
-    InputError
-        From measurements or the material.
-    """
-    count = request.gauge
+    material, count = context.material(request.material), request.gauge
     gauges = (
         GaugeSet.of_material(material)
         if count is None
         else GaugeSet.of_material(material, count.gauge(), count.fabric)
     )
     plan = request.garment.plan(material, gauges, request.linear_density_tex)
-    shaped = plan.shaped
-    return GarmentResult(
-        name=plan.name,
-        rows=shaped.chart.rows,
-        columns=shaped.chart.columns,
-        chart=shaped.chart.text,
-        outline=shaped.outline,
-        stitches=shaped.stitches,
-        around=plan.around,
-        closing=plan.closing,
+    return GarmentResult.of(
+        plan,
+        plan.shaped,
+        plan.shaped.chart,
+        chart=plan.shaped.chart.text,
         regions=_regions(plan, material, request.linear_density_tex),
         gauges=[_gauge(fabric, gauge) for fabric, gauge in gauges.gauges.items()],
         worn=[_worn(place) for place in plan.worn],
         yarn_m=plan.yarn.length_m,
         yarn_g=plan.yarn.mass_g,
-        notes=list(plan.notes),
         warnings=[misfit.text for misfit in plan.misfits],
         design=design_of_plan(plan, request.material, intarsia=request.intarsia),
     )
@@ -325,25 +296,19 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
     numbers = {n.name: n for n in plan.numbers}
     results = []
     for region, fabric in zip(plan.regions, plan.fabrics, strict=True):
-        n = numbers[region.name]
         cells = region.cells & plan.shaped.stitch
-        spans = int(cells.sum(axis=1).max()), int(cells.sum(axis=0).max())
+        columns, rows = int(cells.sum(axis=1).max()), int(cells.sum(axis=0).max())
         gauge = plan.gauges[fabric]
         use = plan.yarn_of(region, material, tex)
         results.append(
-            RegionResult(
-                name=region.name,
+            RegionResult.of(
+                numbers[region.name],
+                region,
                 fill=region.fill.text,
-                colour=region.colour,
-                stitches=n.stitches,
-                columns=spans[0],
-                rows=spans[1],
-                width_mm=spans[0] * gauge.stitch_course_mm,
-                height_mm=spans[1] * gauge.stitch_wale_mm,
-                extensibility_course_mm_per_n=n.extensibility_course_mm_per_n,
-                extensibility_wale_mm_per_n=n.extensibility_wale_mm_per_n,
-                modulus_course_n_per_mm=n.modulus_course_n_per_mm,
-                modulus_wale_n_per_mm=n.modulus_wale_n_per_mm,
+                columns=columns,
+                rows=rows,
+                width_mm=columns * gauge.stitch_course_mm,
+                height_mm=rows * gauge.stitch_wale_mm,
                 yarn_m=use.length_m,
                 yarn_g=use.mass_g,
                 cells="\n".join("".join("x" if c else "." for c in row) for row in cells[::-1]),
@@ -353,29 +318,93 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
 
 
 def _gauge(fabric: Fabric, gauge: Gauge) -> GaugeResult:
-    counts = {name: gauge.counts(length) for name, length in _LENGTHS.items()}
-    return GaugeResult(
-        fabric=fabric,
-        stitches_per_10_cm=counts["10 cm"][0],
-        rows_per_10_cm=counts["10 cm"][1],
-        stitches_per_4_in=counts["4 in"][0],
-        rows_per_4_in=counts["4 in"][1],
-        stitches_per_5_cm=counts["5 cm"][0],
-        rows_per_5_cm=counts["5 cm"][1],
-        source=gauge.source,
-    )
+    counts = {}
+    for name, length in _LENGTHS.items():
+        per = name.replace(" ", "_")
+        counts[f"stitches_per_{per}"], counts[f"rows_per_{per}"] = gauge.counts(length)
+    return GaugeResult.of(gauge, fabric=fabric, **counts)
 
 
 def _worn(place: Worn) -> WornResult:
     found = place.pressure
-    return WornResult(
-        at_mm=place.at_mm,
-        part=place.part,
-        rest_mm=place.rest_mm,
-        worn_mm=place.worn_mm,
-        ease=place.ease,
-        strain=None if found is None else found.strain,
-        mmhg=None if found is None else Span(low=found.mmhg.low, high=found.mmhg.high),
-        kpa=None if found is None else Span(low=found.kpa.low, high=found.kpa.high),
-        warnings=[place.problem] if found is None else list(found.warnings),
+    if found is None:
+        return WornResult.of(place, strain=None, mmhg=None, kpa=None, warnings=[place.problem])
+    return WornResult.of(found, place)
+
+
+@click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
+)
+@click.option("--gauge", metavar="STSxROWS", help="The knitter's own, such as 22x30.")
+@click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm")
+def _asked(
+    template: str, settings: tuple[str, ...], gauge: str | None, per: str
+) -> dict[str, object]:
+    values: dict[str, object] = {"template": template}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise InputError("set", f"{setting!r} sets nothing.", "Write NAME=VALUE.")
+        try:
+            values[name] = json.loads(value)
+        except json.JSONDecodeError:
+            values[name] = value
+    asked: dict[str, object] = {"garment": values}
+    if gauge is not None:
+        stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
+        asked["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
+    return asked
+
+
+@out_option("-o", "--out", help="Write a design (.json).")
+def _command(request: GarmentRequest, context: Context, out: Path | None) -> GarmentResult:
+    result = garment(request, context)
+    if out is not None:
+        out.write_text(write_design(result.design), encoding="utf-8")
+    return result
+
+
+def _text(r: GarmentResult) -> str:
+    lines = [
+        f"{r.name}: {r.columns} columns x {r.rows} rows, {r.stitches} stitches, "
+        f"{r.yarn_m:.0f} m of yarn; {r.closing}",
+        f"{'region':20} {'stitches':>8} {'course':>8} {'wale':>8}  mm/N",
+    ]
+    lines += [
+        f"{region.name:20} {region.stitches:8} {region.extensibility_course_mm_per_n:8.2f} "
+        f"{region.extensibility_wale_mm_per_n:8.2f}"
+        for region in r.regions
+    ]
+    lines += [_pressure(place) for place in r.worn]
+    return "\n".join([*lines, *r.notes, *(f"warning: {w}" for w in r.warnings)])
+
+
+def _pressure(place: WornResult) -> str:
+    sizes = (
+        f"{place.part} at {place.at_mm:.0f} mm: {place.rest_mm:.0f} mm on {place.worn_mm:.0f} mm"
     )
+    if place.mmhg is None:
+        return f"{sizes}; {place.warnings[0]}"
+    return f"{sizes} presses {place.mmhg.low:.1f} to {place.mmhg.high:.1f} mmHg"
+
+
+OPERATION = Operation(
+    name="garment",
+    tag="garments",
+    summary="A garment from measurements",
+    request=GarmentRequest,
+    result=GarmentResult,
+    run=garment,
+    command=Command(
+        _text,
+        help="Plan a garment from a TEMPLATE and measurements.",
+        names={"garment": None, "gauge": None, "linear_density_tex": "--tex"},
+        fields=_asked,
+        run=_command,
+    ),
+)

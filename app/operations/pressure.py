@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, Field
+import click
+from pydantic import Field
 
-from app.results.own_materials import find_material
+from app.models.base import IntervalResult, RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.formats.law_files import LawFile, law_from_mapping
+from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE, log_deviation
-from knitcore.mechanics import pressure
+from knitcore.mechanics.pressure import limb_pressure, rest_circumference
 
 
-class PressureOptions(BaseModel):
-    """Which tube on which limb."""
-
-    model_config = ConfigDict(extra="forbid")
+class PressureRequest(RequestModel):
+    """A fabric of a material, or a law, as a tube on a limb."""
 
     direction: Direction = Field(description="The material direction around the limb.")
     rest_mm: float | None = Field(None, description="Circumference of the unworn tube.")
@@ -28,24 +29,12 @@ class PressureOptions(BaseModel):
     target_mmhg: float | None = Field(
         None, description="Instead of rest_mm: the pressure wanted, for which to size the tube."
     )
-
-
-class PressureRequest(PressureOptions):
-    """A fabric of a library material, or a law, around a limb."""
-
-    material: str | None = Field(None, max_length=80)
-    fabric: Fabric | None = None
+    material: MaterialName | None = None
+    fabric: Fabric | None = Field(None, description="Of the material.")
     law: dict[str, float] | None = Field(None, description="Constants of a law, by name.")
 
 
-class IntervalResult(BaseModel):
-    """From axially free to axially fixed."""
-
-    low: float
-    high: float
-
-
-class PressureResult(BaseModel):
+class PressureResult(ResultModel):
     """Mean pressure; no medical class."""
 
     mmhg: IntervalResult = Field(description="From axially free to axially fixed.")
@@ -65,80 +54,99 @@ class PressureResult(BaseModel):
     warnings: list[str]
 
 
-def run_pressure(request: PressureRequest) -> PressureResult:
-    """The pressure that a request asks for.
+def pressure(request: PressureRequest, context: Context) -> PressureResult:
+    """An interval by Laplace's law with warnings, never a medical class.
 
     Raises
     ------
     InputError
-        If neither or both of a law and a material are given.
+        If neither or both of a law and a material are given, or the fabric is not named.
     """
     if (request.law is None) == (request.material is None):
         raise InputError("law", "one of law and material is needed.", "Give exactly one.")
-    if request.law is not None:
-        return pressure_of_law(law_from_mapping(request.law), request)
-    return pressure_of_material(find_material(request.material or ""), request.fabric, request)
-
-
-def pressure_of_material(
-    material: Material, fabric: Fabric | None, options: PressureOptions
-) -> PressureResult:
-    """Pressure of a fabric of a material.
-
-    Raises
-    ------
-    InputError
-        If the fabric is not named.
-    """
-    if fabric is None:
+    if request.material is None:
+        return _of_file(law_from_mapping(request.law or {}), request)
+    if request.fabric is None:
         raise InputError("fabric", "is missing.", "Name the fabric of the material.")
-    record = material.record(fabric)
-    return _pressure(record.law, options, spread=record.uncertainty.log_modulus(options.direction))
+    record = context.material(request.material).record(request.fabric)
+    return _of_law(record.law, request, spread=record.uncertainty.log_modulus(request.direction))
 
 
-def pressure_of_law(file: LawFile, options: PressureOptions) -> PressureResult:
-    """Pressure of a fabric known by its law."""
-    name = f"modulus_{options.direction}"
-    error = file.standard_errors.get(name)
-    spread = None if error is None else log_deviation(file.law.modulus(options.direction), error)
-    return _pressure(
-        file.law, options, spread=spread, tested=file.largest_strain.get(options.direction)
-    )
+def _of_file(file: LawFile, request: PressureRequest) -> PressureResult:
+    direction = request.direction
+    error = file.standard_errors.get(f"modulus_{direction}")
+    spread = None if error is None else log_deviation(file.law.modulus(direction), error)
+    tested = file.largest_strain.get(direction)
+    return _of_law(file.law, request, spread=spread, tested=tested)
 
 
-def _pressure(
+def _of_law(
     law: ConstitutiveLaw,
-    options: PressureOptions,
+    request: PressureRequest,
     *,
     spread: float | None,
     tested: float | None = None,
 ) -> PressureResult:
-    sizes = None
-    rest = options.rest_mm
-    if (rest is None) == (options.target_mmhg is None):
+    direction, rest, worn, sizes = request.direction, request.rest_mm, request.worn_mm, None
+    if (rest is None) == (request.target_mmhg is None):
         raise InputError("rest_mm", "one of rest_mm and target_mmhg is needed.", "Give one.")
-    if options.target_mmhg is not None:
-        sizes = pressure.rest_circumference(
-            law, options.direction, options.worn_mm, options.target_mmhg
-        )
+    if request.target_mmhg is not None:
+        sizes = rest_circumference(law, direction, worn, request.target_mmhg)
         rest = math.sqrt(sizes.low * sizes.high)
-    found = pressure.limb_pressure(
-        law, options.direction, rest or 0.0, options.worn_mm, tested_strain=tested
-    )
+    rest = rest or 0.0
+    found = limb_pressure(law, direction, rest, worn, tested_strain=tested)
     widened = None
     if spread is not None:
         factor = math.exp(Z_SCORE * spread)
         widened = IntervalResult(low=found.mmhg.low / factor, high=found.mmhg.high * factor)
-    return PressureResult(
-        mmhg=IntervalResult(**asdict(found.mmhg)),
-        kpa=IntervalResult(**asdict(found.kpa)),
+    return PressureResult.of(
+        found,
         mmhg_with_law_spread=widened,
-        strain=found.strain,
-        rest_mm=rest or 0.0,
-        worn_mm=options.worn_mm,
-        tension_n_per_mm=IntervalResult(**asdict(found.tension_n_per_mm)),
-        axial_strain_free=found.axial_strain_free,
+        tension_n_per_mm=found.tension_n_per_mm,
+        rest_mm=rest,
+        worn_mm=worn,
         lock_up_share=found.utilisation,
-        rest_mm_for_target=IntervalResult(**asdict(sizes)) if sizes else None,
-        warnings=list(found.warnings),
+        rest_mm_for_target=sizes,
     )
+
+
+@click.option(
+    "--law", type=click.Path(path_type=Path), help="LAW.json (see `knitcore fit`) instead."
+)
+def _command(request: PressureRequest, context: Context, law: Path | None) -> PressureResult:
+    if law is None:
+        return pressure(request, context)
+    if request.material is not None:
+        raise InputError("law", "--material is given as well.", "Give exactly one.")
+    return _of_file(load_law(law), request)
+
+
+def _text(r: PressureResult) -> str:
+    lines = [
+        f"pressure  {r.mmhg.low:.1f} to {r.mmhg.high:.1f} mmHg "
+        f"({r.kpa.low:.2f} to {r.kpa.high:.2f} kPa), axially free to fixed",
+        f"strain    {r.strain:.3f} around the limb ({r.lock_up_share:.0%} of the lock-up)",
+    ]
+    if r.mmhg_with_law_spread is not None:
+        spread = r.mmhg_with_law_spread
+        lines.append(f"          {spread.low:.1f} to {spread.high:.1f} mmHg with the law's spread")
+    if r.rest_mm_for_target is not None:
+        sizes = r.rest_mm_for_target
+        lines.append(f"size      {sizes.low:.1f} to {sizes.high:.1f} mm unworn; middle shown above")
+    return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
+
+
+OPERATION = Operation(
+    name="pressure",
+    tag="mechanics",
+    summary="Pressure of a knitted tube on a limb",
+    request=PressureRequest,
+    result=PressureResult,
+    run=pressure,
+    command=Command(
+        _text,
+        help="Pressure of a knitted tube on a limb, as an interval; never a medical class.",
+        names={"law": None},
+        run=_command,
+    ),
+)

@@ -37,6 +37,7 @@ class Command:
     ----------
     text : prints a result for people.
     help : of the command; by default the operation's summary.
+    group : the command that it is a part of, such as ``measure``.
     names : options that are not named after their field; None leaves the field out.
     fields : makes fields of the request from options of its own (``click.option`` on it).
     run : runs the operation where the command does more, with options of its own.
@@ -44,6 +45,7 @@ class Command:
 
     text: Callable[[Any], str]
     help: str = ""
+    group: str = ""
     names: Mapping[str, str | None] = field(default_factory=dict)
     fields: Callable[..., Mapping[str, Any]] | None = None
     run: Callable[..., BaseModel] | None = None
@@ -98,22 +100,28 @@ class Operation(Generic[Request, Result]):
 @cache
 def operations() -> dict[str, Operation[Any, Any]]:
     """All operations by name, in the order of their modules."""
-    names = sorted(module.name for module in pkgutil.iter_modules(package.__path__))
-    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in names]
+    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in sorted(_modules())]
     found = [module.OPERATION for module in modules if hasattr(module, "OPERATION")]
     return {operation.name: operation for operation in found}
 
 
-def names_of_commands() -> set[str]:
-    """Names of all commands that are made of operations."""
-    names = (module.name.removesuffix("_") for module in pkgutil.iter_modules(package.__path__))
-    return {name for name in names if operation_of_command(name) is not None}
-
-
-def operation_of_command(name: str) -> Operation[Any, Any] | None:
+def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | None:
     """The operation that a command is made of; loads no other."""
     module = f"{name}_" if keyword.iskeyword(name) else name
-    if module not in {found.name for found in pkgutil.iter_modules(package.__path__)}:
+    if module not in _modules():
         return None
     found = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
-    return found if isinstance(found, Operation) and found.command else None
+    if not isinstance(found, Operation) or found.command is None:
+        return None
+    return found if getattr(found.command, "group", "") == group else None
+
+
+def commands(group: str = "") -> set[str]:
+    """Names of all commands that are made of operations."""
+    names = {module.removesuffix("_") for module in _modules()}
+    return {name for name in names if operation_of_command(name, group) is not None}
+
+
+@cache
+def _modules() -> frozenset[str]:
+    return frozenset(module.name for module in pkgutil.iter_modules(package.__path__))

@@ -2,27 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import csv
+from pathlib import Path
+from typing import Annotated, Any
 
+import click
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BeforeValidator, Field
 
-from app.operations.atlas import Cancelled, Extent, Progress, cached_atlas
-from app.results.own_materials import find_material
-from knitcore.design.shape import ShapedSwatch, fill_shape
+from app.cli.options import atlas_option, design_option, write_design_of
+from app.models.base import Known, RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from app.results.atlases import Extent, atlas_of
+from knitcore.design.atlas import Atlas, load_atlas
+from knitcore.design.shape import fill_shape
+from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
+
+def _rounded(values: Any) -> Any:
+    return np.round(values, 5).tolist()
+
+
+Rounded = Annotated[list[float], BeforeValidator(_rounded)]
+Gaps = Annotated[list[Known], BeforeValidator(list)]
 Width = Annotated[float, Field(gt=0.05, lt=3, allow_inf_nan=False)] | None
 
 
-class ShapeRequest(BaseModel):
+class ShapeRequest(RequestModel):
     """A profile of widths under a stretch."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    material: str = Field(max_length=80, examples=["acrylic"])
+    material: MaterialName
     direction: Direction = Field(Direction.WALE, description="Of the pull.")
-    strain: float = Field(gt=0, le=5, allow_inf_nan=False, description="From clamp to clamp.")
+    strain: float = Field(
+        gt=0, le=5, allow_inf_nan=False, description="From clamp to clamp: 0.3 is 30 %."
+    )
     width: list[Width] = Field(
         min_length=3,
         max_length=1000,
@@ -35,7 +51,7 @@ class ShapeRequest(BaseModel):
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
 
 
-class BandResult(BaseModel):
+class BandResult(ResultModel):
     """Lines of one repeat."""
 
     repeat: str
@@ -43,15 +59,15 @@ class BandResult(BaseModel):
     lines: int
 
 
-class ShapeResult(BaseModel):
+class ShapeResult(ResultModel):
     """A chart, and the outline of its swatch."""
 
     rows: int
     columns: int
     chart: str
     bands: list[BandResult]
-    width: list[float] = Field(description="As the finite swatch has it, beside what was wanted.")
-    wanted: list[float | None]
+    width: Rounded = Field(description="As the finite swatch has it, beside what was wanted.")
+    wanted: Gaps
     rms: float = Field(description="Of the differences, as parts of the width at rest.")
     largest: float
     force_n: float
@@ -59,38 +75,84 @@ class ShapeResult(BaseModel):
     messages: list[str]
 
 
-def run_shape(
-    request: ShapeRequest, *, cancelled: Cancelled, progress: Progress | None = None
-) -> ShapeResult:
-    """Fill a shape for the service."""
-    atlas = cached_atlas(request.material, request.repeats, cancelled)
+def shape(request: ShapeRequest, context: Context) -> ShapeResult:
+    """Bands across the pull, chosen, pulled in the finite swatch and chosen again."""
+    return _shaped(request, atlas_of(request.material, request.repeats, context), context)
+
+
+def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResult:
     found = fill_shape(
         np.array([np.nan if w is None else w for w in request.width], dtype=float),
         request.across,
         request.direction,
         request.strain,
-        find_material(request.material),
+        context.material(request.material),
         atlas,
         smallest_band=request.smallest_band,
         seed=request.seed,
-        progress=None if progress is None else lambda done: progress(round(1000 * done), 1000),
-        cancelled=cancelled,
+        progress=context.share,
+        cancelled=context.cancelled,
     )
-    return shape_result(found)
+    return ShapeResult.of(found, found.chart, chart=found.chart.text)
 
 
-def shape_result(found: ShapedSwatch) -> ShapeResult:
-    """A shaped swatch at the border."""
-    return ShapeResult(
-        rows=found.chart.rows,
-        columns=found.chart.columns,
-        chart=found.chart.text,
-        bands=[BandResult(repeat=b.repeat, first=b.first, lines=b.lines) for b in found.bands],
-        width=[round(w, 5) for w in found.width.tolist()],
-        wanted=[None if np.isnan(w) else w for w in found.wanted.tolist()],
-        rms=found.rms,
-        largest=found.largest,
-        force_n=found.force_n,
-        pulls=found.pulls,
-        messages=list(found.messages),
+@click.argument("profile", type=click.Path(path_type=Path))
+def _widths(profile: Path) -> dict[str, Any]:
+    return {"width": _read(profile)}
+
+
+@atlas_option
+@design_option
+def _command(
+    request: ShapeRequest, context: Context, atlas: Path | None, out: Path | None
+) -> ShapeResult:
+    table = load_atlas(atlas) if atlas else atlas_of(request.material, request.repeats, context)
+    result = _shaped(request, table, context)
+    write_design_of(result.chart, request.material, "Shape", out)
+    return result
+
+
+def _read(file: Path) -> list[float | None]:
+    """The column ``width`` of a CSV; an empty line is no wish."""
+    try:
+        with file.open(newline="", encoding="utf-8") as stream:
+            names, *rows = csv.reader(stream)
+        column = [name.strip() for name in names].index("width")
+        values = [row[column].strip() if row else "" for row in rows]
+        return [float(value) if value else None for value in values]
+    except FileNotFoundError:
+        raise InputError("profile", f"there is no file {file}.", "Check its name.") from None
+    except (IndexError, ValueError):
+        raise InputError(
+            "profile", f"{file.name} is no profile.", "Give a column `width` of numbers."
+        ) from None
+
+
+def _text(r: ShapeResult) -> str:
+    bands = ", ".join(f"{b.lines} of {b.repeat}" for b in r.bands)
+    head = (
+        f"{r.columns} columns x {r.rows} rows; widths {r.rms:.1%} off (rms), {r.largest:.1%} at "
+        f"most; {r.force_n:.2f} N; from the first line: {bands}"
     )
+    return "\n".join([r.chart, head, *r.messages])
+
+
+OPERATION = Operation(
+    name="shape",
+    tag="design",
+    summary="A chart that takes a wanted outline when it is stretched",
+    request=ShapeRequest,
+    result=ShapeResult,
+    run=shape,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Make a chart that, stretched, has the widths of PROFILE: a CSV with a column "
+        "`width`, stretched width over width at rest, one line across the pull after the other "
+        "from the bottom (or the left); an empty one is no wish.",
+        names={"width": None},
+        fields=_widths,
+        run=_command,
+    ),
+)

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from scipy.ndimage import distance_transform_edt
 
-from app.http.packed import packed
-from app.models.charts import MAX_TEXT, ChartInput, PureFabricChart, to_chart
-from app.operations.stretch_margins import StretchMargins, sampled_steps, stretch_margins
-from app.results.own_materials import find_material
+from app.cli.options import out_option
+from app.models.base import Floats, RequestModel, ResultModel
+from app.models.charts import ChartInput, MaterialName, OutlineInput, PureFabricChart, to_chart
+from app.operations.context import Context
+from app.operations.perform import Viewed
+from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import outline_marks
 from knitcore.law.stiffening import EXTENSION_START
-from knitcore.materials import Material
 from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
+from knitcore.swatch.margins import StretchMargins, sampled_steps, stretch_margins
 
 Array = NDArray[np.float32]
 
@@ -33,12 +34,13 @@ MAX_VALUES = 60 * MAX_STITCHES
 NEAR_LOCK_UP = 0.95
 
 
-class StretchOptions(BaseModel):
-    """How a swatch is pulled."""
+class StretchRequest(RequestModel):
+    """A chart between two clamps, which hold the outermost stitches, and how it is pulled."""
 
-    model_config = ConfigDict(extra="forbid")
-
-    direction: Direction
+    chart: ChartInput
+    material: MaterialName
+    outline: OutlineInput = None
+    direction: Direction = Field(description="Along rows, or along columns.")
     strain: float = Field(
         gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
     )
@@ -48,26 +50,21 @@ class StretchOptions(BaseModel):
     )
     model: EnergyModel = EnergyModel.FULL
     shear_modulus_n_per_mm: float | None = Field(
-        None, ge=1e-4, le=10, allow_inf_nan=False, description="Replaces the assumed C_xyxy."
-    )
-    width_mm: float | None = Field(None, ge=1, le=10_000, description="Size course-wise.")
-    length_mm: float | None = Field(None, ge=1, le=10_000, description="Size wale-wise.")
-
-
-class StretchRequest(StretchOptions):
-    """A chart between two clamps."""
-
-    chart: ChartInput
-    material: str
-    outline: str | None = Field(
         None,
-        max_length=MAX_TEXT,
-        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
-        "left out. The clamps hold the outermost stitches.",
+        ge=1e-4,
+        le=10,
+        allow_inf_nan=False,
+        description="C_xyxy in N/mm (an assumption otherwise).",
+    )
+    width_mm: float | None = Field(
+        None, ge=1, le=10_000, description="Size course-wise; from the gauge otherwise."
+    )
+    length_mm: float | None = Field(
+        None, ge=1, le=10_000, description="Size wale-wise; from the gauge otherwise."
     )
 
 
-class StitchFields(BaseModel):
+class StitchFields(ResultModel):
     """Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is
     no stitch.
     """
@@ -81,7 +78,7 @@ class StitchFields(BaseModel):
     utilisation_margin: list[list[float]] = Field(description="The same of the utilisation.")
 
 
-class NearestLockUp(BaseModel):
+class NearestLockUp(ResultModel):
     """Where the swatch is nearest to its lock-up at the last step."""
 
     utilisation: float
@@ -91,16 +88,16 @@ class NearestLockUp(BaseModel):
     fabric: str
 
 
-class StretchCurve(BaseModel):
+class StretchCurve(ResultModel):
     """A simulated strip test (geometry after ISO 20932-1), not a certified test."""
 
-    strain: list[float]
-    force_n: list[float]
-    force_low_n: list[float] = Field(description="Lower end of the 90 % interval.")
-    force_high_n: list[float] = Field(description="Upper end of the 90 % interval.")
-    stress_n_per_mm: list[float] = Field(description="Force per width, and as sure as the force.")
-    waist_strain: list[float]
-    waist_margin: list[float] = Field(description="90 % interval, to either side.")
+    strain: Floats
+    force_n: Floats
+    force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
+    force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    stress_n_per_mm: Floats = Field(description="Force per width, and as sure as the force.")
+    waist_strain: Floats
+    waist_margin: Floats = Field(description="90 % interval, to either side.")
     iterations: list[int]
     converged: bool
     seconds: float
@@ -124,20 +121,17 @@ class StretchResult(StretchCurve):
 
 
 @dataclass(frozen=True, eq=False)
-class StretchRun:
-    """A test as the service keeps it for the 3D view.
+class StretchView:
+    """What the 3D view shows of a test.
 
     Attributes
     ----------
-    result : what the caller gets as packed JSON, made where the test ran: megabytes of numbers
-        would hold up the event loop.
     direction : of the pull.
     positions_mm : (steps, rows, columns, 2) stitch centres.
     strain : (steps, rows, columns, 2) course-wise and wale-wise.
     utilisation : (steps, rows, columns).
     """
 
-    result: bytes
     direction: Direction
     positions_mm: Array
     strain: Array
@@ -145,113 +139,79 @@ class StretchRun:
 
     @property
     def size_bytes(self) -> int:
-        """About how much memory it takes."""
-        arrays = (self.positions_mm, self.strain, self.utilisation)
-        return len(self.result) + sum(array.nbytes for array in arrays)
+        """How much memory it takes."""
+        return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))
 
 
-def stretch_key(request: StretchRequest) -> str:
-    """A name made of everything that decides the result."""
-    return hashlib.sha256(request.model_dump_json().encode()).hexdigest()[:32]
+def stretch(request: StretchRequest, context: Context) -> Viewed:
+    """Nonlinear strip test of the whole chart; stops when the caller goes away.
 
-
-def run_stretch(
-    request: StretchRequest,
-    *,
-    cancelled: Callable[[], bool],
-    progress: Callable[[int, int], None] | None = None,
-) -> StretchRun:
-    """Run a test for the service.
+    A test that was run a short while ago is answered from memory.
 
     Raises
     ------
     InputError, CancelledError
     """
     chart = to_chart(request.chart)
-    if chart.rows * chart.columns > MAX_STITCHES:
+    stitches = chart.rows * chart.columns
+    if stitches > MAX_STITCHES:
         side = math.isqrt(MAX_STITCHES)
         raise InputError(
             "chart",
             f"{chart.columns}x{chart.rows} stitches are too many for a stretch test here.",
             f"Use at most {MAX_STITCHES} stitches, such as {side}x{side}, or the command line.",
         )
-    if chart.rows * chart.columns * request.steps > MAX_VALUES:
+    if stitches * request.steps > MAX_VALUES:
         raise InputError(
             "steps",
             f"{request.steps} are too many here for a chart of this size.",
-            f"Use at most {MAX_VALUES // (chart.rows * chart.columns)}, or the command line.",
+            f"Use at most {MAX_VALUES // stitches}, or the command line.",
         )
-    material = find_material(request.material)
-    samples = len(sampled_steps(request.steps))
+    test, margins = _test(chart, request, context)
+    return _stitches(chart, request, test, margins)
 
-    def tell(done: int, _of: int) -> None:
-        if progress is not None:
-            progress(done, request.steps + samples)
 
-    test = stretch_chart(
+def _test(
+    chart: StitchChart, request: StretchRequest, context: Context
+) -> tuple[StripTest, StretchMargins]:
+    material = context.material(request.material)
+    total = request.steps + len(sampled_steps(request.steps))
+    test = strip_test(
         chart,
         material,
-        request,
+        request.direction,
+        request.strain,
+        steps=request.steps,
+        clamps=request.clamps,
+        model=request.model,
+        shear_modulus=request.shear_modulus_n_per_mm,
         stitch=None if request.outline is None else outline_marks(request.outline),
-        cancelled=cancelled,
-        progress=tell,
+        width_mm=request.width_mm,
+        length_mm=request.length_mm,
+        cancelled=context.cancelled,
+        progress=lambda done, _: context.progress(done, total),
     )
     margins = stretch_margins(
         test,
         material,
         request.clamps,
-        progress=lambda done: tell(request.steps + done, 0),
-        cancelled=cancelled,
+        progress=lambda done: context.progress(request.steps + done, total),
+        cancelled=context.cancelled,
     )
-    return _stitches(chart, request, test, margins)
+    return test, margins
 
 
-def stretch_chart(
-    chart: StitchChart,
-    material: Material,
-    options: StretchOptions,
-    *,
-    stitch: NDArray[np.bool_] | None = None,
-    cancelled: Callable[[], bool] | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> StripTest:
-    """The strip test of any chart and material; ``stitch`` (rows, columns) of a shaped piece."""
-    return strip_test(
-        chart,
-        material,
-        options.direction,
-        options.strain,
-        steps=options.steps,
-        clamps=options.clamps,
-        model=options.model,
-        shear_modulus=options.shear_modulus_n_per_mm,
-        stitch=stitch,
-        width_mm=options.width_mm,
-        length_mm=options.length_mm,
-        cancelled=cancelled,
-        progress=progress,
-    )
-
-
-def stretch_curve(
-    chart: StitchChart, options: StretchOptions, test: StripTest, margins: StretchMargins
+def _curve(
+    chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
 ) -> StretchCurve:
     """The numbers of a test."""
-    return StretchCurve(
-        strain=test.strain.tolist(),
-        force_n=test.force_n.tolist(),
-        force_low_n=(test.force_n / margins.force_factor).tolist(),
-        force_high_n=(test.force_n * margins.force_factor).tolist(),
-        stress_n_per_mm=test.stress_n_per_mm.tolist(),
-        waist_strain=test.waist_strain.tolist(),
-        waist_margin=margins.waist.tolist(),
-        iterations=list(test.iterations),
-        converged=test.converged,
-        seconds=test.seconds,
-        dofs=test.dofs,
-        width_mm=test.sheet.grid.width_mm,
-        length_mm=test.sheet.grid.length_mm,
-        shear_modulus_assumed=options.shear_modulus_n_per_mm is None,
+    return StretchCurve.of(
+        test,
+        test.sheet.grid,
+        force_low_n=test.force_n / margins.force_factor,
+        force_high_n=test.force_n * margins.force_factor,
+        waist_margin=margins.waist,
+        shear_modulus_assumed=request.shear_modulus_n_per_mm is None,
         nearest_lock_up=_nearest(chart, test),
         messages=_messages(test),
     )
@@ -279,8 +239,9 @@ def _messages(test: StripTest) -> list[str]:
     return messages
 
 
-def warm_up(*, cancelled: Callable[[], bool]) -> None:
+def warm_up(*, cancelled: object) -> None:
     """Load (and on the very first start compile) what a test needs."""
+    del cancelled
     request = StretchRequest(
         chart=PureFabricChart(fabric="garter", columns=3, rows=3),
         material="acrylic",
@@ -288,12 +249,12 @@ def warm_up(*, cancelled: Callable[[], bool]) -> None:
         strain=0.1,
         steps=1,
     )
-    run_stretch(request, cancelled=cancelled)
+    stretch(request, Context(Path()))
 
 
 def _stitches(
     chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
-) -> StretchRun:
+) -> Viewed:
     shape = (test.steps, chart.rows, chart.columns)
     ux, uy, xx, yy, used = np.zeros((5, *shape))
     for step in range(test.steps):
@@ -311,26 +272,26 @@ def _stitches(
     y = _carried(test.y_mm[1::2, 1::2], uy, yy, there)
     for values in (xx, yy, used):
         values[:, ~there] = 0.0
-    result = StretchResult(
-        **stretch_curve(chart, request, test, margins).model_dump(),
-        id=stretch_key(request),
-        rows=chart.rows,
-        columns=chart.columns,
-        stitch_fields=StitchFields(
-            strain_course=_rounded(xx),
-            strain_wale=_rounded(yy),
-            utilisation=_rounded(used),
-            strain_margin=_rounded(margins.strain),
-            utilisation_margin=_rounded(margins.utilisation),
-        ),
+    fields = {
+        "strain_course": xx,
+        "strain_wale": yy,
+        "utilisation": used,
+        "strain_margin": margins.strain,
+        "utilisation_margin": margins.utilisation,
+    }
+    result = StretchResult.of(
+        _curve(chart, request, test, margins),
+        chart,
+        id=OPERATION.key(request),
+        stitch_fields={name: _rounded(values) for name, values in fields.items()},
     )
-    return StretchRun(
-        result=packed(result),
+    view = StretchView(
         direction=request.direction,
         positions_mm=np.stack([x, y], axis=-1).astype(np.float32),
         strain=np.stack([xx, yy], axis=-1).astype(np.float32),
         utilisation=used.astype(np.float32),
     )
+    return Viewed(result, view)
 
 
 def _carried(
@@ -369,3 +330,56 @@ def _nearest(chart: StitchChart, test: StripTest) -> NearestLockUp | None:
         direction=spot.direction,
         fabric=spot.fabric,
     )
+
+
+@out_option("--out", help="Write fields to FILE.npz or .vtu.", suffixes=(".npz", ".vtu"))
+def _command(request: StretchRequest, context: Context, out: Path | None) -> StretchCurve:
+    chart = to_chart(request.chart)
+    test, margins = _test(chart, request, context)
+    if out is not None:
+        from knitcore.swatch.files import write_fields
+
+        write_fields(test, out)
+    return _curve(chart, request, test, margins)
+
+
+def _text(curve: StretchCurve) -> str:
+    lines = [f"{'strain':>8} {'force N':>9} {'90 %':>17} {'N/mm':>8} {'waist':>8}"]
+    rows = zip(
+        curve.strain,
+        curve.force_n,
+        curve.force_low_n,
+        curve.force_high_n,
+        curve.stress_n_per_mm,
+        curve.waist_strain,
+        strict=True,
+    )
+    lines += [
+        f"{e:8.3f} {f:9.3f} {low:8.3f}-{high:<8.3f} {s:8.4f} {w:8.3f}"
+        for e, f, low, high, s, w in rows
+    ]
+    if curve.nearest_lock_up is not None:
+        spot = curve.nearest_lock_up
+        lines.append(
+            f"nearest to lock-up: {spot.utilisation:.0%} {spot.direction}-wise in {spot.fabric}, "
+            f"row {spot.row}, stitch {spot.column}"
+        )
+    return "\n".join([*lines, *curve.messages])
+
+
+OPERATION = Operation(
+    name="stretch",
+    tag="stretch",
+    summary="Pull a chart between two clamps",
+    request=StretchRequest,
+    result=StretchResult,
+    run=stretch,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Pull CHART between two clamps: a simulated strip test, not a certified one.",
+        names={"shear_modulus_n_per_mm": "--shear-modulus"},
+        run=_command,
+    ),
+)

@@ -3,33 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from app.models.charts import ChartInput
-from app.operations.relax import (
-    Cancelled,
-    YarnLevelOptions,
-    YarnResult,
-    asked_chart,
-    cell_chart,
-    chart_yarn,
-    pure_fabric,
-    relaxed_cell,
-    what_decides,
-    yarn_result,
-)
-from app.results.on_disk import KeptResults
-from app.results.own_materials import find_material
+from app.cli.options import loop_lengths
+from app.models.base import Floats, ResultModel
+from app.models.yarn_level import YarnLevelRequest, YarnResult, pure_fabric, relaxed_cell
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
-from knitcore.materials import Material
 from knitcore.yarnlevel.published.sweep import sweep_published
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
-from knitcore.yarnlevel.sweep import sweep
+from knitcore.yarnlevel.sweep import sweep as swept
 from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_law
 from knitcore.yarnlibrary.yarns import ChartYarn
 
@@ -38,11 +26,13 @@ _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
 _FAR_POINTS = 60
 
 
-class SweepOptions(YarnLevelOptions):
-    """How a repeat is stretched."""
+class SweepRequest(YarnLevelRequest):
+    """A repeat, its yarn and the stretch."""
 
-    direction: Direction
-    max_strain: float = Field(gt=0, le=20, allow_inf_nan=False)
+    direction: Direction = Field(description="Along rows, or along columns.")
+    max_strain: float = Field(
+        gt=0, le=20, allow_inf_nan=False, description="Largest strain: 0.5 is 50 %."
+    )
     points: int = Field(25, ge=2, le=400)
     slide_quenching: bool = Field(
         False,
@@ -51,17 +41,8 @@ class SweepOptions(YarnLevelOptions):
     )
 
 
-class SweepRequest(SweepOptions):
-    """A repeat, its yarn and the stretch."""
-
-    chart: ChartInput
-    material: str = Field(max_length=80)
-
-
-class LawResult(BaseModel):
+class SweptLaw(ResultModel):
     """Constitutive law fitted to the stretches along and across (N/mm)."""
-
-    model_config = ConfigDict(extra="forbid")
 
     stiffness_xxxx: float
     stiffness_yyyy: float
@@ -82,21 +63,21 @@ class LawResult(BaseModel):
     rms_wale_n_per_mm: float
 
 
-class SweepResult(BaseModel):
+class SweepResult(ResultModel):
     """A stretch, free across; sizes and energies of one stitch."""
 
     direction: Direction
     branch: Branch
-    strain: list[float]
-    transverse_strain: list[float]
-    stress_n_per_mm: list[float]
-    energy_n_mm: list[float]
-    bending_share: list[float]
-    contact_share: list[float]
+    strain: Floats
+    transverse_strain: Floats
+    stress_n_per_mm: Floats
+    energy_n_mm: Floats
+    bending_share: Floats
+    contact_share: Floats
     jumps: list[int] = Field(description="Points at which the shape changes abruptly.")
     cell_course_mm: float = Field(description="Relaxed size of one stitch.")
     cell_wale_mm: float
-    law: LawResult | None
+    law: SweptLaw | None
     converged: bool
     seconds: float = Field(description="CPU time of the solves, whenever they were.")
     known: bool = Field(False, description="Whether it had been computed before.")
@@ -104,99 +85,88 @@ class SweepResult(BaseModel):
     notes: list[str]
 
 
-def run_sweep(request: SweepRequest, *, cancelled: Cancelled) -> SweepResult:
-    """Stretch for the service."""
-    chart, material = asked_chart(request.chart, request), find_material(request.material)
-    return sweep_chart(chart, material, request, cancelled=cancelled)
+def sweep(request: SweepRequest, context: Context) -> SweepResult:
+    """Stress-strain curve and fitted law of the repeat; stops when the caller goes away.
 
-
-def sweep_chart(
-    chart: StitchChart,
-    material: Material,
-    options: SweepOptions,
-    *,
-    cancelled: Cancelled | None = None,
-) -> SweepResult:
-    """Stretch a chart's repeat along a direction, or say what is known of it.
-
-    The law also needs the stretch across.
+    The law also needs the stretch across. A stretch that was run before is not computed again.
     """
-    repeat = cell_chart(chart, options)
-    used = chart_yarn(material, repeat, options)
-    result, known = KeptResults.of_user().get_or_make(
+    repeat = request.repeat()
+    used = request.yarn(repeat, context)
+    result, known = context.kept.get_or_make(
         SweepResult,
-        what_decides(repeat, used, options),
-        lambda: _swept(repeat, used, options, cancelled),
-        fresh=options.fresh,
+        request.inputs(repeat, used),
+        lambda: _result(request, repeat, used, context),
+        fresh=request.fresh,
     )
     return result.model_copy(update={"known": known})
 
 
-def _swept(
-    repeat: StitchChart, used: ChartYarn, options: SweepOptions, cancelled: Cancelled | None
+def _result(
+    request: SweepRequest, repeat: StitchChart, used: ChartYarn, context: Context
 ) -> SweepResult:
-    zero = relaxed_cell(repeat, used, options, cancelled)
-    along = options.direction
-    main = _sweep(repeat, used, zero, options, along, options.max_strain, options.points,
-                  None, cancelled)  # fmt: skip
-    notes = list(main.notes)
+    zero = relaxed_cell(repeat, used, request, context)
+
+    def stretch(
+        direction: Direction, max_strain: float, points: int, max_stress: float | None
+    ) -> Sweep:
+        return _sweep(
+            repeat, used, zero, request, direction, max_strain, points, max_stress, context
+        )
+
+    main = stretch(request.direction, request.max_strain, request.points, None)
+    notes, seconds = list(main.notes), zero.seconds + main.seconds
     law: SimulatedLaw | None = None
-    seconds = zero.seconds + main.seconds
     try:
         both = {}
-        for direction in Direction:
-            both[direction] = _sweep(
-                repeat, used, zero, options, direction, _FAR_STRAIN[direction], _FAR_POINTS,
-                1.2 * MAX_STRESS_N_PER_MM, cancelled,
-            )  # fmt: skip
-            seconds += both[direction].seconds
+        for d in Direction:
+            both[d] = stretch(d, _FAR_STRAIN[d], _FAR_POINTS, 1.2 * MAX_STRESS_N_PER_MM)
+            seconds += both[d].seconds
         law = fit_law(both[Direction.COURSE], both[Direction.WALE])
-        notes += [note for stretch in both.values() for note in _jumps_fitted(stretch, law)]
+        notes += [note for found in both.values() for note in _jumps_fitted(found, law)]
     except KnitcoreError as error:
-        if cancelled is not None and cancelled():
+        if context.cancelled():
             raise
         notes.append(f"No law could be fitted: {error}")
-    return SweepResult(
-        direction=along,
-        branch=options.branch,
-        strain=main.strain.tolist(),
-        transverse_strain=main.transverse_strain.tolist(),
-        stress_n_per_mm=main.stress_n_per_mm.tolist(),
-        energy_n_mm=main.energy_n_mm.tolist(),
-        bending_share=main.bending_share.tolist(),
-        contact_share=main.contact_share.tolist(),
-        jumps=list(main.jumps),
-        cell_course_mm=zero.cell_course_mm,
-        cell_wale_mm=zero.cell_wale_mm,
-        law=None if law is None else LawResult(**_law_fields(law)),
-        converged=main.converged and len(main.strain) == options.points,
+    return SweepResult.of(
+        main,
+        zero,
+        branch=request.branch,
+        law=None if law is None else SweptLaw.of(law, law.law),
+        converged=main.converged and len(main.strain) == request.points,
         seconds=seconds,
-        yarn=yarn_result(used),
+        yarn=YarnResult.of(used, used.yarn),
         notes=notes,
     )
 
 
 def _sweep(
-    repeat: StitchChart, used: ChartYarn, zero: RelaxedCell, options: SweepOptions,
+    repeat: StitchChart, used: ChartYarn, zero: RelaxedCell, request: SweepRequest,
     direction: Direction, max_strain: float, points: int, max_stress: float | None,
-    cancelled: Cancelled | None,
+    context: Context,
 ) -> Sweep:  # fmt: skip
     if isinstance(zero, RelaxedRepeat):
-        return sweep(
+        return swept(
             zero, direction, max_strain, points=points, max_stress_n_per_mm=max_stress,
-            slide_quenching=options.slide_quenching, cancel=cancelled,
+            slide_quenching=request.slide_quenching, cancel=context.cancelled,
         )  # fmt: skip
-    if options.slide_quenching:
+    if request.slide_quenching:
         raise InputError(
             "slide_quenching",
             "the published branch decides it as the paper did.",
             "Leave it out, or use mirrored or free.",
         )
     return sweep_published(
-        pure_fabric(repeat), used.yarn, used.loop_length_mm, direction, max_strain, points,
-        options.convention, zero=zero,
-        max_stress_n_per_mm=math.inf if max_stress is None else max_stress, cancel=cancelled,
-    )  # fmt: skip
+        pure_fabric(repeat),
+        used.yarn,
+        used.loop_length_mm,
+        direction,
+        max_strain,
+        points,
+        request.convention,
+        zero=zero,
+        max_stress_n_per_mm=math.inf if max_stress is None else max_stress,
+        cancel=context.cancelled,
+    )
 
 
 def _jumps_fitted(stretch: Sweep, law: SimulatedLaw) -> list[str]:
@@ -209,10 +179,32 @@ def _jumps_fitted(stretch: Sweep, law: SimulatedLaw) -> list[str]:
     ]
 
 
-def _law_fields(law: SimulatedLaw) -> dict[str, Any]:
-    names = LawResult.model_fields
-    fields = {name: getattr(law.law, name) for name in names if hasattr(law.law, name)}
-    fields |= {name: getattr(law, name) for name in names if hasattr(law, name)}
-    fields["modulus_course_n_per_mm"] = law.law.modulus_course
-    fields["modulus_wale_n_per_mm"] = law.law.modulus_wale
-    return fields
+def _text(r: SweepResult) -> str:
+    columns = zip(r.strain, r.transverse_strain, r.stress_n_per_mm, r.energy_n_mm, strict=True)
+    lines = ["strain   across   stress N/mm   energy N·mm"]
+    lines += [f"{a:6.3f}  {b:7.3f}  {c:11.5f}  {d:12.5f}" for a, b, c, d in columns]
+    if r.law is not None:
+        lines.append(
+            f"law up to {r.law.max_stress_n_per_mm:g} N/mm: Y course "
+            f"{r.law.modulus_course_n_per_mm:.4f}, wale {r.law.modulus_wale_n_per_mm:.4f} N/mm, "
+            f"Poisson yx {r.law.poisson_yx:.3f}, xy {r.law.poisson_xy:.3f}"
+        )
+    return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
+
+
+OPERATION = Operation(
+    name="sweep",
+    tag="yarn level",
+    summary="Stretch a repeat at the yarn level",
+    request=SweepRequest,
+    result=SweepResult,
+    run=sweep,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Stretch the repeat CHART at the yarn level, free across, and fit its law.",
+        names={"loop_lengths_mm": None},
+        fields=loop_lengths,
+    ),
+)

@@ -16,7 +16,6 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from app.settings import Settings
 from knitcore.yarnlibrary.fingerprint import content_key
 
 log = logging.getLogger("knitcore.kept")
@@ -39,11 +38,6 @@ class KeptResults:
     def __init__(self, folder: Path, max_bytes: int = MAX_BYTES) -> None:
         self.folder = folder
         self.max_bytes = max_bytes
-
-    @classmethod
-    def of_user(cls) -> KeptResults:
-        """The folder in the data folder of the settings."""
-        return cls(Settings().data_dir.expanduser() / "yarn-level")
 
     def get_or_make(
         self,

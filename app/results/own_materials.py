@@ -13,9 +13,8 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from app.settings import Settings
 from knitcore.errors import InputError
-from knitcore.materials import Material, load_material_file, material
+from knitcore.materials import Material, load_material_file
 
 FOLDER = "materials"
 PREFIX = "own:"
@@ -23,19 +22,6 @@ KINDS = (".json", ".yaml", ".yml")
 MOST_FILES = 200
 
 _log = logging.getLogger("knitcore.materials")
-
-
-def find_material(identifier: str) -> Material:
-    """A material of the library or of one's own.
-
-    Raises
-    ------
-    InputError
-        If there is none of that identifier.
-    """
-    if not identifier.startswith(PREFIX):
-        return material(identifier)
-    return find_own_material(identifier, Settings().data_dir.expanduser())
 
 
 def find_own_material(identifier: str, data_dir: Path) -> Material:

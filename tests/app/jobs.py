@@ -11,7 +11,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from app.compute.answers import Answers
+from app.compute.compute import Compute
 from app.jobs.kinds import KINDS
+from app.operations.context import Context
+from app.operations.registry import Operation
+from app.results.recent import RecentResults
 from knitcore import InputError
 
 
@@ -78,18 +83,28 @@ class Answer(BaseModel):
     value: int
 
 
-def work(wish: Wish, *, cancelled: Any, progress: Any) -> Answer:
-    """A job that does what it is told."""
-    progress(1, 4)
+def work(wish: Wish, context: Context) -> Answer:
+    """An operation that does what it is told."""
+    context.progress(1, 4)
     if wish.what == "die":
         os.kill(os.getpid(), signal.SIGKILL)
     if wish.what == "fail":
         raise ValueError("a mistake of ours")
     while wish.what == "wait" and not Path(wish.mark).exists():
-        if cancelled():
+        if context.cancelled():
             break
         time.sleep(0.01)
     return Answer(value=42)
+
+
+WORK = Operation(
+    name="work", tag="tests", summary="Work", request=Wish, result=Answer, run=work, job=True
+)
+
+
+def answers(compute: Compute, folder: Path) -> Answers:
+    """Where a runner of jobs asks, with nothing in its memory."""
+    return Answers(compute, RecentResults(), folder)
 
 
 def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[..., None]) -> int:
@@ -101,7 +116,7 @@ def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[...
     return os.getpid()
 
 
-def killed_in_the_middle(kind: str, request: BaseModel, **given: Any) -> Any:
+def killed_in_the_middle(kind: str, request: BaseModel, context: Context) -> Any:
     """The operation of a kind, whose process is killed while it works.
 
     It dies when the operation first looks whether it was cancelled; one that is too short to look
@@ -112,5 +127,5 @@ def killed_in_the_middle(kind: str, request: BaseModel, **given: Any) -> Any:
         os.kill(os.getpid(), signal.SIGKILL)
         return False
 
-    KINDS[kind].function(request, cancelled=kill)
+    KINDS[kind].run(request, Context(context.data_dir, cancelled=kill))
     return kill()

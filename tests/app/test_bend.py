@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.bend import BendOptions, bend_chart
-from knitcore.chart import StitchChart
-from knitcore.materials import material
+from app.operations.bend import BendRequest, bend
+from app.operations.context import Context
 
 
 def test_bend_says_what_the_edges_do(client: TestClient) -> None:
@@ -25,13 +25,13 @@ def test_bend_says_what_the_edges_do(client: TestClient) -> None:
 
 
 def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
-    options = BendOptions(linear_density_g_per_m=0.3)
-    bent = bend_chart(StitchChart.parse("K"), material("acrylic"), options)
+    request = BendRequest(chart="K", material="acrylic", linear_density_g_per_m=0.3)
+    bent = bend(request, Context(Path()))
     assert bent.bending_length_course_mm == pytest.approx(18.0, rel=0.02)
 
 
 def test_states_that_differ_much_are_told() -> None:
-    bent = bend_chart(StitchChart.parse("P\nK"), material("cotton"), BendOptions())
+    bent = bend(BendRequest(chart="P\nK", material="cotton"), Context(Path()))
     assert not bent.stable
     assert any("a range, not a figure" in note for note in bent.notes)
 

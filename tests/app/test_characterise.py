@@ -17,7 +17,8 @@ from click.testing import CliRunner
 from pydantic import ValidationError
 
 from app.cli.main import main
-from app.operations.characterise import CharacteriseRequest, run_characterise
+from app.operations.characterise import CharacteriseRequest, characterise
+from app.operations.context import Context
 from knitcore.errors import CancelledError
 from tests.knitcore.test_batch import cluster  # noqa: F401 - a fixture
 
@@ -98,19 +99,18 @@ def test_a_cluster_of_two_processes_gives_the_same(
     assert there == here
 
 
-def test_as_an_operation_it_tells_progress_and_stops() -> None:
+def test_as_an_operation_it_tells_progress_and_stops(tmp_path: Path) -> None:
     request = CharacteriseRequest.model_validate(
         {"material": "cotton", "fabrics": ["stockinette"], "tensions": [1.0]}
     )
-    seen: list[tuple[int, int]] = []
-    result = run_characterise(
-        request, cancelled=lambda: False, progress=lambda *told: seen.append(told)
-    )
+    seen: list[tuple[float, float]] = []
+    context = Context(tmp_path, progress=lambda *told: seen.append(told))
+    result = characterise(request, context)
     assert seen == [(0, 1), (1, 1)]
     assert result.material is not None
     assert result.rows[0].curves
     with pytest.raises(CancelledError):
-        run_characterise(request, cancelled=lambda: True)
+        characterise(request, Context(tmp_path, cancelled=lambda: True))
 
 
 @pytest.mark.parametrize("body", [{}, {"material": "cotton", "yarn": {"name": "x"}}])

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.atlas import repeats_of
+from app.results.atlases import repeats_of
 from knitcore.formats.stitch_maps import read_wanted_moduli
 
 WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.223, "tolerance": 0.05, "weight": 1.0}

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.export import MAX_MESH_STITCHES
+from app.operations.export import MAX_STITCHES
 from knitcore.formats.export import SUFFIXES, ExportKind
 
 CHART = "KPKK\nPPKP\nKKPP"
@@ -121,7 +121,7 @@ def test_a_missing_file_is_told(name: str, says: str, tmp_path: Path) -> None:
 
 
 def test_limits_are_told(client: TestClient) -> None:
-    side = int(MAX_MESH_STITCHES**0.5) + 1
+    side = int(MAX_STITCHES[ExportKind.GLB] ** 0.5) + 1
     chart = {"fabric": "rib", "rows": side, "columns": side}
     refused = client.post("/api/v1/export", json={"chart": chart, "to": "glb"})
     assert refused.status_code == 422

@@ -11,6 +11,7 @@ import random
 import zipfile
 import zlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,15 +20,12 @@ from PIL import Image
 from pydantic import ValidationError
 
 from app.models.uploads import UploadedFile, stored
-from app.operations.field import CompareRequest, run_compare
-from app.operations.fit import FitRequest, run_fit
-from app.operations.imports import ImportRequest, run_import
-from app.operations.measure import (
-    BendingRequest,
-    CompressionRequest,
-    run_bending,
-    run_compression,
-)
+from app.operations.bending import BendingRequest, bending
+from app.operations.compare import CompareRequest, compare
+from app.operations.compression import CompressionRequest, compression
+from app.operations.context import Context
+from app.operations.fit import FitRequest, fit
+from app.operations.import_ import ImportRequest, import_
 from knitcore.errors import InputError, KnitcoreError
 
 FILES = int(os.environ.get("KNITCORE_HOSTILE_FILES", "40"))
@@ -102,17 +100,18 @@ def _request(kind: type[Any], **fields: Any) -> Any:
     return kind.model_validate({name: coded(value) for name, value in fields.items()})
 
 
+HERE = Context(Path())
 READERS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Any]] = {
-    "fit": lambda a, b: run_fit(_request(FitRequest, test_course=a, test_wale=b)),
-    "bending": lambda a, _: run_bending(
-        _request(BendingRequest, images=[a], linear_density_g_per_m=0.5, length_mm=30.0)
+    "fit": lambda a, b: fit(_request(FitRequest, test_course=a, test_wale=b), HERE),
+    "bending": lambda a, _: bending(
+        _request(BendingRequest, images=[a], linear_density_g_per_m=0.5, length_mm=30.0), HERE
     ),
-    "compression": lambda a, _: run_compression(_request(CompressionRequest, file=a)),
-    "compare": lambda a, _: run_compare(
+    "compression": lambda a, _: compression(_request(CompressionRequest, file=a), HERE),
+    "compare": lambda a, _: compare(
         _request(CompareRequest, field=a, direction="course", material="acrylic", fabric="garter"),
-        cancelled=lambda: False,
+        HERE,
     ),
-    "import": lambda a, _: run_import(_request(ImportRequest, file=a), cancelled=lambda: False),
+    "import": lambda a, _: import_(_request(ImportRequest, file=a), HERE),
 }
 
 

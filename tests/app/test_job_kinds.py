@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gzip
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,11 +18,10 @@ from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.results.recent import RecentResults
 from app.store.database import Database
 from app.store.schema import migrate
 from tests.app.job_requests import job_requests
-from tests.app.jobs import killed_in_the_middle
+from tests.app.jobs import answers, killed_in_the_middle
 
 SLOW = frozenset({"relax", "sweep", "characterise"})
 """Their own tests wait for what they answer."""
@@ -43,7 +43,7 @@ def compute() -> Iterator[Compute]:
 def runner(tmp_path: Path, compute: Compute) -> Iterator[JobRunner]:
     database = Database(f"sqlite:///{tmp_path / 'knit.sqlite3'}")
     migrate(database)
-    yield JobRunner(JobStore(database, "main"), compute, RecentResults(), 60.0)
+    yield JobRunner(JobStore(database, "main"), answers(compute, tmp_path), 60.0)
     database.close()
 
 
@@ -70,8 +70,7 @@ def test_a_worker_killed_in_mid_job_costs_that_job_only(
 
     async def scenario() -> None:
         with monkeypatch.context() as patch:
-            deadly = vars(described) | {"function": partial(killed_in_the_middle, kind)}
-            patch.setitem(KINDS, kind, type(described)(**deadly))
+            patch.setitem(KINDS, kind, replace(described, run=partial(killed_in_the_middle, kind)))
             job = await runner.submit("ada", kind, request)
             other = await runner.submit("ada", "curve", _curve(requests))
             failed = await _ended(runner, job.id)

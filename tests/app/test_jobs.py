@@ -21,15 +21,14 @@ from app.http.problems import NotFoundError, UnavailableError
 from app.jobs import kinds as kinds_module
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
-from app.jobs.kinds import KINDS, JobKind
+from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.main import create_app
-from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate
-from tests.app.jobs import Answer, Wish, work
+from tests.app.jobs import WORK, Wish, answers
 from tests.app.service import Service
 
 JOBS = "/api/v1/jobs"
@@ -39,7 +38,7 @@ STRETCH = {"chart": GARTER, "material": "acrylic", "direction": "wale", "strain"
 
 @pytest.fixture(autouse=True)
 def _kind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(KINDS, "work", JobKind(Wish, Answer, work))
+    monkeypatch.setitem(KINDS, "work", WORK)
 
 
 @pytest.fixture
@@ -58,7 +57,7 @@ def compute() -> Iterator[Compute]:
 
 
 def _runner(database: Database, compute: Compute, timeout_s: float = 60.0) -> JobRunner:
-    return JobRunner(JobStore(database, "main"), compute, RecentResults(), timeout_s)
+    return JobRunner(JobStore(database, "main"), answers(compute, Path()), timeout_s)
 
 
 async def _ended(runner: JobRunner, job: str, owner: str = "ada") -> JobStatus:

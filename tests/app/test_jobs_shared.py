@@ -13,17 +13,16 @@ from app.compute.processes import processes
 from app.jobs import runner as runner_module
 from app.jobs import store as store_module
 from app.jobs.document import JobState
-from app.jobs.kinds import KINDS, JobKind
+from app.jobs.kinds import KINDS
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.results.recent import RecentResults
 from app.store.database import Database, StoreError
-from tests.app.jobs import Answer, Wish, work
+from tests.app.jobs import WORK, Wish, answers
 
 
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(KINDS, "work", JobKind(Wish, Answer, work))
+    monkeypatch.setitem(KINDS, "work", WORK)
     monkeypatch.setattr(runner_module, "BEAT_S", 0.05)
 
 
@@ -35,7 +34,7 @@ def compute() -> Iterator[Compute]:
 
 
 def _runner(database: Database, compute: Compute, name: str) -> JobRunner:
-    return JobRunner(JobStore(database, name), compute, RecentResults(), 60.0)
+    return JobRunner(JobStore(database, name), answers(compute, Path()), 60.0)
 
 
 async def _until(true: Callable[[], Awaitable[bool]]) -> None:

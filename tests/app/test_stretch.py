@@ -9,7 +9,8 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.stretch import StretchRequest, run_stretch
+from app.operations.context import Context
+from app.operations.stretch import StretchRequest, StretchView, stretch
 from knitcore.chart import StitchChart
 from knitcore.formats.design import DesignFile
 
@@ -181,9 +182,10 @@ def test_positions_go_on_smoothly_where_a_shaped_piece_has_no_stitch() -> None:
     request = StretchRequest.model_validate(
         ASKED | {"outline": "\n".join(["xxxxxxxxx"] * 2 + ["...xxx..."] * 2 + ["xxxxxxxxx"] * 2)}
     )
-    run = run_stretch(request, cancelled=lambda: False)
-    assert np.isfinite(run.positions_mm).all()
-    across = np.diff(run.positions_mm[-1, :, :, 0], axis=1)
+    view = stretch(request, Context(Path())).view
+    assert isinstance(view, StretchView)
+    assert np.isfinite(view.positions_mm).all()
+    across = np.diff(view.positions_mm[-1, :, :, 0], axis=1)
     assert across.min() > 0.5 * across.max()
 
 

@@ -7,17 +7,20 @@ import io
 import json
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from fastapi.testclient import TestClient
 
-from app.operations.view import ViewRequest, build_scene
+from app.operations.context import Context
 from app.viewer.clicks import Clicks, clicked_stitch
+from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.fabric import Box
 from tests.app.test_stretch import ASKED, GARTER
 
+HERE = Context(Path())
 DESIGN = "a-design-to-share"
 SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
 
@@ -66,7 +69,7 @@ def test_a_solid_is_the_yarn_in_metres_with_its_colours(client: TestClient) -> N
     content = client.post("/api/v1/views/solid", json=SMALL | {"colour": "yarn"}).content
     scene = trimesh.load(io.BytesIO(content), file_type="glb")
     solid = scene.to_geometry()
-    expected = build_scene(ViewRequest.model_validate(SMALL), None)
+    expected = build_scene(ViewRequest.model_validate(SMALL), None, HERE)
     across = 0.001 * expected.shapes.lattice.sizes_mm[0, :, 0].sum()
     assert np.ptp(solid.vertices[:, 0]) == pytest.approx(across, rel=0.15)
     np.testing.assert_array_equal(
@@ -127,7 +130,7 @@ def test_marks_and_cameras_need_an_open_view(client: TestClient) -> None:
 
 @pytest.mark.parametrize("chart", ["K", "KPPK\nKKPP\nPKPK"])
 def test_a_click_finds_its_stitch(chart: str) -> None:
-    scene = build_scene(ViewRequest(chart=chart, material="cotton"), None)
+    scene = build_scene(ViewRequest(chart=chart, material="cotton"), None, HERE)
     for (row, column), _ in np.ndenumerate(scene.shapes.index):
         x, y = scene.placement.centres_mm[row, column] - scene.middle_mm
         eye = (x + 20.0, y - 10.0, 60.0)
@@ -183,7 +186,7 @@ def test_a_click_in_the_view_is_an_event_of_the_page(
 
 
 def test_outlines_stay_on_the_fabric() -> None:
-    scene = build_scene(ViewRequest.model_validate(SMALL), None)
+    scene = build_scene(ViewRequest.model_validate(SMALL), None, HERE)
     corners = scene.box_corners_mm(Box(0, 0, 3, 4))
     np.testing.assert_allclose(np.ptp(corners, axis=0), scene.extent_mm)
     np.testing.assert_allclose(scene.box_corners_mm(Box(0, 0, 99, 99)), corners)
@@ -196,6 +199,7 @@ def test_a_huge_chart_is_drawn_around_its_focus() -> None:
             {"chart": chart, "material": "acrylic", "focus": {"row": 299, "column": 0}}
         ),
         None,
+        HERE,
     )
     part = scene.window()
     assert part.shapes.index.size <= 40_000
@@ -213,7 +217,7 @@ def test_every_meaning_of_the_colours() -> None:
 
     def colours(colour: str, **more: object) -> np.ndarray:
         body = SMALL | {"colour": colour, "regions": regions, **more}
-        return build_scene(ViewRequest.model_validate(body), None).colours
+        return build_scene(ViewRequest.model_validate(body), None, HERE).colours
 
     palette = {"yarn": "#101010", "seed": "#123456"}
     plain = [0x10, 0x10, 0x10]
@@ -257,6 +261,6 @@ def test_rectangles_stand_for_stitches_blocks_or_regions(groups: str, count: int
         "rectangle_block": 3,
         "regions": [{"id": "a", "name": "A", "colour": "#ff0000", "runs": [[0, 0, 2]]}],
     }
-    rectangles = build_scene(ViewRequest.model_validate(body), None).rectangles_mm
+    rectangles = build_scene(ViewRequest.model_validate(body), None, HERE).rectangles_mm
     assert rectangles is not None
     assert rectangles.shape == (count, 4, 2)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.operations.view_colours import Palette
 from app.viewer.colours import BATLOW, FABRIC_COLOURS, VIK
+from app.viewer.stitch_colours import Palette
 
 FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
 

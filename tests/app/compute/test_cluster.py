@@ -21,11 +21,10 @@ from app.compute.cluster import Cluster, ClusterError, ClusterPlace
 from app.compute.compute import Compute
 from app.compute.places import AbandonedError, TimeLimitError, WorkerDiedError
 from app.jobs.document import JobState
-from app.jobs.kinds import run_curve
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.operations.curve import CurveRequest, CurveResult
-from app.results.recent import RecentResults
+from app.operations.context import Context
+from app.operations.curve import CurveRequest, CurveResult, curve
 from app.store.database import Database
 from app.store.schema import migrate
 from knitcore import InputError
@@ -104,7 +103,7 @@ def test_a_job_of_the_service_is_done_there(compute: Compute, tmp_path: Path) ->
     migrate(database)
 
     async def scenario() -> bytes | None:
-        runner = JobRunner(JobStore(database, "main"), compute, RecentResults(), 150.0)
+        runner = JobRunner(JobStore(database, "main"), jobs.answers(compute, tmp_path), 150.0)
         job = (await runner.submit("ada", "curve", request.model_dump_json())).id
         while not (status := await runner.status("ada", job)).state.is_final:
             await asyncio.sleep(0.05)
@@ -114,7 +113,9 @@ def test_a_job_of_the_service_is_done_there(compute: Compute, tmp_path: Path) ->
     answer = asyncio.run(scenario())
     database.close()
     assert answer is not None
-    assert CurveResult.model_validate_json(gzip.decompress(answer)) == run_curve(request)
+    assert CurveResult.model_validate_json(gzip.decompress(answer)) == curve(
+        request, Context(tmp_path)
+    )
 
 
 def test_an_abandoned_job_and_one_beyond_its_time_are_stopped(

@@ -23,7 +23,7 @@ STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strai
         ("/stretch", {**STRETCH, "material": None}, "material", "valid string"),
         ("/designs", {"name": ""}, "name", "Use 1 or more characters."),
         ("/designs", {"chart": "K"}, "name", "Give name"),
-        ("/jobs", {"kind": "dance", "request": {}}, "kind", "Use one of 'stretch'"),
+        ("/jobs", {"kind": "dance", "request": {}}, "kind", "Use one of 'atlas', 'bend'"),
         ("/jobs", {"request": {}}, "kind", "kind"),
         ("/jobs", {"kind": "curve", "request": {"chart": "K"}}, "request.material", "Give"),
     ],

@@ -6,19 +6,20 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
-from app.models.charts import MAX_TEXT, ChartInput, to_chart
-from app.operations.stretch import StretchRun
-from app.operations.view_colours import (
+from app.models.base import RequestModel
+from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
+from app.operations.context import Context
+from app.operations.stretch import StretchView
+from app.viewer.fabric import FabricScene
+from app.viewer.stitch_colours import (
     Colour,
     FieldColours,
     Palette,
     region_labels,
     stitch_colours,
 )
-from app.results.own_materials import find_material
-from app.viewer.fabric import FabricScene
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.layout import DesignRegion
@@ -40,37 +41,26 @@ class RectangleGroups(StrEnum):
     REGION = "region"
 
 
-class StretchStep(BaseModel):
+class StretchStep(RequestModel):
     """A state of a stretch test that was run before."""
-
-    model_config = ConfigDict(extra="forbid")
 
     id: str = Field(max_length=128, description="The id that the stretch test returned.")
     step: int = Field(ge=0)
 
 
-class Focus(BaseModel):
+class Focus(RequestModel):
     """A stitch; row 0 is the bottom one."""
-
-    model_config = ConfigDict(extra="forbid")
 
     row: int = Field(ge=0)
     column: int = Field(ge=0)
 
 
-class ViewRequest(BaseModel):
+class ViewRequest(RequestModel):
     """A design and how to show it."""
 
-    model_config = ConfigDict(extra="forbid")
-
     chart: ChartInput
-    material: str
-    outline: str | None = Field(
-        None,
-        max_length=MAX_TEXT,
-        description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
-        "left out.",
-    )
+    material: MaterialName
+    outline: OutlineInput = None
     colour: Colour = Colour.FABRIC
     field: FieldColours | None = Field(None, description="Values for the colour `field`.")
     regions: list[DesignRegion] = Field(
@@ -94,7 +84,7 @@ class ViewResult(BaseModel):
     url: str
 
 
-def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene:
+def build_scene(request: ViewRequest, stretch: StretchView | None, context: Context) -> FabricScene:
     """The scene of a design, relaxed or at one step of its stretch test.
 
     Raises
@@ -102,7 +92,7 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
     InputError
         If the test is not known any more, or belongs to another chart.
     """
-    chart, material = to_chart(request.chart), find_material(request.material)
+    chart, material = to_chart(request.chart), context.material(request.material)
     drawn = _drawn(request, chart)
     shapes = stitch_shapes(chart, material)
     placement, room = at_rest(shapes), None
@@ -132,7 +122,7 @@ def build_scene(request: ViewRequest, stretch: StretchRun | None) -> FabricScene
     )
 
 
-def _checked_step(request: ViewRequest, stretch: StretchRun | None, chart: StitchChart) -> int:
+def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: StitchChart) -> int:
     if request.stretch is None:
         return 0
     if stretch is None:

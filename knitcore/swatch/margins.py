@@ -1,4 +1,4 @@
-"""The intervals of a stretch test at the border: at every step, of the whole and of each stitch."""
+"""The intervals of a strip test at every step, of the whole and of each stitch."""
 
 from __future__ import annotations
 

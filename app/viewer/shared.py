@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from pydantic import Field
 
-from app.operations.stretch import StretchRun
-from app.operations.view import StretchStep, ViewRequest, build_scene
+from app.operations.context import Context
+from app.operations.stretch import StretchView
+from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene
 from app.viewer.share import MOST_SOLID, page_html, recording, solid_glb
 from knitcore.errors import InputError
@@ -22,17 +23,17 @@ class ShareRequest(ViewRequest):
     dark: bool = Field(False, description="Dark background of a page.")
 
 
-def shared_page(request: ShareRequest, stretch: StretchRun | None) -> bytes:
+def shared_page(request: ShareRequest, stretch: StretchView | None, context: Context) -> bytes:
     """A page that needs neither the service nor the network."""
-    return page_html(_scenes(request, stretch), dark=request.dark).encode()
+    return page_html(_scenes(request, stretch, context), dark=request.dark).encode()
 
 
-def shared_recording(request: ShareRequest, stretch: StretchRun | None) -> bytes:
+def shared_recording(request: ShareRequest, stretch: StretchView | None, context: Context) -> bytes:
     """A ``.viser`` recording."""
-    return recording(_scenes(request, stretch))
+    return recording(_scenes(request, stretch, context))
 
 
-def shared_solid(request: ShareRequest, stretch: StretchRun | None) -> bytes:
+def shared_solid(request: ShareRequest, stretch: StretchView | None, context: Context) -> bytes:
     """The yarn as binary glTF.
 
     Raises
@@ -40,20 +41,22 @@ def shared_solid(request: ShareRequest, stretch: StretchRun | None) -> bytes:
     InputError
         If there are too many stitches for a solid of use.
     """
-    scene = build_scene(request, stretch)
+    scene = build_scene(request, stretch, context)
     _check_size(scene, MOST_SOLID)
     return solid_glb(scene)
 
 
-def _scenes(request: ShareRequest, stretch: StretchRun | None) -> Iterator[FabricScene]:
-    scene = build_scene(request, stretch)
+def _scenes(
+    request: ShareRequest, stretch: StretchView | None, context: Context
+) -> Iterator[FabricScene]:
+    scene = build_scene(request, stretch, context)
     _check_size(scene, MAX_SHARED_STITCHES)
     if not request.animated or request.stretch is None or stretch is None:
         yield scene
         return
     for step in range(len(stretch.positions_mm)):
         at = StretchStep(id=request.stretch.id, step=step)
-        yield build_scene(request.model_copy(update={"stretch": at}), stretch)
+        yield build_scene(request.model_copy(update={"stretch": at}), stretch, context)
 
 
 def _check_size(scene: FabricScene, most: int) -> None:

@@ -8,9 +8,10 @@ from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from app.operations.stretch import StretchRun
+from app.models.base import RequestModel
+from app.operations.stretch import StretchView
 from app.viewer.colours import (
     FABRIC_COLOURS,
     YARN_COLOUR,
@@ -47,10 +48,8 @@ class Colour(StrEnum):
     FIELD = "field"
 
 
-class Palette(BaseModel):
+class Palette(RequestModel):
     """Colours that carry a meaning; the page sends those of its theme."""
-
-    model_config = ConfigDict(extra="forbid")
 
     yarn: HexColour = f"#{YARN_COLOUR}"
     stockinette: HexColour = f"#{FABRIC_COLOURS[Fabric.STOCKINETTE]}"
@@ -63,10 +62,8 @@ class Palette(BaseModel):
         return np.array([rgb(getattr(self, fabric.value)) for fabric in PHASES], dtype=np.uint8)
 
 
-class FieldColours(BaseModel):
+class FieldColours(RequestModel):
     """Any value of each stitch on a colour map."""
-
-    model_config = ConfigDict(extra="forbid")
 
     values: list[Value] = Field(
         max_length=160_000, description="Row by row from the bottom, each from the left."
@@ -85,7 +82,7 @@ def stitch_colours(
     palette: Palette,
     regions: Sequence[DesignRegion],
     field: FieldColours | None,
-    stretch: StretchRun | None,
+    stretch: StretchView | None,
     step: int,
 ) -> Colours:
     """Colour of every stitch, (rows, columns, 3).
@@ -120,7 +117,7 @@ def _kinds(colour: Colour, table: StitchTable, palette: Palette) -> Colours:
     return sequential(values, values.min(), values.max(), log=True)
 
 
-def _stretched(colour: Colour, stretch: StretchRun | None, step: int) -> Colours:
+def _stretched(colour: Colour, stretch: StretchView | None, step: int) -> Colours:
     if stretch is None:
         raise InputError("colour", "needs a stretch test.", "Run one and name its step.")
     if colour is Colour.UTILISATION:

@@ -1,0 +1,101 @@
+"""Options that operations give their commands beside the fields of their requests."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from knitcore.errors import InputError
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+class OutFile(click.Path):
+    """A file to write; refused before anything is computed where it cannot be written."""
+
+    def __init__(self, *suffixes: str) -> None:
+        super().__init__(path_type=Path)
+        self.suffixes = suffixes
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path."""
+        path = Path(str(super().convert(value, param, ctx)))
+        field = str(param.name) if param else "out"
+        if self.suffixes and path.suffix.lower() not in self.suffixes:
+            known = " or ".join(self.suffixes)
+            raise InputError(field, f"{path.name} is of no known kind.", f"Use {known}.")
+        check_writable(path, field)
+        return path
+
+
+def out_option(*names: str, suffixes: tuple[str, ...] = (), **more: Any) -> Decorator:
+    """An option that names a file to write; otherwise as ``click.option``."""
+    return click.option(*names, type=OutFile(*suffixes), **more)
+
+
+atlas_option = click.option(
+    "--atlas",
+    type=click.Path(path_type=Path),
+    help="FILE.npz of `knitcore atlas`; otherwise small.",
+)
+design_option = out_option("-o", "--out", help="Write a design (.json).")
+
+
+@click.option(
+    "--loop-lengths-mm",
+    metavar="ROW/ROW…",
+    help="Instead of one length: rows from the bottom, each one length or one for every stitch.",
+)
+def loop_lengths(loop_lengths_mm: str | None) -> dict[str, Any]:
+    """A field of a request at the yarn level.
+
+    Raises
+    ------
+    InputError
+        If it is no list of lengths.
+    """
+    if loop_lengths_mm is None:
+        return {}
+    try:
+        rows = [[float(one) for one in row.split(",")] for row in loop_lengths_mm.split("/")]
+    except ValueError:
+        raise InputError(
+            "loop-lengths-mm",
+            f"{loop_lengths_mm!r} is no list of lengths.",
+            "Write one for every row from the bottom, such as 14/12, or one for every stitch, "
+            "such as 14,13/12,12.",
+        ) from None
+    return {"loop_lengths_mm": rows}
+
+
+def write_design_of(chart: str, material: str, name: str, out: Path | None) -> None:
+    """Write a chart as a design, if there is a file for it."""
+    if out is not None:
+        from knitcore.formats.design import DesignFile, write_design
+
+        design = DesignFile(name=name, material=material, chart=chart)
+        out.write_text(write_design(design), encoding="utf-8")
+
+
+def check_writable(path: Path | None, field: str) -> None:
+    """Refuse a file that cannot be written, before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder, it cannot be written to, or the name is that of a folder.
+    """
+    if path is None:
+        return
+    if not path.parent.is_dir():
+        raise InputError(
+            field, f"{path.parent} is no folder.", "Name a file in a folder that exists."
+        )
+    if path.is_dir():
+        raise InputError(field, f"{path} is a folder.", "Name a file in it.")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise InputError(field, f"{path} cannot be written.", "Name a file that you may write.")

@@ -1,0 +1,53 @@
+"""Displacement fields in requests and results."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.models.base import RequestModel, ResultModel
+from app.models.uploads import UploadedFile, stored
+from knitcore.fabric import Direction
+from knitcore.swatch.measured import MeasuredField, load_field
+
+
+class FieldRequest(RequestModel):
+    """A displacement field and how the fabric in it was pulled."""
+
+    field: UploadedFile = Field(description=".npz: displacement (frames, 2, rows, columns), frame.")
+    direction: Direction = Field(description="In which the fabric was pulled.")
+    frames: list[int] | None = Field(None, description="Pictures to use; all otherwise.")
+
+    def chosen(self, field: MeasuredField) -> MeasuredField:
+        """The pictures that are asked for."""
+        return field.only(set(self.frames)) if self.frames else field
+
+
+class FrameErrorResult(ResultModel):
+    """Simulated minus measured displacement of one picture, in percent of the width."""
+
+    frame: int
+    applied_stretch: float
+    ux_rms_percent_width: float
+    ux_max_percent_width: float
+    uy_rms_percent_width: float
+    uy_max_percent_width: float
+
+
+def load(file: UploadedFile) -> MeasuredField:
+    """A field in a file."""
+    with stored([file]) as (path,):
+        return load_field(path)
+
+
+def errors_table(frames: list[FrameErrorResult]) -> list[str]:
+    """Lines of a table, in percent of the width."""
+    head = f"{'frame':>6} {'stretch':>8} {'ux rms':>7} {'ux max':>7} {'uy rms':>7} {'uy max':>7}"
+    return [
+        head + "   (% of width)",
+        *(
+            f"{f.frame:6d} {f.applied_stretch:8.3f} {f.ux_rms_percent_width:7.2f} "
+            f"{f.ux_max_percent_width:7.2f} {f.uy_rms_percent_width:7.2f} "
+            f"{f.uy_max_percent_width:7.2f}"
+            for f in frames
+        ),
+    ]

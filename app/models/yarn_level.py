@@ -1,0 +1,170 @@
+"""Requests and results of the yarn level."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
+
+from app.models.base import RequestModel, ResultModel
+from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
+from app.operations.context import Context
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.published.relax import relax_published
+from knitcore.yarnlevel.relax import Branch, relax
+from knitcore.yarnlevel.results import RelaxedCell
+from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
+
+LoopLength = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+LoopLengths = list[
+    Annotated[list[LoopLength], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]
+]
+
+
+class YarnLevelRequest(RequestModel):
+    """A repeat, its yarn, and which model of it."""
+
+    chart: RepeatInput
+    material: MaterialName
+
+    loop_length_mm: float | None = Field(
+        None, gt=0, le=1000, allow_inf_nan=False, description="Yarn per stitch; the material's."
+    )
+    loop_lengths_mm: LoopLengths | None = Field(
+        None,
+        min_length=1,
+        max_length=MAX_STITCHES_PER_SIDE,
+        description="Instead of one length: a list for every row of the chart, the bottom row "
+        "first, of one length for all its stitches or one for each.",
+        examples=[[[14.0], [12.0]]],
+    )
+    flat: bool = Field(
+        False, description="Hold the stitches in one plane, as a fabric laid flat; not published."
+    )
+    branch: Branch = Branch.MIRRORED
+    convention: Convention = Convention.PUBLISHED
+    fresh: bool = Field(False, description="Compute it even if the result is known.")
+
+    def repeat(self) -> StitchChart:
+        """The repeat of the chart, or all of it where its rows have loop lengths of their own."""
+        if self.loop_lengths_mm is not None:
+            return to_chart(self.chart)
+        return to_repeat(self.chart).repeat()
+
+    def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:
+        """The material's yarn for a repeat, with the mean of the loop lengths if they are given.
+
+        Raises
+        ------
+        InputError
+            If lengths are given twice.
+        """
+        lengths, given = self.loop_lengths_mm, self.loop_length_mm
+        if lengths is not None and given is not None:
+            raise InputError(
+                "loop_lengths_mm", "loop_length_mm is given as well.", "Leave one of them out."
+            )
+        if lengths is not None:
+            given = float(np.mean([np.mean(row) for row in lengths]))
+        used = yarn_for(context.material(self.material), repeat, given)
+        return used if given is None else replace(used, loop_length_mm=given)
+
+    def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
+        """All that decides a result, for its name among kept results."""
+        asked = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
+        return {"repeat": repeat.text, "used": asdict(used), "asked": asked}
+
+
+class YarnResult(ResultModel):
+    """The yarn that was used and where its numbers come from."""
+
+    bending_modulus_n_mm2: float
+    contact_stiffness_n_per_mm3: float
+    contact_exponent: float
+    radius_mm: float
+    core_radius_mm: float
+    provenance: str
+    estimated: bool
+
+
+def _lengths(request: YarnLevelRequest, used: ChartYarn, rows: int, columns: int) -> ArrayLike:
+    """One loop length, one for every course, or one for every stitch."""
+    table = request.loop_lengths_mm
+    if table is None:
+        return used.loop_length_mm
+    if len(table) != rows or any(len(row) not in (1, columns) for row in table):
+        raise InputError(
+            "loop_lengths_mm",
+            f"they do not fit a chart of {rows} rows and {columns} columns.",
+            f"Give {rows} rows of one length or of {columns} lengths, the bottom row first.",
+        )
+    if all(len(row) == 1 for row in table):
+        return [row[0] for row in table]
+    return [row * (columns // len(row)) for row in table]
+
+
+def relaxed_cell(
+    repeat: StitchChart,
+    used: ChartYarn,
+    request: YarnLevelRequest,
+    context: Context,
+    sizes_mm: tuple[float | None, float | None] = (None, None),
+) -> RelaxedCell:
+    """Relax in the branch that is asked for, at held sizes of a stitch if they are given.
+
+    Raises
+    ------
+    InputError
+        If the published branch is asked for what it has not.
+    """
+    lengths = _lengths(request, used, repeat.rows, repeat.columns)
+    if request.branch is Branch.PUBLISHED:
+        held = request.flat or sizes_mm != (None, None) or request.loop_lengths_mm is not None
+        if held:
+            raise InputError(
+                "branch",
+                "the published branch knows one loop length and no held sizes or planes.",
+                "Use mirrored or free.",
+            )
+        return relax_published(
+            pure_fabric(repeat),
+            used.yarn,
+            used.loop_length_mm,
+            convention=request.convention,
+            cancel=context.cancelled,
+        )
+    return relax(
+        repeat,
+        used.yarn,
+        lengths,
+        branch=request.branch,
+        convention=request.convention,
+        cell_course_mm=sizes_mm[0],
+        cell_wale_mm=sizes_mm[1],
+        flat=request.flat,
+        cancel=context.cancelled,
+    )
+
+
+def pure_fabric(repeat: StitchChart) -> Fabric:
+    """The pure fabric of a repeat.
+
+    Raises
+    ------
+    InputError
+        If it is a mixed one, for which there is no published ansatz.
+    """
+    for fabric in Fabric:
+        if StitchChart.of_fabric(fabric, 2, 2).repeat() in (repeat, repeat.swap()):
+            return fabric
+    raise InputError(
+        "branch",
+        "the published branch knows the four pure fabrics only.",
+        "Use mirrored or free for this chart.",
+    )

@@ -1,0 +1,92 @@
+"""Bending modulus of a yarn from photos."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.models.base import RequestModel, ResultModel
+from app.models.uploads import UploadedFile, stored
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.measure.bending import measure_bending
+
+MAX_PHOTOS = 100
+
+
+class BendingRequest(RequestModel):
+    """Photos of hanging yarn, and what they do not show."""
+
+    images: list[UploadedFile] = Field(min_length=1, max_length=MAX_PHOTOS)
+    linear_density_g_per_m: float = Field(
+        description="Mass per length: weigh some metres; 0.5 g/m is 500 tex."
+    )
+    length_mm: list[float] | float | None = Field(
+        None,
+        description="Hanging length, clamp to free end; one for all photos or one per photo.",
+    )
+    px_per_mm: float | None = Field(None, description="Scale, if it is known.")
+
+
+class BendingPhotoResult(ResultModel):
+    """What one photo gave."""
+
+    name: str
+    bending_modulus_n_mm2: float
+    length_mm: float
+    px_per_mm: float
+    yarn_width_mm: float
+    rms_mm: float = Field(description="Distance of the traced line from the elastica.")
+
+
+class BendingResult(ResultModel):
+    """Mean over photos; proportional to the linear density given."""
+
+    bending_modulus_n_mm2: float
+    standard_deviation: float | None = Field(description="Of one photo, N·mm²; None for one.")
+    standard_error: float | None = Field(description="Of the mean, N·mm².")
+    photos: list[BendingPhotoResult]
+    notes: list[str]
+
+
+def bending(request: BendingRequest, context: Context) -> BendingResult:
+    """Traces each photo and fits the heavy elastica."""
+    del context
+    with stored(request.images) as paths:
+        found = measure_bending(
+            paths,
+            linear_density_g_per_m=request.linear_density_g_per_m,
+            length_mm=request.length_mm,
+            px_per_mm=request.px_per_mm,
+        )
+    return BendingResult.of(found)
+
+
+def _text(r: BendingResult) -> str:
+    lines = [f"{'photo':24} {'B mN·mm²':>9} {'length mm':>10} {'px/mm':>7} {'rms mm':>7}"]
+    lines += [
+        f"{p.name:24} {1000 * p.bending_modulus_n_mm2:9.2f} {p.length_mm:10.1f} {p.px_per_mm:7.2f}"
+        f" {p.rms_mm:7.2f}"
+        for p in r.photos
+    ]
+    spread = "" if r.standard_deviation is None else f" ± {1000 * r.standard_deviation:.3g}"
+    error = "" if r.standard_error is None else f" (mean ± {1000 * r.standard_error:.2g})"
+    lines.append(f"bending modulus {1000 * r.bending_modulus_n_mm2:.4g}{spread} mN·mm²{error}")
+    return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
+
+
+OPERATION = Operation(
+    name="bending",
+    path="/measure/bending",
+    tag="measure",
+    summary="Bending modulus from photos of hanging yarn",
+    request=BendingRequest,
+    result=BendingResult,
+    run=bending,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        group="measure",
+        help="Bending modulus from IMAGES of yarn hanging from a horizontal clamp.",
+    ),
+)

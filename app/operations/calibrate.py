@@ -1,0 +1,157 @@
+"""A law calibrated on a measured displacement field."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from pydantic import Field
+
+from app.cli.options import out_option
+from app.models.base import Floats
+from app.models.charts import MaterialName
+from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
+from app.models.laws import LawResult
+from app.models.uploads import UploadedFile, stored
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.errors import InputError
+from knitcore.fabric import Direction, Fabric
+from knitcore.formats.calibrated_files import save_calibrated
+from knitcore.formats.law_files import LawFile
+from knitcore.measure.stretch_test import stated_direction
+from knitcore.measure.uniaxial import Reduction, fit_files
+from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
+from knitcore.swatch.calibration import Calibration, ForceCurve
+from knitcore.swatch.calibration import calibrate as calibrated
+from knitcore.swatch.comparison import Edges, compare
+
+
+class CalibrateRequest(FieldRequest):
+    """Where to start from, and tests whose forces the law should keep."""
+
+    material: MaterialName
+    fabric: Fabric
+    tests: list[UploadedFile] = Field(
+        default_factory=list,
+        max_length=2,
+        description="Stretch tests: of the direction (forces), or course and wale (forces and "
+        "start).",
+    )
+
+
+class CalibrateResult(LawResult):
+    """The calibrated law; its shear modulus is no assumption any more."""
+
+    stiffening_coupling: float
+    parameters: dict[str, float]
+    standard_errors: dict[str, float]
+    frames: list[int] = Field(description="Pictures that were used.")
+    comparison: list[FrameErrorResult] = Field(description="All pictures, measured edges.")
+    force_strain: Floats
+    force_ratio: Floats = Field(description="Simulated over measured force.")
+    evaluations: int
+
+
+def calibrate(request: CalibrateRequest, context: Context) -> CalibrateResult:
+    """A law that fits a measured field, and forces if tests are given.
+
+    Raises
+    ------
+    InputError
+        If none of the tests is in the direction.
+    """
+    return _result(request, _calibration(request, context))
+
+
+def _calibration(request: CalibrateRequest, context: Context) -> Calibration:
+    field = request.chosen(load(request.field))
+    law = context.material(request.material).law(request.fabric)
+    forces = None
+    with stored(request.tests) as paths:
+        tests = _course_first(paths) if len(paths) == 2 else paths
+        if len(tests) == 2:
+            law = fit_files(tests[0], tests[1], reduction=Reduction.RECOMMENDED).law
+        if tests:
+            chosen = tests[request.direction.axis] if len(tests) == 2 else tests[0]
+            test = read_stretch_test(chosen, gauge=Gauge.CLAMPS)
+            if stated_direction(test) not in (None, request.direction):
+                raise InputError(
+                    "tests",
+                    f"{chosen.name} says that it was not pulled {request.direction}-wise.",
+                    "Give the test in the direction of the field.",
+                )
+            forces = ForceCurve.of_test(test, field.length / field.width)
+    return calibrated(field, law, request.direction, forces=forces, cancelled=context.cancelled)
+
+
+def _course_first(tests: list[Path]) -> list[Path]:
+    """Two tests in the order course, wale; swapped if the files say so."""
+    stated = [stated_direction(read_stretch_test(path, gauge=Gauge.CLAMPS)) for path in tests]
+    if Direction.WALE is stated[0] or Direction.COURSE is stated[1]:
+        return tests[::-1]
+    return tests
+
+
+def _result(request: CalibrateRequest, found: Calibration) -> CalibrateResult:
+    """The numbers of a calibration, with the errors of all pictures, used or not."""
+    field, direction = load(request.field), request.direction
+    errors = compare(field, found.law, direction, edges=Edges.MEASURED, model=found.model)
+    return CalibrateResult.of(
+        found,
+        found.law,
+        stiffening_coupling=found.model.stiffening_coupling,
+        comparison=errors.frames,
+    )
+
+
+@click.argument("more_tests", nargs=-1, metavar="", type=click.Path(path_type=Path))
+@out_option("--out", required=True, help="LAW.json to write.")
+def _command(
+    request: CalibrateRequest, context: Context, out: Path, more_tests: tuple[Path, ...]
+) -> CalibrateResult:
+    if more_tests and not request.tests:
+        raise InputError("tests", f"{more_tests[0]} is unexpected.", "Put --tests before tests.")
+    tests = [*request.tests, *map(UploadedFile.at, more_tests)]
+    if len(tests) > 2:
+        raise InputError("tests", f"{len(tests)} are too many.", "Give one per direction.")
+    request = request.model_copy(update={"tests": tests})
+    found = _calibration(request, context)
+    numbers = ", ".join(str(number) for number in found.frames)
+    source = (
+        f"{request.material} {request.fabric}, calibrated {request.direction}-wise on "
+        f"{request.field.name}, frames {numbers}"
+    )
+    shear = {n: error for n, error in found.standard_errors.items() if n == "shear_modulus"}
+    save_calibrated(LawFile(found.law, source, shear), found.model, out)
+    return _result(request, found)
+
+
+def _text(r: CalibrateResult) -> str:
+    lines = [
+        f"{name:20} {value:8.4f} ± {r.standard_errors[name]:.4f}"
+        for name, value in r.parameters.items()
+    ]
+    lines += errors_table(r.comparison)
+    if r.force_ratio:
+        low, high = min(r.force_ratio), max(r.force_ratio)
+        lines.append(f"simulated / measured force: {low:.2f} to {high:.2f}")
+    return "\n".join(lines)
+
+
+OPERATION = Operation(
+    name="calibrate",
+    tag="displacement fields",
+    summary="Shear modulus and couplings from a displacement field",
+    request=CalibrateRequest,
+    result=CalibrateResult,
+    run=calibrate,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Fit shear modulus and couplings to the measured displacement FIELD (.npz).",
+        names={"frames": "--frame"},
+        run=_command,
+    ),
+)

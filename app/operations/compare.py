@@ -1,0 +1,98 @@
+"""A law beside a measured displacement field."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.models.base import ResultModel
+from app.models.charts import MaterialName
+from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
+from app.models.uploads import UploadedFile, stored
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.formats.calibrated_files import load_calibrated
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.swatch.comparison import Edges
+from knitcore.swatch.comparison import compare as compared
+from knitcore.swatch.models import EnergyModel, SheetModel
+
+
+class CompareRequest(FieldRequest):
+    """A law, or a fabric of a material, beside a field."""
+
+    material: MaterialName | None = None
+    fabric: Fabric | None = Field(None, description="Of the material.")
+    law: UploadedFile | None = Field(None, description="LAW.json, instead of material and fabric.")
+    edges: Edges = Edges.MEASURED
+    model: EnergyModel | None = Field(None, description="full, or what the law file says.")
+
+
+class CompareResult(ResultModel):
+    """Errors per picture, in the order of the stretch."""
+
+    frames: list[FrameErrorResult]
+    edges: Edges
+    model: EnergyModel
+    messages: list[str]
+
+
+def compare(request: CompareRequest, context: Context) -> CompareResult:
+    """Errors of the displacements, picture by picture.
+
+    Raises
+    ------
+    InputError
+        If neither or both of a law and a material are given.
+    """
+    field = request.chosen(load(request.field))
+    law, model = _law_and_model(request, context)
+    found = compared(field, law, request.direction, edges=request.edges, model=model)
+    return CompareResult.of(
+        found,
+        edges=request.edges,
+        model=model.energy,
+        messages=[found.problem] if found.problem else [],
+    )
+
+
+def _law_and_model(request: CompareRequest, context: Context) -> tuple[ConstitutiveLaw, SheetModel]:
+    """The law of a file, or of a fabric of a material; a model overrules the file's."""
+    model = request.model
+    if request.law is not None and request.material is None:
+        with stored([request.law]) as (path,):
+            file, stored_model = load_calibrated(path)
+        overruled = model is not None and model is not stored_model.energy
+        return file.law, SheetModel(model) if overruled and model else stored_model
+    if request.law is not None or request.material is None:
+        raise InputError(
+            "law", "give either a law file or a material.", "Use --law, or --material and --fabric."
+        )
+    if request.fabric is None:
+        raise InputError("fabric", "is missing.", "Name the fabric of the material.")
+    law = context.material(request.material).law(request.fabric)
+    return law, SheetModel(model or EnergyModel.FULL)
+
+
+def _text(r: CompareResult) -> str:
+    return "\n".join(
+        [f"{r.model} model, {r.edges} edges", *errors_table(r.frames), *r.messages],
+    )
+
+
+OPERATION = Operation(
+    name="compare",
+    tag="displacement fields",
+    summary="A law beside a measured displacement field",
+    request=CompareRequest,
+    result=CompareResult,
+    run=compare,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Compare a law with the measured displacement FIELD (.npz).",
+        names={"frames": "--frame"},
+    ),
+)

@@ -1,0 +1,32 @@
+"""The JSON schema of the project file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import RootModel
+
+from app.models.base import NoRequest
+from app.operations.context import Context
+from app.operations.registry import Operation
+from knitcore.formats.design import design_schema as schema_of_designs
+
+DesignSchema = RootModel[dict[str, Any]]
+
+
+def design_schema(request: NoRequest, context: Context) -> DesignSchema:
+    """What a design file may hold."""
+    del request, context
+    return DesignSchema(schema_of_designs())
+
+
+OPERATION = Operation(
+    name="design_schema",
+    method="GET",
+    path="/schemas/design",
+    tag="files",
+    summary="JSON schema of the project file",
+    request=NoRequest,
+    result=DesignSchema,
+    run=design_schema,
+)

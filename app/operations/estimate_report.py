@@ -1,0 +1,108 @@
+"""How well the estimates of yarns that are not in the library do."""
+
+from __future__ import annotations
+
+import math
+
+from pydantic import Field
+
+from app.models.base import NoRequest, ResultModel
+from app.operations.context import Context
+from app.operations.registry import Operation
+from knitcore.estimate.model import left_out, library_table
+from knitcore.fabric import Direction, Fabric
+
+
+class LeftOutResult(ResultModel):
+    """How well the library's yarns are predicted when they are left out; factors of the rms."""
+
+    measured: list[Fabric]
+    values: int
+    strain_rms_factor: float
+    modulus_rms_factor: float
+    modulus_median_factor: float
+    modulus_within_two: float = Field(description="Share predicted within a factor of two.")
+    alpha_rms_factor: float
+    beta_rms_factor: float
+    modulus_coverage: float = Field(description="Of the 90 % intervals.")
+    strain_coverage: float
+
+
+class ModelReport(ResultModel):
+    """The model refitted from the packaged tables, and its leave-one-yarn-out figures."""
+
+    yarns: int
+    modulus_constant: dict[Fabric, dict[Direction, float]] = Field(
+        description="K in Y = K B / L³, geometric mean."
+    )
+    alpha: dict[Fabric, dict[Direction, float]]
+    beta_n_per_mm: dict[Fabric, dict[Direction, float]]
+    left_out: list[LeftOutResult]
+
+
+def estimate_report(request: NoRequest, context: Context) -> ModelReport:
+    """The model refitted from the packaged tables."""
+    del request, context
+    return report()
+
+
+def report() -> ModelReport:
+    """Refit the model and leave one yarn out, with nothing, one and two swatches measured."""
+    table = library_table()
+
+    def means(name: str) -> dict[Fabric, dict[Direction, float]]:
+        mean = getattr(table, name).mean(axis=0)
+        return {
+            fabric: {d: math.exp(mean[i, d.axis]) for d in Direction}
+            for i, fabric in enumerate(Fabric)
+        }
+
+    return ModelReport.of(
+        yarns=len(table.modulus),
+        modulus_constant=means("modulus"),
+        alpha=means("alpha"),
+        beta_n_per_mm=means("beta"),
+        left_out=[
+            left_out(measured)
+            for measured in (
+                (),
+                *((fabric,) for fabric in Fabric),
+                (Fabric.STOCKINETTE, Fabric.RIB),
+            )
+        ],
+    )
+
+
+def text_of_left_out(r: LeftOutResult) -> str:
+    """Figures of left-out yarns, in a line."""
+    measured = " and ".join(r.measured) or "nothing"
+    return (
+        f"yarns left out, {measured} measured: extension within a factor {r.strain_rms_factor:.2f}"
+        f" (rms), moduli {r.modulus_rms_factor:.2f} ({r.modulus_within_two:.0%} within two);"
+        f" 90 % intervals cover {r.strain_coverage:.0%} and {r.modulus_coverage:.0%}"
+        f" of {r.values} values"
+    )
+
+
+def text(r: ModelReport) -> str:
+    """The report for people."""
+    lines = [f"{r.yarns} yarns; K in Y = K B / L³, alpha, beta (N/mm)"]
+    lines += [
+        f"{fabric:12} {d:6} {r.modulus_constant[fabric][d]:8.0f}"
+        f" {r.alpha[fabric][d]:7.3f} {r.beta_n_per_mm[fabric][d]:8.4f}"
+        for fabric in Fabric
+        for d in Direction
+    ]
+    return "\n".join([*lines, "", *(text_of_left_out(found) for found in r.left_out)])
+
+
+OPERATION = Operation(
+    name="estimate_report",
+    method="GET",
+    path="/estimate/report",
+    tag="materials",
+    summary="How well left-out yarns are predicted",
+    request=NoRequest,
+    result=ModelReport,
+    run=estimate_report,
+)

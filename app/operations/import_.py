@@ -1,0 +1,90 @@
+"""Charts from files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from app.models.base import RequestModel, ResultModel
+from app.models.uploads import UploadedFile, stored
+from app.operations.context import Context
+from app.operations.parse import ChartResult
+from app.operations.registry import Command, Operation
+from knitcore.chart import StitchChart
+from knitcore.formats.chart_files import read_chart, read_piece
+from knitcore.formats.design import read_design
+from knitcore.formats.layout import DesignLayout, layout_notes, layout_of
+
+
+class ImportRequest(RequestModel):
+    """A file of any kind that holds a chart."""
+
+    file: UploadedFile = Field(
+        description="`.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) "
+        "or `.k` (knitout)."
+    )
+
+
+class FoundDesign(DesignLayout, ResultModel):
+    """A design, or what a file of another kind has of one."""
+
+    chart: str = Field(description="K/P lines, the top row first.")
+    name: str | None = Field(None, description="Of a design.")
+    material: str | None = None
+    note: str | None = None
+
+
+class ImportResult(FoundDesign):
+    """What a file holds."""
+
+    rows: int
+    columns: int
+    repeat: ChartResult
+    notes: list[str] = Field([], description="What may not be as meant, such as a lost region.")
+
+
+def import_(request: ImportRequest, context: Context) -> ImportResult:
+    """K/P text, written rows, PNG, knitout and the project file.
+
+    Raises
+    ------
+    InputError
+        If it holds no chart.
+    """
+    del context
+    with stored([request.file]) as (path,):
+        design = design_in(path)
+    chart = StitchChart.parse(design.chart)
+    return ImportResult.of(
+        design, chart, repeat=chart.repeat_cut(), notes=layout_notes(chart, design)
+    )
+
+
+def design_in(path: Path) -> FoundDesign:
+    """What a file holds of a design.
+
+    Raises
+    ------
+    InputError
+        If it holds no chart.
+    """
+    if path.suffix.lower() == ".json":
+        return FoundDesign.of(read_design(path), chart=read_chart(path).text)
+    piece = read_piece(path)
+    return FoundDesign.of(layout_of(piece), chart=piece.chart.text)
+
+
+OPERATION = Operation(
+    name="import",
+    tag="files",
+    summary="The chart in a file",
+    request=ImportRequest,
+    result=ImportResult,
+    run=import_,
+    heavy=True,
+    command=Command(
+        lambda r: r.chart,
+        help="Read the chart in FILE: K/P text, written rows, PNG, knitout or a design.",
+    ),
+)

@@ -1,0 +1,218 @@
+"""Everything known of a material."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydantic import Field
+
+from app.models.base import Ends, Floats, MissingError, RequestModel, ResultModel
+from app.models.charts import MaterialName
+from app.models.laws import LawResult
+from app.operations.context import Context
+from app.operations.registry import Operation
+from knitcore.errors import InputError
+from knitcore.fabric import PHASES, Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.uniaxial import uniaxial_response
+from knitcore.materials import FabricRecord, Material
+from knitcore.materials.document import CurveDocument
+from knitcore.mechanics.local import StitchTable, stitch_table
+
+CURVE_POINTS = 60
+CURVE_END = 0.85
+"""Curves are drawn up to this share of the lock-up strain."""
+
+
+class MaterialRequest(RequestModel):
+    """A material by its id."""
+
+    identifier: MaterialName
+
+
+class FabricSummary(ResultModel):
+    """A pure fabric of a material, in short."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    stitch_course_mm: float = Field(description="Relaxed width of one stitch.")
+    stitch_wale_mm: float = Field(description="Relaxed height of one stitch.")
+    loop_length_mm: float | None
+
+
+class FigureResult(ResultModel):
+    """A figure of the paper: as printed, as used, and why they differ."""
+
+    table: int
+    quantity: str
+    unit: str
+    printed: str
+    used: float
+    standard_deviation: float | None
+    reason: str
+
+
+class FabricDetail(FabricSummary):
+    """A pure fabric of a material, with everything that is known of it."""
+
+    law: LawResult
+    poisson_yx: float
+    poisson_xy: float
+    lock_up_strain_course: float
+    lock_up_strain_wale: float
+    setting: str
+    origin: str
+    stitch_size_source: str
+    uncertainty_source: str
+    figures: list[FigureResult]
+
+
+class StitchKind(ResultModel):
+    """One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8."""
+
+    code: int
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+    modulus_course_interval: Ends
+    modulus_wale_interval: Ends
+    fractions: dict[Fabric, float] = Field(description="Shares of the four phases.")
+
+
+class StitchTableResult(ResultModel):
+    """Values of all kinds of stitch."""
+
+    codes: list[StitchKind]
+
+
+class LawCurve(ResultModel):
+    """A stress-strain curve, transverse direction free."""
+
+    strain: Floats
+    stress_n_per_mm: Floats
+
+
+class MaterialSummary(ResultModel):
+    """A material, in short."""
+
+    id: str
+    name: str
+    description: str
+    fabrics: dict[Fabric, FabricSummary]
+
+
+class MaterialDetail(ResultModel):
+    """A material, with everything that is known of it."""
+
+    id: str
+    name: str
+    description: str
+    notes: list[str]
+    bending_modulus_n_mm2: float | None
+    bending_modulus_sd_n_mm2: float | None
+    compression_stiffness_n_per_mm3: float | None
+    compression_exponent: float | None
+    fabrics: dict[Fabric, FabricDetail]
+    stitch_table: StitchTableResult | None = Field(
+        description="None for a material that lacks one of the four fabrics."
+    )
+    curves: dict[Fabric, dict[Direction, LawCurve]] = Field(description="Of the laws.")
+    measured: dict[Fabric, dict[Direction, CurveDocument]] = Field(
+        description="Of the stretch tests, where they are kept with the material."
+    )
+
+
+def material(request: MaterialRequest, context: Context) -> MaterialDetail:
+    """Laws, sizes, uncertainty, the paper's figures with corrections, and values per stitch.
+
+    Raises
+    ------
+    MissingError
+        If there is none of that id.
+    """
+    try:
+        found = context.material(request.identifier)
+    except InputError as error:
+        raise MissingError("identifier", error.problem, error.remedy) from None
+    return MaterialDetail.of(
+        found.yarn,
+        id=found.identifier,
+        name=found.name,
+        description=description(found),
+        notes=[found.note] if found.note else [],
+        fabrics={fabric: _detail(record) for fabric, record in found.fabrics.items()},
+        stitch_table=_table(stitch_table(found)) if found.is_complete else None,
+        curves={
+            fabric: {d: _curve(record.law, d) for d in Direction}
+            for fabric, record in found.fabrics.items()
+        },
+        measured={
+            fabric: {d: CurveDocument.from_curve(c) for d, c in record.measured.items()}
+            for fabric, record in found.fabrics.items()
+            if record.measured
+        },
+    )
+
+
+def summary(found: Material) -> MaterialSummary:
+    """A material in short."""
+    return MaterialSummary.of(
+        found,
+        id=found.identifier,
+        description=description(found),
+        fabrics={fabric: _fabric(record) for fabric, record in found.fabrics.items()},
+    )
+
+
+def description(found: Material) -> str:
+    """Fibre and product."""
+    return ", ".join(part for part in (found.yarn.fibre, found.yarn.product) if part)
+
+
+def _fabric(record: FabricRecord) -> FabricSummary:
+    return FabricSummary.of(record, record.law)
+
+
+def _detail(record: FabricRecord) -> FabricDetail:
+    return FabricDetail.of(
+        record,
+        record.law,
+        law=record.law,
+        lock_up_strain_course=record.law.lock_up_strain(Direction.COURSE),
+        lock_up_strain_wale=record.law.lock_up_strain(Direction.WALE),
+        uncertainty_source=record.uncertainty.source,
+        figures=[FigureResult.of(f, used=f.corrected) for f in record.printed.values()],
+    )
+
+
+def _curve(law: ConstitutiveLaw, direction: Direction) -> LawCurve:
+    end = CURVE_END * min(law.lock_up_strain(direction), 10.0)
+    curve = uniaxial_response(law, direction, np.linspace(0.0, end, CURVE_POINTS))
+    return LawCurve.of(strain=np.round(curve.strain, 5), stress_n_per_mm=np.round(curve.stress, 6))
+
+
+def _table(table: StitchTable) -> StitchTableResult:
+    kinds = []
+    for code in range(len(table.fractions)):
+        values = {}
+        for d in Direction:
+            modulus = table.modulus_n_per_mm(d)[code]
+            low, high = table.modulus_interval_n_per_mm(d)
+            values[f"modulus_{d}_n_per_mm"] = modulus
+            values[f"extensibility_{d}_mm_per_n"] = 1 / modulus
+            values[f"modulus_{d}_interval"] = (low[code], high[code])
+        fractions = dict(zip(PHASES, table.fractions[code].tolist(), strict=True))
+        kinds.append(StitchKind.of(code=code, fractions=fractions, **values))
+    return StitchTableResult(codes=kinds)
+
+
+OPERATION = Operation(
+    name="material",
+    method="GET",
+    path="/materials/{identifier}",
+    tag="materials",
+    summary="Everything known of a material",
+    request=MaterialRequest,
+    result=MaterialDetail,
+    run=material,
+)
