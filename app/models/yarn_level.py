@@ -14,9 +14,7 @@ from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
 from app.operations.context import Context
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
@@ -116,55 +114,15 @@ def relaxed_cell(
     context: Context,
     sizes_mm: tuple[float | None, float | None] = (None, None),
 ) -> RelaxedCell:
-    """Relax in the branch that is asked for, at held sizes of a stitch if they are given.
-
-    Raises
-    ------
-    InputError
-        If the published branch is asked for what it has not.
-    """
-    lengths = _lengths(request, used, repeat.rows, repeat.columns)
-    if request.branch is Branch.PUBLISHED:
-        held = request.flat or sizes_mm != (None, None) or request.loop_lengths_mm is not None
-        if held:
-            raise InputError(
-                "branch",
-                "the published branch knows one loop length and no held sizes or planes.",
-                "Use mirrored or free.",
-            )
-        return relax_published(
-            pure_fabric(repeat),
-            used.yarn,
-            used.loop_length_mm,
-            convention=request.convention,
-            cancel=context.cancelled,
-        )
+    """Relax in the branch that is asked for, at held sizes of a stitch if they are given."""
     return relax(
         repeat,
         used.yarn,
-        lengths,
+        _lengths(request, used, repeat.rows, repeat.columns),
         branch=request.branch,
         convention=request.convention,
         cell_course_mm=sizes_mm[0],
         cell_wale_mm=sizes_mm[1],
         flat=request.flat,
         cancel=context.cancelled,
-    )
-
-
-def pure_fabric(repeat: StitchChart) -> Fabric:
-    """The pure fabric of a repeat.
-
-    Raises
-    ------
-    InputError
-        If it is a mixed one, for which there is no published ansatz.
-    """
-    for fabric in Fabric:
-        if StitchChart.of_fabric(fabric, 2, 2).repeat() in (repeat, repeat.swap()):
-            return fabric
-    raise InputError(
-        "branch",
-        "the published branch knows the four pure fabrics only.",
-        "Use mirrored or free for this chart.",
     )

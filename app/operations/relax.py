@@ -11,7 +11,7 @@ from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
+from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlibrary.yarns import ChartYarn
 
 
@@ -88,15 +88,12 @@ def _relaxed(
 ) -> RelaxResult:
     sizes = request.cell_course_mm, request.cell_wale_mm
     cell = relaxed_cell(repeat, used, request, context, sizes)
-    found = cell if isinstance(cell, RelaxedRepeat) else None
-    shown = found.chart if found else repeat
     return RelaxResult.of(
         cell,
-        repeat_rows=shown.rows,
-        repeat_columns=shown.columns,
-        force_course_n=found.force_n[0] if found else None,
-        force_wale_n=found.force_n[1] if found else None,
-        min_distance_mm=found.min_distance_mm if found else None,
+        repeat_rows=cell.chart.rows,
+        repeat_columns=cell.chart.columns,
+        force_course_n=cell.force_n[0],
+        force_wale_n=cell.force_n[1],
         yarn=YarnResult.of(used, used.yarn),
         centre_lines_mm=[line.tolist() for line in cell.centre_lines]
         if request.centre_lines

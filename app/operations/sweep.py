@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 from pydantic import Field
 
 from app.cli.options import loop_lengths
 from app.models.base import Floats, ResultModel
-from app.models.yarn_level import YarnLevelRequest, YarnResult, pure_fabric, relaxed_cell
+from app.models.yarn_level import YarnLevelRequest, YarnResult, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError, KnitcoreError
+from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.published.sweep import sweep_published
-from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
-from knitcore.yarnlevel.results import RelaxedCell, Sweep
+from knitcore.yarnlevel.relax import Branch
+from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.sweep import sweep as swept
 from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_law
 from knitcore.yarnlibrary.yarns import ChartYarn
@@ -107,13 +104,19 @@ def _result(
     zero = relaxed_cell(repeat, used, request, context)
 
     def stretch(
-        direction: Direction, max_strain: float, points: int, max_stress: float | None
+        direction: Direction, max_strain: float, points: int, max_stress: float | None = None
     ) -> Sweep:
-        return _sweep(
-            repeat, used, zero, request, direction, max_strain, points, max_stress, context
+        return swept(
+            zero,
+            direction,
+            max_strain,
+            points=points,
+            max_stress_n_per_mm=max_stress,
+            slide_quenching=request.slide_quenching or None,
+            cancel=context.cancelled,
         )
 
-    main = stretch(request.direction, request.max_strain, request.points, None)
+    main = stretch(request.direction, request.max_strain, request.points)
     notes, seconds = list(main.notes), zero.seconds + main.seconds
     law: SimulatedLaw | None = None
     try:
@@ -136,36 +139,6 @@ def _result(
         seconds=seconds,
         yarn=YarnResult.of(used, used.yarn),
         notes=notes,
-    )
-
-
-def _sweep(
-    repeat: StitchChart, used: ChartYarn, zero: RelaxedCell, request: SweepRequest,
-    direction: Direction, max_strain: float, points: int, max_stress: float | None,
-    context: Context,
-) -> Sweep:  # fmt: skip
-    if isinstance(zero, RelaxedRepeat):
-        return swept(
-            zero, direction, max_strain, points=points, max_stress_n_per_mm=max_stress,
-            slide_quenching=request.slide_quenching, cancel=context.cancelled,
-        )  # fmt: skip
-    if request.slide_quenching:
-        raise InputError(
-            "slide_quenching",
-            "the published branch decides it as the paper did.",
-            "Leave it out, or use mirrored or free.",
-        )
-    return sweep_published(
-        pure_fabric(repeat),
-        used.yarn,
-        used.loop_length_mm,
-        direction,
-        max_strain,
-        points,
-        request.convention,
-        zero=zero,
-        max_stress_n_per_mm=math.inf if max_stress is None else max_stress,
-        cancel=context.cancelled,
     )
 
 

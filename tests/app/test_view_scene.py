@@ -5,15 +5,17 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from app.operations.view import ViewRequest, build_scene
+from app.operations.context import Context
 from app.viewer import scene as scene_module
 from app.viewer.camera import Side
 from app.viewer.cloth import Cloth
+from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.views import View, new_view
 
 SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}
@@ -32,7 +34,7 @@ def view(monkeypatch: pytest.MonkeyPatch) -> Iterator[View]:
 
 
 def _show(view: View, request: dict[str, str]) -> None:
-    view.show(build_scene(ViewRequest.model_validate(request), None))
+    view.show(build_scene(ViewRequest.model_validate(request), None, Context(Path())))
 
 
 def test_a_cloth_goes_only_when_the_next_one_is_there(
