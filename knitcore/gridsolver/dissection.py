@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.gridsolver import elimination
+from knitcore.gridsolver.factor import IndefiniteTangentError
+from knitcore.gridsolver.numbering import corners_of
 from knitcore.threads import side_by_side
 
 Array = NDArray[np.float64]
@@ -33,10 +35,6 @@ LEAF_CELLS = 8
 
 SIDE_BY_SIDE = 500
 """Boxes from which on the two branches of the tree are worth two threads."""
-
-
-class IndefiniteTangentError(Exception):
-    """The matrix is not positive definite; the caller decides what to do."""
 
 
 @dataclass(frozen=True)
@@ -291,11 +289,9 @@ def _shape(width: int, height: int, sides: tuple[bool, bool, bool, bool], column
     if max(width, height) <= LEAF_CELLS:
         own = _unknowns(corner[~shared])
         cy, cx = np.mgrid[0:height, 0:width]
-        first = (cy * (columns + 1) + cx).ravel()
-        above = first + columns + 1
-        corners = np.column_stack([first, first + 1, above + 1, above])
-        local = _positions(np.concatenate([own, border]), _unknowns(corners.ravel()))
         cells = (cy * columns + cx).ravel()
+        corners = np.column_stack(corners_of.py_func(cells, columns))
+        local = _positions(np.concatenate([own, border]), _unknowns(corners.ravel()))
         places = _places(local.reshape(-1, 8), len(own), len(border))
         return _Shape((), cells, places, own, border)
     left, right, below, above_ = sides

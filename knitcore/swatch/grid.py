@@ -14,6 +14,7 @@ from scipy.ndimage import label
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Fabric
+from knitcore.gridsolver.numbering import cell_corners
 from knitcore.phases import quarter_phases
 
 Array = NDArray[np.float64]
@@ -206,11 +207,7 @@ class QuarterGrid:
     @cached_property
     def cell_corners(self) -> Indices:
         """Corner numbers of each cell, counter-clockwise from the lower left, (cells, 4)."""
-        first = (
-            np.arange(self.rows)[:, None] * (self.columns + 1) + np.arange(self.columns)
-        ).ravel()
-        above = first + self.columns + 1
-        return np.column_stack([first, first + 1, above + 1, above])
+        return cell_corners(self.columns, self.rows)
 
     @cached_property
     def used_corners(self) -> NDArray[np.bool_]:

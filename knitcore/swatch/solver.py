@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.errors import CancelledError
-from knitcore.gridsolver.dissection import GridFactor, IndefiniteTangentError
+from knitcore.gridsolver.dissection import GridFactor
+from knitcore.gridsolver.factor import Factor, IndefiniteTangentError
 from knitcore.swatch.sheet import Linearisation, Sheet, State
 
 Array = NDArray[np.float64]
@@ -81,6 +82,7 @@ class PathSolver:
         without cloth are prescribed in any case.
     tolerance : when a state counts as balanced.
     cancelled : asked between linear solves; True stops with :class:`CancelledError`.
+    factor : makes the factorisation for a grid's columns, rows and prescribed unknowns.
     """
 
     def __init__(
@@ -90,13 +92,14 @@ class PathSolver:
         *,
         tolerance: Tolerance | None = None,
         cancelled: Callable[[], bool] | None = None,
+        factor: Callable[[int, int, NDArray[np.bool_]], Factor] = GridFactor,
     ) -> None:
         self.sheet = sheet
         self.fixed = fixed | ~sheet.grid.used_corners[:, None]
         self.free = (~self.fixed).astype(float)
         self.tolerance = tolerance or Tolerance()
         self.cancelled = cancelled or (lambda: False)
-        self.factor = GridFactor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
+        self.factor: Factor = factor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
         self.factorisations = 0
         self.conjugate_steps = 0
         self._has_factor = False

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
-from scipy.sparse.linalg import spsolve
 
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
-from knitcore.gridsolver.dissection import GridFactor, IndefiniteTangentError
+from knitcore.gridsolver.dissection import GridFactor
+from knitcore.gridsolver.factor import SciPyFactor
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import load_library
@@ -190,40 +189,13 @@ def test_a_test_can_be_cancelled() -> None:
     assert seen == [(1, 5), (2, 5)]
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(1, 1), (2, 1), (3, 17), (20, 19), (140, 128)])
-def test_the_grid_factor_solves_like_a_sparse_solver(columns: int, rows: int) -> None:
-    rng = np.random.default_rng(columns)
-    half = rng.normal(size=(columns * rows, 8, 8))
-    cells = half @ half.transpose(0, 2, 1) + 8 * np.eye(8)
-    grid = QuarterGrid.uniform(columns, rows, 1.0, 1.0)
-    n = 2 * len(grid.corners)
-    fixed = np.zeros(n, dtype=bool)
-    fixed[:3] = True
-    places = (2 * grid.cell_corners[:, :, None] + np.arange(2)).reshape(-1, 8)
-    row, column = np.repeat(places, 8, axis=1).ravel(), np.tile(places, (1, 8)).ravel()
-    matrix = sp.csc_matrix((cells.ravel(), (row, column)), shape=(n, n))
-    factor = GridFactor(columns, rows, fixed)
-    factor.factorise(cells)
-    right = rng.normal(size=n)
-    expected = np.zeros(n)
-    expected[~fixed] = spsolve(matrix[~fixed][:, ~fixed], right[~fixed])
-    assert factor.solve(right) == pytest.approx(expected, abs=2e-5 * np.abs(expected).max())
-
-
-def test_the_grid_factor_tells_indefinite_matrices() -> None:
-    cells = np.tile(np.diag([1.0] * 7 + [-1.0]), (4, 1, 1))
-    with pytest.raises(IndefiniteTangentError):
-        GridFactor(2, 2, np.zeros(18, dtype=bool)).factorise(cells)
-
-
-@pytest.mark.parametrize("cell", [0, -1])
-def test_an_indefinite_cell_is_found_in_either_branch(cell: int) -> None:
-    """130 x 130 cells are many enough for two threads; a definite matrix works afterwards."""
-    cells = np.tile(np.eye(8), (130 * 130, 1, 1))
-    good = cells.copy()
-    cells[cell] *= -8.0
-    factor = GridFactor(130, 130, np.zeros(2 * 131**2, dtype=bool))
-    with pytest.raises(IndefiniteTangentError):
-        factor.factorise(cells)
-    factor.factorise(good)
-    assert factor.solve(np.ones(2 * 131**2))[[0, 2]] == pytest.approx([1.0, 0.5])
+def test_the_plain_factorisation_leads_to_the_same_equilibrium() -> None:
+    sheet = homogeneous_sheet(GARTER, 60, 40, columns=8, rows=6)
+    fixed = np.zeros((len(sheet.grid.corners), 2), dtype=bool)
+    fixed[sheet.grid.edge("bottom")] = fixed[sheet.grid.edge("top")] = True
+    goal = sheet.grid.corners * (1.0, 1.3)
+    energies = [
+        next(solver.PathSolver(sheet, fixed, factor=factor).follow(sheet.reference, [goal])).energy
+        for factor in (GridFactor, SciPyFactor)
+    ]
+    assert energies[0] == pytest.approx(energies[1], rel=1e-9)

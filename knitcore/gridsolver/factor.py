@@ -1,0 +1,72 @@
+"""What a solver asks of a factorisation on the grid, and the plain one that others are held to."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
+
+from knitcore.gridsolver.numbering import cell_corners
+
+Array = NDArray[np.float64]
+
+
+class IndefiniteTangentError(Exception):
+    """The matrix is not positive definite; the caller decides what to do."""
+
+
+class Factor(Protocol):
+    """Factors of symmetric matrices on one grid, two unknowns a corner, some of them prescribed."""
+
+    def factorise(self, cell_matrices: Array) -> None:
+        """Factorise the sum of (cells, 8, 8) symmetric cell matrices.
+
+        Raises
+        ------
+        IndefiniteTangentError
+            If the sum is not positive definite.
+        """
+        ...
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Solution (2 * corners,); 0 at the prescribed unknowns."""
+        ...
+
+
+class SciPyFactor:
+    """SuperLU on the assembled matrix, in double precision.
+
+    Parameters
+    ----------
+    columns, rows : cells.
+    fixed : bool array (2 * corners,)
+        Unknowns that are prescribed; their rows and columns are replaced by the identity.
+    """
+
+    def __init__(self, columns: int, rows: int, fixed: NDArray[np.bool_]) -> None:
+        self._free = ~fixed
+        unknowns = 2 * cell_corners(columns, rows)[:, :, None] + np.arange(2)
+        self._places = unknowns.reshape(-1, 8)
+
+    def factorise(self, cell_matrices: Array) -> None:
+        """See :class:`Factor`."""
+        row, column = np.repeat(self._places, 8, axis=1), np.tile(self._places, (1, 8))
+        n = len(self._free)
+        whole = csc_matrix((cell_matrices.ravel(), (row.ravel(), column.ravel())), shape=(n, n))
+        # pivots stay on the diagonal, so that their signs are those of the eigenvalues
+        options = {"SymmetricMode": True}
+        try:
+            self._lu = splu(whole[self._free][:, self._free], "MMD_AT_PLUS_A", 0.0, options=options)
+        except RuntimeError as error:  # exactly singular
+            raise IndefiniteTangentError from error
+        if not np.all(self._lu.U.diagonal() > 0.0):
+            raise IndefiniteTangentError
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """See :class:`Factor`."""
+        x = np.zeros(len(self._free))
+        x[self._free] = self._lu.solve(right_hand_side.ravel()[self._free])
+        return x
