@@ -5,7 +5,8 @@ change when a chart is shifted, mirrored, turned over, seen with K and P swapped
 stitch in n changes them by about 1/n. With the signs s = +1 (K) and -1 (P) they are
 
 - the shares of stitches with 0, 1 or 2 odd segments course-wise and as many wale-wise,
-- products of s at two stitches some lag apart, and of four in a square,
+- products of s at two stitches some lag apart, and of four: in a square, in the corners of one two
+  rows high, and in a row,
 - squares of s smoothed along the course, along the wale, and both ways,
 - squared sines of the slopes of a plate on an elastic bed that the stitches bend: a knit curls one
   way, a purl the other, oppositely along course and wale, so that ribs and welts fold. In Fourier
@@ -31,6 +32,10 @@ Array = NDArray[np.float64]
 
 _LAGS = ((0, 2), (0, 3), (0, 4), (2, 0), (3, 0), (4, 0), (1, 2), (2, 1), (2, 2))
 """Rows up and columns right. Those of (0, 1), (1, 0) and (1, 1) follow from the shares."""
+_PAIRS = ((1, 0), (2, 0), (0, 2))
+"""Lags from one pair of neighbours in a row to another."""
+PRODUCTS_OF_FOUR = slice(11 + len(_LAGS), 11 + len(_LAGS) + len(_PAIRS))
+"""Where those stand among the features: after 3 shares, 8 shares of sides, and the lags."""
 _SMOOTHED_OVER = (1.5, 4.0)
 """Standard deviations, in stitches, of the weights that smooth s."""
 _BEDS = (0.3, 0.9)
@@ -98,7 +103,8 @@ def _values(sign: Array) -> Array:
     sides = [(i, j) for i in range(3) for j in range(3) if i + j > 0]
     found = [_mean((odd_course == i) & (odd_wale == j)) for i, j in sides]
     found += [_product(sign, up, right) for up, right in _LAGS]
-    found.append(_mean(sign * _lagged(sign, 0, 1) * _lagged(sign, 1, 0) * _lagged(sign, 1, 1)))
+    pair = sign * _lagged(sign, 0, 1)
+    found += [_mean(pair * _lagged(pair, up, right)) for up, right in _PAIRS]
     kx, ky, back = _waves(sign)
     for bed in _BEDS:
         bent = 1 / ((kx**2 + ky**2) ** 2 + bed**4)
