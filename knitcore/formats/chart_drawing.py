@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
 from knitcore.formats.chart_key import (
@@ -20,6 +21,8 @@ from knitcore.formats.chart_key import (
     INK,
     MARGIN_MM,
     NO_STITCH,
+    SMALL_MM,
+    TENTH,
     ChartStyle,
     is_coloured,
     key_height,
@@ -32,6 +35,12 @@ from knitcore.worked import Construction, Side, side_of_row
 
 CELL_MM = 5.0
 SMALLEST_CELL_MM = 3.0
+OVERLAP = 2
+"""Rows and stitches at the edge of a page that the page before has, too."""
+TENTHS = 10
+LINE = 1.15
+"""Distance of lines of numbers over the size of their type."""
+OVERVIEW_CELL_MM = 2.0
 HEADER_MM = 14.0
 A4_MM = (210.0, 297.0)
 NUMBERED_UP_TO = 40
@@ -53,8 +62,9 @@ def chart_pdf(chart: StitchChart | Piece, style: ChartStyle | None = None) -> by
 def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> tuple[Page, ...]:
     """The chart as A4 pages: one if it fits with cells of at least 3 mm, otherwise several.
 
-    Every page has its numbers and the key; pages go from the bottom right, where flat knitting
-    begins, to the left and then up.
+    Every page has its numbers and the key, and two stitches of the pages beside it; pages go from
+    the bottom right, where flat knitting begins, to the left and then up. Several pages begin with
+    an overview, which has the names of the regions and the notes.
     """
     style, piece = style or ChartStyle(), _piece(chart)
     chart = piece.chart
@@ -62,13 +72,22 @@ def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> 
     room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
     cell = min(CELL_MM, room_x / chart.columns, room_y / (chart.rows * style.aspect))
     cell = max(cell, SMALLEST_CELL_MM)
+    if chart.columns * cell <= room_x + 1e-9 and chart.rows * cell * style.aspect <= room_y + 1e-9:
+        whole = _Part(piece, style, range(chart.rows), range(chart.columns), cell)
+        return (whole.page(paper=A4_MM),)
+    bare = replace(style, note="")
+    room_y = A4_MM[1] - HEADER_MM - key_height(piece, bare) - 2 * MARGIN_MM
     across, up = int(room_x / cell), int(room_y / (cell * style.aspect))
-    parts = [
-        _Part(piece, style, rows, columns, cell)
+    places = [
+        (rows, columns)
         for rows in _pieces(chart.rows, up)
         for columns in reversed(_pieces(chart.columns, across))
     ]
-    return tuple(part.page(paper=A4_MM) for part in parts)
+    most_rows, most_columns = (max(map(len, part)) for part in zip(*places, strict=True))
+    cell = min(CELL_MM, room_x / most_columns, room_y / (most_rows * style.aspect))
+    parts = [_Part(piece, bare, rows, columns, cell) for rows, columns in places]
+    overview = Page(*A4_MM, tuple(_overview(piece, style, parts)))
+    return (overview, *(part.page(paper=A4_MM) for part in parts))
 
 
 def _piece(chart: StitchChart | Piece) -> Piece:
@@ -76,13 +95,37 @@ def _piece(chart: StitchChart | Piece) -> Piece:
 
 
 def _pieces(count: int, most: int) -> list[range]:
-    pieces = math.ceil(count / most)
+    pieces = 1 if count <= most else math.ceil(count / (most - OVERLAP))
     edges = np.linspace(0, count, pieces + 1).round().astype(int).tolist()
-    return [range(a, b) for a, b in pairwise(edges)]
+    return [range(max(0, a - OVERLAP) if a else 0, b) for a, b in pairwise(edges)]
 
 
 def _title(chart: StitchChart) -> str:
     return f"{chart.columns} stitches × {chart.rows} rows"
+
+
+def _overview(piece: Piece, style: ChartStyle, parts: list[_Part]) -> Iterator[Shape]:
+    """Which page has which part of the chart, the regions by name, and the notes."""
+    chart = piece.chart
+    room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
+    room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
+    cell = min(OVERVIEW_CELL_MM, room_x / chart.columns, room_y / (chart.rows * style.aspect))
+    whole = _Part(piece, style, range(chart.rows), range(chart.columns), cell)
+    yield from whole.header()
+    yield from whole.silhouette()
+    yield from whole.region_borders()
+    for number, part in enumerate(parts, start=2):
+        left, top = whole.x(part.columns.start), whole.y(part.rows.stop - 1)
+        width, height = cell * len(part.columns), cell * style.aspect * len(part.rows)
+        yield Box(left, top, width, height, stroke=HEAVY, line_width=0.3)
+        middle = left + width / 2
+        yield Label(middle, top + height / 2 + 1.0, f"page {number}", 4.0, "middle")
+    for region in style.regions:
+        rows, columns = np.nonzero(region.cells)
+        if len(rows):
+            x = whole.x(int(columns.min())) + 1.0
+            yield Label(x, whole.y(int(rows.max())) + 3.2, region.name, SMALL_MM)
+    yield from key_shapes(piece, style, whole.bottom + 10.0)
 
 
 @dataclass(frozen=True)
@@ -129,37 +172,43 @@ class _Part:
         return MARGIN_MM + 6.0
 
     @property
+    def bottom(self) -> float:
+        return self._top + self._height
+
+    @property
     def _top(self) -> float:
         return HEADER_MM + MARGIN_MM
 
-    def _x(self, column: int) -> float:
+    def x(self, column: int) -> float:
         return self._left + self.cell * (column - self.columns.start)
 
-    def _y(self, row: int) -> float:
+    def y(self, row: int) -> float:
         """Upper edge of a row (rows count from the bottom)."""
         return self._top + self._row_height * (self.rows.stop - 1 - row)
 
     def _shapes(self) -> Iterator[Shape]:
-        yield from self._header()
+        yield from self.header()
         yield Box(self._left, self._top, self._width, self._height, fill="#ffffff")
         yield from self._colours()
-        yield self._grid()
+        yield from self._grid()
         yield self._purls()
         yield from self._no_stitches()
+        yield from self.region_borders()
         if self.style.repeats:
             yield from self._placements()
         elif not self._is_shaped:
             yield from self._repeat()
         yield from self._row_numbers()
         yield from self._stitch_numbers()
-        yield from key_shapes(self.piece, self.style, self._top + self._height + 10.0)
+        yield from key_shapes(self.piece, self.style, self.bottom + 10.0)
 
-    def _header(self) -> Iterator[Shape]:
+    def header(self) -> Iterator[Shape]:
         part = ""
         if len(self.rows) < self.chart.rows or len(self.columns) < self.chart.columns:
             first, last = _stitch_number(self.chart, self.columns)
             part = f"rows {self.rows.start + 1}–{self.rows.stop}, stitches {first}–{last} of "
-        yield Label(MARGIN_MM, MARGIN_MM, part + _title(self.chart), 4.0)
+        name = f"{self.style.title}: " if self.style.title else ""
+        yield Label(MARGIN_MM, MARGIN_MM, name + part + _title(self.chart), 4.0)
         flat = self.style.construction is Construction.FLAT
         how = "worked flat" if flat else "worked in the round"
         about = (
@@ -179,19 +228,21 @@ class _Part:
                 if first < last:
                     fill = tinted(self.piece.yarns[stretch.yarn].colour)
                     width = self.cell * (last - first)
-                    yield Box(self._x(first), self._y(row), width, self._row_height, fill=fill)
+                    yield Box(self.x(first), self.y(row), width, self._row_height, fill=fill)
 
-    def _grid(self) -> Strokes:
-        right, bottom = self._left + self._width, self._top + self._height
-        upright = [
-            (self._x(c), self._top, self._x(c), bottom)
-            for c in range(self.columns.start, self.columns.stop + 1)
-        ]
-        level = [
-            (self._left, self._y(r), right, self._y(r))
-            for r in range(self.rows.start - 1, self.rows.stop)
-        ]
-        return Strokes(tuple(upright + level), GRID, 0.15)
+    def _grid(self) -> Iterator[Strokes]:
+        """Fine lines, heavier every ten stitches from the right and every ten rows."""
+        right, total = self._left + self._width, self.chart.columns
+        fine: list[tuple[float, float, float, float]] = []
+        tenth: list[tuple[float, float, float, float]] = []
+        for column in range(self.columns.start, self.columns.stop + 1):
+            line = (self.x(column), self._top, self.x(column), self.bottom)
+            (fine if (total - column) % TENTHS else tenth).append(line)
+        for row in range(self.rows.start - 1, self.rows.stop):
+            line = (self._left, self.y(row), right, self.y(row))
+            (fine if (row + 1) % TENTHS else tenth).append(line)
+        yield Strokes(tuple(fine), GRID, 0.15)
+        yield Strokes(tuple(tenth), TENTH, 0.3)
 
     def _purls(self) -> Dots:
         window = (self.chart.purl & self.piece.shaped.stitch)[
@@ -203,6 +254,35 @@ class _Part:
         radius = round(0.22 * min(self.cell, self._row_height), 3)
         return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, INK)
 
+    def silhouette(self) -> Iterator[Shape]:
+        """The piece as one tone."""
+        row = 0
+        for (start, stop), alike in groupby(self.piece.shaped.spans):
+            rows = len(list(alike))
+            width, height = self.cell * (stop - start), self._row_height * rows
+            row += rows
+            yield Box(self.x(start), self.y(row - 1), width, height, fill="#efece6")
+
+    def region_borders(self) -> Iterator[Strokes]:
+        """Borders of the regions in their colours."""
+        for region in self.style.regions:
+            window = np.s_[self.rows.start : self.rows.stop, self.columns.start : self.columns.stop]
+            cells = np.pad(region.cells[window], 1)
+            lines = [
+                (self.x(c), self.y(r), self.x(c), self.y(r - 1))
+                for r, c in self._edges(cells[1:-1, 1:] != cells[1:-1, :-1])
+            ] + [
+                (self.x(c), self.y(r - 1), self.x(c + 1), self.y(r - 1))
+                for r, c in self._edges(cells[1:, 1:-1] != cells[:-1, 1:-1])
+            ]
+            if lines:
+                yield Strokes(tuple(lines), region.colour, 0.6)
+
+    def _edges(self, changes: NDArray[np.bool_]) -> list[tuple[int, int]]:
+        """Rows and columns of the chart at which something changes."""
+        first = np.array([self.rows.start, self.columns.start])
+        return [(int(r), int(c)) for r, c in np.argwhere(changes) + first]
+
     def _no_stitches(self) -> Iterator[Shape]:
         """Grey boxes before and after the stitches of each row."""
         spans = self.piece.shaped.spans
@@ -211,7 +291,7 @@ class _Part:
                 first, last = max(start, self.columns.start), min(stop, self.columns.stop)
                 if first < last:
                     width = self.cell * (last - first)
-                    x, y = self._x(first), self._y(row)
+                    x, y = self.x(first), self.y(row)
                     yield Box(x, y, width, self._row_height, fill=NO_STITCH)
 
     def _repeat(self) -> Iterator[Shape]:
@@ -224,8 +304,8 @@ class _Part:
             return
         top = min(repeat.rows, self.rows.stop) - 1
         yield Box(
-            self._x(start),
-            self._y(top),
+            self.x(start),
+            self.y(top),
             self.cell * (self.columns.stop - start),
             self._row_height * (top + 1 - self.rows.start),
             stroke=HEAVY,
@@ -243,31 +323,31 @@ class _Part:
                 low, high = max(row, self.rows.start), min(row + rows, self.rows.stop)
                 if left < right and low < high:
                     width, height = self.cell * (right - left), self._row_height * (high - low)
-                    x, y = self._x(left), self._y(high - 1)
+                    x, y = self.x(left), self.y(high - 1)
                     yield Box(x, y, width, height, stroke=HEAVY, line_width=0.7)
 
     def _row_numbers(self) -> Iterator[Shape]:
-        size = min(2.6, 0.85 * self._row_height)
-        step = 1 if self._row_height > 2.2 else 2
+        """Right-side rows at the right, wrong-side rows at the left: as many as leave room."""
+        flat = self.style.construction is Construction.FLAT
+        apart = self._row_height * (2 if flat else 1)
+        step = next((n for n in (1, 2, 5) if n * apart >= LINE * SMALL_MM), 10)
         for row in self.rows:
-            number = row + 1
-            if number % step and number != 1:
+            if (row // 2 if flat else row) % step:
                 continue
             side = side_of_row(row, self.style.construction, self.style.first_side)
-            y = self._y(row) + self._row_height / 2 + size * 0.35
+            y = self.y(row) + self._row_height / 2 + SMALL_MM * 0.35
             if side is Side.RS:
-                x = self._left + self._width + 1.2
-                yield Label(x, y, str(number), size)
+                yield Label(self._left + self._width + 1.2, y, str(row + 1), SMALL_MM)
             else:
-                yield Label(self._left - 1.2, y, str(number), size, "end")
+                yield Label(self._left - 1.2, y, str(row + 1), SMALL_MM, "end")
 
     def _stitch_numbers(self) -> Iterator[Shape]:
-        y = self._top + self._height + 3.4
+        y = self.bottom + 3.4
         every = 1 if self.chart.columns <= NUMBERED_UP_TO and self.cell >= 4 else 5
         for column in self.columns:
             number = self.chart.columns - column
             if number % every == 0 or number == 1:
-                yield Label(self._x(column) + self.cell / 2, y, str(number), 2.4, "middle")
+                yield Label(self.x(column) + self.cell / 2, y, str(number), SMALL_MM, "middle")
 
 
 def _stitch_number(chart: StitchChart, columns: range) -> tuple[int, int]:

@@ -7,6 +7,9 @@ import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from knitcore.errors import InputError
 from knitcore.formats.drawing import Box, Dots, Label, Shape
 from knitcore.garment.piece import Piece, yarn_name
@@ -18,7 +21,9 @@ KEY_LINE_MM = 5.0
 NOTE_CHARACTERS, NOTE_LINES = 110, 14
 TINT = 0.55
 """Share of a yarn's colour in its stitches; the rest is white."""
-INK, GRID, HEAVY, NO_STITCH = "#222222", "#b5b0a8", "#b3322b", "#d9d5ce"
+INK, GRID, TENTH, HEAVY, NO_STITCH = "#222222", "#b5b0a8", "#55504a", "#b3322b", "#d9d5ce"
+SMALL_MM = 2.5
+"""Smallest type: 7 pt, which is read at arm's length."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,15 @@ class RepeatMark:
 
     words: str
     places: tuple[tuple[int, int, int, int], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class RegionMark:
+    """A named part of a chart: ``cells`` are True (rows, columns) where a stitch belongs to it."""
+
+    name: str
+    colour: str
+    cells: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -41,6 +55,8 @@ class ChartStyle:
     yarn_facts : of each yarn, printed after its name in the key, such as its length.
     repeats : linked repeats of the chart; without them the chart's own smallest repeat is marked.
     note : printed below the key.
+    title : name of the design, printed above the chart.
+    regions : named parts, whose borders are drawn in their colours.
     """
 
     construction: Construction = Construction.FLAT
@@ -49,6 +65,8 @@ class ChartStyle:
     yarn_facts: tuple[str, ...] = ()
     repeats: tuple[RepeatMark, ...] = ()
     note: str = ""
+    title: str = ""
+    regions: tuple[RegionMark, ...] = ()
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
@@ -107,7 +125,7 @@ def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
         if flat
         else "every round from right to left"
     )
-    yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", 2.6)
+    yield Label(MARGIN_MM, y + 11.0, f"Seen from the right side; read {reading}.", SMALL_MM)
     y += 17.0
     for index, yarn in enumerate(piece.yarns if is_coloured(piece) else ()):
         yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, fill=tinted(yarn.colour), stroke=GRID)

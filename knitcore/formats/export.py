@@ -19,7 +19,7 @@ from knitcore.formats import (
     written,
     yarn_mesh,
 )
-from knitcore.formats.chart_key import ChartStyle, RepeatMark
+from knitcore.formats.chart_key import ChartStyle, RegionMark, RepeatMark
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import (
     DesignLayout,
@@ -28,6 +28,7 @@ from knitcore.formats.layout import (
     layout_fields,
     motif_chart,
     piece_of,
+    region_cells,
 )
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
@@ -262,7 +263,21 @@ def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartSty
         for repeat in options.layout.repeats
         if repeat.placements
     )
-    return ChartStyle(options.construction, options.first_side, aspect, facts, marks, options.note)
+    regions = tuple(
+        RegionMark(region.name, region.colour, region_cells(region, *piece.chart.purl.shape))
+        for region in options.layout.regions
+        if not region.hidden
+    )
+    return ChartStyle(
+        options.construction,
+        options.first_side,
+        aspect,
+        facts,
+        marks,
+        options.note,
+        options.name,
+        regions,
+    )
 
 
 def _place(place: Placement) -> tuple[int, int, int, int]:

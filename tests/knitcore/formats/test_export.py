@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from knitcore import InputError, StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats import report
-from knitcore.formats.chart_drawing import chart_pdf, chart_svg
+from knitcore.formats.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.chart_files import read_chart, read_piece
-from knitcore.formats.chart_key import HEAVY, ChartStyle, tinted
+from knitcore.formats.chart_key import HEAVY, ChartStyle, RegionMark, tinted
 from knitcore.formats.drawing import Box, Label, Page
 from knitcore.formats.export import (
     COLOURLESS_KINDS,
@@ -213,6 +213,34 @@ def test_a_drawing_tells_sides_repeat_and_key() -> None:
     assert labels["8"] < labels["9"]  # WS numbers at the left, RS numbers at the right
 
 
+@pytest.mark.parametrize("aspect", [0.6, 0.75, 1.0])
+def test_a_printed_chart_can_be_knitted_from(aspect: float) -> None:
+    """Every page has numbers of both sides at arm's length, and shares stitches with the next."""
+    rows, columns = 132, 77
+    cells = np.zeros((rows, columns), dtype=bool)
+    cells[10:60, 5:30] = True
+    style = ChartStyle(
+        aspect=aspect, title="Glove", note="Wash.", regions=(RegionMark("palm", "#336699", cells),)
+    )
+    overview, *pages = chart_pages(StitchChart(np.arange(rows)[:, None] % 3 < cells), style)
+    assert len(pages) > 1
+    words = " ".join(shape.text for shape in overview.shapes if isinstance(shape, Label))
+    assert all(word in words for word in ("Glove", "palm", "Wash.", "page 2", f"page {len(pages)}"))
+    right: set[int] = set()
+    for page in pages:
+        labels = [shape for shape in page.shapes if isinstance(shape, Label)]
+        assert min(label.size for label in labels) >= 2.47  # 7 pt
+        numbers = [label for label in labels if label.text.isdigit() and label.anchor != "middle"]
+        here = {
+            side: [int(n.text) for n in numbers if n.anchor == side] for side in ("start", "end")
+        }
+        assert min(map(len, here.values())) > 5
+        assert all(number % 2 for number in here["start"])
+        assert not any(number % 2 for number in here["end"])
+        right |= set(here["start"])
+    assert right == set(range(1, rows + 1, 2))
+
+
 def test_a_large_chart_is_printed_on_several_pages() -> None:
     small = chart_pdf(StitchChart.of_fabric("seed", rows=40, columns=40))
     large = chart_pdf(StitchChart.of_fabric("seed", rows=200, columns=200))
@@ -224,7 +252,7 @@ def test_a_large_chart_is_printed_on_several_pages() -> None:
 
 @pytest.mark.parametrize("aspect", [0.0, float("nan"), 9.0])
 def test_stitches_have_a_shape(aspect: float) -> None:
-    with pytest.raises(InputError, match="shape of a stitch"):
+    with pytest.raises(InputError, match="aspect of a stitch"):
         ChartStyle(aspect=aspect)
 
 
@@ -274,7 +302,7 @@ def test_values_of_every_stitch(tmp_path: Path) -> None:
     ("chart", "pages"),
     [
         (StitchChart.of_fabric("garter", rows=31, columns=31), 2),
-        (StitchChart(np.random.default_rng(0).random((60, 70)) < 0.5), 3),
+        (StitchChart(np.random.default_rng(0).random((60, 70)) < 0.5), 4),
     ],
     ids=["with curves", "patchwork"],
 )
