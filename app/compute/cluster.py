@@ -21,8 +21,7 @@ from distributed import Client, get_worker
 from distributed.client import Future as ClusterFuture
 from distributed.scheduler import KilledWorker
 
-from app.compute.places import WorkerDiedError, call
-from app.http.problems import UnavailableError
+from app.compute.places import NotBegunError, WorkerDiedError, call
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
@@ -32,7 +31,7 @@ CONNECT_S = 5.0
 TOLD_EVERY_S = 0.2
 
 
-class ClusterError(UnavailableError):
+class ClusterError(NotBegunError):
     """The cluster does not answer."""
 
 
@@ -57,7 +56,24 @@ class Cluster:
         ------
         ClusterError
         """
-        return self._connected().submit(_run, key, job, key=f"knitcore-{key}", pure=False)
+        client = self._connected()
+        self._check_workers(client)
+        return client.submit(_run, key, job, key=f"knitcore-{key}", pure=False)
+
+    def check(self) -> None:
+        """See whether the scheduler answers and has workers.
+
+        Raises
+        ------
+        ClusterError
+        """
+        self._check_workers(self._connected())
+
+    def _check_workers(self, client: Client) -> None:
+        if not client.scheduler_info(n_workers=-1)["workers"]:
+            raise ClusterError(
+                "No machine of the cluster takes computations.", remedy="Start its workers."
+            )
 
     def later(self, action: Callable[[Client], Awaitable[Any]]) -> None:
         """Do something in the client's own thread, where its methods can be awaited."""
@@ -158,7 +174,10 @@ class ClusterPlace:
             done.set_result(future.result())
         except (KilledWorker, CancelledError, OSError, TimeoutError) as error:
             log.warning("a job was lost on the cluster: %s", error)
-            done.set_exception(WorkerDiedError("The machine of this computation was lost."))
+            lost: Exception = WorkerDiedError("The machine of this computation was lost.")
+            if self.worker is None:
+                lost = NotBegunError("The cluster lost this computation before it began.")
+            done.set_exception(lost)
         except Exception as error:
             done.set_exception(error)
 
