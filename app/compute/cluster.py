@@ -28,6 +28,8 @@ T = TypeVar("T")
 
 TOPIC = "knitcore"
 CONNECT_S = 5.0
+WORKERS_S = 10.0
+"""How long a job waits for the first worker of a cluster."""
 TOLD_EVERY_S = 0.2
 
 
@@ -57,7 +59,10 @@ class Cluster:
         ClusterError
         """
         client = self._connected()
-        self._check_workers(client)
+        try:
+            client.wait_for_workers(1, timeout=WORKERS_S)
+        except TimeoutError:
+            raise _nobody() from None
         return client.submit(_run, key, job, key=f"knitcore-{key}", pure=False)
 
     def check(self) -> None:
@@ -67,13 +72,8 @@ class Cluster:
         ------
         ClusterError
         """
-        self._check_workers(self._connected())
-
-    def _check_workers(self, client: Client) -> None:
-        if not client.scheduler_info(n_workers=-1)["workers"]:
-            raise ClusterError(
-                "No machine of the cluster takes computations.", remedy="Start its workers."
-            )
+        if not self._connected().scheduler_info(n_workers=-1)["workers"]:
+            raise _nobody()
 
     def later(self, action: Callable[[Client], Awaitable[Any]]) -> None:
         """Do something in the client's own thread, where its methods can be awaited."""
@@ -113,6 +113,12 @@ class Cluster:
         told = event[1]
         if (place := self.listeners.get(told["job"])) is not None:
             place.share, place.worker = told["share"], told["worker"]
+
+
+def _nobody() -> ClusterError:
+    return ClusterError(
+        "No machine of the cluster takes computations.", remedy="Start its workers."
+    )
 
 
 class ClusterPlace:

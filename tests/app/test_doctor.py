@@ -271,7 +271,8 @@ def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "No worker was free" in str(second)
 
 
-def test_a_cluster_without_workers_is_told(tmp_path: Path) -> None:
+def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "WORKERS_S", 0.2)
     file = tmp_path / "scheduler.json"
     words = ["scheduler", "--host=127.0.0.1", "--port=0", "--no-dashboard"]
     words += ["--dashboard-address=127.0.0.1:0", f"--scheduler-file={file}"]
