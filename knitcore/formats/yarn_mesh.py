@@ -5,6 +5,7 @@ It is the picture's geometry, laid flat with the material's stitch sizes, not an
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -73,8 +74,12 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
             f"{grid.columns}x{grid.rows} stitches are too many for a mesh.",
             f"Export at most {MAXIMUM_STITCHES} stitches, such as 100x100.",
         )
-    radius = yarn_radius_mm(grid, material)
-    tubes = [_closed(tube(line, radius, SIDES)) for line in course_centre_lines(chart, material)]
+    return solid(course_centre_lines(chart, material), yarn_radius_mm(grid, material))
+
+
+def solid(lines: Iterable[NDArray[np.float64]], radius_mm: float) -> TriangleMesh:
+    """Closed tubes around centre lines, mm."""
+    tubes = [_closed(tube(line, radius_mm, SIDES)) for line in lines]
     offsets = np.cumsum([0, *(len(t.vertices) for t in tubes[:-1])])
     return TriangleMesh(
         np.concatenate([t.vertices for t in tubes]),
@@ -84,15 +89,16 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
 
 def write_glb(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary glTF 2.0 in metres."""
-    return _export(yarn_mesh(chart, material), 0.001, "glb")
+    return export(yarn_mesh(chart, material), 0.001, "glb")
 
 
 def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
     """Binary STL in mm."""
-    return _export(yarn_mesh(chart, material), 1.0, "stl")
+    return export(yarn_mesh(chart, material), 1.0, "stl")
 
 
-def _export(mesh: TriangleMesh, scale: float, kind: str) -> bytes:
+def export(mesh: TriangleMesh, scale: float, kind: str) -> bytes:
+    """A file of a kind that trimesh knows (``glb``, ``stl``)."""
     import trimesh
 
     solid: Any = trimesh.Trimesh(mesh.vertices * scale, mesh.faces, process=False)

@@ -35,6 +35,7 @@ def job_requests(folder: Path) -> dict[str, dict[str, Any]]:
         "curve": chart | {"direction": "wale"},
         "relax": chart,
         "bend": chart,
+        "curl": chart,
         "sweep": chart | {"direction": "wale", "max_strain": 0.1, "points": 2},
         "characterise": {"material": "acrylic", "fabrics": ["garter"], "tensions": [1.0]},
         "atlas": {"material": "acrylic"},

@@ -1,0 +1,134 @@
+"""How a piece curls and folds when nobody holds it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from app.cli.options import out_option
+from app.models.base import RequestModel, ResultModel
+from app.models.charts import ChartInput, MaterialName, to_chart
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.formats.curled import write_curled_glb, write_curled_npz
+from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece
+from knitcore.shell.curl import curl as curl_piece
+
+FLAT = 0.02
+"""Edges that stand out by less than this part of the thickness are called flat."""
+
+
+class CurlRequest(RequestModel):
+    """A whole piece with free edges."""
+
+    chart: ChartInput
+    material: MaterialName
+    corners: bool = Field(False, description="Give the corners of all stitches as well.")
+    time_limit_s: float = Field(
+        TIME_LIMIT_S,
+        gt=0,
+        le=600,
+        allow_inf_nan=False,
+        description="CPU time after which the shape is given as it is then, unconverged.",
+    )
+
+
+class CurlResult(ResultModel):
+    """The piece as it lies; heights are positive towards the face (the front)."""
+
+    rows: int
+    columns: int
+    width_mm: float = Field(description="Extent along the rows of the piece as a whole.")
+    height_mm: float
+    depth_mm: float
+    curl_course_mm: float = Field(
+        description="How far the sides stand out from the cloth beside them: negative to the back."
+    )
+    curl_wale_mm: float = Field(description="The same of top and bottom.")
+    flat_width_mm: float = Field(description="Extent if it lay flat.")
+    flat_height_mm: float
+    thickness_mm: float
+    converged: bool = Field(description="Where it is false, the shape is a preview.")
+    seconds: float = Field(description="CPU time.")
+    corners_mm: list[list[tuple[float, float, float]]] | None = Field(
+        None, description="Corners of the stitches, the lowest row first."
+    )
+    notes: list[str]
+
+
+def curl(request: CurlRequest, context: Context) -> CurlResult:
+    """Shape of least energy of a piece with free edges, without friction, set and weight.
+
+    Stockinette rolls its sides to the back and its ends to the front, garter, 1x1 rib and seed lie
+    flat, wide ribs pleat. Directions are those of nature, sizes of tight rolls and folds are what
+    frictionless cloth would do. Pieces of up to 10,000 stitches.
+    """
+    return _result(_curled(request, context), request)
+
+
+def _curled(request: CurlRequest, context: Context) -> CurledPiece:
+    chart, material = to_chart(request.chart), context.material(request.material)
+    return curl_piece(chart, material, time_limit_s=request.time_limit_s, cancel=context.cancelled)
+
+
+def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:
+    flat = piece.flat_mm[-1, -1] - piece.flat_mm[0, 0]
+    return CurlResult.of(
+        piece,
+        rows=piece.chart.rows,
+        columns=piece.chart.columns,
+        flat_width_mm=float(flat[0]),
+        flat_height_mm=float(flat[1]),
+        corners_mm=piece.corners_mm.round(3).tolist() if request.corners else None,
+        notes=list(piece.notes),
+    )
+
+
+@out_option("--out", help="Write the shape to FILE.npz or FILE.glb.", suffixes=(".npz", ".glb"))
+def _and_write(request: CurlRequest, context: Context, out: Path | None) -> CurlResult:
+    piece = _curled(request, context)
+    if out is not None:
+        glb = out.suffix.lower() == ".glb"
+        material = context.material(request.material)
+        out.write_bytes(write_curled_glb(piece, material) if glb else write_curled_npz(piece))
+    return _result(piece, request)
+
+
+def _text(r: CurlResult) -> str:
+    state = "" if r.converged else "  NOT converged: a preview"
+    return "\n".join(
+        [
+            f"{r.columns} columns x {r.rows} rows, flat {r.flat_width_mm:.0f} x "
+            f"{r.flat_height_mm:.0f} mm",
+            f"as it lies      {r.width_mm:.0f} x {r.height_mm:.0f} x {r.depth_mm:.0f} mm{state}",
+            f"sides           {_where(r.curl_course_mm, r.thickness_mm)}",
+            f"top and bottom  {_where(r.curl_wale_mm, r.thickness_mm)}",
+            f"solved          {r.seconds:.1f} s CPU",
+            *(f"note: {note}" for note in r.notes),
+        ]
+    )
+
+
+def _where(curl_mm: float, thickness_mm: float) -> str:
+    if abs(curl_mm) < FLAT * thickness_mm:
+        return "flat"
+    return f"{abs(curl_mm):.1f} mm to the {'front' if curl_mm > 0 else 'back'}"
+
+
+OPERATION = Operation(
+    name="curl",
+    tag="mechanics",
+    summary="How a piece curls and folds",
+    request=CurlRequest,
+    result=CurlResult,
+    run=curl,
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help=f"How the whole piece CHART (up to {MAX_STITCHES} stitches) curls and folds.",
+        names={"corners": None},
+        run=_and_write,
+    ),
+)

@@ -1,0 +1,43 @@
+"""Points on and above a curled piece."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import RectBivariateSpline
+
+Array = NDArray[np.float64]
+
+
+class Surface:
+    """A smooth surface through the corners of the stitches.
+
+    Parameters
+    ----------
+    corners_mm : (rows + 1, columns + 1, 3)
+    """
+
+    def __init__(self, corners_mm: Array) -> None:
+        rows, columns = (n - 1 for n in corners_mm.shape[:2])
+        self._size = columns, rows
+        at = np.arange(rows + 1), np.arange(columns + 1)
+        degree = {"kx": min(3, rows), "ky": min(3, columns)}
+        self._parts = [RectBivariateSpline(*at, corners_mm[..., m], **degree) for m in range(3)]
+
+    def at(self, across: Array, up: Array, height_mm: Array) -> Array:
+        """Points (…, 3), mm, at places counted in stitches from the lower left corner.
+
+        Beyond the edges the surface goes on straight.
+        """
+        inside = np.clip(across, 0.0, self._size[0]), np.clip(up, 0.0, self._size[1])
+        along, rising = self._of(*inside, 0, 1), self._of(*inside, 1, 0)
+        beyond = across - inside[0], up - inside[1]
+        normal = np.cross(along, rising)
+        normal /= np.maximum(np.linalg.norm(normal, axis=-1), 1e-12)[..., None]
+        found = self._of(*inside, 0, 0) + along * beyond[0][..., None]
+        return np.asarray(found + rising * beyond[1][..., None] + normal * height_mm[..., None])
+
+    def _of(self, across: Array, up: Array, by_up: int, by_across: int) -> Array:
+        return np.stack(
+            [part.ev(up, across, dx=by_up, dy=by_across) for part in self._parts], axis=-1
+        )

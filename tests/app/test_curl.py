@@ -1,0 +1,71 @@
+"""``curl`` on the command line and over REST."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+
+STRIP = {"fabric": "stockinette", "columns": 12, "rows": 3}
+FIELDS = {
+    "width_mm", "height_mm", "depth_mm", "curl_course_mm", "curl_wale_mm", "converged", "seconds",
+}  # fmt: skip
+
+
+def test_curl_over_rest(client: TestClient) -> None:
+    body = {"chart": STRIP, "material": "acrylic", "corners": True}
+    answer = client.post("/api/v1/curl", json=body)
+    assert answer.status_code == 200, answer.text
+    curled = answer.json()
+    assert set(curled) >= FIELDS
+    assert curled["converged"]
+    assert curled["curl_wale_mm"] > 0.0
+    assert np.array(curled["corners_mm"]).shape == (4, 13, 3)
+    assert np.ptp(curled["corners_mm"], axis=(0, 1))[0] == pytest.approx(
+        curled["width_mm"], abs=2e-3
+    )
+
+
+@pytest.mark.parametrize("kind", [".npz", ".glb"])
+def test_curl_writes_the_shape(tmp_path: Path, kind: str) -> None:
+    out = tmp_path / f"shape{kind}"
+    arguments = ["curl", "stockinette", "--size", "12x3", "--material", "acrylic"]
+    result = CliRunner().invoke(main, [*arguments, "--json", "--out", str(out)])
+    assert result.exit_code == 0, result.stderr
+    told = json.loads(result.stdout)
+    size = [told["width_mm"], told["height_mm"], told["depth_mm"]]
+    if kind == ".npz":
+        with np.load(out) as found:
+            assert np.ptp(found["corners_mm"], axis=(0, 1)) == pytest.approx(size)
+    else:  # in metres, and the yarn has a thickness
+        mesh = trimesh.load_mesh(out)
+        assert np.all(1000.0 * mesh.extents > np.array(size) - 1e-3)
+        assert np.all(1000.0 * mesh.extents < np.array(size) + 8.0)
+
+
+def test_curl_says_it_in_words() -> None:
+    arguments = ["curl", "stockinette", "--size", "4x16", "--material", "acrylic"]
+    result = CliRunner().invoke(main, arguments)
+    assert "to the back" in result.stdout
+    assert "Without friction" in result.stdout
+
+
+def test_unknown_kinds_of_files_are_refused(tmp_path: Path) -> None:
+    arguments = ["curl", "garter", "--size", "4x4", "--material", "acrylic"]
+    result = CliRunner().invoke(main, [*arguments, "--out", str(tmp_path / "shape.obj")])
+    assert result.exit_code == 2
+    assert "--out" in result.stderr or "out" in result.stderr
+
+
+def test_a_piece_too_large_is_refused(client: TestClient) -> None:
+    chart = {"fabric": "garter", "columns": 101, "rows": 100}
+    answer = client.post("/api/v1/curl", json={"chart": chart, "material": "acrylic"})
+    assert answer.status_code == 422
+    assert answer.json()["field"] == "chart"
