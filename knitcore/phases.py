@@ -72,6 +72,18 @@ def quarter_phases(
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 
 
+def pure_fabric(chart: StitchChart) -> Fabric | None:
+    """The pure fabric that a chart is up to its edges, if it is one.
+
+    Examples
+    --------
+    >>> pure_fabric(StitchChart.of_fabric("seed", rows=31, columns=31))
+    <Fabric.SEED: 'seed'>
+    """
+    found = np.unique(quarter_phases(chart))
+    return PHASES[found[0]] if len(found) == 1 else None
+
+
 def reference_fabric(chart: StitchChart) -> Fabric:
     """The pure fabric with odd segments where the repeat has any."""
     phases = quarter_phases(chart, periodic=True)

@@ -59,10 +59,6 @@ class TimeLimitError(UnavailableError):
     headers: ClassVar[dict[str, str]] = {}  # the same would take as long again
 
 
-class NotBegunError(UnavailableError):
-    """No worker took the computation on; it can be asked for again."""
-
-
 class WorkerDiedError(UnavailableError):
     """The process of a computation ended without a result."""
 

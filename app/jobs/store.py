@@ -239,9 +239,9 @@ class JobStore:
                 .where(jobs.c.id == job, jobs.c.state.in_(OPEN))
                 .values(state=JobState.DONE.value, finished_at=now())
             )
-            # equal jobs of two processes end at once: either result is the right one
+            connection.execute(results.delete().where(results.c.key == key))
             connection.execute(
-                self._database.insert_new(results).values(
+                insert(results).values(
                     key=key, kind=kind, body=body, size_bytes=len(body), used_at=now()
                 )
             )

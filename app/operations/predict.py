@@ -62,7 +62,7 @@ class PredictResult(ResultModel):
     relaxed_wale_interval_mm: Ends
     relaxed_source: str
     provenance: str = Field(
-        description="measured; estimated; swept; composite with known size; or composite"
+        description="measured; estimated; swept; learned; or learned with known size"
     )
     method: str
     notes: list[str]

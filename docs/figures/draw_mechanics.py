@@ -10,10 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.answer.folded import folded_repeat
-from knitcore.answer.relaxed import known_size
-from knitcore.answer.repeat import Repeat
-from knitcore.chart import StitchChart
+from knitcore import StitchChart, predict
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import material
@@ -142,20 +139,18 @@ def reduced_symmetry() -> str:
 
 def wide_rib() -> str:
     """Width and strain of 2x2 rib against stress."""
-    acrylic, rib = material("acrylic"), Repeat.of(StitchChart.parse("KKPP"))
-    size = known_size(rib, acrylic)
-    assert size is not None
-    series = folded_repeat(rib, acrylic, size).along
-    stress = np.linspace(0, 0.2, 200)
-    fold = series.gap_mm * np.exp(-stress / series.unfolding_stress_n_per_mm)
+    acrylic, stress = material("acrylic"), np.linspace(0, 0.2, 200)
+    wide, narrow = (predict(StitchChart.parse(t), acrylic).course for t in ("KKPP", "KP"))
     ticks = (0, 0.05, 0.1, 0.15, 0.2)
-    width = Axes("width of a stitch, acrylic 2×2 rib", "stress, N/mm", "mm", ticks, (0, 2, 4, 6, 8))
-    width.line(stress, series.size_mm(stress) + fold, "#888", "flat composite", dash="5 4")
-    width.line(stress, series.size_mm(stress), COLOURS["rib"], "corrected")
+    width = Axes("width of a stitch, acrylic", "stress, N/mm", "mm", ticks, (0, 2, 4, 6, 8))
     strain = Axes("strain course-wise", "stress, N/mm", "strain", ticks, (0, 1, 2, 3))
-    pure = free_strains_at_stress(acrylic.law(Fabric.RIB), Direction.COURSE, stress)
-    strain.line(stress, series.strain(stress), COLOURS["rib"], "2×2 rib")
-    strain.line(stress, pure, "#444", "1×1 rib", dash="5 4")
+    for along, colour, name, dash in (
+        (wide, COLOURS["rib"], "2×2 rib", None),
+        (narrow, "#444", "1×1 rib", "5 4"),
+    ):
+        at = along.strain(stress)
+        width.line(stress, along.relaxed_mm * (1 + at), colour, name, dash=dash)
+        strain.line(stress, at, colour, name, dash=dash)
     return page(width, strain)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -19,14 +19,18 @@ from knitcore.materials.uncertainty import Z_SCORE, Interval, log_interval, norm
 Array = NDArray[np.float64]
 
 
+GAUGE = "gauge"
+"""Source of a relaxed size that the caller gave."""
+
+
 class Source(StrEnum):
     """Where an answer comes from."""
 
     MEASURED = "measured"
     ESTIMATED = "estimated"
     SWEPT = "swept"
-    COMPOSITE_OF_SIZE = "composite with known size"
-    COMPOSITE = "composite"
+    LEARNED = "learned"
+    LEARNED_OF_SIZE = "learned with known size"
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +44,8 @@ class Along:
     poisson, poisson_sd : contraction across the pull over the strain along it, at small strain.
     relaxed_mm, relaxed_log_sd : extent of the mean stitch at rest, and the standard deviation of
         its logarithm.
-    bounds_n_per_mm : of the modulus: Reuss and Voigt bounds of the flat composite, widened to the
-        modulus where folds put it outside.
+    bounds_n_per_mm : of the modulus: Reuss and Voigt bounds of the pure fabrics in the chart,
+        widened to the modulus where folds put it outside.
     """
 
     response: Response
@@ -52,34 +56,6 @@ class Along:
     relaxed_mm: float
     relaxed_log_sd: float
     bounds_n_per_mm: Interval
-
-    @classmethod
-    def of_response(
-        cls,
-        response: Response,
-        log_sd: float,
-        poisson: tuple[float, float],
-        relaxed: tuple[float, float],
-        bounds: Iterable[float] = (),
-    ) -> Along:
-        """With one uncertainty of the whole scale of stress; the lock-up strain stays.
-
-        Parameters
-        ----------
-        log_sd : standard deviation of the logarithm of the stress at every strain.
-        poisson, relaxed : value and standard deviation (of the logarithm, for the size).
-        bounds : Reuss and Voigt bounds of the modulus, N/mm.
-        """
-        factor = float(np.exp(Z_SCORE * log_sd))
-        held = (response.modulus_n_per_mm, *bounds)
-        return cls(
-            response,
-            Stiffened(response, factor),
-            Stiffened(response, 1 / factor),
-            *poisson,
-            *relaxed,
-            bounds_n_per_mm=Interval(min(held), max(held)),
-        )
 
     @property
     def modulus_n_per_mm(self) -> float:
@@ -157,32 +133,41 @@ class Answer:
         poisson_sd: tuple[float, float],
         provenance: Source,
         method: str,
+        relaxed_source: str,
         notes: tuple[str, ...],
     ) -> Answer:
-        """Of a sheet with one constitutive law."""
+        """Of a sheet with one constitutive law.
+
+        ``log_sd`` is that of the whole scale of stress, course-wise and wale-wise: the lock-up
+        strain, which tests fix best, stays where it is.
+        """
         ratios = law.poisson_yx, law.poisson_xy
         course, wale = (
-            Along.of_response(
+            Along(
                 LawResponse(law, d),
-                log_sd[d.axis],
-                (ratios[d.axis], poisson_sd[d.axis]),
-                (relaxed.extent_mm(d), relaxed.log_sd),
+                Stiffened(LawResponse(law, d), math.exp(Z_SCORE * log_sd[d.axis])),
+                Stiffened(LawResponse(law, d), math.exp(-Z_SCORE * log_sd[d.axis])),
+                poisson=ratios[d.axis],
+                poisson_sd=poisson_sd[d.axis],
+                relaxed_mm=relaxed.extent_mm(d),
+                relaxed_log_sd=relaxed.log_sd,
+                bounds_n_per_mm=Interval(law.modulus(d), law.modulus(d)),
             )
             for d in Direction
         )
-        return cls(course, wale, law.shear_modulus, provenance, method, str(relaxed.source), notes)
+        return cls(course, wale, law.shear_modulus, provenance, method, relaxed_source, notes)
 
     def along(self, direction: Direction) -> Along:
         """The answer for a pull in a direction."""
         return self.course if direction is Direction.COURSE else self.wale
 
     def with_size(self, relaxed: RelaxedSize) -> Answer:
-        """The same stretch from another relaxed size."""
+        """The same stretch from a measured relaxed size."""
         course, wale = (
             replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
             for d in Direction
         )
-        return replace(self, course=course, wale=wale, relaxed_source=str(relaxed.source))
+        return replace(self, course=course, wale=wale, relaxed_source=GAUGE)
 
     def modulus_n_per_mm(self, direction: Direction) -> float:
         """Young's modulus in a direction."""

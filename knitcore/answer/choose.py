@@ -1,26 +1,20 @@
 """The one rule: which law a chart of a material gets.
 
-1. A chart that is one pure fabric has that fabric's own law and gauge (*measured*).
-2. A repeat that was stretched on the yarn level has that law, carried to the material (*swept*).
-3. A rib or welt of a known relaxed size is a series of its phases, corrected for its draw-in
-   (*composite with known size*).
-4. Anything else is the composite of its quarter cells (*composite*), corrected by what is known of
-   the repeats of 1 to 3 that parts of it look like (:mod:`knitcore.answer.resemblance`). So the
-   answer does not jump when one stitch makes a known repeat an unknown chart.
-
-A known gauge replaces the relaxed size, and corrects ribs and welts.
+1. A chart that is one pure fabric has that fabric's own law and gauge (*measured*; *estimated* or
+   *swept* if the record is).
+2. Any other chart mixes the pure fabrics, corrected by what yarn-level simulations of mixed charts
+   taught (*learned*). It comes near to every repeat that was simulated, and is continuous in the
+   shares of a chart's stitches, so one stitch more or less changes little.
+3. A chart too large for one repeat is answered patch by patch (:mod:`knitcore.answer.patches`).
+4. A known gauge replaces the relaxed size, and makes the learned stretch surer (*learned with known
+   size*).
 """
 
 from __future__ import annotations
 
 from knitcore.answer.answer import Answer
-from knitcore.answer.composite import composite
-from knitcore.answer.folded import folded
-from knitcore.answer.measured import measured
-from knitcore.answer.relaxed import RelaxedSize, known_size
-from knitcore.answer.repeat import Repeat
-from knitcore.answer.resemblance import corrected
-from knitcore.answer.swept import swept
+from knitcore.answer.patches import patches_of
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.materials import Material
 
@@ -46,20 +40,6 @@ def choose(chart: StitchChart, material: Material, gauge: RelaxedSize | None = N
     >>> round(garter.modulus_course_n_per_mm, 3), round(garter.modulus_wale_n_per_mm, 3)
     (0.223, 0.056)
     >>> choose(StitchChart.parse("KKPP"), material("acrylic")).provenance
-    <Source.COMPOSITE_OF_SIZE: 'composite with known size'>
+    <Source.LEARNED: 'learned'>
     """
-    repeat = Repeat.of(chart)
-    answer = known(repeat, material, gauge)
-    if answer is None:
-        answer = corrected(composite(repeat, material), repeat, material, known, composite)
-    return answer if gauge is None else answer.with_size(gauge)
-
-
-def known(repeat: Repeat, material: Material, gauge: RelaxedSize | None = None) -> Answer | None:
-    """The answer of a repeat that is known by itself, or None."""
-    if repeat.fabric is not None:
-        return measured(repeat.fabric, material)
-    if repeat.layout is not None:
-        size = gauge or known_size(repeat, material)
-        return None if size is None else folded(repeat, material, size)
-    return swept(repeat, material)
+    return patches_of(chart, material, gauge).together()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import FabricRecord, Material, Origin
 from knitcore.yarnlevel.yarn import YarnModel
@@ -82,6 +84,11 @@ class Mixture:
         """Initial modulus: parts in series."""
         return 1.0 / sum(share / record.law.modulus(direction) for share, record in self.parts)
 
+    def bounds_n_per_mm(self, direction: Direction) -> tuple[float, float]:
+        """Reuss and Voigt bounds of the modulus, by shares."""
+        moduli = [(share, record.law.modulus(direction)) for share, record in self.parts]
+        return self.modulus_n_per_mm(direction), sum(share * modulus for share, modulus in moduli)
+
     def strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Strain at stresses (N/mm, at least 0)."""
         return np.asarray(np.sum(self._strains(direction, stress_n_per_mm), axis=0))
@@ -96,9 +103,24 @@ class Mixture:
 
     def _strains(self, direction: Direction, stress_n_per_mm: ArrayLike) -> list[Array]:
         return [
-            share * free_strains_at_stress(record.law, direction, stress_n_per_mm)
+            share * _law_strains(record.law, direction, np.asarray(stress_n_per_mm, dtype=float))
             for share, record in self.parts
         ]
+
+
+_STRESSES: Array = np.geomspace(1e-7, 100.0, 1000)
+
+
+def _law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
+    """Strains of a law from its table, within 1e-4 of their own size."""
+    at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
+    found = np.exp(np.interp(at, np.log(_STRESSES), _log_strains(law, direction)))
+    return np.asarray(found * np.minimum(stress_n_per_mm / _STRESSES[0], 1.0))
+
+
+@lru_cache(maxsize=128)
+def _log_strains(law: ConstitutiveLaw, direction: Direction) -> Array:
+    return np.log(free_strains_at_stress(law, direction, _STRESSES))
 
 
 def yarn_numbers(yarn: YarnModel, loop_length_mm: float) -> Array:

@@ -13,67 +13,21 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from knitcore.answer.answer import Answer, Source
-from knitcore.answer.relaxed import RelaxedSize, SizeSource, stored_pure
-from knitcore.answer.repeat import Repeat
+from knitcore.answer.relaxed import RelaxedSize
+from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import Fabric
+from knitcore.fabric import PHASES, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import MODEL_POISSON_SD, YARN_LEVEL_LOG_SD
-from knitcore.phases import reference_fabric
-from knitcore.yarnlibrary.store import MATERIALS, stored_stitch
+from knitcore.phases import quarter_phases, reference_fabric
 
 NO_FRICTION = "The yarn level has no friction or set: draw-in is probably exaggerated."
-JUMPS = (
-    "Stretched on the yarn level, the folds of this repeat open abruptly; its law is a smooth "
-    "curve through that."
-)
-MOST_STITCHES = 16
-"""Larger repeats are not in the store, and not looked for."""
-
-
-def swept(repeat: Repeat, material: Material) -> Answer | None:
-    """What the packaged store knows of a repeat, or None.
-
-    Ribs and welts are left to :mod:`knitcore.answer.folded`, which was checked against sweeps more
-    closely.
-
-    Examples
-    --------
-    >>> from knitcore.chart import StitchChart
-    >>> from knitcore.materials import material
-    >>> basket = Repeat.of(StitchChart.parse("KKPP\\nKKPP\\nPPKK\\nPPKK"))
-    >>> found = swept(basket, material("acrylic"))
-    >>> found is not None and found.course.modulus_n_per_mm < 0.05  # it unfolds
-    True
-    """
-    chart = repeat.chart
-    if (
-        material.identifier not in MATERIALS
-        or chart.rows * chart.columns > MOST_STITCHES
-        or repeat.layout is not None
-        or repeat.fabric is not None
-    ):
-        return None
-    stored = stored_stitch(chart, material.identifier)
-    if stored is None or stored.law is None or not stored.converged:
-        return None
-    pure = {fabric: stored_pure(fabric, material.identifier) for fabric in Fabric}
-    laws = {f: s.law for f, s in pure.items() if s is not None and s.law is not None}
-    reference = pure[reference_fabric(chart)]
-    if reference is None or any(fabric not in laws for fabric in repeat.present):
-        return None
-    notes = (NO_FRICTION, JUMPS) if any(stored.law_jumps) else (NO_FRICTION,)
-    return swept_answer(
-        stored.law,
-        (stored.cell_course_mm, stored.cell_wale_mm),
-        laws,
-        (reference.cell_course_mm, reference.cell_wale_mm),
-        repeat,
-        material,
-        notes,
-    )
+SIZE_LOG_SD = 0.10
+"""Standard deviation of the logarithm of a yarn-level size: its branches differ by that."""
 
 
 def swept_answer(
@@ -81,9 +35,8 @@ def swept_answer(
     cell_mm: tuple[float, float],
     pure: Mapping[Fabric, ConstitutiveLaw],
     reference_mm: tuple[float, float],
-    repeat: Repeat,
+    repeat: StitchChart,
     material: Material,
-    notes: tuple[str, ...] = (NO_FRICTION,),
 ) -> Answer:
     """The answer of a sweep of this very repeat.
 
@@ -99,11 +52,11 @@ def swept_answer(
     InputError
         If a phase of the repeat is missing in ``pure`` or in the material.
     """
-    record = material.record(reference_fabric(repeat.chart))
+    record = material.record(reference_fabric(repeat))
     size = RelaxedSize(
         cell_mm[0] / reference_mm[0] * record.stitch_course_mm,
         cell_mm[1] / reference_mm[1] * record.stitch_wale_mm,
-        SizeSource.YARN_LEVEL,
+        SIZE_LOG_SD,
     )
     return Answer.of_law(
         law_in_material(law, pure, repeat, material),
@@ -112,14 +65,15 @@ def swept_answer(
         poisson_sd=(MODEL_POISSON_SD, MODEL_POISSON_SD),
         provenance=Source.SWEPT,
         method="law fitted to a yarn-level stretch of this repeat",
-        notes=notes,
+        relaxed_source="yarn level",
+        notes=(NO_FRICTION,),
     )
 
 
 def law_in_material(
     law: ConstitutiveLaw,
     pure: Mapping[Fabric, ConstitutiveLaw],
-    repeat: Repeat,
+    repeat: StitchChart,
     material: Material,
 ) -> ConstitutiveLaw:
     """The law of a repeat as the measured material would have it.
@@ -137,16 +91,17 @@ def law_in_material(
 
     Examples
     --------
-    >>> from knitcore.chart import StitchChart
     >>> from knitcore.materials import material
     >>> simulated, measured = material("acrylic:simulation"), material("acrylic")
     >>> laws = {fabric: simulated.law(fabric) for fabric in Fabric}
-    >>> rib = Repeat.of(StitchChart.parse("KP"))
+    >>> rib = StitchChart.parse("KP")
     >>> round(law_in_material(laws[Fabric.RIB], laws, rib, measured).modulus_wale, 3)
     0.119
     """
     logs = dict.fromkeys(("modulus_course", "modulus_wale", *_STIFFENING), 0.0)
-    for fabric in repeat.present:
+    counts = np.bincount(quarter_phases(repeat, periodic=True).ravel(), minlength=4)
+    for phase in np.flatnonzero(counts):
+        fabric, share = PHASES[phase], float(counts[phase] / counts.sum())
         if fabric not in pure:
             raise InputError(
                 "pure", f"lacks {fabric}, a phase of the repeat.", "Sweep that pure fabric too."
@@ -156,7 +111,7 @@ def law_in_material(
             have, need = getattr(modelled, name), getattr(measured, name)
             # A constant that is 0 in either (no stiffening) has no ratio: it is left as it is.
             if have > 0 and need > 0:
-                logs[name] += float(repeat.shares[fabric.phase]) * math.log(need / have)
+                logs[name] += share * math.log(need / have)
     course, wale = math.exp(logs["modulus_course"]), math.exp(logs["modulus_wale"])
     coupling = math.sqrt(course * wale)
     return replace(

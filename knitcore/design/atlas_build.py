@@ -133,7 +133,7 @@ def entry_of(answer: Answer) -> Entry:
 
 
 def material_fingerprint(material: Material) -> str:
-    """A hash of the laws and stored stitches that the predictions of a material depend on."""
+    """A hash of the laws and the learned model that the predictions of a material depend on."""
     content = {
         str(fabric): [
             asdict(record.law),
@@ -146,7 +146,7 @@ def material_fingerprint(material: Material) -> str:
     }
     text = json.dumps([material.identifier, content], sort_keys=True, default=str)
     digest = hashlib.sha256(text.encode())
-    digest.update(files("knitcore.yarnlibrary").joinpath("data/stitches.json").read_bytes())
+    digest.update(files("knitcore.answer").joinpath("data/learned.npz").read_bytes())
     return digest.hexdigest()[:24]
 
 

@@ -3,7 +3,7 @@
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
 in a folder beside the atlas, and the run can be stopped at any point and taken up again. Laws and
 sizes are carried to the measured material by the pure fabrics of the same yarn-level model
-(:mod:`knitcore.answer.swept`). Ribs and welts stay with the composite of known size.
+(:mod:`knitcore.answer.swept`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 from knitcore.answer.answer import Source
-from knitcore.answer.repeat import Repeat
 from knitcore.answer.swept import swept_answer
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
@@ -100,7 +99,6 @@ def yarn_level_tasks(
         if key not in pure
         and len(key.replace("/", "")) <= most_stitches
         and entry.provenance != Source.SWEPT
-        and Repeat.of(StitchChart.parse(key)).layout is None
     ]
     order = [*sorted(pure), *sorted(mixed, key=lambda key: (len(key.replace("/", "")), key))]
     return {key: _task(material, key) for key in order}
@@ -147,7 +145,7 @@ def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None
             _cell_mm(document),
             laws,
             _cell_mm(reference),
-            Repeat.of(chart.tile(2, 2)),
+            chart,
             material,
         )
         entries[key] = entry_of(answer)

@@ -15,7 +15,6 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.answer import Source
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import predict_repeat
@@ -27,9 +26,9 @@ Array = NDArray[np.float64]
 
 CLOSE = 0.02
 """A mixture that is nearer than this (in logarithms) is taken at once."""
-MOST_PREDICTED = 28
+MOST_PREDICTED = 100
 """Mixtures predicted for one wish."""
-MOST_TURNED = 36
+MOST_TURNED = 200
 """Charts with something turned that are predicted for one wish, if no mixture is near."""
 NEAR = 0.045
 """Nothing is turned if a mixture is nearer than this."""
@@ -62,9 +61,6 @@ class Mixture:
 
 class Mixer:
     """All stripes of small repeats of an atlas.
-
-    Repeats whose law is corrected for folding are left out as partners: a mixture is predicted as
-    a flat composite, which would forget the correction.
 
     Parameters
     ----------
@@ -244,12 +240,7 @@ def _turn_some(chart: StitchChart, most: tuple[int, int], rng: np.random.Generat
 
 
 def _partners(atlas: Atlas) -> NDArray[np.intp]:
-    flat = [
-        k
-        for k in range(len(atlas))
-        if atlas.provenance[k] == Source.COMPOSITE or len(_phases(atlas.chart(k))) == 1
-    ]
-    small = sorted(flat, key=lambda k: (int(atlas.stitches[k]), k))
+    small = sorted(range(len(atlas)), key=lambda k: (int(atlas.stitches[k]), k))
     return np.array(small[:_PARTNERS], dtype=np.intp)
 
 

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from knitcore.answer.answer import Source
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.errors import CancelledError, InputError
@@ -340,11 +339,10 @@ class _Run:
 
 
 def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> NDArray[np.intp]:
-    """Repeats that differ in how they stretch and narrow; as the flat swatch would see them."""
+    """Repeats that differ in how they stretch and narrow."""
     shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
     side = shapes[:, 0] if direction is Direction.COURSE else shapes[:, 1]
-    flat = [source != Source.COMPOSITE_OF_SIZE for source in atlas.provenance]
-    usable = np.flatnonzero(np.array(flat) & (side <= across) & (shapes.max(axis=1) <= 4))
+    usable = np.flatnonzero((side <= across) & (shapes.max(axis=1) <= 4))
     stretch = atlas.strain_at(direction, 0.05)[usable]
     narrowing = atlas.poisson(direction)[usable] * np.minimum(stretch, 2 * strain)
     points = np.stack([np.log(stretch), 3 * narrowing / max(np.ptp(narrowing), 1e-9)], axis=1)

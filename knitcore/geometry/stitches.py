@@ -21,7 +21,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
 from knitcore.geometry.fabrics import (
@@ -38,6 +37,7 @@ from knitcore.phases import (
     BELOW,
     LEFT,
     RIGHT,
+    pure_fabric,
     quarter_phases,
     reference_fabric,
     surroundings,
@@ -103,12 +103,12 @@ def stitch_shapes(chart: StitchChart, material: Material) -> StitchShapes:
 
 
 def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | None:
-    repeat = Repeat.of(chart)
-    if repeat.fabric is not None:
+    if pure_fabric(chart) is not None:
         return None  # its quarters are exact
-    if repeat.chart.rows * repeat.chart.columns > MOST_STORED:
+    repeat = chart.repeat_cut()
+    if repeat.rows * repeat.columns > MOST_STORED:
         return None
-    return stored_stitch(repeat.chart, stored_material(material))
+    return stored_stitch(repeat, stored_material(material))
 
 
 def _of_stored(

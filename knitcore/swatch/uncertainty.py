@@ -14,8 +14,8 @@ parameters add up. The parameters are
   the material's modulus;
 - each fabric's coupling, at fixed moduli, with that of its Poisson ratios;
 - the logarithm of the shear modulus of all fabrics, where it is the assumed one;
-- the composite's own error (:mod:`knitcore.answer.composite`), where fabrics are mixed: one of
-  the whole scale for the force, one of each fabric apart for strains.
+- the composite's own error, where fabrics are mixed: one of the whole scale for the force, one of
+  each fabric apart for strains.
 """
 
 from __future__ import annotations
@@ -26,13 +26,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.answer.composite import MODEL_LOG_SD
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.gridsolver.dissection import GridFactor
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.materials.material import Material
-from knitcore.materials.uncertainty import Interval, LawUncertainty, log_interval
+from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_interval
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
 from knitcore.swatch.fields import cell_strains, corner_means, utilisation
 from knitcore.swatch.models import Coupling
@@ -41,6 +40,10 @@ from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask, waist_strain
 
 Array = NDArray[np.float64]
+
+
+MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
+"""The composite's own error, stitches of mixed quarters and of one fabric."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -103,11 +103,7 @@ def test_of_an_outline_the_largest_rectangle_counts(client: TestClient, tmp_path
 def test_a_small_mixed_repeat_is_labelled_with_care(client: TestClient) -> None:
     rows = "\n".join(["KKPP" * 5] * 10)
     told = client.post("/api/v1/predict", json={"chart": rows, "material": "acrylic"}).json()
-    assert told["provenance"] in (
-        "swept",
-        "composite with known size",
-        "composite",
-    )
+    assert told["provenance"] == "learned"
 
 
 @pytest.mark.parametrize(

@@ -91,7 +91,7 @@ def test_names_in_the_atlas_do_not_cover_each_other(flat_studio: Page) -> None:
     )
     flat_studio.click("#ink-rib-2-2")
     flat_studio.click("#fill-all")
-    expect(flat_studio.locator("#provenance")).to_have_text("composite with known size")
+    expect(flat_studio.locator("#provenance")).to_have_text("learned")
     open_atlas(flat_studio)
     flat_studio.wait_for_function("() => 'this chart' in window.names")
     (x, y, wide), (x1, y1, wide1) = flat_studio.evaluate(

@@ -100,8 +100,7 @@ export function atlasTab(studio, context) {
           { class: "inverse-legend" },
           h("span", {}, h("i", { class: "mark pure" }), "four fabrics"),
           h("span", {}, h("i", { class: "mark square" }), "yarn level"),
-          h("span", {}, h("i", { class: "mark ring" }), "corrected for folding"),
-          h("span", {}, h("i", { class: "mark" }), "flat composite"),
+          h("span", {}, h("i", { class: "mark" }), "learned"),
         ),
       );
       return;
@@ -244,8 +243,8 @@ export function sourceInWords(source) {
     measured: "Measured fabric",
     estimated: "Estimated fabric",
     swept: "Stretched at the yarn level, carried to the measured yarn",
-    "composite with known size": "Composite of the four fabrics, corrected for folding",
-    composite: "Flat composite: right when stretched, folds at rest are not in it",
+    learned: "Learned from yarn-level simulations of mixed charts",
+    "learned with known size": "Learned from yarn-level simulations, with your gauge",
   };
   return words[source] ?? source;
 }

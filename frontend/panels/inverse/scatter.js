@@ -229,11 +229,6 @@ function mark(context, source, x, y, palette) {
     context.rect(x - 3, y - 3, 6, 6);
     context.fillStyle = palette.text;
     context.fill();
-  } else if (source === "composite with known size") {
-    context.arc(x, y, 4, 0, 2 * Math.PI);
-    context.strokeStyle = palette.text;
-    context.lineWidth = 1.5;
-    context.stroke();
   } else {
     context.arc(x, y, 2.4, 0, 2 * Math.PI);
     context.globalAlpha = 0.55;

@@ -38,10 +38,10 @@ def test_pure_fabrics_have_their_measured_laws(fabric: Fabric) -> None:
     assert ATLAS.provenance[index] == "measured"
 
 
-def test_repeats_of_the_store_have_their_yarn_level_law() -> None:
+def test_a_mixed_repeat_has_its_prediction() -> None:
     basket = StitchChart.parse("KKPP\nKKPP\nPPKK\nPPKK")
     atlas = build_atlas(ACRYLIC, [basket])
-    assert atlas.provenance == ("swept",)
+    assert atlas.provenance == ("learned",)
     found = predict(basket, ACRYLIC)
     assert atlas.column("modulus_course_n_per_mm")[0] == found.modulus_course_n_per_mm
 
@@ -206,7 +206,7 @@ def test_an_atlas_of_an_older_version_is_built_again(tmp_path: Path) -> None:
 def test_files_that_hold_no_atlas(tmp_path: Path, content: bytes | None) -> None:
     file = tmp_path / "atlas.npz"
     if content is None:
-        np.savez(file, format=np.array(2), values=np.zeros((2, 3)))
+        np.savez(file, format=np.array(3), values=np.zeros((2, 3)))
     else:
         file.write_bytes(content)
     with pytest.raises(InputError, match="holds no atlas"):

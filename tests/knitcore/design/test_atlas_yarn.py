@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 from knitcore import Fabric, InputError
-from knitcore.answer.repeat import Repeat
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.atlas_build import build_atlas
@@ -63,7 +62,6 @@ def test_small_repeats_come_first_after_the_pure_fabrics(file: Path) -> None:
     order = [len(key.replace("/", "")) for key in tasks]
     assert set(list(tasks)[:4]) == {key_of_pure(fabric) for fabric in Fabric}
     assert order[4:] == sorted(order[4:])
-    assert all(Repeat.of(StitchChart.parse(key)).layout is None for key in list(tasks)[4:])
     assert len(yarn_level_tasks(WOOL, load_atlas(file).entries(), 4)) < len(tasks)
 
 

@@ -7,13 +7,10 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import load_library, material
 from knitcore.mechanics.homogenisation import MOST_CELLS, homogenise, modulus_of, phase_grid
 from knitcore.mechanics.lamination import SheetGrid, coarsened
-from knitcore.mechanics.repeat_curve import repeat_curve
 
 repeats = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=5))
 
@@ -158,36 +155,3 @@ def test_columns_of_one_phase_keep_its_size():
     rib, plain = (acrylic.record(f).stitch_course_mm / 2 for f in (Fabric.RIB, Fabric.STOCKINETTE))
     np.testing.assert_allclose(grid.width_mm, [rib, plain, plain, rib, rib, plain, plain, rib])
     assert grid.shares.sum() == pytest.approx(1)
-
-
-@pytest.mark.parametrize("fabric", Fabric)
-@pytest.mark.parametrize("direction", Direction)
-def test_the_nonlinear_repeat_of_a_pure_fabric_is_its_law(fabric, direction):
-    yarn = material("cotton")
-    law = yarn.law(fabric)
-    strain = np.linspace(0, 0.6 * law.lock_up_strain(direction), 5)
-    curve = repeat_curve(StitchChart.of_fabric(fabric, 2, 2), yarn, direction, strain)
-    expected = uniaxial_response(law, direction, strain)
-    np.testing.assert_allclose(curve.stress, expected.stress, rtol=1e-7, atol=1e-10)
-    np.testing.assert_allclose(
-        curve.transverse_strain, expected.transverse_strain, rtol=1e-6, atol=1e-9
-    )
-
-
-def test_the_nonlinear_repeat_starts_with_the_linear_modulus():
-    yarn, chart = material("acrylic"), StitchChart.parse("KKPP\nPPKK")
-    curve = repeat_curve(chart, yarn, Direction.WALE, [1e-5])
-    linear = homogenise(chart, yarn).modulus_n_per_mm(Direction.WALE)
-    assert curve.stress[0] / 1e-5 == pytest.approx(linear, rel=1e-3)
-
-
-def test_strains_beyond_the_lock_up_of_a_repeat_are_refused():
-    with pytest.raises(InputError, match="lock-up"):
-        repeat_curve(StitchChart.parse("KKPP"), material("acrylic"), Direction.COURSE, [0.5, 3.0])
-    for bad in ([0.2, 0.1], [float("nan")], [-0.1]):
-        with pytest.raises(InputError, match="increasing"):
-            repeat_curve(StitchChart.parse("KKPP"), material("acrylic"), Direction.COURSE, bad)
-    with pytest.raises(InputError, match="too large"):
-        repeat_curve(
-            StitchChart.of_fabric("rib", 40, 40), material("acrylic"), Direction.COURSE, [0.1]
-        )

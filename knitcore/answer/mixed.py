@@ -1,0 +1,113 @@
+"""Charts that mix pure fabrics: the learned answer with its intervals, bounds and notes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.answer.answer import GAUGE, Along, Answer, Source
+from knitcore.answer.densities import Densities
+from knitcore.answer.learned import KnownSize, LearnedAnswer, packaged_model
+from knitcore.answer.measured import CURL
+from knitcore.answer.mixture import Mixture
+from knitcore.answer.relaxed import RelaxedSize
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction, Fabric
+from knitcore.materials import Interval, Material
+from knitcore.materials.uncertainty import Z_SCORE
+
+Array = NDArray[np.float64]
+
+LEARNED = (
+    "Learned from yarn-level simulations, which have no friction or set: the first stretch and the "
+    "draw-in are the least sure. Your own gauge makes both surer."
+)
+_LOOP_SPREAD = 1.15
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedResponse:
+    """Stretch of a mixed chart, moved by ``deviations`` standard deviations of the log strain."""
+
+    answer: LearnedAnswer
+    direction: Direction
+    deviations: float = 0.0
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Young's modulus."""
+        spread = self.deviations * self.answer.modulus_log_sd(self.direction)
+        return self.answer.modulus_n_per_mm(self.direction) * math.exp(-spread)
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        strain = self.answer.strain(self.direction, stress)
+        if self.deviations == 0:
+            return strain
+        spread = self.deviations * self.answer.strain_log_sd(self.direction, stress)
+        return np.asarray(strain * np.exp(spread))
+
+
+def mixed(
+    repeat: StitchChart, found: Densities, material: Material, gauge: RelaxedSize | None
+) -> Answer:
+    """What a repeat of more than one pure fabric does.
+
+    Parameters
+    ----------
+    repeat : the repeat.
+    found : its densities.
+    gauge : its relaxed size, where it was measured.
+
+    Raises
+    ------
+    InputError
+        If the material lacks a pure fabric that the repeat needs.
+    """
+    size = None if gauge is None else KnownSize(gauge.course_mm, gauge.wale_mm, gauge.log_sd)
+    learned = packaged_model().answer(found, material, size)
+    course, wale = (_along(learned, direction) for direction in Direction)
+    parts = learned.mixture.parts
+    shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
+    return Answer(
+        course,
+        wale,
+        sum(share * record.law.shear_modulus for share, record in parts),
+        Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE,
+        f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, corrected by what "
+        "yarn-level simulations of mixed charts taught",
+        "learned" if gauge is None else GAUGE,
+        (LEARNED, *_notes(learned.mixture, material)),
+    )
+
+
+def _along(found: LearnedAnswer, direction: Direction) -> Along:
+    response = LearnedResponse(found, direction)
+    bounds = (*found.mixture.bounds_n_per_mm(direction), response.modulus_n_per_mm)
+    return Along(
+        response,
+        LearnedResponse(found, direction, -Z_SCORE),
+        LearnedResponse(found, direction, Z_SCORE),
+        poisson=float(found.poisson[direction.axis]),
+        poisson_sd=float(found.poisson_sd[direction.axis]),
+        relaxed_mm=float(found.size_mm[direction.axis]),
+        relaxed_log_sd=float(found.size_log_sd[direction.axis]),
+        bounds_n_per_mm=Interval(min(bounds), max(bounds)),
+    )
+
+
+def _notes(mixture: Mixture, material: Material) -> tuple[str, ...]:
+    found = []
+    if any(share > 0.5 and r.fabric is Fabric.STOCKINETTE for share, r in mixture.parts):
+        found.append(CURL)
+    lengths = {r.fabric: r.loop_length_mm for _, r in mixture.parts if r.loop_length_mm is not None}
+    if lengths and max(lengths.values()) > _LOOP_SPREAD * min(lengths.values()):
+        listed = ", ".join(f"{fabric} {length:g} mm" for fabric, length in lengths.items())
+        found.append(
+            f"The fabrics of this material were knitted at different loop lengths ({listed}); a "
+            "mixed chart lies between them."
+        )
+    return (*found, material.note) if material.note else tuple(found)

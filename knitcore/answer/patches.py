@@ -1,0 +1,245 @@
+"""Large charts: patches of stitches, each with its own answer, that pull on each other.
+
+A repeat of at most :data:`SIDE` stitches a side is one patch. A larger chart is cut into patches of
+about that size. Each is a pure fabric, or a mixed chart of its own, with what it says of the whole
+chart's densities moved so that the patches' mean is the chart's: cutting a texture across its
+repeat then changes nothing on the whole.
+
+Together they are lines along the pull: in a line all patches carry the same force per row (wale),
+and their stretched sizes add up; all lines are strained alike, and their forces add up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from knitcore.answer.answer import Along, Answer
+from knitcore.answer.densities import Densities, densities
+from knitcore.answer.measured import measured
+from knitcore.answer.mixed import mixed
+from knitcore.answer.relaxed import RelaxedSize
+from knitcore.chart import StitchChart
+from knitcore.fabric import Direction
+from knitcore.law.response import Response
+from knitcore.materials import Interval, Material
+from knitcore.phases import pure_fabric
+
+Array = NDArray[np.float64]
+
+SIDE = 16
+"""Stitches along the side of a patch, about."""
+MOST_A_SIDE = 8
+"""Patches along each side of a chart, at most; they are larger where that is not enough."""
+
+_FORCES_N: Array = np.geomspace(1e-6, 30.0, 200)
+
+
+@dataclass(frozen=True, eq=False)
+class Patches:
+    """A chart in patches.
+
+    Attributes
+    ----------
+    rows, columns : where patches begin and end, from 0; one more than there are patches.
+    answers : of each patch, [row][column].
+    """
+
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    answers: tuple[tuple[Answer, ...], ...]
+
+    def together(self) -> Answer:
+        """The answer of the whole chart."""
+        first = self.answers[0][0]
+        if len(self.answers) == len(self.answers[0]) == 1:
+            return first
+        flat = [answer for line in self.answers for answer in line]
+        share = np.outer(np.diff(self.rows), np.diff(self.columns)).ravel().astype(float)
+        share /= share.sum()
+        course, wale = (self._along(flat, share, direction) for direction in Direction)
+        # the least sure source, and what all have to say
+        source = next((a for a in flat if a.provenance.startswith("learned")), first)
+        return replace(
+            source,
+            course=course,
+            wale=wale,
+            shear_modulus_n_per_mm=float(share @ [a.shear_modulus_n_per_mm for a in flat]),
+            method=f"{len(self.answers[0])} x {len(self.answers)} patches, in series along the "
+            "pull and side by side across it; mixed ones by what yarn-level simulations taught",
+            notes=tuple(dict.fromkeys(note for answer in flat for note in answer.notes)),
+        )
+
+    def _along(self, flat: list[Answer], share: Array, direction: Direction) -> Along:
+        parts = [answer.along(direction) for answer in flat]
+
+        def mean(of: Callable[[Along], float]) -> float:
+            return float(share @ [of(part) for part in parts])
+
+        response, stiff, soft = (
+            self._response(direction, kind)
+            for kind in (
+                lambda along: along.response,
+                lambda along: along.stiff,
+                lambda along: along.soft,
+            )
+        )
+        modulus = response.modulus_n_per_mm
+        return Along(
+            response,
+            stiff,
+            soft,
+            poisson=mean(lambda part: part.poisson),
+            poisson_sd=mean(lambda part: part.poisson_sd),
+            relaxed_mm=mean(lambda part: part.relaxed_mm),
+            relaxed_log_sd=mean(lambda part: part.relaxed_log_sd),
+            bounds_n_per_mm=Interval(
+                min(modulus, *(part.bounds_n_per_mm.low for part in parts)),
+                max(modulus, *(part.bounds_n_per_mm.high for part in parts)),
+            ),
+        )
+
+    def _response(self, direction: Direction, kind: Callable[[Along], Response]) -> TabledResponse:
+        """One curve of the whole chart from that of its patches."""
+        grid, along, across = self.answers, np.diff(self.columns), np.diff(self.rows)
+        if direction is Direction.WALE:
+            grid, along, across = tuple(zip(*grid, strict=True)), across, along
+        heights, curves = [], []
+        for line in grid:
+            lengths = along * [a.along(direction).relaxed_mm for a in line]
+            widths = [a.along(direction.other).relaxed_mm for a in line]
+            strains = [
+                kind(a.along(direction)).strain(_FORCES_N / width)
+                for a, width in zip(line, widths, strict=True)
+            ]
+            curves.append(lengths @ np.array(strains) / lengths.sum())
+            heights.append(float(along @ widths / along.sum()))
+        common = np.geomspace(
+            max(curve[0] for curve in curves), min(curve[-1] for curve in curves), 200
+        )
+        force = across @ np.array([np.interp(common, curve, _FORCES_N) for curve in curves])
+        return TabledResponse(force / float(across @ np.array(heights)), common)
+
+
+@dataclass(frozen=True, eq=False)
+class TabledResponse:
+    """A response through points: linear below the first, a power law between two, and no further
+    stretch beyond the last.
+
+    Attributes
+    ----------
+    stress_n_per_mm, strains : (points,), increasing and above 0.
+    """
+
+    stress_n_per_mm: Array
+    strains: Array
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Young's modulus."""
+        return float(self.stress_n_per_mm[0] / self.strains[0])
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        sigma = np.asarray(stress, dtype=float)
+        first = float(self.stress_n_per_mm[0])
+        at = np.log(np.maximum(sigma, first))
+        curved = np.exp(np.interp(at, np.log(self.stress_n_per_mm), np.log(self.strains)))
+        return np.where(sigma < first, sigma / self.modulus_n_per_mm, curved)
+
+
+def patches_of(chart: StitchChart, material: Material, gauge: RelaxedSize | None = None) -> Patches:
+    """A chart in patches, each with its answer.
+
+    Parameters
+    ----------
+    chart : a repeat or a whole piece, as for :func:`knitcore.answer.choose.choose`.
+    gauge : relaxed size of the whole chart's mean stitch, where it was measured.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    fabric = pure_fabric(chart)
+    if fabric is not None:
+        answer = measured(fabric, material)
+        return _one(chart, answer if gauge is None else answer.with_size(gauge))
+    repeat = chart.repeat_cut()
+    if max(repeat.rows, repeat.columns) <= SIDE:
+        return _one(chart, mixed(repeat, densities(repeat), material, gauge))
+    rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
+    parts = [
+        [
+            repeat.region(slice(below, above), slice(left, right))
+            for left, right in pairwise(columns)
+        ]
+        for below, above in pairwise(rows)
+    ]
+    found = [[densities(part) for part in line] for line in parts]
+    counts = np.outer(np.diff(rows), np.diff(columns))
+    moved = _difference(densities(repeat), [d for line in found for d in line], counts.ravel())
+    answers = tuple(
+        tuple(
+            _patch(part, _sum(own, moved), material, None)
+            for part, own in zip(line, have, strict=True)
+        )
+        for line, have in zip(parts, found, strict=True)
+    )
+    whole = Patches(rows, columns, answers)
+    if gauge is None:
+        return whole
+    mean = whole.together()
+    factors = gauge.course_mm / mean.relaxed_course_mm, gauge.wale_mm / mean.relaxed_wale_mm
+    return replace(
+        whole,
+        answers=tuple(
+            tuple(
+                _patch(part, _sum(own, moved), material, _scaled(a, factors, gauge))
+                for part, own, a in zip(line, have, at, strict=True)
+            )
+            for line, have, at in zip(parts, found, answers, strict=True)
+        ),
+    )
+
+
+def _patch(
+    part: StitchChart, found: Densities, material: Material, gauge: RelaxedSize | None
+) -> Answer:
+    fabric = pure_fabric(part)
+    if fabric is None:
+        return mixed(part, found, material, gauge)
+    answer = measured(fabric, material)
+    return answer if gauge is None else answer.with_size(gauge)
+
+
+def _one(chart: StitchChart, answer: Answer) -> Patches:
+    return Patches(np.array([0, chart.rows]), np.array([0, chart.columns]), ((answer,),))
+
+
+def _cuts(stitches: int) -> NDArray[np.intp]:
+    count = min(-(-stitches // SIDE), MOST_A_SIDE)
+    return np.linspace(0, stitches, count + 1).round().astype(np.intp)
+
+
+def _difference(whole: Densities, parts: list[Densities], counts: NDArray[np.int_]) -> Densities:
+    def off(of: Callable[[Densities], Array]) -> Array:
+        return np.asarray(of(whole) - np.average([of(p) for p in parts], axis=0, weights=counts))
+
+    return Densities(off(lambda d: d.shares), off(lambda d: d.excess), off(lambda d: d.straight))
+
+
+def _sum(own: Densities, moved: Densities) -> Densities:
+    shares = np.maximum(own.shares + moved.shares, 0.0)
+    straight = np.clip(own.straight + moved.straight, 0.0, 1.0)
+    return Densities(shares / shares.sum(), own.excess + moved.excess, straight)
+
+
+def _scaled(answer: Answer, factors: tuple[float, float], gauge: RelaxedSize) -> RelaxedSize:
+    return RelaxedSize(
+        answer.relaxed_course_mm * factors[0], answer.relaxed_wale_mm * factors[1], gauge.log_sd
+    )
