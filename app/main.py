@@ -7,6 +7,7 @@ import contextlib
 import logging
 import os
 from collections.abc import AsyncIterator, Callable
+from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 
@@ -36,6 +37,9 @@ from app.store.schema import migrate
 from app.viewer import relay
 from app.viewer.views import Views
 
+if TYPE_CHECKING:
+    from app.compute.cluster import Cluster
+
 log = logging.getLogger("knitcore.app")
 
 JANITOR_PERIOD_S = 30.0
@@ -58,7 +62,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
             os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
         app.state.database = await asyncio.to_thread(_open_database, chosen)
         app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
-        app.state.compute = Compute(_places(chosen), chosen.job_timeout_s)
+        app.state.cluster = _cluster(chosen)
+        app.state.compute = Compute(_places(chosen, app.state.cluster), chosen.job_timeout_s)
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.answers = Answers(
@@ -133,12 +138,19 @@ async def _close_idle_views(views: Views, idle_s: float) -> None:
             log.info("closed %d idle 3D views, %d left", closed, len(views))
 
 
-def _places(settings: Settings) -> list[Place]:
-    """Where heavy work is done."""
-    if settings.scheduler is not None:
-        from app.compute.cluster import Cluster, ClusterPlace  # its library is needed here only
+def _cluster(settings: Settings) -> Cluster | None:
+    if settings.scheduler is None:
+        return None
+    from app.compute.cluster import Cluster  # its library is needed here only
 
-        cluster = Cluster(settings.scheduler)
+    return Cluster(settings.scheduler)
+
+
+def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
+    """Where heavy work is done."""
+    if cluster is not None:
+        from app.compute.cluster import ClusterPlace
+
         return [ClusterPlace(cluster) for _ in range(settings.workers)]
     workers = processes(
         settings.workers, settings.worker_memory_bytes, idle=settings.worker_priority == "idle"

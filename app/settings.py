@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
+from difflib import get_close_matches
 from functools import cached_property
 from ipaddress import ip_address
 from pathlib import Path
@@ -17,6 +19,15 @@ from pydantic_settings import (
 )
 
 from knitcore.errors import InputError
+
+NO_SETTINGS = frozenset(
+    f"KNITCORE_{name}"
+    for name in (
+        "CONFIG",
+        "STUDY_DATA",
+        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),  # of tests
+    )
+)
 
 
 class Settings(BaseSettings):
@@ -152,6 +163,16 @@ class Settings(BaseSettings):
         return self.token is not None or self.require_login
 
     @property
+    def folder(self) -> Path:
+        """The data folder."""
+        return self.data_dir.expanduser()
+
+    @property
+    def database_file(self) -> Path:
+        """The SQLite file of the data folder."""
+        return self.folder / "knitcore.sqlite3"
+
+    @property
     def store_url(self) -> str:
         """The database's URL; makes the data folder if the database is a file in it.
 
@@ -169,7 +190,7 @@ class Settings(BaseSettings):
                     "Use postgresql+psycopg://user:password@host/name, or leave it out.",
                 )
             return url
-        folder = self.data_dir.expanduser()
+        folder = self.folder
         try:
             folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         except OSError as error:
@@ -178,7 +199,7 @@ class Settings(BaseSettings):
                 f"{folder} cannot be made ({error.strerror}).",
                 "Set KNITCORE_DATA_DIR to a folder that can be written.",
             ) from error
-        return f"sqlite:///{folder / 'knitcore.sqlite3'}"
+        return f"sqlite:///{self.database_file}"
 
     def check(self) -> Settings:
         """The settings themselves, if they are safe to serve with.
@@ -186,8 +207,10 @@ class Settings(BaseSettings):
         Raises
         ------
         InputError
-            If the service would listen beyond loopback without a token.
+            If a variable of the environment is no setting, or the service would listen beyond
+            loopback without a token.
         """
+        _check_names(os.environ)
         if not self.is_loopback and not self.asks_for_login:
             raise InputError(
                 "token",
@@ -198,3 +221,16 @@ class Settings(BaseSettings):
         if self.token is not None and len(self.token.get_secret_value()) < 16:
             raise InputError("token", "is too short.", "Use at least 16 characters.")
         return self
+
+
+def _check_names(environment: Iterable[str]) -> None:
+    """Refuse a misspelt variable: without its login, a service would be open."""
+    known = {f"KNITCORE_{name.upper()}" for name in Settings.model_fields} | NO_SETTINGS
+    for name in sorted(environment):
+        if name.upper().startswith("KNITCORE_") and name.upper() not in known:
+            near = get_close_matches(name.upper(), known, 1)
+            raise InputError(
+                name,
+                "is no setting.",
+                f"Did you mean {near[0]}?" if near else "Leave it out; docs/serving.md has all.",
+            )

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
+import os
 import resource
 import signal
 import socket
 import sys
+from collections.abc import Iterator
 from functools import partial
 from types import FrameType
 
@@ -16,6 +19,8 @@ import click
 from app.cli.common import json_option, user_settings
 from app.settings import Settings
 from knitcore.errors import InputError
+
+log = logging.getLogger("knitcore.app")
 
 MOST_HANDLES = 65_536
 SPARE_HANDLES = 400
@@ -30,17 +35,48 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     """Start the service and print its address."""
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(user_settings().model_dump() | given).check()
-    _ = settings.store_url  # told in one line if there is no place for the data
+    from app.http.observing import configure_logging
+    from app.http.problems import ServiceError
+
+    os.umask(0o077)  # what is written here is nobody else's
+    configure_logging(settings.log_format)
+    try:
+        with _prepared(settings):
+            _serve(settings, as_json=as_json)
+    except ServiceError as error:
+        remedy = f" {error.remedy}" if error.remedy else ""
+        raise click.ClickException(f"{error.detail}{remedy}") from error
+
+
+@contextlib.contextmanager
+def _prepared(settings: Settings) -> Iterator[None]:
+    """Hold the data, have them up to date, and tell what is not as it should be."""
+    from app.doctor import examine
+    from app.store.database import Database
+    from app.store.lock import held
+    from app.store.schema import migrate
+
+    database = Database(settings.store_url)
+    try:
+        with held(database, settings.process_name):
+            database.check_pages()
+            migrate(database)
+            for check in examine(settings).failed:
+                log.warning("%s: %s %s", check.name, check.problem, check.remedy)
+            yield
+    finally:
+        database.close()
+
+
+def _serve(settings: Settings, *, as_json: bool) -> None:
     import uvicorn
 
     from app.compute import memory
     from app.http.connections import Connection, Door
-    from app.http.observing import configure_logging
     from app.main import create_app
     from app.viewer.incoming import MOST_PICTURE_BYTES
 
     memory.keep_no_large_blocks()
-    configure_logging(settings.log_format)
     listener = _listen(settings)
     shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
     name = f"[{shown}]" if ":" in shown else shown
@@ -80,8 +116,10 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     )
     # uvicorn raises the signal again after a clean stop: end like any program, not killed by it
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    log.info("starts at %s", address)
     with contextlib.suppress(KeyboardInterrupt):
         server.run(sockets=[listener])
+    log.info("stopped")
 
 
 def _raise_handles() -> int:

@@ -21,18 +21,19 @@ from distributed import Client, get_worker
 from distributed.client import Future as ClusterFuture
 from distributed.scheduler import KilledWorker
 
-from app.compute.places import WorkerDiedError, call
-from app.http.problems import UnavailableError
+from app.compute.places import NotBegunError, WorkerDiedError, call
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")
 
 TOPIC = "knitcore"
 CONNECT_S = 5.0
+WORKERS_S = 10.0
+"""How long a job waits for the first worker of a cluster."""
 TOLD_EVERY_S = 0.2
 
 
-class ClusterError(UnavailableError):
+class ClusterError(NotBegunError):
     """The cluster does not answer."""
 
 
@@ -57,7 +58,22 @@ class Cluster:
         ------
         ClusterError
         """
-        return self._connected().submit(_run, key, job, key=f"knitcore-{key}", pure=False)
+        client = self._connected()
+        try:
+            client.wait_for_workers(1, timeout=WORKERS_S)
+        except TimeoutError:
+            raise _nobody() from None
+        return client.submit(_run, key, job, key=f"knitcore-{key}", pure=False)
+
+    def check(self) -> None:
+        """See whether the scheduler answers and has workers.
+
+        Raises
+        ------
+        ClusterError
+        """
+        if not self._connected().scheduler_info(n_workers=-1)["workers"]:
+            raise _nobody()
 
     def later(self, action: Callable[[Client], Awaitable[Any]]) -> None:
         """Do something in the client's own thread, where its methods can be awaited."""
@@ -97,6 +113,12 @@ class Cluster:
         told = event[1]
         if (place := self.listeners.get(told["job"])) is not None:
             place.share, place.worker = told["share"], told["worker"]
+
+
+def _nobody() -> ClusterError:
+    return ClusterError(
+        "No machine of the cluster takes computations.", remedy="Start its workers."
+    )
 
 
 class ClusterPlace:
@@ -158,7 +180,10 @@ class ClusterPlace:
             done.set_result(future.result())
         except (KilledWorker, CancelledError, OSError, TimeoutError) as error:
             log.warning("a job was lost on the cluster: %s", error)
-            done.set_exception(WorkerDiedError("The machine of this computation was lost."))
+            lost: Exception = WorkerDiedError("The machine of this computation was lost.")
+            if self.worker is None:
+                lost = NotBegunError("The cluster lost this computation before it began.")
+            done.set_exception(lost)
         except Exception as error:
             done.set_exception(error)
 

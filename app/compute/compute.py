@@ -9,7 +9,13 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any, TypeVar
 
-from app.compute.places import AbandonedError, Place, TimeLimitError, WorkerDiedError
+from app.compute.places import (
+    AbandonedError,
+    NotBegunError,
+    Place,
+    TimeLimitError,
+    WorkerDiedError,
+)
 from app.compute.turns import Turns
 from app.http.identity import current_user
 
@@ -19,6 +25,9 @@ T = TypeVar("T")
 POLL_S = 0.25
 GRACE_S = 3.0
 """How long a job may take to notice that it was cancelled before its process is stopped."""
+START_S = 60.0
+"""How long a job may lie with a place before it starts: a new process loads, a cluster looks for a
+worker."""
 WAITING_EACH = 100
 
 
@@ -63,15 +72,20 @@ class Compute:
         Raises
         ------
         AbandonedError, TimeLimitError, WorkerDiedError, MemoryLimitError
+        NotBegunError
+            If no place was free, or none began, in time.
         UnavailableError
             If too many wait already, or the cluster cannot be reached.
         """
         limit = self._timeout_s if timeout_s is None else timeout_s
         ticket = self.turns.enter(owner or current_user.get(), background=background)
+        asked = asyncio.get_running_loop().time()
         try:
             while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
                 if await abandoned():
                     raise AbandonedError("The computation was abandoned.")
+                if not background and asyncio.get_running_loop().time() > asked + self._timeout_s:
+                    raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
             place = ticket.place.result()
             future = await place.submit(partial(job, *args))
             return await self._watch(place, future, abandoned, limit, told)
@@ -87,12 +101,14 @@ class Compute:
         told: Callable[[float], Awaitable[None]] | None,
     ) -> T:
         loop = asyncio.get_running_loop()
-        deadline, share = None, -1.0
+        begun, deadline, share = loop.time(), None, -1.0
         try:
             while not (await asyncio.wait([future], timeout=POLL_S))[0]:
                 if await abandoned():
                     raise AbandonedError("The computation was abandoned.")
                 if (now := place.share) is None:
+                    if loop.time() > begun + START_S:
+                        raise NotBegunError(f"No worker began within {START_S:g} s.")
                     continue
                 deadline = deadline or loop.time() + limit_s
                 if loop.time() > deadline:
@@ -100,7 +116,7 @@ class Compute:
                 if told is not None and now != share:
                     share = now
                     await told(share)
-        except (AbandonedError, TimeLimitError):
+        except (AbandonedError, TimeLimitError, NotBegunError):
             await _stop(place, future)
             raise
         except BaseException:

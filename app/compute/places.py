@@ -59,6 +59,10 @@ class TimeLimitError(UnavailableError):
     headers: ClassVar[dict[str, str]] = {}  # the same would take as long again
 
 
+class NotBegunError(UnavailableError):
+    """No worker took the computation on; it can be asked for again."""
+
+
 class WorkerDiedError(UnavailableError):
     """The process of a computation ended without a result."""
 

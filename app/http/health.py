@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-import shutil
 
 from fastapi import APIRouter, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from pydantic import BaseModel
-from sqlalchemy import text
 
+from app.doctor import check_space
 from app.http.problems import Problem, UnavailableError
-from app.settings import Settings
-from app.store.database import Database
+from knitcore.errors import InputError
 
 router = APIRouter(tags=["service"])
 
-LEAST_FREE_BYTES = 100_000_000
 PATIENCE_S = 5.0
 
 
@@ -44,14 +41,19 @@ async def healthz() -> Health:
     responses={503: {"model": Problem, "description": "What is missing."}},
 )
 async def readyz(request: Request) -> Health:
-    """Asks the database and the disk: while this fails, send requests elsewhere."""
-    database: Database = request.app.state.database
+    """Asks database, disk and cluster: while this fails, send requests elsewhere."""
+    state = request.app.state
     try:
         async with asyncio.timeout(PATIENCE_S):
-            await asyncio.to_thread(_ask, database)
+            await asyncio.to_thread(state.database.check)
+            if state.database.is_sqlite:
+                check_space(state.settings.folder)
+            if state.cluster is not None:
+                await asyncio.to_thread(state.cluster.check)
     except TimeoutError:
-        raise NotReadyError("The database does not answer.") from None
-    _check_disk(request.app.state.settings, database)
+        raise NotReadyError("The database or the cluster does not answer.") from None
+    except InputError as error:
+        raise NotReadyError(error.problem, remedy=error.remedy) from None
     return Health()
 
 
@@ -60,19 +62,3 @@ def metrics(request: Request) -> Response:
     """Requests, times, jobs, views and the process itself."""
     registry = request.app.state.metrics.registry
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
-
-
-def _ask(database: Database) -> None:
-    with database.read() as connection:
-        connection.execute(text("SELECT 1 FROM alembic_version"))
-
-
-def _check_disk(settings: Settings, database: Database) -> None:
-    if not database.is_sqlite or not settings.data_dir.is_dir():
-        return
-    free = shutil.disk_usage(settings.data_dir).free
-    if free < LEAST_FREE_BYTES:
-        raise NotReadyError(
-            f"The disk of the designs has {free / 1e6:.0f} MB left.",
-            remedy="Make room; nothing that was acknowledged is lost.",
-        )

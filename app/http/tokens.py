@@ -125,11 +125,10 @@ class Tokens:
 
         def action(connection: Connection) -> str:
             wanted = select(service_keys.c.value).where(service_keys.c.name == "session")
-            known = connection.execute(wanted).scalar_one_or_none()
-            if known is None:
-                known = secrets.token_urlsafe(32)
-                connection.execute(insert(service_keys).values(name="session", value=known))
-            return str(known)
+            if connection.execute(wanted).scalar_one_or_none() is None:
+                new = self._database.insert_new(service_keys)
+                connection.execute(new.values(name="session", value=secrets.token_urlsafe(32)))
+            return str(connection.execute(wanted).scalar_one())
 
         return self._database.write(action)
 

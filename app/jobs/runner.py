@@ -7,9 +7,10 @@ import logging
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from app.compute.answers import Answers
-from app.compute.places import AbandonedError
+from app.compute.places import AbandonedError, NotBegunError
 from app.designs.idempotency import Retry
 from app.http.problems import Problem, ServiceError, problem_of
 from app.jobs.document import JobState, JobStatus
@@ -22,6 +23,8 @@ log = logging.getLogger("knitcore.jobs")
 BEAT_S = 2.0
 """How often other processes hear of this one's jobs, and it of what they cancelled."""
 BEATS_TO_LOOK_ROUND = 10
+AGAIN_S = 10.0
+"""After which a job that no worker began is tried again."""
 STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
 """A database that is away for half a minute costs no result."""
 
@@ -165,7 +168,7 @@ class JobRunner:
         log.info("job waits", extra=extra)
         try:
             wanted = described.request.model_validate_json(request)
-            answer = await self._answers.answer(
+            answer = await self._begun(
                 abandoned,
                 described,
                 wanted,
@@ -190,6 +193,15 @@ class JobRunner:
             else:
                 log.info("job failed: %s", problem.detail, extra=extra)
             await self._fail(job, problem)
+
+    async def _begun(self, *args: Any, **turn: Any) -> Any:
+        """What a job computes; one that no worker began waits on."""
+        while True:
+            try:
+                return await self._answers.answer(*args, **turn)
+            except NotBegunError as error:
+                log.warning("a job waits on: %s", error)
+                await asyncio.sleep(AGAIN_S)
 
     async def _begin(self, job: str, run: _Run) -> None:
         try:

@@ -15,8 +15,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from fastapi.concurrency import run_in_threadpool
-from sqlalchemy import Connection, Engine, create_engine, event, make_url
-from sqlalchemy.exc import InterfaceError, OperationalError
+from sqlalchemy import Connection, Engine, Insert, Table, create_engine, event, make_url, text
+from sqlalchemy.dialects.postgresql import insert as postgresql_insert
+from sqlalchemy.dialects.sqlite import insert as sqlite_insert
+from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.pool import QueuePool
 
@@ -30,6 +32,7 @@ Action = Callable[[Connection], Any]
 FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
 """The database itself failed; everything else is an answer of it or a mistake of ours."""
 FULL = ("disk is full", "No space left on device")
+DAMAGED = ("malformed", "file is not a database")
 BUSY_TIMEOUT_MS = 10_000
 LARGEST_BATCH = 64
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
@@ -41,6 +44,12 @@ class StoreError(UnavailableError):
 
 class StoreFullError(StoreError, NoRoomError):
     """The disk of the database is full."""
+
+
+class DamagedError(StoreError):
+    """The database's file is not as it was written."""
+
+    default_remedy = "Stop the service and restore a backup."
 
 
 class VanishedError(StoreError):
@@ -76,11 +85,57 @@ class Database:
             if self.is_sqlite
             else _server_engine(url)
         )
+        self._damaged = False
         self._waiting: queue.SimpleQueue[tuple[Action, Future[Any]] | None] = queue.SimpleQueue()
         self._writer: threading.Thread | None = None
         if self.is_sqlite:
             self._writer = threading.Thread(target=self._write_all, name="store", daemon=True)
             self._writer.start()
+
+    def insert_new(self, table: Table) -> Insert:
+        """An insertion of rows that are not there yet; those that are stay as they are."""
+        kind = sqlite_insert if self.is_sqlite else postgresql_insert
+        return kind(table).on_conflict_do_nothing()
+
+    @property
+    def lock_file(self) -> Path:
+        """Beside an SQLite file: held by the service, and there since it was first used."""
+        return _lock_file(Path(self.url.database or ""))
+
+    def check(self) -> None:
+        """See whether the database answers, and was whole whenever it was read.
+
+        Raises
+        ------
+        StoreError
+        """
+        if self._damaged:
+            raise _damaged()
+        with self.read() as connection:
+            connection.execute(text("SELECT 1 FROM alembic_version"))
+
+    def check_pages(self) -> None:
+        """Look through an SQLite file for damage, about a second for a gigabyte.
+
+        Raises
+        ------
+        StoreError
+        """
+        if self.is_sqlite:
+            with self.read() as connection:
+                if connection.exec_driver_sql("PRAGMA quick_check(1)").scalar() != "ok":
+                    raise _damaged()
+
+    def copy_to(self, file: Path) -> None:
+        """Copy an SQLite database as it is now to a new file, readable by this user only.
+
+        Raises
+        ------
+        StoreError
+        """
+        with self._told(), contextlib.closing(self.engine.raw_connection()) as connection:
+            os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+            connection.cursor().execute("VACUUM INTO ?", (str(file),))
 
     @contextlib.contextmanager
     def read(self) -> Iterator[Connection]:
@@ -91,7 +146,7 @@ class Database:
         StoreError
             If the database cannot be reached.
         """
-        with _told(), self.engine.connect() as connection:
+        with self._told(), self.engine.connect() as connection:
             yield connection
 
     @contextlib.contextmanager
@@ -111,9 +166,9 @@ class Database:
             If it could not be made durable; then nothing of it is kept.
         """
         if self._writer is None:
-            with _told(), self.engine.begin() as connection:
+            with self._told(), self.engine.begin() as connection:
                 return action(connection)
-        with _told():
+        with self._told():
             return self._hand_in(action).result()
 
     async def written(self, action: Callable[[Connection], T]) -> T:
@@ -126,7 +181,7 @@ class Database:
         """
         if self._writer is None:
             return await run_in_threadpool(self.write, action)
-        with _told():
+        with self._told():
             return await asyncio.wrap_future(self._hand_in(action))
 
     def close(self) -> None:
@@ -136,6 +191,23 @@ class Database:
             self._writer.join()
             self._writer = None
         self.engine.dispose()
+
+    @contextlib.contextmanager
+    def _told(self) -> Iterator[None]:
+        """Tell what the database itself did not do."""
+        try:
+            yield
+        except DatabaseError as error:
+            reason = str(error).splitlines()[0]
+            if any(words in reason for words in DAMAGED):
+                self._damaged = True
+                log.error("the database is damaged: %s", reason)
+                raise _damaged() from error
+            if not isinstance(error, FAILURES):
+                raise
+            raise _failed(reason) from error
+        except FAILURES as error:
+            raise _failed(str(error).splitlines()[0]) from error
 
     def _hand_in(self, action: Callable[[Connection], T]) -> Future[T]:
         done: Future[T] = Future()
@@ -202,15 +274,18 @@ def _attempt(connection: Connection, action: Action) -> tuple[Any, Exception | N
     return result, None
 
 
-@contextlib.contextmanager
-def _told() -> Iterator[None]:
-    try:
-        yield
-    except FAILURES as error:
-        reason = str(error).splitlines()[0]
-        log.error("the database failed: %s", reason)
-        kind = StoreFullError if any(words in reason for words in FULL) else StoreError
-        raise kind(UNREACHABLE.format(reason=_public(reason))) from error
+def _failed(reason: str) -> StoreError:
+    log.error("the database failed: %s", reason)
+    kind = StoreFullError if any(words in reason for words in FULL) else StoreError
+    return kind(UNREACHABLE.format(reason=_public(reason)))
+
+
+def _damaged() -> DamagedError:
+    return DamagedError("The file of the designs is damaged.")
+
+
+def _lock_file(database: Path) -> Path:
+    return database.with_name(f"{database.name}.lock")
 
 
 def _public(reason: str) -> str:
@@ -230,6 +305,7 @@ class _File:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        check_not_lost(path)
         try:
             handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
         except OSError as error:
@@ -265,6 +341,22 @@ class _File:
         # threads take turns with a connection; the pool sees to that
         address = f"{self.path.absolute().as_uri()}?mode=rw"
         return sqlite3.connect(address, uri=True, check_same_thread=False)
+
+
+def check_not_lost(path: Path) -> None:
+    """Refuse to make a database where a service had one before.
+
+    Raises
+    ------
+    InputError
+    """
+    lock = _lock_file(path)
+    if lock.exists() and not path.exists():
+        raise InputError(
+            "data_dir",
+            f"{path} is gone, although a service used it before.",
+            f"Put it back; or remove {lock}, to begin with none or to restore a backup.",
+        )
 
 
 def _sqlite_engine(file: _File) -> Engine:

@@ -18,6 +18,8 @@ MIGRATIONS = Path(__file__).with_name("migrations")
 def migrate(database: Database, target: str = "head") -> None:
     """Bring the schema to a version, by default this program's; does nothing if it is there.
 
+    An SQLite file is copied first, to one that is named after the new schema.
+
     Raises
     ------
     InputError
@@ -25,23 +27,48 @@ def migrate(database: Database, target: str = "head") -> None:
     StoreError
         If the database cannot be reached.
     """
-    config = Config()
-    config.set_main_option("script_location", str(MIGRATIONS))
-    found = revision(database)
-    known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
-    strange = {found, target} - known - {None, "head"}
-    if strange:
-        raise InputError(
-            "database_url",
-            f"the designs have schema {strange.pop()}, which this program does not know.",
-            "Use the newer program that wrote it, or restore a backup.",
-        )
+    found = check_schema(database, target)
+    config = _config()
+    head = ScriptDirectory.from_config(config).get_current_head()
+    if database.is_sqlite and found not in (None, head) and target == "head":
+        file = Path(database.url.database or "")
+        copy = file.with_name(f"{file.name}.before-{head}")
+        if not copy.exists():
+            database.copy_to(copy)
 
     def upgrade(connection: object) -> None:
         config.attributes["connection"] = connection
         command.upgrade(config, target)
 
     database.write(upgrade)
+
+
+def check_schema(database: Database, target: str = "head") -> str | None:
+    """The schema's version, or None for an empty database.
+
+    Raises
+    ------
+    InputError
+        As :func:`migrate`.
+    StoreError
+        If the database cannot be reached.
+    """
+    found = revision(database)
+    scripts = ScriptDirectory.from_config(_config())
+    strange = {found, target} - {s.revision for s in scripts.walk_revisions()} - {None, "head"}
+    if strange:
+        raise InputError(
+            "database_url",
+            f"the designs have schema {strange.pop()}, which this program does not know.",
+            "Use the newer program that wrote it, or restore a backup.",
+        )
+    return found
+
+
+def _config() -> Config:
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    return config
 
 
 def revision(database: Database) -> str | None:

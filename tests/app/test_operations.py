@@ -16,7 +16,7 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
-from app.http import health
+from app import doctor
 from app.http.observing import JsonLines, TextLines, configure_logging
 from app.main import create_app
 from app.settings import Settings
@@ -101,7 +101,7 @@ def test_ready_means_that_database_and_disk_are(
     client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert client.get("/readyz").json() == {"status": "ok"}
-    monkeypatch.setattr(health.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
     full = client.get("/readyz")
     assert (full.status_code, full.json()["title"]) == (503, "Not ready")
     assert "3 MB left" in full.json()["detail"]

@@ -45,7 +45,8 @@ def test_a_scheduler_takes_the_work_away_from_this_machine(tmp_path: Path) -> No
     with TestClient(app, base_url="http://127.0.0.1") as client:  # it need not be there yet
         places = app.state.compute._places
         assert [type(place) for place in places] == [ClusterPlace] * 3
-        assert client.get("/readyz").status_code == 200
+        assert client.get("/healthz").status_code == 200
+        assert client.get("/readyz").status_code == 503
 
 
 def test_a_scheduler_has_an_address() -> None:

@@ -1,0 +1,35 @@
+"""``knitcore doctor``."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+from pydantic import ValidationError
+
+from app.cli.common import emit, json_option
+from app.settings import Settings
+from knitcore.errors import InputError
+
+
+@click.command("doctor")
+@json_option
+def command(as_json: bool) -> None:
+    """Look for what would keep the service from working; exit code 1 if there is anything."""
+    from app.doctor import Check, Checks, examine
+
+    try:
+        found = examine(Settings())
+    except (InputError, ValidationError) as error:
+        first = error.errors()[0] if isinstance(error, ValidationError) else None
+        field = "" if first is None else ".".join(str(part) for part in first["loc"])
+        problem = str(error) if first is None else f"{field}: {first['msg']}."
+        remedy = "Compare the environment and the file of KNITCORE_CONFIG with docs/serving.md."
+        found = Checks(checks=[Check(name="settings", ok=False, problem=problem, remedy=remedy)])
+    lines = [
+        f"{'ok  ' if check.ok else 'FAIL'}  {check.name}"
+        + ("" if check.ok else f": {check.problem} {check.remedy}")
+        for check in found.checks
+    ]
+    emit(found, "\n".join(lines), as_json=as_json)
+    sys.exit(1 if found.failed else 0)

@@ -1,0 +1,166 @@
+"""What an installation needs: for ``knitcore doctor``, at the start, and for ``/readyz``."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from pydantic import BaseModel, Field
+
+from app.http.problems import ServiceError
+from app.settings import Settings
+from app.store.database import Database, check_not_lost
+from app.store.schema import check_schema
+from knitcore.errors import InputError
+
+LEAST_FREE_BYTES = 100_000_000
+LEAST_HANDLES = 4_096
+
+
+class Check(BaseModel):
+    """One thing that was looked at."""
+
+    name: str
+    ok: bool
+    problem: str | None = Field(None, description="What is wrong.")
+    remedy: str | None = Field(None, description="What to do about it.")
+
+
+class Checks(BaseModel):
+    """All of them."""
+
+    checks: list[Check]
+
+    @property
+    def failed(self) -> list[Check]:
+        """Those with a problem."""
+        return [check for check in self.checks if not check.ok]
+
+
+def examine(settings: Settings) -> Checks:
+    """Look at settings, folder, database, limits and cluster; changes nothing."""
+    return Checks(checks=list(_examined(settings)))
+
+
+def _examined(settings: Settings) -> Iterator[Check]:
+    yield _checked("settings", settings.check)
+    yield _checked("data folder", lambda: check_folder(settings.folder))
+    yield _checked("file modes", lambda: check_modes(settings.folder))
+    yield _checked("free space", lambda: check_space(settings.folder))
+    yield _checked("database", lambda: _check_database(settings))
+    yield _checked("file handles", check_handles)
+    if settings.scheduler is not None:
+        yield _checked("cluster", lambda: check_cluster(settings.scheduler or ""))
+
+
+def _checked(name: str, check: Callable[[], object]) -> Check:
+    try:
+        check()
+    except InputError as error:
+        return Check(
+            name=name, ok=False, problem=f"{error.field}: {error.problem}", remedy=error.remedy
+        )
+    except ServiceError as error:
+        return Check(name=name, ok=False, problem=error.detail, remedy=error.remedy)
+    return Check(name=name, ok=True)
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a data folder that cannot be written; one that is not there yet can be made.
+
+    Raises
+    ------
+    InputError
+    """
+    place = folder
+    while not place.exists():
+        place = place.parent
+    if not place.is_dir() or not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(
+            "data_dir",
+            f"{folder} cannot be written.",
+            "Set KNITCORE_DATA_DIR to a folder that this user may write.",
+        )
+
+
+def check_modes(folder: Path) -> None:
+    """Refuse data that other users of the machine can read.
+
+    Raises
+    ------
+    InputError
+    """
+    if not folder.is_dir() or not folder.stat().st_mode & 0o077:
+        return
+    for file in sorted(folder.glob("*.sqlite3*")):
+        if file.stat().st_mode & 0o077:
+            raise InputError(
+                "data_dir",
+                f"{file} can be read by other users of this machine.",
+                f"Run: chmod 700 {folder}",
+            )
+
+
+def check_space(folder: Path) -> None:
+    """Refuse a disk that is about to be full.
+
+    Raises
+    ------
+    InputError
+    """
+    if not folder.is_dir():
+        return
+    free = shutil.disk_usage(folder).free
+    if free < LEAST_FREE_BYTES:
+        raise InputError(
+            "data_dir",
+            f"The disk of the designs has {free / 1e6:.0f} MB left.",
+            "Make room; nothing that was acknowledged is lost.",
+        )
+
+
+def _check_database(settings: Settings) -> None:
+    if settings.database_url is None and not settings.database_file.exists():
+        check_not_lost(settings.database_file)
+        return  # it is made by the first start
+    database = Database(settings.store_url)
+    try:
+        database.check_pages()
+        check_schema(database)
+    finally:
+        database.close()
+
+
+def check_handles() -> None:
+    """Refuse a limit on open files that a few hundred clients reach.
+
+    Raises
+    ------
+    InputError
+    """
+    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard != resource.RLIM_INFINITY and hard < LEAST_HANDLES:
+        raise InputError(
+            "nofile",
+            f"this process may open {hard} files only.",
+            f"Raise the limit (ulimit -n, LimitNOFILE) to {LEAST_HANDLES} or more.",
+        )
+
+
+def check_cluster(address: str) -> None:
+    """Refuse a cluster that does not answer, or has nobody to work.
+
+    Raises
+    ------
+    ClusterError
+    """
+    from app.compute.cluster import Cluster  # its library is needed here only
+
+    cluster = Cluster(address)
+    try:
+        cluster.check()
+    finally:
+        cluster.close()

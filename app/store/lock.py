@@ -1,0 +1,68 @@
+"""One service process for one set of data: a second one would end the first one's jobs."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from sqlalchemy import text
+
+from app.store.database import Database
+from knitcore.errors import InputError
+
+
+@contextlib.contextmanager
+def held(database: Database, process: str) -> Iterator[None]:
+    """Keep the data to this process while the block runs.
+
+    An SQLite file has one service; a PostgreSQL database has one of each name.
+
+    Raises
+    ------
+    InputError
+        If another process has them.
+    StoreError
+        If the database cannot be reached.
+    """
+    with _of_file(database.lock_file) if database.is_sqlite else _of_server(database, process):
+        yield
+
+
+@contextlib.contextmanager
+def _of_file(file: Path) -> Iterator[None]:
+    handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(
+                "data_dir",
+                f"{file.parent} is used by another service (process {_holder(handle)}).",
+                "Stop that one, set KNITCORE_DATA_DIR to another folder, or share PostgreSQL.",
+            ) from None
+        os.truncate(handle, 0)
+        os.pwrite(handle, str(os.getpid()).encode(), 0)
+        yield
+    finally:
+        os.close(handle)  # which unlocks it, as the end of a killed process does
+
+
+def _holder(handle: int) -> str:
+    return os.pread(handle, 20, 0).decode(errors="replace") or "unknown"
+
+
+@contextlib.contextmanager
+def _of_server(database: Database, process: str) -> Iterator[None]:
+    with database.read() as connection:
+        connection.execution_options(isolation_level="AUTOCOMMIT")
+        lock = text("SELECT pg_try_advisory_lock(hashtextextended(:name, 0))")
+        if not connection.execute(lock, {"name": f"knitcore {process}"}).scalar():
+            raise InputError(
+                "process_name",
+                f"another service on this database is called {process!r}.",
+                "Stop that one, or give each its own KNITCORE_PROCESS_NAME.",
+            )
+        yield
