@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page serve test test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples stitches lock clean
+.PHONY: help install page serve test test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -92,6 +92,9 @@ docs: $(VENV)/.installed-dev ## Run every example of the documentation
 
 examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API shows as examples
 	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
+
+types: $(VENV)/.installed-dev ## Make the page's types from the service's models again
+	PYTHONPATH=. $(BIN)/python scripts/page_types.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m knitcore.yarnlibrary.build $(OPTIONS)

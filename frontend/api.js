@@ -2,7 +2,7 @@
  * The service's REST API, typed. Every failure is an {@link ApiError} that says what, why and what
  * to do, or the browser's own AbortError if the call was given up.
  *
- * @import {Material, ParsedChart, Prediction, Problem, Stretch, StretchRequest, View,
+ * @import {MaterialDetail, ParsedChart, PredictResult, Problem, StretchResult, StretchRequest, ViewResult,
  *   ViewRequest} from "./types.js"
  */
 
@@ -102,11 +102,11 @@ export const api = {
   /**
    * @param {string} id
    * @param {AbortSignal} [signal]
-   * @returns {Promise<Material>}
+   * @returns {Promise<MaterialDetail>}
    */
   material: (id, signal) => call(`/materials/${encodeURIComponent(id)}`, { signal }),
 
-  /** @type {() => Promise<{patterns: import("./types.js").Pattern[]}>} */
+  /** @type {() => Promise<{patterns: import("./types.js").PatternResult[]}>} */
   patterns: () => call("/patterns"),
 
   /**
@@ -118,21 +118,21 @@ export const api = {
   /**
    * @param {{chart: string, material: string}} body
    * @param {AbortSignal} [signal]
-   * @returns {Promise<Prediction>}
+   * @returns {Promise<PredictResult>}
    */
   predict: (body, signal) => call("/predict", { method: "POST", body, signal }),
 
   /**
    * @param {StretchRequest} body
    * @param {AbortSignal} [signal]
-   * @returns {Promise<Stretch>}
+   * @returns {Promise<StretchResult>}
    */
   stretch: (body, signal) => call("/stretch", { method: "POST", body, signal }),
 
   /**
    * @param {string} design
    * @param {ViewRequest} body
-   * @returns {Promise<View>}
+   * @returns {Promise<ViewResult>}
    */
   view: (design, body) => call(`/views/${encodeURIComponent(design)}`, { method: "PUT", body }),
 
@@ -147,7 +147,7 @@ export const api = {
 
   /**
    * @param {string} design
-   * @param {import("./types.js").Side} side
+   * @param {import("./types.js").CameraSide} side
    * @returns {Promise<void>}
    */
   look: (design, side) => call(`/views/${encodeURIComponent(design)}/camera`, { method: "PUT", body: { side } }),
@@ -155,7 +155,7 @@ export const api = {
   /**
    * @param {import("./types.js").CurveRequest} body
    * @param {AbortSignal} [signal]
-   * @returns {Promise<import("./types.js").ChartCurve>}
+   * @returns {Promise<import("./types.js").CurveResult>}
    */
   curve: (body, signal) => call("/curve", { method: "POST", body, signal }),
 

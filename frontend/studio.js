@@ -8,11 +8,11 @@
  * @import {Ink, Symmetry} from "./core/ink.js"
  * @import {Overlay} from "./chart/overlays.js"
  * @import {Tool} from "./tools/tool.js"
- * @import {DesignDocument, Direction, Material, MaterialSummary, Prediction, Problem, StitchKind,
- *   Stretch} from "./types.js"
+ * @import {DesignDocument, Direction, MaterialDetail, MaterialSummary, PredictResult, Problem, StitchKind,
+ *   StretchResult} from "./types.js"
  *
- * @typedef {{value: Prediction | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
- * @typedef {{value: Stretch | null, direction: Direction, busy: boolean, stale: boolean,
+ * @typedef {{value: PredictResult | null, busy: boolean, problem: Problem | null, scope: string}} PredictionState
+ * @typedef {{value: StretchResult | null, direction: Direction, busy: boolean, stale: boolean,
  *   problem: Problem | null}} StretchState
  * @typedef {{kind: "info" | "error", title: string, detail?: string, remedy?: string | null}} Message
  */
@@ -47,7 +47,7 @@ export class Studio {
 
     /** @type {Signal<string>} */
     this.materialId = new Signal(design.material);
-    this.material = new Signal(/** @type {Material | null} */ (null));
+    this.material = new Signal(/** @type {MaterialDetail | null} */ (null));
     this.materials = new Signal(/** @type {MaterialSummary[]} */ ([]));
 
     /** @type {Signal<Tool>} */
@@ -145,7 +145,7 @@ export class Studio {
     return this.material.value?.stitch_table?.codes ?? [];
   }
 
-  /** The stretch on show, if it is of this very chart. @returns {Stretch | null} */
+  /** The stretch on show, if it is of this very chart. @returns {StretchResult | null} */
   currentStretch() {
     const { value, stale } = this.stretch.value;
     const { rows, columns } = this.document.grid;
@@ -179,7 +179,8 @@ export class Studio {
   /** @param {"strain" | "utilisation"} name */
   #steps(name) {
     const fields = this.currentStretch()?.stitch_fields;
-    return fields?.[name === "strain" ? `strain_${this.stretchDirection()}` : name];
+    if (name === "utilisation") return fields?.utilisation;
+    return this.stretchDirection() === "course" ? fields?.strain_course : fields?.strain_wale;
   }
 
   /**

@@ -1,219 +1,1942 @@
-/** What the service sends and takes; the same names as its OpenAPI document. */
+// Made from the service's models by scripts/page_types.py: change those, then `make types`.
 
-export type Direction = "course" | "wale";
-export type FabricName = "stockinette" | "garter" | "rib" | "seed";
-export type Interval = [number, number];
+/** Which atlas. */
+export interface AtlasRequest {
+  /** Id of the library. */
+  material: string;
+  /** small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics. */
+  repeats?: "small" | "all";
+}
 
-export interface FabricSummary {
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
+/** An atlas as columns, for the rigidity-rigidity scatter. */
+export interface AtlasResult {
+  material: string;
+  /** Rows from the top, separated by /. */
+  repeats: string[];
+  modulus_course_n_per_mm: number[];
+  /** Low and high: ends of 90 % intervals. */
+  modulus_course_low: number[];
+  modulus_course_high: number[];
+  modulus_wale_n_per_mm: number[];
+  modulus_wale_low: number[];
+  modulus_wale_high: number[];
+  poisson_yx: number[];
+  poisson_xy: number[];
+  /** Strain at 0.1 N/mm. */
+  stretch_course: number[];
+  stretch_wale: number[];
+  /** Width of the mean stitch at rest. */
+  relaxed_course_mm: number[];
+  /** Height of the mean stitch at rest. */
+  relaxed_wale_mm: number[];
+  transfers_per_stitch: number[];
+  crossings_per_stitch: number[];
+  curl: number[];
+  provenance: string[];
+}
+
+/** Lines of one repeat. */
+export interface BandResult {
+  repeat: string;
+  /** From 1, at the bottom or the left. */
+  first: number;
+  lines: number;
+}
+
+/** A repeat and its yarn. */
+export interface BendRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Yarn per stitch; the material's. */
+  loop_length_mm?: number | null;
+  /** Of the yarn; gives bending lengths. */
+  linear_density_g_per_m?: number | null;
+}
+
+/** Linear response of the relaxed repeat; course: bent along the rows. */
+export interface BendResult {
+  /** Derivative of the energy per area by the curvature, N·mm per mm of width. Negative: left alone, the fabric curves with its face outside. */
+  moment_course_n: number;
+  moment_wale_n: number;
+  /** Bending rigidity, the other size free. */
+  bending_course_n_mm: number;
+  bending_wale_n_mm: number;
+  /** The same, the other size held. */
+  bending_held_course_n_mm: number;
+  bending_held_wale_n_mm: number;
+  /** Strain across per curvature, bent along the rows. */
+  strain_across_course_mm: number;
+  strain_across_wale_mm: number;
+  /** Null where no stable state was found. */
+  shear_modulus_n_per_mm: number | null;
+  /** D1 + 2 D66, from bending at 45°. */
+  twist_n_mm: number | null;
+  thickness_mm: number;
+  /** What free edges do. */
+  curl: string;
+  /** Where the sides go. */
+  curl_course: Curl;
+  /** Where top and bottom go. */
+  curl_wale: Curl;
+  /** Peirce's, of a strip cut along the rows; null where the weight is not known. */
+  bending_length_course_mm: number | null;
+  bending_length_wale_mm: number | null;
+  /** Whether the state is a minimum without its symmetries. */
+  stable: boolean;
+  provenance: string;
+  yarn: YarnResult;
+  notes: string[];
+}
+
+/** What one photo gave. */
+export interface BendingPhotoResult {
+  name: string;
+  bending_modulus_n_mm2: number;
+  length_mm: number;
+  px_per_mm: number;
+  yarn_width_mm: number;
+  /** Distance of the traced line from the elastica. */
+  rms_mm: number;
+}
+
+/** Photos of hanging yarn, and what they do not show. */
+export interface BendingRequest {
+  images: UploadedFile[];
+  /** Mass per length: weigh some metres; 0.5 g/m is 500 tex. */
+  linear_density_g_per_m: number;
+  /** Hanging length, clamp to free end; one for all photos or one per photo. */
+  length_mm?: number[] | number | null;
+  /** Scale, if it is known. */
+  px_per_mm?: number | null;
+}
+
+/** Mean over photos; proportional to the linear density given. */
+export interface BendingResult {
+  bending_modulus_n_mm2: number;
+  /** Of one photo, N·mm²; None for one. */
+  standard_deviation: number | null;
+  /** Of the mean, N·mm². */
+  standard_error: number | null;
+  photos: BendingPhotoResult[];
+  notes: string[];
+}
+
+/** Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise. */
+export interface BoxInput {
+  row0: number;
+  column0: number;
+  row1: number;
+  column1: number;
+}
+
+/** Which shapes of the yarn are admitted. */
+export type Branch = "published" | "mirrored" | "free";
+
+/** Where to start from, and tests whose forces the law should keep. */
+export interface CalibrateRequest {
+  /** .npz: displacement (frames, 2, rows, columns), frame. */
+  field: UploadedFile;
+  /** In which the fabric was pulled. */
+  direction: Direction;
+  /** Pictures to use; all otherwise. */
+  frames?: number[] | null;
+  /** Id of the library. */
+  material: string;
+  fabric: Fabric;
+  /** Stretch tests: of the direction (forces), or course and wale (forces and start). */
+  tests?: UploadedFile[];
+}
+
+/** The calibrated law; its shear modulus is no assumption any more. */
+export interface CalibrateResult {
+  stiffness_xxxx_n_per_mm: number;
+  stiffness_yyyy_n_per_mm: number;
+  stiffness_xxyy_n_per_mm: number;
+  stiffness_yyxx_n_per_mm: number;
+  alpha_xx: number;
+  alpha_yy: number;
+  beta_xx_n_per_mm: number;
+  beta_yy_n_per_mm: number;
+  /** An assumption unless it was calibrated. */
+  shear_modulus_n_per_mm: number;
+  stiffening_coupling: number;
+  parameters: Record<string, number>;
+  standard_errors: Record<string, number>;
+  /** Pictures that were used. */
+  frames: number[];
+  /** All pictures, measured edges. */
+  comparison: FrameErrorResult[];
+  force_strain: number[];
+  /** Simulated over measured force. */
+  force_ratio: number[];
+  evaluations: number;
+}
+
+/** From where to look. */
+export interface CameraRequest {
+  side: CameraSide;
+}
+
+/** Sides of a fabric. */
+export type CameraSide = "face" | "back" | "edge" | "angle";
+
+/** A repeat and how near it comes. */
+export interface CandidateResult {
+  material: string;
+  /** K/P lines of one repeat, the top row first. */
+  chart: string;
+  /** By quantity, with @load or @rest/worn; null beyond the lock-up. */
+  values: Record<string, number | null>;
+  /** 90 % intervals; null where an end lies beyond the computed curve. */
+  intervals: Record<string, [number | null, number | null]>;
+  /** Predicted over wanted, minus one; the difference for Poisson's ratios. */
+  deviations: Record<string, number | null>;
+  /** Weighted rms of deviations in units of their tolerances. */
+  misfit: number | null;
+  reached: boolean;
+  provenance: string;
+  transfers_per_stitch: number;
+  /** Between face and back, or beds. */
+  crossings_per_stitch: number;
+  /** Knits minus purls over all stitches; far from 0 it curls. */
+  curl: number;
+}
+
+/** A yarn, of a material or by its parameters. */
+export interface CharacteriseRequest {
+  fabrics?: Fabric[];
+  /** Yarn per stitch, for all fabrics; `tensions` is not used then. */
+  loop_lengths_mm?: number[];
+  /** Loop lengths as parts of the material's own. */
+  tensions?: number[];
+  branch?: Branch;
+  convention?: Convention;
+  /** Laws end here. */
+  max_stress_n_per_mm?: number;
+  material?: string | null;
+  yarn?: YarnInput | null;
+}
+
+/** The table of a yarn; `material` holds its laws at the reference setting. */
+export interface CharacteriseResult {
+  identifier: string;
+  provenance: string;
+  /** Whether contact data were estimated. */
+  estimated: boolean;
+  branch: Branch;
+  convention: Convention;
+  /** The setting that `material` was made at. */
+  reference: string;
+  rows: CharacterisedFabric[];
+  /** A material file; null if no fabric has a law at the reference. */
+  material: MaterialDocument | null;
+  /** The same at every setting. */
+  materials: Record<string, MaterialDocument>;
+}
+
+/** With its stress-strain curves. */
+export interface CharacterisedFabric {
+  fabric: Fabric;
+  setting: string;
+  loop_length_mm: number;
   stitch_course_mm: number | null;
   stitch_wale_mm: number | null;
-  loop_length_mm: number | null;
+  stitches_per_cm2: number | null;
+  energy_n_mm: number | null;
+  bending_share: number | null;
+  contact_share: number | null;
+  contact_overtakes_at_strain_course: number | null;
+  jumps_course: number | null;
+  contact_overtakes_at_strain_wale: number | null;
+  jumps_wale: number | null;
+  modulus_course_n_per_mm: number | null;
+  modulus_wale_n_per_mm: number | null;
+  poisson_yx: number | null;
+  poisson_xy: number | null;
+  alpha_xx: number | null;
+  alpha_yy: number | null;
+  beta_xx_n_per_mm: number | null;
+  beta_yy_n_per_mm: number | null;
+  max_stress_n_per_mm: number | null;
+  largest_strain_course: number | null;
+  largest_strain_wale: number | null;
+  rms_course_n_per_mm: number | null;
+  rms_wale_n_per_mm: number | null;
+  converged: boolean | null;
+  /** Why something is missing, or what to know. */
+  remark: string;
+  curves: Record<Direction, FabricCurve>;
 }
 
-export interface MaterialSummary {
-  id: string;
-  name: string;
-  description: string;
-  fabrics: Partial<Record<FabricName, FabricSummary>>;
-}
-
-/** One of the 16 kinds of stitch. */
-export interface StitchKind {
-  code: number;
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
-  extensibility_course_mm_per_n: number;
-  extensibility_wale_mm_per_n: number;
-  modulus_course_interval?: Interval | null;
-  modulus_wale_interval?: Interval | null;
-  fractions: Partial<Record<FabricName, number>>;
-}
-
-export interface Curve {
-  strain: number[];
-  stress_n_per_mm: number[];
-}
-
-export interface Material extends MaterialSummary {
-  notes?: string[];
-  stitch_table: { codes: StitchKind[] };
-  curves: Partial<Record<FabricName, Partial<Record<Direction, Curve>>>>;
-  /** Of stretch tests, where they are kept with the material. */
-  measured?: Partial<Record<FabricName, Partial<Record<Direction, Curve & { pulls: number }>>>>;
-}
-
-export interface Pattern {
-  id: string;
-  name: string;
-  chart: string;
-  note?: string;
-}
-
-export interface ParsedChart {
+/** A chart, read and written again in the canonical form. */
+export interface ChartResult {
   rows: number;
   columns: number;
   text: string;
 }
 
-export interface SegmentCounts {
-  even: number;
-  odd: number;
-}
+/** How the ends are held: gripped, or free to slide along the clamp. */
+export type Clamps = "clamped" | "sliding";
 
-export interface Prediction {
-  rows: number;
-  columns: number;
-  segments: Record<Direction, SegmentCounts>;
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
-  poisson_yx: number;
-  poisson_xy: number;
-  extensibility_course_mm_per_n: number;
-  extensibility_wale_mm_per_n: number;
-  modulus_course_interval_n_per_mm?: Interval | null;
-  modulus_wale_interval_n_per_mm?: Interval | null;
-  poisson_yx_interval?: Interval | null;
-  poisson_xy_interval?: Interval | null;
-  provenance: string;
-  notes?: string[];
-}
+/** What the colours of the stitches mean. */
+export type Colour = "yarn" | "region" | "fabric" | "phase" | "course" | "wale" | "anisotropy" | "strain" | "utilisation" | "field";
 
-export interface StretchRequest {
-  chart: string;
-  material: string;
-  outline?: string | null;
+/** A law, or a fabric of a material, beside a field. */
+export interface CompareRequest {
+  /** .npz: displacement (frames, 2, rows, columns), frame. */
+  field: UploadedFile;
+  /** In which the fabric was pulled. */
   direction: Direction;
-  strain: number;
-  steps: number;
-  clamps?: "clamped" | "sliding";
-  model?: "published" | "full";
-  shear_modulus_n_per_mm?: number | null;
+  /** Pictures to use; all otherwise. */
+  frames?: number[] | null;
+  material?: string | null;
+  /** Of the material. */
+  fabric?: Fabric | null;
+  /** LAW.json, instead of material and fabric. */
+  law?: UploadedFile | null;
+  edges?: Edges;
+  /** full, or what the law file says. */
+  model?: EnergyModel | null;
 }
 
-/** A computation in the background. */
-export interface JobStatus {
-  id: string;
-  kind: string;
-  state: "waiting" | "running" | "done" | "failed" | "cancelled" | "interrupted";
-  progress: number;
-  problem: Problem | null;
+/** Errors per picture, in the order of the stretch. */
+export interface CompareResult {
+  frames: FrameErrorResult[];
+  edges: Edges;
+  model: EnergyModel;
+  messages: string[];
 }
 
+/** Mean over the samples of one yarn. */
+export interface CompressionMeanResult {
+  yarn: string;
+  samples: number;
+  k_n_per_mm3: number;
+  k_standard_deviation_n_per_mm3: number | null;
+  p: number;
+  p_standard_deviation: number | null;
+}
+
+/** Compression tests of yarns. */
+export interface CompressionRequest {
+  file: UploadedFile;
+  /** Only the samples of this yarn (sheets named yarn-number). */
+  yarn?: string | null;
+  /** The yarn's, if the file does not say. */
+  diameter_mm?: number | null;
+  probe_width_mm?: number;
+}
+
+/** Constants of the contact law, per sample and mean. */
+export interface CompressionResult {
+  /** Mean of the yarn; null if there are several, which have one each in `mean`. */
+  k_n_per_mm3: number | null;
+  /** The same. */
+  p: number | null;
+  /** By yarn. */
+  mean: Record<string, CompressionMeanResult>;
+  samples: CompressionSampleResult[];
+  notes: string[];
+}
+
+/** What one test gave; the errors are those of the fit. */
+export interface CompressionSampleResult {
+  name: string;
+  yarn: string;
+  k_n_per_mm3: number;
+  k_error_n_per_mm3: number;
+  p: number;
+  p_error: number;
+  thickness_mm: number;
+  diameter_mm: number;
+  rms_n: number;
+}
+
+/** How the cloth is worked. */
+export type Construction = "flat" | "round";
+
+/** A reading of the paper's energy. */
+export type Convention = "published" | "paper" | "authors-code";
+
+/** Where the free edges across a direction go. */
+export type Curl = "flat" | "front" | "back";
+
+/** A measured stress–strain curve. */
+export interface CurveDocument {
+  strain: number[];
+  stress_n_per_mm: number[];
+  pulls: number;
+}
+
+/** A chart, a direction and the stresses to ask for. */
 export interface CurveRequest {
-  chart: string;
+  chart: string | PureFabricChart;
+  /** Id of the library. */
   material: string;
+  /** Along rows, or along columns. */
   direction: Direction;
+  /** Increasing. */
   stress_n_per_mm?: number[];
+  gauge?: GaugeInput | null;
 }
 
-/** Strain at each stress, with the ends of its 90 % interval. */
-export interface ChartCurve {
+/** Strain at each stress, transverse direction free. */
+export interface CurveResult {
   stress_n_per_mm: number[];
   strain: number[];
+  /** Lower end of the 90 % interval. */
   strain_low: number[];
+  /** Upper end of the 90 % interval. */
   strain_high: number[];
+  /** Lower end of the 90 % interval of the stress at each strain, N/mm. */
+  stress_low: number[];
+  /** Upper end of it, at most 10 N/mm. */
+  stress_high: number[];
   provenance: string;
 }
 
-export interface Stretch {
+/** A design with its document. */
+export interface Design {
   id: string;
-  strain: number[];
-  force_n: number[];
-  stress_n_per_mm: number[];
-  /** Ends of its 90 % interval, as all that follow here; the service had none of them once. */
-  force_low_n?: number[];
-  force_high_n?: number[];
-  waist_strain: number[];
-  waist_margin?: number[];
-  iterations: number[];
-  converged: boolean;
-  seconds: number;
-  dofs: number;
+  name: string;
+  material: string;
   rows: number;
   columns: number;
-  messages?: string[];
-  /** Values of every stitch, rows bottom first, one list for each step. */
-  stitch_fields: Record<string, number[][]>;
-  notes?: string[];
+  /** Grows with every change; the ETag is made of it. */
+  revision: number;
+  created_at: string;
+  changed_at: string;
+  deleted_at: string | null;
+  document: DesignDocument;
 }
 
-export interface ViewRequest {
-  chart: string;
+/** A design as a file holds it; ``knitcore`` reads the same on the command line. */
+export interface DesignDocument {
+  /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
+  outline: string | null;
+  regions: DesignRegion[];
+  repeats: DesignRepeat[];
+  shelf: ShelfPattern[];
+  format: "knitcore-design";
+  version: 2;
+  name: string;
   material: string;
-  /** Lines of x and dots, the top row first; null for a whole rectangle. */
-  outline?: string | null;
-  colour: string;
-  palette?: Partial<Record<FabricName | "yarn", string>>;
-  regions?: DesignRegion[];
-  rectangles: boolean;
-  rectangle_groups?: "stitch" | "block" | "region";
-  rectangle_block?: number;
-  stretch: { id: string; step: number } | null;
-  /** Where a chart is drawn as yarn that is too large to be drawn whole. */
-  focus?: { row: number; column: number } | null;
+  /** K/P lines, the top row first, as seen from the face. */
+  chart: string;
+  note: string;
 }
 
-export interface View {
-  stitches: number;
-  /** Where the shapes of the stitches come from. */
-  source: string;
-  url: string;
+/** A design as a file holds it. */
+export interface DesignFile {
+  /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
+  outline: string | null;
+  regions: DesignRegion[];
+  repeats: DesignRepeat[];
+  shelf: ShelfPattern[];
+  format: "knitcore-design";
+  version: 2;
+  name: string;
+  /** Library id or name of a material file. */
+  material: string | null;
+  /** K/P lines, the top row first, face side. */
+  chart: string;
+  note: string;
 }
 
-export type Side = "face" | "back" | "edge" | "angle";
+/** Everything of a design but its chart and its names. */
+export interface DesignLayout {
+  /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
+  outline: string | null;
+  regions: DesignRegion[];
+  repeats: DesignRepeat[];
+  shelf: ShelfPattern[];
+}
+
+/** A part of a list, latest changes first. */
+export interface DesignPage {
+  designs: DesignSummary[];
+  /** Ask with it for what follows; None at the end. */
+  next_cursor: string | null;
+}
+
+/** Fields to change; the others stay. */
+export interface DesignPatch {
+  name?: string | null;
+  material?: string | null;
+  note?: string | null;
+}
 
 /** A part of the chart with a fill or a yarn of its own; later regions lie on top. */
 export interface DesignRegion {
   id: string;
   name: string;
   colour: string;
+  /** Intarsia yarn; None leaves the yarn beneath. */
   yarn: string | null;
+  /** Repeat that fills it, from the chart's corner. */
   fill: string | null;
-  /** [row, column, length] of stitches beside each other; row 0 is the bottom. */
+  /** [row, column, length] of adjacent stitches; row 0 is the bottom. */
   runs: [number, number, number][];
   locked: boolean;
   hidden: boolean;
 }
 
-/** A motif whose placements all follow it. */
+/** A motif whose placements all follow it; "multiple of n + m" has m ``edge_columns``. */
 export interface DesignRepeat {
   id: string;
   name: string;
+  /** A repeat; its rows from the top, separated by /. */
   motif: string;
   edge_columns: number;
   edge_rows: number;
-  placements: { row: number; column: number; rows: number; columns: number }[];
+  placements: Placement[];
 }
 
-/** What a design holds beside its chart and its names. */
-export interface DesignLayout {
+/** A JSON schema. */
+export type DesignSchema = Record<string, unknown>;
+
+/** A design in a list. */
+export interface DesignSummary {
+  id: string;
+  name: string;
+  material: string;
+  rows: number;
+  columns: number;
+  /** Grows with every change; the ETag is made of it. */
+  revision: number;
+  created_at: string;
+  changed_at: string;
+  deleted_at: string | null;
+}
+
+/** Standard deviations of the linear constants, in their units. */
+export interface DeviationDocument {
+  modulus_course: number | null;
+  modulus_wale: number | null;
+  poisson_yx: number | null;
+  poisson_xy: number | null;
+}
+
+/** A material direction: course = along rows (x), wale = along columns (y). */
+export type Direction = "course" | "wale";
+
+/** What is imposed at the clamped edges: their measured motion, or its mean (rigid clamps). */
+export type Edges = "measured" | "rigid";
+
+/** Which sheet energy is meant. */
+export type EnergyModel = "published" | "full";
+
+/** A value and its 90 % interval (of no width where it is measured). */
+export interface EstimateInterval {
+  value: number;
+  low: number;
+  high: number;
+}
+
+/** What is known of the yarn and of the product. */
+export interface EstimateRequest {
+  /** B of the yarn (`measure bending`). */
+  bending_modulus_n_mm2: number;
+  /** Yarn per stitch. */
+  loop_length_mm: number | Partial<Record<Fabric, number>>;
+  swatches?: SwatchInput[];
+  /** Needle or stitch setting of the product. */
+  product_setting?: string;
+}
+
+/** All four fabrics of the yarn. */
+export interface EstimateResult {
+  fabrics: Partial<Record<Fabric, FabricEstimateResult>>;
+  /** None if all fabrics are measured. */
+  left_out: LeftOutResult | null;
+  warnings: string[];
+}
+
+/** Formats for export. */
+export type ExportKind = "knitout" | "knitspeak" | "png" | "svg" | "pdf" | "report" | "text" | "written" | "design" | "glb" | "stl" | "vtu" | "csv";
+
+/** A chart and the format that it shall become. */
+export interface ExportRequest {
+  /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
+  outline?: string | null;
+  regions?: DesignRegion[];
+  repeats?: DesignRepeat[];
+  shelf?: ShelfPattern[];
+  chart: string | PureFabricChart;
+  to: ExportKind;
+  /** For sizes and values. */
+  material?: string;
+  construction?: Construction;
+  /** Side of row 1 in flat knitting. */
+  first_side?: Side;
+  /** How a knitout program ends. */
+  finish?: Finish;
+  name?: string;
+  /** Printed. */
+  note?: string;
+  /** Of the yarns, for their mass. */
+  linear_density_tex?: number | null;
+}
+
+/** A file inside JSON. */
+export interface ExportResult {
+  kind: ExportKind;
+  rows: number;
+  columns: number;
+  bytes: number;
+  /** Of a knitout program, without finishing. */
+  transfers: number | null;
+  /** Of a knitout program, without waste. */
+  carriers: number | null;
+  notes: string[];
+  name: string;
+  media_type: string;
+  /** The file, base64. */
+  content: string;
+}
+
+/** A fabric whose connecting segments are all alike course-wise and all alike wale-wise. */
+export type Fabric = "stockinette" | "garter" | "rib" | "seed";
+
+/** A stretch, free across. */
+export interface FabricCurve {
+  strain: number[];
+  transverse_strain: number[];
+  stress_n_per_mm: number[];
+  bending_share: number[];
+  contact_share: number[];
+  /** Where contact first holds half of the energy. */
+  contact_overtakes_at_strain: number | null;
+  jumps: number[];
+  notes: string[];
+}
+
+/** A pure fabric of a material, with everything that is known of it. */
+export interface FabricDetail {
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  /** Relaxed width of one stitch. */
+  stitch_course_mm: number;
+  /** Relaxed height of one stitch. */
+  stitch_wale_mm: number;
+  loop_length_mm: number | null;
+  law: LawResult;
+  poisson_yx: number;
+  poisson_xy: number;
+  lock_up_strain_course: number;
+  lock_up_strain_wale: number;
+  setting: string;
+  origin: string;
+  stitch_size_source: string;
+  uncertainty_source: string;
+  figures: FigureResult[];
+}
+
+/** One pure fabric of a user's material. */
+export interface FabricDocument {
+  law: LawDocument;
+  /** mm */
+  stitch_course_mm: number;
+  /** mm */
+  stitch_wale_mm: number;
+  stitch_size_source: string;
+  loop_length_mm: number | null;
+  yarn_diameter_mm: number | null;
+  setting: string;
+  origin: Origin;
+  standard_deviation: DeviationDocument;
+  measured: Record<Direction, CurveDocument>;
+}
+
+/** One fabric: extension under load first, because it is predicted best. */
+export interface FabricEstimateResult {
+  strain_at_0_1_n_per_mm: Record<Direction, EstimateInterval>;
+  modulus_n_per_mm: Record<Direction, EstimateInterval>;
+  alpha: Record<Direction, EstimateInterval>;
+  beta_n_per_mm: Record<Direction, EstimateInterval>;
+  law: LawResult;
+  loop_length_mm: number;
+  measured: boolean;
+}
+
+/** A pure fabric of a material, in short. */
+export interface FabricSummary {
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  /** Relaxed width of one stitch. */
+  stitch_course_mm: number;
+  /** Relaxed height of one stitch. */
+  stitch_wale_mm: number;
+  loop_length_mm: number | null;
+}
+
+/** Any value of each stitch on a colour map. */
+export interface FieldColours {
+  /** Row by row from the bottom, each from the left. */
+  values: number[];
+  low: number;
+  high: number;
+  log?: boolean;
+  map?: "batlow" | "vik";
+}
+
+/** A figure of the paper: as printed, as used, and why they differ. */
+export interface FigureResult {
+  table: number;
+  quantity: string;
+  unit: string;
+  printed: string;
+  used: number;
+  standard_deviation: number | null;
+  reason: string;
+}
+
+/** Wanted moduli, stitch by stitch or part by part. */
+export interface FillRequest {
+  /** Id of the library. */
+  material: string;
+  /** [row][column], the bottom row first; null is no wish. */
+  modulus_course_n_per_mm?: ((number | null)[])[] | null;
+  modulus_wale_n_per_mm?: ((number | null)[])[] | null;
+  /** Of the chart, with wishes. */
+  rows?: number | null;
+  columns?: number | null;
+  /** Instead of the two maps. */
+  wishes?: WishInput[] | null;
+  /** Stitches without a wish stay as they are here; filled, too, otherwise. */
+  chart?: string | null;
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  repeats?: "small" | "all";
+  /** Smallest side of a patch. */
+  smallest_patch?: number;
+  /** The same seed gives the same chart. */
+  seed?: number;
+  /** Pull the chart in the finite swatch, and choose again what departs there. */
+  check?: boolean;
+}
+
+/** A chart, and how near it comes. */
+export interface FillResult {
+  rows: number;
+  columns: number;
+  chart: string;
+  /** Share of the stitches with a wish that are off by more than 10 %. */
+  off_share: number;
+  patches: PatchResult[];
+  messages: string[];
+}
+
+/** Wishes, and the yarns to search. */
+export interface FindRequest {
+  materials: string[];
+  targets: TargetInput[];
+  limits?: LimitsInput | null;
+  /** small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics. */
+  repeats?: "small" | "all";
+  count?: number;
+  /** Where nothing reaches the wishes, look into the other yarns too. */
+  elsewhere?: boolean;
+}
+
+/** Ranked repeats; the best first. */
+export interface FindResult {
+  reached: boolean;
+  message: string;
+  searched: number;
+  /** What all repeats span. */
+  ranges: Record<string, [number, number]>;
+  candidates: CandidateResult[];
+  /** Nearest in yarns that were not asked for, if those asked for reach nothing. */
+  elsewhere: CandidateResult[];
+}
+
+/** Of one finger. */
+export interface FingerSize {
+  length_mm: number;
+  circumference_mm: number;
+}
+
+/** How the last course is kept from ravelling. */
+export type Finish = "waste" | "bind-off";
+
+/** Two stretch tests of one fabric. */
+export interface FitRequest {
+  /** Pulled along the rows; HDF5 or CSV. */
+  test_course: UploadedFile;
+  /** Pulled along the columns. */
+  test_wale: UploadedFile;
+  /** Found out from the content if not given. */
+  format?: "csv" | "h5" | null;
+  /** published: as in the paper; recommended: clamp to clamp, every pull counts the same. */
+  reduction?: Reduction;
+  /** Whether to return points beside the fit. */
+  residuals?: boolean;
+}
+
+/** The constants of a law (its shear modulus is an assumption), with their uncertainty. */
+export interface FitResult {
+  stiffness_xxxx_n_per_mm: number;
+  stiffness_yyyy_n_per_mm: number;
+  stiffness_xxyy_n_per_mm: number;
+  stiffness_yyxx_n_per_mm: number;
+  alpha_xx: number;
+  alpha_yy: number;
+  beta_xx_n_per_mm: number;
+  beta_yy_n_per_mm: number;
+  /** An assumption unless it was calibrated. */
+  shear_modulus_n_per_mm: number;
+  standard_errors: LawErrors;
+  /** Contraction wale-wise when pulled course-wise. */
+  poisson_yx: number;
+  /** Contraction course-wise when pulled wale-wise. */
+  poisson_xy: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  /** Of all residuals. */
+  rms_n_per_mm: number;
+  rms_course_n_per_mm: number;
+  rms_wale_n_per_mm: number;
+  /** Up to where the law was fitted. */
+  largest_strain: Record<Direction, number>;
+  /** Pulls used. */
+  runs: Record<Direction, number>;
+  reduction: Reduction;
+  error_method: string;
+  notes: string[];
+  residuals: Record<Direction, ResidualPoints> | null;
+  /** Median curve of the pulls in each direction; kept with the law in a file. */
+  curves: Record<Direction, CurveDocument>;
+}
+
+/** A stitch; row 0 is the bottom one. */
+export interface Focus {
+  row: number;
+  column: number;
+}
+
+/** Simulated minus measured displacement of one picture, in percent of the width. */
+export interface FrameErrorResult {
+  frame: number;
+  applied_stretch: number;
+  ux_rms_percent_width: number;
+  ux_max_percent_width: number;
+  uy_rms_percent_width: number;
+  uy_max_percent_width: number;
+}
+
+/** A template with measurements, and the yarn. */
+export interface GarmentRequest {
+  garment: WristBrace | SockLeg | Limb | Glove;
+  /** Id of the library. */
+  material: string;
+  /** The knitter's; else the material's. */
+  gauge?: GaugeCount | null;
+  /** Linear density of the yarn (g/km), for its mass. */
+  linear_density_tex?: number | null;
+  /** Give each fabric a yarn of its own. */
+  intarsia?: boolean;
+}
+
+/** A garment as a chart with an outline. */
+export interface GarmentResult {
+  name: string;
+  rows: number;
+  columns: number;
+  chart: string;
+  /** Lines of x (stitch) and . (no stitch), the top row first. */
+  outline: string;
+  stitches: number;
+  /** The material direction around the limb. */
+  around: Direction;
+  closing: string;
+  regions: RegionResult[];
+  gauges: GaugeResult[];
+  worn: WornResult[];
+  yarn_m: number;
+  yarn_g: number | null;
+  notes: string[];
+  /** Where regions of unlike gauge meet. */
+  warnings: string[];
+  /** The same as a project file, ready to be edited. */
+  design: DesignFile;
+}
+
+/** A swatch's gauge, as it is counted. */
+export interface GaugeCount {
+  stitches: number;
+  rows: number;
+  per?: "10 cm" | "4 in" | "5 cm";
+  /** Of the swatch. */
+  fabric?: Fabric;
+}
+
+/** A swatch's gauge: what you counted on your own relaxed cloth. */
+export interface GaugeInput {
+  /** Counted on your own relaxed swatch; give stitches and rows, or neither. */
+  stitches_per_10_cm: number;
+  /** Counted on your own relaxed swatch; give stitches and rows, or neither. */
+  rows_per_10_cm: number;
+}
+
+/** The gauge of a fabric. */
+export interface GaugeResult {
+  fabric: Fabric;
+  stitches_per_10_cm: number;
+  rows_per_10_cm: number;
+  stitches_per_4_in: number;
+  rows_per_4_in: number;
+  stitches_per_5_cm: number;
+  rows_per_5_cm: number;
+  source: string;
+}
+
+/** The therapeutic glove; an adult's hand unless measured. */
+export interface Glove {
+  template: "glove";
+  cuff_mm?: number;
+  wrist_mm?: number;
+  wrist_circumference_mm?: number;
+  palm_mm?: number;
+  thumb_crotch_mm?: number;
+  palm_circumference_mm?: number;
+  gusset_mm?: number;
+  gusset_girth_mm?: number;
+  thumb?: FingerSize | null;
+  fingers?: FingerSize[] | null;
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
+}
+
+/** A file of any kind that holds a chart. */
+export interface ImportRequest {
+  /** `.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) or `.k` (knitout). */
+  file: UploadedFile;
+}
+
+/** What a file holds. */
+export interface ImportResult {
+  /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
   outline: string | null;
   regions: DesignRegion[];
   repeats: DesignRepeat[];
-  shelf: { name: string; motif: string }[];
+  shelf: ShelfPattern[];
+  /** K/P lines, the top row first. */
+  chart: string;
+  /** Of a design. */
+  name: string | null;
+  material: string | null;
+  note: string | null;
+  rows: number;
+  columns: number;
+  repeat: ChartResult;
+  /** What may not be as meant, such as a lost region. */
+  notes: string[];
 }
 
-/** A design as the project file holds it. */
-export interface DesignDocument extends DesignLayout {
-  format: "knitcore-design";
-  version: 2;
+/** An interval by its ends. */
+export interface IntervalResult {
+  low: number;
+  high: number;
+}
+
+/** A part of a list of jobs, latest first. */
+export interface JobPage {
+  jobs: JobStatus[];
+  /** Ask with it for what follows; None at the end. */
+  next_cursor: string | null;
+}
+
+/** Where a job stands. */
+export type JobState = "waiting" | "running" | "done" | "failed" | "cancelled" | "interrupted";
+
+/** A job as its owner sees it. */
+export interface JobStatus {
+  id: string;
+  kind: string;
+  state: JobState;
+  /** Share done, where the computation tells it. */
+  progress: number;
+  /** Why it failed or was interrupted. */
+  problem: Problem | null;
+  created_at: string;
+  started_at: string | null;
+  finished_at: string | null;
+}
+
+/** A stress-strain curve, transverse direction free. */
+export interface LawCurve {
+  strain: number[];
+  stress_n_per_mm: number[];
+}
+
+/** A law as its stiffnesses, as its moduli and Poisson ratios, or as both if they agree. */
+export interface LawDocument {
+  stiffness_xxxx: number | null;
+  stiffness_yyyy: number | null;
+  stiffness_xxyy: number | null;
+  stiffness_yyxx: number | null;
+  modulus_course: number | null;
+  modulus_wale: number | null;
+  poisson_yx: number | null;
+  poisson_xy: number | null;
+  alpha_xx: number;
+  alpha_yy: number;
+  beta_xx: number;
+  beta_yy: number;
+  /** N/mm */
+  shear_modulus: number;
+}
+
+/** Standard errors of a law's constants. */
+export interface LawErrors {
+  stiffness_xxxx_n_per_mm: number;
+  stiffness_yyyy_n_per_mm: number;
+  stiffness_xxyy_n_per_mm: number;
+  stiffness_yyxx_n_per_mm: number;
+  alpha_xx: number;
+  alpha_yy: number;
+  beta_xx_n_per_mm: number;
+  beta_yy_n_per_mm: number;
+  poisson_yx: number;
+  poisson_xy: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+}
+
+/** The nine constants of a constitutive law. */
+export interface LawResult {
+  stiffness_xxxx_n_per_mm: number;
+  stiffness_yyyy_n_per_mm: number;
+  stiffness_xxyy_n_per_mm: number;
+  stiffness_yyxx_n_per_mm: number;
+  alpha_xx: number;
+  alpha_yy: number;
+  beta_xx_n_per_mm: number;
+  beta_yy_n_per_mm: number;
+  /** An assumption unless it was calibrated. */
+  shear_modulus_n_per_mm: number;
+}
+
+/** How well the library's yarns are predicted when they are left out; factors of the rms. */
+export interface LeftOutResult {
+  measured: Fabric[];
+  values: number;
+  strain_rms_factor: number;
+  modulus_rms_factor: number;
+  modulus_median_factor: number;
+  /** Share predicted within a factor of two. */
+  modulus_within_two: number;
+  alpha_rms_factor: number;
+  beta_rms_factor: number;
+  /** Of the 90 % intervals. */
+  modulus_coverage: number;
+  strain_coverage: number;
+}
+
+/** A sleeve along any limb. */
+export interface Limb {
+  template: "limb";
+  /** [position_mm, circumference_mm] along the limb. */
+  profile: [number, number][];
+  body?: Fabric;
+  hem?: Fabric;
+  hem_mm?: number;
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
+}
+
+/** A tube on a limb. */
+export interface LimbInput {
+  /** Of the unworn tube. */
+  rest_mm: number;
+  /** Of the limb. */
+  worn_mm: number;
+}
+
+/** The most that knitting may ask; null is no limit. */
+export interface LimitsInput {
+  transfers_per_stitch?: number | null;
+  crossings_per_stitch?: number | null;
+  /** Knits minus purls over all stitches, either way. */
+  curl?: number | null;
+}
+
+/** What to outline. */
+export interface MarkRequest {
+  box?: BoxInput | null;
+}
+
+/** A material, with everything that is known of it. */
+export interface MaterialDetail {
+  id: string;
   name: string;
-  material: string;
-  /** K/P lines, top row first. */
+  description: string;
+  notes: string[];
+  bending_modulus_n_mm2: number | null;
+  bending_modulus_sd_n_mm2: number | null;
+  compression_stiffness_n_per_mm3: number | null;
+  compression_exponent: number | null;
+  fabrics: Partial<Record<Fabric, FabricDetail>>;
+  /** None for a material that lacks one of the four fabrics. */
+  stitch_table: StitchTableResult | null;
+  /** Of the laws. */
+  curves: Partial<Record<Fabric, Record<Direction, LawCurve>>>;
+  /** Of the stretch tests, where they are kept with the material. */
+  measured: Partial<Record<Fabric, Record<Direction, CurveDocument>>>;
+}
+
+/** A material file. */
+export interface MaterialDocument {
+  format: "knitcore-material";
+  version: 1;
+  identifier: string;
+  name: string;
+  yarn: YarnDocument;
+  fabrics: Partial<Record<Fabric, FabricDocument>>;
+  note: string;
+}
+
+/** A material by its id. */
+export interface MaterialRequest {
+  /** Id of the library. */
+  identifier: string;
+}
+
+/** A material, in short. */
+export interface MaterialSummary {
+  id: string;
+  name: string;
+  description: string;
+  fabrics: Partial<Record<Fabric, FabricSummary>>;
+}
+
+/** The library. */
+export interface Materials {
+  materials: MaterialSummary[];
+}
+
+/** The model refitted from the packaged tables, and its leave-one-yarn-out figures. */
+export interface ModelReport {
+  yarns: number;
+  /** K in Y = K B / L³, geometric mean. */
+  modulus_constant: Partial<Record<Fabric, Record<Direction, number>>>;
+  alpha: Partial<Record<Fabric, Record<Direction, number>>>;
+  beta_n_per_mm: Partial<Record<Fabric, Record<Direction, number>>>;
+  left_out: LeftOutResult[];
+}
+
+/** Where the swatch is nearest to its lock-up at the last step. */
+export interface NearestLockUp {
+  utilisation: number;
+  /** From 1, bottom row first. */
+  row: number;
+  /** From 1, left wale first. */
+  column: number;
+  direction: Direction;
+  fabric: string;
+}
+
+/** A new link with its secret. */
+export interface NewShare {
+  id: string;
+  mode: ShareMode;
+  created_at: string;
+  /** The design is at /api/v1/shared/{token} for who has this. */
+  token: string;
+}
+
+/** The request of an operation that needs none. */
+export interface NoRequest {
+
+}
+
+/** Where the constants of a law come from. */
+export type Origin = "measured" | "simulated" | "fitted" | "estimated";
+
+/** The design's state after strokes were kept. */
+export interface Painted {
+  revision: number;
+  changed_at: string;
+  /** What looks different now: the strokes and one around. */
+  map: StitchKinds;
+}
+
+/** Colours that carry a meaning; the page sends those of its theme. */
+export interface Palette {
+  yarn?: string;
+  stockinette?: string;
+  garter?: string;
+  rib?: string;
+  seed?: string;
+}
+
+/** Symmetry of a connecting segment: even between like stitches, odd between unlike ones. */
+export type Parity = "even" | "odd";
+
+/** A chart text as somebody typed it. */
+export interface ParseRequest {
+  /** K/P lines, the top row first, as seen from the face. */
+  text: string;
+}
+
+/** A chart and its smallest repeat. */
+export interface ParsedChart {
+  rows: number;
+  columns: number;
+  text: string;
+  repeat: ChartResult;
+}
+
+/** A region of one repeat. */
+export interface PatchResult {
+  repeat: string;
+  stitches: number;
+  /** Of its first stitch, from 1 at the bottom left. */
+  row: number;
+  column: number;
+  /** Of the repeat; null without a wish. */
+  deviation_course: number | null;
+  deviation_wale: number | null;
+  /** The same of the patch as the finite swatch has it; null if it was not pulled. */
+  swatch_course: number | null;
+  swatch_wale: number | null;
+}
+
+/** A repeat with a name. */
+export interface PatternResult {
+  id: string;
+  name: string;
+  /** K/P lines of one repeat, the top row first. */
   chart: string;
   note: string;
 }
 
-/** Problem details (RFC 9457). */
+/** All named patterns. */
+export interface Patterns {
+  patterns: PatternResult[];
+}
+
+/** Where a linked repeat lies. */
+export interface Placement {
+  row: number;
+  column: number;
+  rows: number;
+  columns: number;
+}
+
+/** A chart and its material; of a shaped piece, the largest rectangle inside counts. */
+export interface PredictRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  /** Relaxed size of the mean stitch; estimated if left out. */
+  gauge?: GaugeInput | null;
+}
+
+/** Effective elastic constants of the whole chart at small strain; intervals cover 90 %. */
+export interface PredictResult {
+  /** Of the stitches that the constants are of. */
+  rows: number;
+  columns: number;
+  segments: Record<Direction, SegmentCountsResult>;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  /** Contraction wale-wise when pulled course-wise. */
+  poisson_yx: number;
+  /** Contraction course-wise when pulled wale-wise. */
+  poisson_xy: number;
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
+  modulus_course_interval_n_per_mm: [number, number];
+  modulus_wale_interval_n_per_mm: [number, number];
+  poisson_yx_interval: [number, number];
+  poisson_xy_interval: [number, number];
+  /** Reuss and Voigt; wider where folds need it. */
+  modulus_course_bounds_n_per_mm: [number, number];
+  modulus_wale_bounds_n_per_mm: [number, number];
+  /** An assumption unless it was calibrated. */
+  shear_modulus_n_per_mm: number;
+  /** Mean width of a stitch at rest. */
+  relaxed_course_mm: number;
+  /** Mean height of a stitch at rest. */
+  relaxed_wale_mm: number;
+  relaxed_course_interval_mm: [number, number];
+  relaxed_wale_interval_mm: [number, number];
+  relaxed_source: string;
+  /** measured; estimated; swept; composite with known size; or composite */
+  provenance: string;
+  method: string;
+  notes: string[];
+}
+
+/** A fabric of a material, or a law, as a tube on a limb. */
+export interface PressureRequest {
+  /** The material direction around the limb. */
+  direction: Direction;
+  /** Circumference of the unworn tube. */
+  rest_mm?: number | null;
+  /** Circumference of the limb. */
+  worn_mm: number;
+  /** Instead of rest_mm: the pressure wanted, for which to size the tube. */
+  target_mmhg?: number | null;
+  material?: string | null;
+  /** Of the material. */
+  fabric?: Fabric | null;
+  /** Constants of a law, by name. */
+  law?: Record<string, number> | null;
+}
+
+/** Mean pressure; no medical class. */
+export interface PressureResult {
+  /** From axially free to axially fixed. */
+  mmhg: IntervalResult;
+  kpa: IntervalResult;
+  /** The same, widened by the 90 % interval of the fabric's modulus, where known. */
+  mmhg_with_law_spread: IntervalResult | null;
+  /** Around the limb. */
+  strain: number;
+  rest_mm: number;
+  worn_mm: number;
+  /** Hoop tension per worn length. */
+  tension_n_per_mm: IntervalResult;
+  axial_strain_free: number;
+  /** Strain over lock-up strain. */
+  lock_up_share: number;
+  /** Sizes that press by the target: axially free to axially fixed. */
+  rest_mm_for_target: IntervalResult | null;
+  warnings: string[];
+}
+
+/** What every error response looks like. */
 export interface Problem {
+  /** Short name of the kind of problem. */
   type: string;
   title: string;
   status: number;
+  /** What is wrong, for people. */
   detail: string;
+  /** The input that is to blame. */
   field?: string | null;
+  /** What would be accepted. */
   remedy?: string | null;
-  /** The largest number that the field accepts, where that is known. */
+  /** The largest number that the field would accept, where that is known. */
   most?: number | null;
+}
+
+/** A pure fabric by name and size. */
+export interface PureFabricChart {
+  fabric: Fabric;
+  columns: number;
+  rows: number;
+}
+
+/** A quantity that a fabric can be searched for. */
+export type Quantity = "modulus_course_n_per_mm" | "modulus_wale_n_per_mm" | "extensibility_course_mm_per_n" | "extensibility_wale_mm_per_n" | "anisotropy" | "poisson_yx" | "poisson_xy" | "stretch_course" | "stretch_wale" | "pressure_course_mmhg" | "pressure_wale_mmhg";
+
+/** A pure fabric in the model. */
+export interface RSFabricResult {
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  segments: Record<Direction, RSSegment>;
+}
+
+/** A yarn whose shape the paper has: acrylic or cotton. */
+export interface RSRequest {
+  /** Id of the library. */
+  material: string;
+}
+
+/** The four fabrics of a yarn. */
+export interface RSResult {
+  material: string;
+  fabrics: Partial<Record<Fabric, RSFabricResult>>;
+}
+
+/** The connecting segments of one direction. */
+export interface RSSegment {
+  parity: Parity;
+  /** lambda, distance of the segment's ends. */
+  separation_mm: number;
+  /** L, yarn between them. */
+  length_mm: number;
+  /** v, the ends' tangent across the line between them. */
+  slope: number;
+  /** phi, tilt out of the cloth; odd segments only. */
+  angle_rad: number | null;
+  delta: number;
+  rigidity_n_per_mm: number;
+  modulus_n_per_mm: number;
+  /** The paper's value for this modulus. */
+  published_n_per_mm: number | null;
+}
+
+/** What one extensibility rectangle stands for. */
+export type RectangleGroups = "stitch" | "block" | "region";
+
+/** How points become constants: as published, or as recommended. */
+export type Reduction = "published" | "recommended";
+
+/** One region: the fabric's repeat, its colour, its size, and means over its stitches. */
+export interface RegionResult {
+  name: string;
+  fill: string;
+  colour: string;
+  stitches: number;
+  /** Stitches of its longest row. */
+  columns: number;
+  /** Rows of its longest column. */
+  rows: number;
+  /** Of that many stitches at rest. */
+  width_mm: number;
+  height_mm: number;
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  yarn_m: number;
+  yarn_g: number | null;
+  /** Lines of x (in the region) and ., the top row first. */
+  cells: string;
+}
+
+/** A repeat, its yarn, and what may be held while it relaxes. */
+export interface RelaxRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Yarn per stitch; the material's. */
+  loop_length_mm?: number | null;
+  /** Instead of one length: a list for every row of the chart, the bottom row first, of one length for all its stitches or one for each. */
+  loop_lengths_mm?: number[][] | null;
+  /** Hold the stitches in one plane, as a fabric laid flat; not published. */
+  flat?: boolean;
+  branch?: Branch;
+  convention?: Convention;
+  /** Compute it even if the result is known. */
+  fresh?: boolean;
+  /** Hold a stitch at this width. */
+  cell_course_mm?: number | null;
+  /** Hold a stitch at this height. */
+  cell_wale_mm?: number | null;
+  /** Return the centre lines of the yarn too. */
+  centre_lines?: boolean;
+}
+
+/** The shape of least energy, free of force or held; sizes and energies of one stitch. */
+export interface RelaxResult {
+  branch: Branch;
+  convention: Convention;
+  /** At least 2 in the free branch, as are the columns. */
+  repeat_rows: number;
+  repeat_columns: number;
+  cell_course_mm: number;
+  cell_wale_mm: number;
+  energy_n_mm: number;
+  bending_share: number;
+  contact_share: number;
+  yarn_length_mm: number;
+  /** What holds a prescribed width, per stitch; null in the published branch. */
+  force_course_n: number | null;
+  force_wale_n: number | null;
+  min_distance_mm: number | null;
+  /** CPU time of the solve, whenever it was. */
+  seconds: number;
+  /** Whether it had been computed before. */
+  known: boolean;
+  evaluations: number;
+  converged: boolean;
+  yarn: YarnResult;
+  starts: StartResult[];
+  notes: string[];
+  /** Bottom course first; each runs once across the repeat. */
+  centre_lines_mm: [number, number, number][][] | null;
+}
+
+/** Measured points and the fitted stress there. */
+export interface ResidualPoints {
+  strain_along: number[];
+  strain_across: number[];
+  stress_n_per_mm: number[];
+  fitted_n_per_mm: number[];
+}
+
+/** Stitches beside each other in one row, all of one kind. */
+export interface Run {
+  /** 0 is the bottom row. */
+  row: number;
+  /** First stitch, 0 at the left. */
+  column: number;
+  stitches: string;
+}
+
+/** Segments of one direction by their symmetry. */
+export interface SegmentCountsResult {
+  even: number;
+  odd: number;
+}
+
+/** A profile of widths under a stretch. */
+export interface ShapeRequest {
+  /** Id of the library. */
+  material: string;
+  /** Of the pull. */
+  direction?: Direction;
+  /** From clamp to clamp: 0.3 is 30 %. */
+  strain: number;
+  /** Stretched width over width at rest, line by line across the pull, from the bottom (wale-wise) or the left (course-wise); null is no wish. */
+  width: (number | null)[];
+  /** Stitches of a line. */
+  across: number;
+  repeats?: "small" | "all";
+  /** Lines of the narrowest band. */
+  smallest_band?: number;
+  /** The same seed gives the same chart. */
+  seed?: number;
+}
+
+/** A chart, and the outline of its swatch. */
+export interface ShapeResult {
+  rows: number;
+  columns: number;
+  chart: string;
+  bands: BandResult[];
+  /** As the finite swatch has it, beside what was wanted. */
+  width: number[];
+  wanted: (number | null)[];
+  /** Of the differences, as parts of the width at rest. */
+  rms: number;
+  largest: number;
+  force_n: number;
+  /** Swatches that were pulled on the way. */
+  pulls: number;
+  messages: string[];
+}
+
+/** A link that was given away; its secret is shown only once, when it is made. */
+export interface Share {
+  id: string;
+  mode: ShareMode;
+  created_at: string;
+}
+
+/** What a link allows. */
+export type ShareMode = "read" | "copy";
+
+/** A link to give away. */
+export interface ShareRequest {
+  mode?: ShareMode;
+}
+
+/** What a link shows. */
+export interface SharedDesign {
+  mode: ShareMode;
+  document: DesignDocument;
+  revision: number;
+  changed_at: string;
+}
+
+/** A design, as it lies or with its stretch test as an animation. */
+export interface SharedViewRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  colour?: Colour;
+  /** Values for the colour `field`. */
+  field?: FieldColours | null;
+  /** Of the design; coloured by `yarn` and `region`. */
+  regions?: DesignRegion[];
+  palette?: Palette;
+  rectangles?: boolean;
+  rectangle_groups?: RectangleGroups;
+  /** Stitches on a side of a block. */
+  rectangle_block?: number;
+  stretch?: StretchStep | null;
+  /** Around it a chart is drawn as yarn that is too large to be drawn whole. */
+  focus?: Focus | null;
+  /** All steps of the stretch test, not only the one. */
+  animated?: boolean;
+  /** Dark background of a page. */
+  dark?: boolean;
+}
+
+/** The links of a design that are not revoked. */
+export interface Shares {
+  shares: Share[];
+}
+
+/** A pattern of the user's. */
+export interface ShelfPattern {
+  name: string;
+  /** A repeat; its rows from the top, separated by /. */
+  motif: string;
+}
+
+/** Which side faces the knitter. */
+export type Side = "RS" | "WS";
+
+/** The leg of a sock. */
+export interface SockLeg {
+  template: "sock-leg";
+  ankle_mm: number;
+  calf_mm: number;
+  length_mm: number;
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
+}
+
+/** What became of one start; null where it failed. */
+export interface StartResult {
+  name: string;
+  outcome: string;
+  energy_n_mm: number | null;
+  cell_course_mm: number | null;
+  cell_wale_mm: number | null;
+}
+
+/** Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is no stitch. */
+export interface StitchFields {
+  strain_course: number[][];
+  strain_wale: number[][];
+  /** alpha * strain; 1 is the lock-up. */
+  utilisation: number[][];
+  /** Of the strain along the pull: its 90 % interval is this much to either side. */
+  strain_margin: number[][];
+  /** The same of the utilisation. */
+  utilisation_margin: number[][];
+}
+
+/** One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8. */
+export interface StitchKind {
+  code: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
+  modulus_course_interval: [number, number];
+  modulus_wale_interval: [number, number];
+  /** Shares of the four phases. */
+  fractions: Partial<Record<Fabric, number>>;
+}
+
+/** Kinds of the stitches in a box; a material's `stitches` table says what each kind does. */
+export interface StitchKinds {
+  /** Bottom row of the box, from 0. */
+  row: number;
+  /** Left column of the box, from 0. */
+  column: number;
+  /** A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15. */
+  kinds: string[];
+}
+
+/** Values of all kinds of stitch. */
+export interface StitchTableResult {
+  codes: StitchKind[];
+}
+
+/** A chart between two clamps, which hold the outermost stitches, and how it is pulled. */
+export interface StretchRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  /** Along rows, or along columns. */
+  direction: Direction;
+  /** Last clamp-to-clamp strain: 0.5 is 50 %. */
+  strain: number;
+  steps?: number;
+  /** Ends gripped, or free to slide along the clamps. */
+  clamps?: Clamps;
+  model?: EnergyModel;
+  /** C_xyxy in N/mm (an assumption otherwise). */
+  shear_modulus_n_per_mm?: number | null;
+  /** Size course-wise; from the gauge otherwise. */
+  width_mm?: number | null;
+  /** Size wale-wise; from the gauge otherwise. */
+  length_mm?: number | null;
+}
+
+/** The curve of a test and the fields at its stitches. */
+export interface StretchResult {
+  strain: number[];
+  force_n: number[];
+  /** Lower end of the 90 % interval. */
+  force_low_n: number[];
+  /** Upper end of the 90 % interval. */
+  force_high_n: number[];
+  /** Force per width, and as sure as the force. */
+  stress_n_per_mm: number[];
+  waist_strain: number[];
+  /** 90 % interval, to either side. */
+  waist_margin: number[];
+  iterations: number[];
+  converged: boolean;
+  seconds: number;
+  dofs: number;
+  width_mm: number;
+  length_mm: number;
+  /** Whether C_xyxy is the paper's assumption; nobody measured it. */
+  shear_modulus_assumed: boolean;
+  nearest_lock_up: NearestLockUp | null;
+  messages: string[];
+  /** Names this test for the 3D view. */
+  id: string;
+  rows: number;
+  columns: number;
+  stitch_fields: StitchFields;
+}
+
+/** A state of a stretch test that was run before. */
+export interface StretchStep {
+  /** The id that the stretch test returned. */
+  id: string;
+  step: number;
+}
+
+/** What somebody painted: it says what stitches become, so strokes of several people merge. */
+export interface Strokes {
+  /** Size of the chart that was painted on. */
+  rows: number;
+  columns: number;
+  runs: Run[];
+}
+
+/** A measured swatch of the yarn. */
+export interface SwatchInput {
+  fabric: Fabric;
+  /** Constants of its law, by name. */
+  law: Record<string, number>;
+  loop_length_mm: number;
+  /** Needle or stitch setting. */
+  setting?: string;
+}
+
+/** A repeat, its yarn and the stretch. */
+export interface SweepRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Yarn per stitch; the material's. */
+  loop_length_mm?: number | null;
+  /** Instead of one length: a list for every row of the chart, the bottom row first, of one length for all its stitches or one for each. */
+  loop_lengths_mm?: number[][] | null;
+  /** Hold the stitches in one plane, as a fabric laid flat; not published. */
+  flat?: boolean;
+  branch?: Branch;
+  convention?: Convention;
+  /** Compute it even if the result is known. */
+  fresh?: boolean;
+  /** Along rows, or along columns. */
+  direction: Direction;
+  /** Largest strain: 0.5 is 50 %. */
+  max_strain: number;
+  points?: number;
+  /** Keep the yarn from sliding where it touches at rest. The published branch does so for seed along the course, as the paper did, and takes no other wish. */
+  slide_quenching?: boolean;
+}
+
+/** A stretch, free across; sizes and energies of one stitch. */
+export interface SweepResult {
+  direction: Direction;
+  branch: Branch;
+  strain: number[];
+  transverse_strain: number[];
+  stress_n_per_mm: number[];
+  energy_n_mm: number[];
+  bending_share: number[];
+  contact_share: number[];
+  /** Points at which the shape changes abruptly. */
+  jumps: number[];
+  /** Relaxed size of one stitch. */
+  cell_course_mm: number;
+  cell_wale_mm: number;
+  law: SweptLaw | null;
+  converged: boolean;
+  /** CPU time of the solves, whenever they were. */
+  seconds: number;
+  /** Whether it had been computed before. */
+  known: boolean;
+  yarn: YarnResult;
+  notes: string[];
+}
+
+/** Constitutive law fitted to the stretches along and across (N/mm). */
+export interface SweptLaw {
+  stiffness_xxxx: number;
+  stiffness_yyyy: number;
+  stiffness_xxyy: number;
+  stiffness_yyxx: number;
+  alpha_xx: number;
+  alpha_yy: number;
+  beta_xx: number;
+  beta_yy: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  poisson_yx: number;
+  poisson_xy: number;
+  /** Upper end of the fitted range of stress. */
+  max_stress_n_per_mm: number;
+  largest_strain_course: number;
+  largest_strain_wale: number;
+  rms_course_n_per_mm: number;
+  rms_wale_n_per_mm: number;
+}
+
+/** One wish for a fabric. */
+export interface TargetInput {
+  quantity: Quantity;
+  /** Stretch as a strain: 0.5 is 50 %. */
+  value: number;
+  /** Relative (0.1 is 10 %); a difference for Poisson's ratios. */
+  tolerance?: number;
+  weight?: number;
+  /** For a stretch, per width of the cloth. */
+  load_n_per_mm?: number;
+  /** For a pressure. */
+  limb?: LimbInput | null;
+}
+
+/** A file's name and its content. */
+export interface UploadedFile {
+  name: string;
+  /** The file, base64. */
+  content: string;
+}
+
+/** A kept state with its document. */
+export interface Version {
+  /** From 1, oldest first. */
+  number: number;
+  name: string;
+  /** Kept by the service before a restore replaced it. */
+  automatic: boolean;
+  revision: number;
+  created_at: string;
+  document: DesignDocument;
+}
+
+/** A name for the design's present state. */
+export interface VersionRequest {
+  name: string;
+}
+
+/** A kept state of a design. */
+export interface VersionSummary {
+  /** From 1, oldest first. */
+  number: number;
+  name: string;
+  /** Kept by the service before a restore replaced it. */
+  automatic: boolean;
+  revision: number;
+  created_at: string;
+}
+
+/** All kept states of a design. */
+export interface Versions {
+  versions: VersionSummary[];
+}
+
+/** A design and how to show it. */
+export interface ViewRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  colour?: Colour;
+  /** Values for the colour `field`. */
+  field?: FieldColours | null;
+  /** Of the design; coloured by `yarn` and `region`. */
+  regions?: DesignRegion[];
+  palette?: Palette;
+  rectangles?: boolean;
+  rectangle_groups?: RectangleGroups;
+  /** Stitches on a side of a block. */
+  rectangle_block?: number;
+  stretch?: StretchStep | null;
+  /** Around it a chart is drawn as yarn that is too large to be drawn whole. */
+  focus?: Focus | null;
+}
+
+/** What is shown, and where. */
+export interface ViewResult {
+  /** Stitches drawn as yarn. */
+  stitches: number;
+  /** Where the shapes of the stitches come from. */
+  source: string;
+  url: string;
+}
+
+/** Stiffness wanted in one part of the chart. */
+export interface WishInput {
+  name?: string;
+  /** [row, first column, length] of its stitches, row 0 at the bottom. */
+  runs: [number, number, number][];
+  modulus_course_n_per_mm?: number | null;
+  modulus_wale_n_per_mm?: number | null;
+}
+
+/** Pressure at one place along the limb. */
+export interface WornResult {
+  at_mm: number;
+  part: string;
+  rest_mm: number;
+  worn_mm: number;
+  ease: number;
+  strain: number | null;
+  mmhg: IntervalResult | null;
+  kpa: IntervalResult | null;
+  warnings: string[];
+}
+
+/** A brace knitted sideways and grafted. */
+export interface WristBrace {
+  template: "wrist-brace";
+  wrist_mm: number;
+  length_mm: number;
+  edge_mm?: number;
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
+}
+
+/** A yarn by itself; everything is optional. */
+export interface YarnDocument {
+  fibre: string;
+  product: string;
+  bending_modulus_n_mm2: number | null;
+  bending_modulus_sd_n_mm2: number | null;
+  compression_stiffness_n_per_mm3: number | null;
+  compression_exponent: number | null;
+  diameter_mm: number | null;
+}
+
+/** A yarn by its parameters. */
+export interface YarnInput {
+  name: string;
+  bending_modulus_n_mm2: number;
+  contact_stiffness_n_per_mm3: number;
+  contact_exponent: number;
+  radius_mm: number;
+  core_radius_mm: number;
+}
+
+/** The yarn that was used and where its numbers come from. */
+export interface YarnResult {
+  bending_modulus_n_mm2: number;
+  contact_stiffness_n_per_mm3: number;
+  contact_exponent: number;
+  radius_mm: number;
+  core_radius_mm: number;
+  provenance: string;
+  estimated: boolean;
 }

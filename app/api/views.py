@@ -17,12 +17,12 @@ from app.models.base import RequestModel
 from app.operations.context import Context
 from app.operations.perform import Answer
 from app.operations.stretch import StretchView
-from app.viewer.camera import Side
+from app.viewer.camera import CameraSide
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.design_view import ViewRequest, ViewResult, build_scene
 from app.viewer.fabric import Box
 from app.viewer.share import picture_png
-from app.viewer.shared import ShareRequest, shared_page, shared_recording, shared_solid
+from app.viewer.shared import SharedViewRequest, shared_page, shared_recording, shared_solid
 from app.viewer.views import View
 
 EVENT_PERIOD_S = 0.5
@@ -58,7 +58,7 @@ class MarkRequest(RequestModel):
 class CameraRequest(RequestModel):
     """From where to look."""
 
-    side: Side
+    side: CameraSide
 
 
 @router.put("/views/{design}", summary="Show a design in its 3D view")
@@ -141,7 +141,7 @@ def _file(media: str, text: str) -> dict[int | str, dict[str, Any]]:
     response_class=Response,
     responses=_file("text/html", "One file that needs neither the service nor the network."),
 )
-async def post_page(body: ShareRequest, request: Request) -> Response:
+async def post_page(body: SharedViewRequest, request: Request) -> Response:
     """The fabric to turn with the mouse; animated, its stretch test plays."""
     return await _shared(shared_page, body, request, "text/html", "html")
 
@@ -152,7 +152,7 @@ async def post_page(body: ShareRequest, request: Request) -> Response:
     response_class=Response,
     responses=_file("application/octet-stream", "A `.viser` file."),
 )
-async def post_recording(body: ShareRequest, request: Request) -> Response:
+async def post_recording(body: SharedViewRequest, request: Request) -> Response:
     """For viser's own player."""
     return await _shared(shared_recording, body, request, "application/octet-stream", "viser")
 
@@ -163,14 +163,14 @@ async def post_recording(body: ShareRequest, request: Request) -> Response:
     response_class=Response,
     responses=_file("model/gltf-binary", "Binary glTF 2.0 in metres."),
 )
-async def post_solid(body: ShareRequest, request: Request) -> Response:
+async def post_solid(body: SharedViewRequest, request: Request) -> Response:
     """The fabric as it lies, relaxed or stretched, with its colours."""
     return await _shared(shared_solid, body, request, "model/gltf-binary", "glb")
 
 
 async def _shared(
-    make: Callable[[ShareRequest, StretchView | None, Context], bytes],
-    body: ShareRequest,
+    make: Callable[[SharedViewRequest, StretchView | None, Context], bytes],
+    body: SharedViewRequest,
     request: Request,
     media: str,
     ending: str,

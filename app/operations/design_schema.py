@@ -11,7 +11,9 @@ from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.formats.design import design_schema as schema_of_designs
 
-DesignSchema = RootModel[dict[str, Any]]
+
+class DesignSchema(RootModel[dict[str, Any]]):
+    """A JSON schema."""
 
 
 def design_schema(request: NoRequest, context: Context) -> DesignSchema:

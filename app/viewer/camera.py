@@ -24,7 +24,7 @@ MOVED = 1e-3
 """Relative change of place by which a camera is not where it was put any more."""
 
 
-class Side(StrEnum):
+class CameraSide(StrEnum):
     """Sides of a fabric."""
 
     FACE = "face"
@@ -33,16 +33,16 @@ class Side(StrEnum):
     ANGLE = "angle"
 
 
-_TOWARDS: dict[Side, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
+_TOWARDS: dict[CameraSide, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
     # where the camera stands, and what is up in the picture
-    Side.FACE: ((0.0, -0.06, 1.0), (0.0, 1.0, 0.0)),
-    Side.BACK: ((0.0, -0.06, -1.0), (0.0, 1.0, 0.0)),
-    Side.EDGE: ((0.0, -1.0, 0.16), (0.0, 0.0, 1.0)),
-    Side.ANGLE: ((0.3, -0.65, 0.9), (0.0, 1.0, 0.0)),
+    CameraSide.FACE: ((0.0, -0.06, 1.0), (0.0, 1.0, 0.0)),
+    CameraSide.BACK: ((0.0, -0.06, -1.0), (0.0, 1.0, 0.0)),
+    CameraSide.EDGE: ((0.0, -1.0, 0.16), (0.0, 0.0, 1.0)),
+    CameraSide.ANGLE: ((0.3, -0.65, 0.9), (0.0, 1.0, 0.0)),
 }
 
 
-def stand(side: Side, extent: Array) -> tuple[Array, Array, Array]:
+def stand(side: CameraSide, extent: Array) -> tuple[Array, Array, Array]:
     """Where the camera stands, what it looks at, and what is up, so that the whole fabric is seen.
 
     Parameters
@@ -58,14 +58,16 @@ def stand(side: Side, extent: Array) -> tuple[Array, Array, Array]:
     width, height = extent
     # What is nearer than the middle looks larger.
     nearer = (abs(direction[0]) * width + abs(direction[1]) * height) / 2
-    if side is Side.EDGE:
+    if side is CameraSide.EDGE:
         height = 0.3 * width
     needed = MARGIN * max(height, width / ASPECT) / 2
     aim = LIFT * needed * up
     return aim + direction * (needed / np.tan(FIELD_OF_VIEW / 2) + nearer), aim, up
 
 
-def place_camera(server: viser.ViserServer, side: Side, extent: Array, *, everybody: bool) -> None:
+def place_camera(
+    server: viser.ViserServer, side: CameraSide, extent: Array, *, everybody: bool
+) -> None:
     """Place the camera, that of later ones too, so that the whole fabric is seen.
 
     Parameters

@@ -9,7 +9,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.viewer.camera import Side, place_camera
+from app.viewer.camera import CameraSide, place_camera
 from app.viewer.cloth import UNITS_PER_MM, Cloth
 from app.viewer.fabric import Box, FabricScene
 from knitcore.geometry.instances import level_of
@@ -40,7 +40,7 @@ class SceneWriter:
         self._timer: threading.Timer | None = None
         self._layers: dict[str, Any] = {}
         self._framed: tuple[float, ...] | None = None
-        self._side = Side.FACE
+        self._side = CameraSide.FACE
 
     @property
     def scene(self) -> FabricScene | None:
@@ -85,7 +85,7 @@ class SceneWriter:
                 ),
             )
 
-    def look(self, side: Side) -> None:
+    def look(self, side: CameraSide) -> None:
         """Turn everybody's camera to a side."""
         with self._lock:
             self._side = side

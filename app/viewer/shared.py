@@ -16,24 +16,28 @@ from knitcore.errors import InputError
 MAX_SHARED_STITCHES = 40_000
 
 
-class ShareRequest(ViewRequest):
+class SharedViewRequest(ViewRequest):
     """A design, as it lies or with its stretch test as an animation."""
 
     animated: bool = Field(False, description="All steps of the stretch test, not only the one.")
     dark: bool = Field(False, description="Dark background of a page.")
 
 
-def shared_page(request: ShareRequest, stretch: StretchView | None, context: Context) -> bytes:
+def shared_page(request: SharedViewRequest, stretch: StretchView | None, context: Context) -> bytes:
     """A page that needs neither the service nor the network."""
     return page_html(_scenes(request, stretch, context), dark=request.dark).encode()
 
 
-def shared_recording(request: ShareRequest, stretch: StretchView | None, context: Context) -> bytes:
+def shared_recording(
+    request: SharedViewRequest, stretch: StretchView | None, context: Context
+) -> bytes:
     """A ``.viser`` recording."""
     return recording(_scenes(request, stretch, context))
 
 
-def shared_solid(request: ShareRequest, stretch: StretchView | None, context: Context) -> bytes:
+def shared_solid(
+    request: SharedViewRequest, stretch: StretchView | None, context: Context
+) -> bytes:
     """The yarn as binary glTF.
 
     Raises
@@ -47,7 +51,7 @@ def shared_solid(request: ShareRequest, stretch: StretchView | None, context: Co
 
 
 def _scenes(
-    request: ShareRequest, stretch: StretchView | None, context: Context
+    request: SharedViewRequest, stretch: StretchView | None, context: Context
 ) -> Iterator[FabricScene]:
     scene = build_scene(request, stretch, context)
     _check_size(scene, MAX_SHARED_STITCHES)

@@ -6,7 +6,7 @@
  * the parity of the one on the opposite side. The same definition as in the Python library.
  *
  * @import {Box, Grid} from "./grid.js"
- * @import {Direction, FabricName, SegmentCounts} from "../types.js"
+ * @import {Direction, Fabric, SegmentCountsResult} from "../types.js"
  */
 
 export const LEFT = 1;
@@ -14,7 +14,7 @@ export const RIGHT = 2;
 export const BELOW = 4;
 export const ABOVE = 8;
 
-/** Fabrics by phase: 2 × course-wise odd + wale-wise odd. @type {FabricName[]} */
+/** Fabrics by phase: 2 × course-wise odd + wale-wise odd. @type {Fabric[]} */
 export const FABRICS = ["stockinette", "garter", "rib", "seed"];
 
 /** Phases of the quarters of each code: below left, below right, above left, above right. */
@@ -63,10 +63,10 @@ export function surroundings(grid, outline = null) {
 /**
  * @param {Grid} grid
  * @param {Uint8Array | null} [outline] 0 where there is no stitch
- * @returns {Record<Direction, SegmentCounts>}
+ * @returns {Record<Direction, SegmentCountsResult>}
  */
 export function countSegments({ rows, columns, purl }, outline = null) {
-  /** @param {Direction} direction @returns {SegmentCounts} */
+  /** @param {Direction} direction @returns {SegmentCountsResult} */
   const count = (direction) => {
     const step = direction === "course" ? 1 : columns;
     let all = 0;

@@ -4,7 +4,7 @@
  *
  * @import {ChartView} from "../chart/view.js"
  * @import {Studio} from "../studio.js"
- * @import {Side, ViewRequest} from "../types.js"
+ * @import {CameraSide, ViewRequest} from "../types.js"
  */
 
 import { ApiError, api } from "../api.js";
@@ -46,7 +46,7 @@ export function fabricview(host, studio, view) {
     slow: () => governor.slow,
   });
 
-  /** @param {Side} side */
+  /** @param {CameraSide} side */
   const look = async (side) => {
     try {
       await api.look(studio.designId, side);
@@ -202,7 +202,7 @@ function wanted(studio, view) {
   return {
     ...studio.request,
     outline: chart.shaped ? outlineText(chart.outline, columns) : null,
-    colour,
+    colour: /** @type {ViewRequest["colour"]} */ (colour),
     palette: palette(),
     regions: byRegion ? chart.regions.map((region) => region.written(columns)) : [],
     rectangles: studio.rectangles.value,

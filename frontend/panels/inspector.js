@@ -2,7 +2,7 @@
  * The numbers of the chart or the selection, with interval and source, and two plots.
  *
  * @import {Studio} from "../studio.js"
- * @import {Direction, Interval, Prediction} from "../types.js"
+ * @import {Direction, PredictResult} from "../types.js"
  */
 
 import { LINES, along } from "../core/directions.js";
@@ -116,7 +116,7 @@ export function inspector(host, studio) {
   );
   choose("rigidity");
 
-  /** @type {Prediction | null | undefined} */
+  /** @type {PredictResult | null | undefined} */
   let shown;
   const show = () => {
     const { value, busy, problem: wrong, scope } = studio.prediction.value;
@@ -208,7 +208,7 @@ export function inspector(host, studio) {
 
 /**
  * @param {HTMLTableElement} table
- * @param {Prediction | null} value
+ * @param {PredictResult | null} value
  */
 function fill(table, value) {
   /** @param {string} id @param {number | undefined} number @param {string} [interval] */
@@ -270,7 +270,7 @@ function fill(table, value) {
   );
 }
 
-/** @param {Interval | null | undefined} interval @returns {Interval | null} */
+/** @param {[number, number] | null | undefined} interval @returns {[number, number] | null} */
 function inverse(interval) {
   return interval ? [1 / interval[1], 1 / interval[0]] : null;
 }

@@ -4,7 +4,7 @@
  * on show.
  *
  * @import {Studio} from "../studio.js"
- * @import {ChartCurve, Stretch} from "../types.js"
+ * @import {CurveResult, StretchResult} from "../types.js"
  * @import {Plotly, Trace} from "./plotly.js"
  */
 
@@ -30,7 +30,7 @@ export function curvePlot(host, studio) {
   let drawn = false;
   let width = 0;
   let height = 0;
-  /** @type {{key: string, curve: ChartCurve} | null} */
+  /** @type {{key: string, curve: CurveResult} | null} */
   let answer = null;
   const latest = new Latest(DELAY_MS);
 
@@ -110,7 +110,7 @@ function shownStretch(studio) {
 
 /**
  * @param {Studio} studio
- * @param {ChartCurve | null} own
+ * @param {CurveResult | null} own
  * @returns {Trace[]}
  */
 function traces(studio, own) {
@@ -205,7 +205,7 @@ function traces(studio, own) {
 /**
  * The interval of the stretch test.
  *
- * @param {Stretch | null} stretch
+ * @param {StretchResult | null} stretch
  */
 function stressBand(stretch) {
   if (!stretch?.force_low_n || !stretch.force_high_n) return { x: [], y: [] };

@@ -2,7 +2,7 @@
  * Runs stretch tests and plays them.
  *
  * @import {Studio} from "../studio.js"
- * @import {Direction, Stretch, StretchRequest} from "../types.js"
+ * @import {Direction, StretchResult, StretchRequest} from "../types.js"
  *
  * @typedef {Partial<Pick<StretchRequest, "clamps" | "model" | "shear_modulus_n_per_mm">>} StretchOptions
  */
@@ -66,7 +66,7 @@ export class Stretcher {
     const request = { ...studio.request, outline, direction, strain, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
-      /** @type {Stretch} */
+      /** @type {StretchResult} */
       const value = await runJob("stretch", request, {
         signal: controller.signal,
         onProgress: ({ state, progress }) => {

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.viewer.camera import ASPECT, FIELD_OF_VIEW, Side, stand
+from app.viewer.camera import ASPECT, FIELD_OF_VIEW, CameraSide, stand
 from app.viewer.cloth import UNITS_PER_MM
 from knitcore.chart import MAX_STITCHES_PER_SIDE
 
 
-@pytest.mark.parametrize("side", Side)
+@pytest.mark.parametrize("side", CameraSide)
 @pytest.mark.parametrize("extent_mm", [(40.0, 50.0), (50.0, 20.0), (20.0, 60.0), (300.0, 300.0)])
-def test_all_corners_are_in_the_picture(side: Side, extent_mm: tuple[float, float]) -> None:
+def test_all_corners_are_in_the_picture(side: CameraSide, extent_mm: tuple[float, float]) -> None:
     position, aim, up = stand(side, np.array(extent_mm))
     ahead = (aim - position) / np.linalg.norm(aim - position)
     right = np.cross(ahead, up)
@@ -26,8 +26,8 @@ def test_all_corners_are_in_the_picture(side: Side, extent_mm: tuple[float, floa
     assert np.abs(upward).max() < 0.95
 
 
-@pytest.mark.parametrize("side", Side)
-def test_the_largest_cloth_is_nearer_than_what_browsers_leave_out(side: Side) -> None:
+@pytest.mark.parametrize("side", CameraSide)
+def test_the_largest_cloth_is_nearer_than_what_browsers_leave_out(side: CameraSide) -> None:
     side_mm = MAX_STITCHES_PER_SIDE * 8.0  # bulky yarn
     position, _, _ = stand(side, UNITS_PER_MM * np.array([side_mm, side_mm]))
     assert np.linalg.norm(position) + 0.75 * UNITS_PER_MM * side_mm < 1000

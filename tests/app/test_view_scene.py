@@ -13,7 +13,7 @@ import pytest
 
 from app.operations.context import Context
 from app.viewer import scene as scene_module
-from app.viewer.camera import Side
+from app.viewer.camera import CameraSide
 from app.viewer.cloth import Cloth
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.views import View, new_view
@@ -66,5 +66,5 @@ def test_a_camera_that_was_moved_keeps_its_place_until_asked(view: View) -> None
     client.camera.position = close
     _show(view, SMALL | {"chart": "KPKP\nPKPK\nKPKP\nKPKP"})
     np.testing.assert_array_equal(client.camera.position, close)
-    view.writer.look(Side.FACE)
+    view.writer.look(CameraSide.FACE)
     assert np.linalg.norm(client.camera.position) > 2 * np.linalg.norm(close)

@@ -2,14 +2,14 @@
  * What can be done with the fabric in 3D: look from another side, colour its yarn, give it away.
  *
  * @import {Studio} from "../../studio.js"
- * @import {Side} from "../../types.js"
+ * @import {CameraSide} from "../../types.js"
  */
 
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { menu } from "../../widgets/menu.js";
 
-/** @type {{side: Side, label: string, hint: string}[]} */
+/** @type {{side: CameraSide, label: string, hint: string}[]} */
 const SIDES = [
   { side: "face", label: "Face", hint: "Look at the face" },
   { side: "back", label: "Back", hint: "Look at the back" },
@@ -28,7 +28,7 @@ const COLOURS = [
 
 /**
  * @param {Studio} studio
- * @param {(side: Side) => void} look
+ * @param {(side: CameraSide) => void} look
  * @param {import("./share.js").Wish} wish
  */
 export function toolbar(studio, look, wish) {

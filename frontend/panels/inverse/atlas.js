@@ -3,7 +3,8 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
- * @import {AtlasTable, Point} from "./types.js"
+ * @import {AtlasResult} from "../../types.js"
+ * @import {Point} from "./scatter.js"
  */
 
 import { figure, percent, range } from "../../core/format.js";
@@ -27,9 +28,9 @@ const EXTENTS = [
  */
 export function atlasTab(studio, context) {
   const run = new Run();
-  /** @type {Map<string, AtlasTable>} */
+  /** @type {Map<string, AtlasResult>} */
   const loaded = new Map();
-  /** @type {AtlasTable | null} */ let table = null;
+  /** @type {AtlasResult | null} */ let table = null;
   let extent = "small";
 
   const tip = h("div", { class: "inverse-tip", hidden: true, "aria-hidden": "true" });
@@ -188,7 +189,7 @@ export function atlasTab(studio, context) {
     const material = studio.materialId.value;
     const id = `${material} ${extent}`;
     if (!loaded.has(id)) {
-      /** @type {AtlasTable | null} */
+      /** @type {AtlasResult | null} */
       const found = await run.run("atlas", { material, repeats: extent }, "Predicting all repeats");
       if (found) loaded.set(id, found);
       if (`${studio.materialId.value} ${extent}` !== id) return;

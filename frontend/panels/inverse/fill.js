@@ -2,7 +2,7 @@
  * Fill from a wish: stiffness for parts of the chart becomes stitches.
  *
  * @import {Studio} from "../../studio.js"
- * @import {Filled} from "./types.js"
+ * @import {FillResult} from "../../types.js"
  *
  * @typedef {{name: string, cells: number[], course: number | null, wale: number | null}} Part
  */
@@ -158,7 +158,7 @@ export function fillTab(studio) {
       return;
     }
     answer.replaceChildren();
-    /** @type {Filled | null} */
+    /** @type {FillResult | null} */
     const found = await run.run(
       "fill",
       {
@@ -182,7 +182,7 @@ export function fillTab(studio) {
     if (found) preview(found, wished);
   };
 
-  /** @param {Filled} found @param {Part[]} wished */
+  /** @param {FillResult} found @param {Part[]} wished */
   const preview = (found, wished) => {
     const filled = Grid.fromText(found.chart);
     const cells = [...new Set(wished.flatMap((part) => part.cells))];
@@ -285,7 +285,7 @@ export function fillTab(studio) {
   return { element };
 }
 
-/** @param {Filled} found */
+/** @param {FillResult} found */
 function patchTable({ patches }) {
   const rows = patches.toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
   /** @param {number | null} share */

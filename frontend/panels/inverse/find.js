@@ -3,7 +3,7 @@
  *
  * @import {ActionContext} from "../../actions/action.js"
  * @import {Studio} from "../../studio.js"
- * @import {Candidate, Found, Wanted} from "./types.js"
+ * @import {CandidateResult, FindResult, TargetInput} from "../../types.js"
  */
 
 import { figure } from "../../core/format.js";
@@ -96,7 +96,7 @@ export function findTab(studio, context) {
   const run = new Run();
   const rows = h("div", { class: "wish-list", id: "wishes" });
   const answer = h("div", { class: "inverse-answer", id: "find-answer" });
-  /** @type {(() => Wanted | null)[]} */
+  /** @type {(() => TargetInput | null)[]} */
   const readers = [];
 
   /** @param {Quantity} first @param {number} [value] */
@@ -153,9 +153,9 @@ export function findTab(studio, context) {
       const q = quantityOf(select.value);
       const numbers = [number, tolerance, load, rest, worn].map(({ valueAsNumber }) => valueAsNumber);
       if (!Number.isFinite(numbers[0]) || !(numbers[1] > 0)) return null;
-      /** @type {Wanted} */
+      /** @type {TargetInput} */
       const wanted = {
-        quantity: q.id,
+        quantity: /** @type {TargetInput["quantity"]} */ (q.id),
         value: q.percent ? numbers[0] / 100 : numbers[0],
         tolerance: q.difference ? numbers[1] : numbers[1] / 100,
         weight: Number(weight.value),
@@ -220,12 +220,12 @@ export function findTab(studio, context) {
       count: COUNT,
       elsewhere: false,
     };
-    /** @type {Found | null} */
+    /** @type {FindResult | null} */
     const found = await run.run("find", request, "Searching");
     if (!found) return;
     show(found, targets);
     if (found.reached || materials.length === all.length) return;
-    /** @type {Found | null} */
+    /** @type {FindResult | null} */
     const more = await run.run(
       "find",
       { ...request, repeats: "small", elsewhere: true },
@@ -234,7 +234,7 @@ export function findTab(studio, context) {
     if (more) show({ ...found, elsewhere: more.elsewhere }, targets);
   };
 
-  /** @param {Found} found @param {Wanted[]} targets */
+  /** @param {FindResult} found @param {TargetInput[]} targets */
   const show = (found, targets) => {
     answer.replaceChildren(
       h(
@@ -250,7 +250,7 @@ export function findTab(studio, context) {
     );
   };
 
-  /** @param {Candidate} candidate */
+  /** @param {CandidateResult} candidate */
   const item = (candidate) => {
     const key = candidate.chart.replaceAll("\n", "/");
     const name = studio.materials.value.find(({ id }) => id === candidate.material)?.name ?? candidate.material;
@@ -340,7 +340,7 @@ export function findTab(studio, context) {
   return { element, open: () => {}, retheme: () => {} };
 }
 
-/** @param {Found} found @param {Wanted[]} targets */
+/** @param {FindResult} found @param {TargetInput[]} targets */
 function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) {
   const within = candidates.filter((candidate) => candidate.reached).length;
   if (reached)
@@ -360,7 +360,7 @@ function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) 
   ].join(" ");
 }
 
-/** @param {Candidate} candidate @param {string} label */
+/** @param {CandidateResult} candidate @param {string} label */
 function valueOf(candidate, label) {
   const q = quantityOf(label);
   const value = candidate.values[label];

@@ -3,7 +3,7 @@
  *
  * @import {Studio} from "../../studio.js"
  * @import {Direction} from "../../types.js"
- * @import {Shaped} from "./types.js"
+ * @import {ShapeResult} from "../../types.js"
  */
 
 import { figure, percent } from "../../core/format.js";
@@ -149,7 +149,7 @@ export function outlineTab(studio) {
     answer.replaceChildren();
     reached = null;
     draw();
-    /** @type {Shaped | null} */
+    /** @type {ShapeResult | null} */
     const found = await run.run(
       "shape",
       {
@@ -165,7 +165,7 @@ export function outlineTab(studio) {
     );
     if (found) show(found);
   };
-  /** @param {Shaped} found */
+  /** @param {ShapeResult} found */
   const show = (found) => {
     reached = found.width;
     draw();

@@ -2,7 +2,9 @@
  * All repeats of an atlas by their stiffness along rows and along columns, both axes logarithmic.
  * What is under the pointer is shown, a press chooses it, a drag carries it onto the chart.
  *
- * @import {AtlasTable, Point} from "./types.js"
+ * @import {AtlasResult} from "../../types.js"
+ *
+ * @typedef {{key: string, index: number, x: number, y: number}} Point a repeat
  */
 
 import { readPalette } from "../../chart/palette.js";
@@ -28,7 +30,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     "aria-label":
       "Repeats by stiffness. Left and right: softer or stiffer along rows; up and down: along columns; Enter fills.",
   });
-  /** @type {AtlasTable | null} */ let table = null;
+  /** @type {AtlasResult | null} */ let table = null;
   /** @type {Point[]} */ let points = [];
   /** @type {Point | null} */ let hovered = null;
   /** @type {number | null} */ let chosen = null;
@@ -187,7 +189,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
   return {
     canvas,
     draw,
-    /** @param {AtlasTable | null} next */
+    /** @param {AtlasResult | null} next */
     show(next) {
       table = next;
       points = [];
@@ -209,7 +211,7 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
   };
 }
 
-/** @param {Point} point @param {AtlasTable} table */
+/** @param {Point} point @param {AtlasResult} table */
 export function inWords({ index }, table) {
   return `${figure(table.modulus_course_n_per_mm[index])} and ${figure(table.modulus_wale_n_per_mm[index])} N/mm`;
 }

@@ -1,0 +1,142 @@
+"""Write the page's types from the service's models (``make types``): ``frontend/types.d.ts``.
+
+Requests are as the service takes them, with fields that may be left out; all else is as it answers,
+with every field there (but for problems, which the page makes, too). A test compares the file with
+the models.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from app.api.views import CameraRequest, MarkRequest
+from app.designs import document as designs
+from app.http.problems import Problem
+from app.jobs.document import JobPage
+from app.operations.registry import operations
+from app.viewer.design_view import ViewRequest, ViewResult
+from app.viewer.shared import SharedViewRequest
+from knitcore.formats.layout import DesignLayout
+
+FILE = Path(__file__).resolve().parent.parent / "frontend" / "types.d.ts"
+HEAD = (
+    "// Made from the service's models by scripts/page_types.py: change those, then `make types`."
+)
+
+ASKED: tuple[type[BaseModel], ...] = (
+    ViewRequest,
+    SharedViewRequest,
+    MarkRequest,
+    CameraRequest,
+    designs.DesignPatch,
+    designs.ShareRequest,
+    designs.Strokes,
+    designs.VersionRequest,
+)
+TOLD: tuple[type[BaseModel], ...] = (
+    DesignLayout,
+    Problem,
+    JobPage,
+    ViewResult,
+    designs.Design,
+    designs.DesignPage,
+    designs.NewShare,
+    designs.Painted,
+    designs.SharedDesign,
+    designs.Shares,
+    designs.Version,
+    designs.Versions,
+    designs.VersionSummary,
+)
+SIMPLE = {
+    "integer": "number",
+    "number": "number",
+    "string": "string",
+    "boolean": "boolean",
+    "null": "null",
+}
+
+
+def page_types() -> str:
+    """The content of the file."""
+    made = operations().values()
+    asked = [*(operation.request for operation in made), *ASKED]
+    told = [*(operation.result for operation in made), *TOLD]
+    shapes = _shapes(asked, "validation")
+    for name, shape in _shapes(told, "serialization").items():
+        required = shape.get("required") if name == "Problem" else list(shape.get("properties", ()))
+        shapes[name] = shape | {"required": required}
+    parts = [_declared(name, shape) for name, shape in sorted(shapes.items())]
+    return "\n\n".join([HEAD, *parts]) + "\n"
+
+
+def _shapes(
+    models: Sequence[type[BaseModel]], mode: Literal["validation", "serialization"]
+) -> dict[str, dict[str, Any]]:
+    """JSON schemas of models and of what they hold, by name."""
+    _, schema = models_json_schema([(model, mode) for model in models])
+    found: dict[str, dict[str, Any]] = schema["$defs"]
+    return found
+
+
+def _name(of: dict[str, Any]) -> str:
+    return str(of["$ref"]).rsplit("/", 1)[1]
+
+
+def _declared(name: str, shape: dict[str, Any]) -> str:
+    if "properties" not in shape:
+        return f"{_comment(shape, '')}export type {name} = {_type(shape)};"
+    lines = "\n".join(_fields(shape))
+    return f"{_comment(shape, '')}export interface {name} {{\n{lines}\n}}"
+
+
+def _fields(shape: dict[str, Any]) -> Iterator[str]:
+    for field, of in shape["properties"].items():
+        mark = "" if field in shape.get("required", ()) else "?"
+        yield f"{_comment(of, '  ')}  {field}{mark}: {_type(of)};"
+
+
+def _comment(shape: dict[str, Any], indent: str) -> str:
+    text = " ".join(shape.get("description", "").split("\n\n")[0].split())
+    return f"{indent}/** {text} */\n" if text else ""
+
+
+def _type(of: dict[str, Any]) -> str:
+    """A JSON schema as a type."""
+    if "$ref" in of:
+        return _name(of)
+    if "const" in of or "enum" in of:
+        return " | ".join(json.dumps(value) for value in of.get("enum", [of.get("const")]))
+    choices = of.get("anyOf", of.get("oneOf"))
+    if choices is not None:
+        return " | ".join(dict.fromkeys(map(_type, choices)))
+    kinds = {"array": _list, "object": _object}
+    kind = str(of.get("type"))
+    return kinds[kind](of) if kind in kinds else SIMPLE.get(kind, "unknown")
+
+
+def _list(of: dict[str, Any]) -> str:
+    if "prefixItems" in of:
+        return f"[{', '.join(map(_type, of['prefixItems']))}]"
+    item = _type(of.get("items", {}))
+    return f"({item})[]" if " | " in item else f"{item}[]"
+
+
+def _object(of: dict[str, Any]) -> str:
+    values = of.get("additionalProperties")
+    value = _type(values) if isinstance(values, dict) else "unknown"
+    if "$ref" not in of.get("propertyNames", {}):
+        return f"Record<string, {value}>"
+    key = _name(of["propertyNames"])
+    # of both directions there is always one; of the fabrics a material may lack some
+    return f"Record<{key}, {value}>" if key == "Direction" else f"Partial<Record<{key}, {value}>>"
+
+
+if __name__ == "__main__":
+    FILE.write_text(page_types(), encoding="utf-8")

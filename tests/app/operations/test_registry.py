@@ -1,0 +1,208 @@
+"""What is made of operations: routes, commands, the page's types; and what they are read from."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+from pydantic import Field
+
+from app.cli.commands import command_of
+from app.cli.main import main
+from app.models.base import Ends, Floats, Known, RequestModel, ResultModel
+from app.models.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
+from app.models.gauge import GaugeInput
+from app.models.uploads import UploadedFile, stored
+from app.operations.context import Context
+from app.operations.registry import Command, Operation, commands, operations
+from knitcore.fabric import Direction
+from knitcore.materials import Interval
+from scripts.page_types import FILE, page_types
+
+MACHINERY = {"__init__", "context", "perform", "registry"}
+
+
+def test_every_module_of_the_package_is_one_operation() -> None:
+    folder = Path(sys.modules["app.operations"].__path__[0])
+    modules = {file.stem for file in folder.glob("*.py")} - MACHINERY
+    assert {
+        operation.run.__module__.rpartition(".")[2] for operation in operations().values()
+    } == modules
+
+
+def test_every_operation_has_a_route_or_is_a_job(client: TestClient) -> None:
+    paths = client.get("/openapi.json").json()["paths"]
+    for name, operation in operations().items():
+        if operation.path is None:
+            assert operation.job or operation.command
+            continue
+        made = paths[f"/api/v1{operation.address}"][operation.method.lower()]
+        assert (made["operationId"], made["summary"]) == (name, operation.summary)
+        assert made["description"]
+
+
+@pytest.mark.parametrize("name", sorted(commands()))
+def test_every_command_says_what_it_does(name: str) -> None:
+    told = CliRunner().invoke(main, [name, "--help"])
+    assert told.exit_code == 0, told.output
+    assert "--json" in told.output
+
+
+def test_the_pages_types_are_those_of_the_models() -> None:
+    assert FILE.read_text(encoding="utf-8") == page_types(), "run `make types`"
+
+
+class Asked(RequestModel):
+    """A request with a field of every sort."""
+
+    chart: ChartInput
+    material: MaterialName
+    outline: OutlineInput = None
+    direction: Direction
+    gauge: GaugeInput | None = None
+    file: UploadedFile | None = None
+    parts: list[float] | None = Field(None, description="Some.")
+    steps: int = Field(3, ge=1)
+    check: bool = True
+    brief: bool = False
+
+
+class Told(ResultModel):
+    """What was asked."""
+
+    asked: str
+    content: str = ""
+
+
+def tell(request: Asked, context: Context) -> Told:
+    assert context.local
+    content = ""
+    if request.file is not None:
+        with stored([request.file]) as (path,):
+            content = path.read_text()
+    return Told(asked=request.model_dump_json(exclude={"file"}), content=content)
+
+
+ASKING = Operation(
+    name="ask",
+    tag="tests",
+    summary="Ask",
+    request=Asked,
+    result=Told,
+    run=tell,
+    command=Command(lambda r: r.asked, names={"parts": "--part"}),
+)
+
+
+def ask(*arguments: str) -> Asked:
+    result = CliRunner().invoke(command_of(ASKING, "ask"), arguments, standalone_mode=False)
+    if result.exception:
+        raise result.exception
+    return Asked.model_validate_json(result.output)
+
+
+GARTER = ("garter", "--size", "4x2", "--material", "acrylic", "--direction", "wale")
+
+
+def test_options_are_the_fields_of_the_request(tmp_path: Path) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text("hello")
+    plain = ask(*GARTER)
+    assert plain.chart.model_dump() == {"fabric": "garter", "columns": 4, "rows": 2}  # type: ignore[union-attr]
+    assert (plain.steps, plain.check, plain.brief) == (3, True, False)
+    assert plain.gauge is None
+    assert plain.parts is None
+    full = ask(
+        *GARTER, "--stitches-per-10-cm", "20", "--rows-per-10-cm", "30",
+        "--part", "1", "--part", "2", "--steps", "5", "--no-check", "--brief",
+    )  # fmt: skip
+    assert full.gauge == GaugeInput(stitches_per_10_cm=20, rows_per_10_cm=30)
+    assert (full.parts, full.steps, full.check, full.brief) == ([1.0, 2.0], 5, False, True)
+    told = CliRunner().invoke(command_of(ASKING, "ask"), [*GARTER, "--file", str(file), "--json"])
+    assert '"content":"hello"' in told.output
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (["--steps", "0"], "steps: Input should be greater than or equal to 1"),
+        (["--part", "x"], "not a valid float"),
+        (["--rows-per-10-cm", "30"], "stitches-per-10-cm: Field required"),
+    ],
+)
+def test_what_a_request_does_not_take_names_the_option(more: list[str], says: str) -> None:
+    with pytest.raises((click.ClickException, ValueError), match=says):
+        ask(*GARTER, *more)
+
+
+def test_a_file_brings_chart_and_outline(tmp_path: Path) -> None:
+    file = tmp_path / "c.txt"
+    file.write_text("KP\nPK")
+    asked = ask(str(file), "--material", "acrylic", "--direction", "wale")
+    assert (asked.chart, asked.outline) == ("KP\nPK", None)
+
+
+def test_a_repeat_needs_no_size() -> None:
+    class Repeat(RequestModel):
+        chart: RepeatInput
+
+    operation = Operation(
+        name="repeat",
+        tag="tests",
+        summary="Repeat",
+        request=Repeat,
+        result=Told,
+        run=lambda request, _: Told(asked=str(request.chart)),
+        command=Command(lambda r: r.asked),
+    )
+    told = CliRunner().invoke(command_of(operation, "repeat"), ["rib"])
+    assert told.output == "KP\n"
+
+
+class Found:
+    """What a library function returned."""
+
+    modulus_course = 0.5
+    interval = Interval(1.0, 2.0)
+    values = (1.0, 2.0)
+    beyond = float("nan")
+
+
+class Numbers(ResultModel):
+    """Its numbers."""
+
+    modulus_course_n_per_mm: float
+    interval: Ends
+    values: Floats
+    beyond: Known
+    count: int
+
+
+def test_a_result_reads_the_attributes_of_what_was_found() -> None:
+    numbers = Numbers.of(Found(), count=2)
+    assert numbers.model_dump() == {
+        "modulus_course_n_per_mm": 0.5,
+        "interval": (1.0, 2.0),
+        "values": [1.0, 2.0],
+        "beyond": None,
+        "count": 2,
+    }
+    assert Numbers.model_validate_json(numbers.model_dump_json()) == numbers
+
+
+def test_a_command_loads_no_other_operation() -> None:
+    code = (
+        "import sys; from app.operations.registry import operation_of_command as made; made('rs');"
+        "print([m for m in sys.modules if m.startswith(('app.operations.', 'fastapi'))])"
+    )
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert "app.operations.rs" in loaded.stdout
+    assert "predict" not in loaded.stdout
+    assert "fastapi" not in loaded.stdout
