@@ -362,6 +362,42 @@ export type Convention = "published" | "paper" | "authors-code";
 /** Where the free edges across a direction go. */
 export type Curl = "flat" | "front" | "back";
 
+/** A whole piece with free edges. */
+export interface CurlRequest {
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Give the corners of all stitches as well. */
+  corners?: boolean;
+  /** CPU time after which the shape is given as it is then, unconverged. */
+  time_limit_s?: number;
+}
+
+/** The piece as it lies; heights are positive towards the face (the front). */
+export interface CurlResult {
+  rows: number;
+  columns: number;
+  /** Extent along the rows of the piece as a whole. */
+  width_mm: number;
+  height_mm: number;
+  depth_mm: number;
+  /** How far the sides stand out from the cloth beside them: negative to the back. */
+  curl_course_mm: number;
+  /** The same of top and bottom. */
+  curl_wale_mm: number;
+  /** Extent if it lay flat. */
+  flat_width_mm: number;
+  flat_height_mm: number;
+  thickness_mm: number;
+  /** Where it is false, the shape is a preview. */
+  converged: boolean;
+  /** CPU time. */
+  seconds: number;
+  /** Corners of the stitches, the lowest row first. */
+  corners_mm: [number, number, number][][] | null;
+  notes: string[];
+}
+
 /** A measured stress–strain curve. */
 export interface CurveDocument {
   strain: number[];
@@ -1269,7 +1305,7 @@ export interface PredictResult {
   relaxed_course_interval_mm: [number, number];
   relaxed_wale_interval_mm: [number, number];
   relaxed_source: string;
-  /** measured; estimated; swept; composite with known size; or composite */
+  /** measured; estimated; swept; learned; or learned with known size */
   provenance: string;
   method: string;
   notes: string[];
