@@ -1,0 +1,85 @@
+"""Draw the shapes of ``docs/curl.md``: ``python docs/figures/draw_curl.py`` (a minute)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from knitcore.chart import StitchChart
+from knitcore.materials import material
+from knitcore.shell.curl import CurledPiece, curl
+
+Array = NDArray[np.float64]
+
+FACE, BACK = np.array([92, 138, 184]), np.array([226, 150, 84])
+SIDE = 330
+TOWARDS = np.array([0.42, -0.62, 0.66])
+"""From where the pieces are seen."""
+
+BASKET = "\n".join(["KKKKPPPP"] * 4 + ["PPPPKKKK"] * 4)
+MIURA = "\n".join(
+    ("K" * s + "P" * 6 + "K" * (12 - 6 - s)) for s in (*range(7), *range(5, 0, -1)) for _ in "12"
+)
+PIECES = {
+    "stockinette, 20 x 20": StitchChart.parse("K").tile(20, 20),
+    "stockinette, 8 x 30": StitchChart.parse("K").tile(30, 8),
+    "stockinette, 30 x 2": StitchChart.parse("K").tile(2, 30),
+    "2x2 rib": StitchChart.parse("KKPP").tile(24, 6),
+    "6x6 rib": StitchChart.parse("K" * 6 + "P" * 6).tile(20, 3),
+    "3x3 welt": StitchChart.parse("P\nP\nP\nK\nK\nK").tile(4, 20),
+    "seed": StitchChart.of_fabric("seed", rows=16, columns=12),
+    "4x4 basket": StitchChart.parse(BASKET).tile(3, 3),
+    "shifted stripes": StitchChart.parse(MIURA).tile(2, 2),
+}
+
+
+def drawn(piece: CurledPiece) -> Image.Image:
+    """The piece as quadrilaterals, the far ones first: blue the face, orange the back."""
+    ahead = TOWARDS / np.linalg.norm(TOWARDS)
+    right = np.cross([0.0, 0.0, 1.0], ahead)
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(ahead, right), ahead], axis=1)
+    seen = piece.corners_mm @ axes
+    flat = seen.reshape(-1, 3)
+    scale = 2 * 0.9 * SIDE / np.ptp(flat[:, :2], axis=0).max()
+    middle = 0.5 * (flat[:, :2].max(axis=0) + flat[:, :2].min(axis=0))
+    place = SIDE + (seen[..., :2] - middle) * scale * (1, -1)
+    quads = np.stack([seen[:-1, :-1], seen[:-1, 1:], seen[1:, 1:], seen[1:, :-1]], axis=2).reshape(
+        -1, 4, 3
+    )
+    corners = np.stack(
+        [place[:-1, :-1], place[:-1, 1:], place[1:, 1:], place[1:, :-1]], axis=2
+    ).reshape(-1, 4, 2)
+    normal = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    purl = piece.chart.purl.ravel()
+    picture = Image.new("RGB", (2 * SIDE, 2 * SIDE), "white")
+    pen = ImageDraw.Draw(picture)
+    for k in np.argsort(quads[:, :, 2].mean(axis=1)):
+        light = 0.5 + 0.5 * abs(normal[k] @ np.array([-0.3, 0.5, 0.81]))
+        colour = (FACE if normal[k, 2] > 0 else BACK) * light * (0.82 if purl[k] else 1.0)
+        tone = tuple(int(value) for value in colour)
+        pen.polygon([tuple(at) for at in corners[k]], fill=tone, outline=(70, 70, 70))
+    return picture.resize((SIDE, SIDE), Image.Resampling.LANCZOS)
+
+
+def main() -> None:
+    """Write the picture."""
+    sheet = Image.new("RGB", (3 * SIDE, 3 * (SIDE + 22)), "white")
+    pen = ImageDraw.Draw(sheet)
+    for place, (name, chart) in enumerate(PIECES.items()):
+        piece = curl(chart, material("acrylic"))
+        size = f"{piece.width_mm:.0f} x {piece.height_mm:.0f} x {piece.depth_mm:.0f} mm"
+        print(name, size, "" if piece.converged else "NOT converged", f"{piece.seconds:.1f} s")
+        at = (place % 3) * SIDE, (place // 3) * (SIDE + 22)
+        sheet.paste(drawn(piece), at)
+        pen.text((at[0] + 12, at[1] + SIDE), f"{name}: {size}", fill=(40, 40, 40))
+    colours = sheet.quantize(128)
+    colours.save(Path(__file__).parents[1] / "images" / "curl.png", optimize=True)
+
+
+if __name__ == "__main__":
+    main()
