@@ -7,14 +7,19 @@ from collections.abc import Callable
 from inspect import Parameter, Signature
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import APIRouter, Path, Request
+from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
 from app.compute.answers import Answers
 from app.http.packed import json_response
 from app.http.problems import Problem
+from app.models.charts import size_of
 from app.operations.registry import Operation, operations
 
+MOST_LIGHT = 10_000
+"""Stitches of a request that is answered in the service itself. A larger one goes to a worker, with
+its limits on memory and time: a million stitches take 300 MB."""
 MISSING: dict[int | str, dict[str, Any]] = {
     404: {"model": Problem, "description": "There is none of that name."}
 }
@@ -22,26 +27,24 @@ MISSING: dict[int | str, dict[str, Any]] = {
 
 def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     """What FastAPI calls: with the request as a body, or put together from the address."""
-    if operation.heavy:
 
-        async def heavy(body: BaseModel, request: Request) -> Response:
-            answers: Answers = request.app.state.answers
-            answer = await answers.answer(request.is_disconnected, operation, body)
-            return await json_response(answer.body, request.headers)
+    async def post(body: BaseModel, request: Request) -> Any:
+        answers: Answers = request.app.state.answers
+        if not operation.heavy and size_of(body) <= MOST_LIGHT:
+            return await run_in_threadpool(operation.run, body, answers.context())
+        answer = await answers.answer(request.is_disconnected, operation, body)
+        return await json_response(answer.body, request.headers)
 
-        return _typed(heavy, body=operation.request, request=Request)
-
-    def light(request: Request, body: BaseModel | None = None, **fields: Any) -> Any:
-        asked = operation.request(**fields) if body is None else body
-        return operation.run(asked, request.app.state.answers.context())
+    def get(request: Request, **fields: Any) -> Any:
+        return operation.run(operation.request(**fields), request.app.state.answers.context())
 
     if operation.method == "POST":
-        return _typed(light, body=operation.request, request=Request)
+        return _typed(post, body=operation.request, request=Request)
     places = {
         name: Annotated[field.rebuild_annotation(), Path(examples=field.examples)]
         for name, field in operation.request.model_fields.items()
     }
-    return _typed(light, request=Request, **places)
+    return _typed(get, request=Request, **places)
 
 
 def _typed(function: Callable[..., Any], **parameters: Any) -> Callable[..., Any]:

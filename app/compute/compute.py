@@ -25,7 +25,7 @@ T = TypeVar("T")
 POLL_S = 0.25
 GRACE_S = 3.0
 """How long a job may take to notice that it was cancelled before its process is stopped."""
-START_S = 60.0
+START_S = 120.0
 """How long a job may lie with a place before it starts: a new process loads, a cluster looks for a
 worker."""
 WAITING_EACH = 100

@@ -55,6 +55,17 @@ MaterialName = Annotated[
 ]
 
 
+def size_of(request: BaseModel) -> int:
+    """About how many stitches a request speaks of: the letters of its texts, and named fabrics."""
+    size = 0
+    for _, value in request:
+        if isinstance(value, PureFabricChart):
+            size += value.rows * value.columns
+        elif isinstance(value, str):
+            size += len(value)
+    return size
+
+
 def to_chart(chart: ChartInput) -> StitchChart:
     """The chart that a request means."""
     if isinstance(chart, PureFabricChart):

@@ -64,7 +64,8 @@ class Operation(Generic[Request, Result]):
     run : does it, given the request and a :class:`app.operations.context.Context`; the docstring
         is the description in the API's reference.
     path : address under ``/api/v1``; None if it is a job only.
-    heavy : whether it takes long enough to need a worker process.
+    heavy : whether it always takes long enough to need a worker process; others go there with
+        large charts only.
     job : whether it can run in the background.
     command : on the command line, where its name is that of the module.
     """

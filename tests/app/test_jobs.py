@@ -61,14 +61,14 @@ def _runner(database: Database, compute: Compute, timeout_s: float = 60.0) -> Jo
 
 
 async def _ended(runner: JobRunner, job: str, owner: str = "ada") -> JobStatus:
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(120):
         while not (status := await runner.status(owner, job)).state.is_final:
             await asyncio.sleep(0.02)
     return status
 
 
 async def _running(runner: JobRunner, job: str) -> None:
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(120):
         while (await runner.status("ada", job)).state is not JobState.RUNNING:
             await asyncio.sleep(0.02)
 
