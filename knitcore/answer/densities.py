@@ -41,6 +41,8 @@ _SMOOTHED_OVER = (1.5, 4.0)
 _BEDS = (0.3, 0.9)
 """q: a plate's folds reach about 1 / q stitches."""
 _NO_CHANGE = 1e-12
+_FEW_CROSSINGS = 0.1
+"""Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +55,14 @@ class Densities:
     excess : (…, densities) less those of the pure fabrics, weighted by the shares.
     straight : (…, 2) how straight fold lines run on, from 0 to 1. First along columns, which folds
         the width: 1 in a rib, 0 in a welt and in stockinette; then along rows: 1 in a welt.
+    ways : (…, 3) parts, adding up to 1, in which it is a rib, a welt, and neither, by where odd
+        segments are: along the course, along the wale, and at one stitch along both.
     """
 
     shares: Array
     excess: Array
     straight: Array
+    ways: Array
 
     @property
     def features(self) -> Array:
@@ -87,7 +92,12 @@ def densities_of(purl: NDArray[np.bool_]) -> Densities:
     values = _values(sign)
     # even columns (rows), times changes from one to the next that go on upwards (across)
     straight = values[..., [-1, -2]] * _lines(sign)
-    return Densities(shares, values - shares @ _pure(), straight)
+    both = _mean((odd_course > 0) & (odd_wale > 0))
+    neither = both / (both + _FEW_CROSSINGS)
+    course = (rib + seed + _NO_CHANGE) / (rib + garter + 2 * seed + 2 * _NO_CHANGE)
+    one_way = 1 - neither
+    ways = np.stack([one_way * course, one_way * (1 - course), neither], axis=-1)
+    return Densities(shares, values - shares @ _pure(), straight, ways)
 
 
 @cache

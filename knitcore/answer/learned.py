@@ -148,8 +148,9 @@ class LearnedModel:
     folding, unfolding : the regressions; of ``unfolding`` the outputs are 12 strains and 2 Poisson
         ratios.
     slopes : (14, 2) by output: how it follows ln width and ln height.
-    folding_scale, unfolding_scale : (2,), (14,) standard deviation over the root of the
-        regression's variance, such that 90 % of what was left out lies in a 90 % interval.
+    folding_scale, unfolding_scale : (3, 2), (3, 14) standard deviation over the root of the
+        regression's variance, such that 90 % of what was left out lies in a 90 % interval: of ribs,
+        of welts, and of others. A chart between them has their mean.
     most_folded : see :data:`MOST_FOLDED`.
     """
 
@@ -175,13 +176,13 @@ class LearnedModel:
             fold = np.log(np.array([known.course_mm, known.wale_mm]) / flat_mm)
             fold_sd = np.full(2, known.log_sd)
         else:
-            straight = None if mixture.simulated else found.straight
-            folds, deviations = self.folded(sample, straight)
+            folds, deviations = self.folded(sample, found, simulated=mixture.simulated)
             fold, fold_sd = folds[0], deviations[0]
         means, variance = self.unfolding(sample)
         slopes = self.slopes * follows(mixture)
         values = means[0] + slopes @ fold
-        deviations = np.sqrt(self.unfolding_scale**2 * variance[0] + slopes**2 @ fold_sd**2)
+        spread = found.ways @ self.unfolding_scale
+        deviations = np.sqrt(spread**2 * variance[0] + slopes**2 @ fold_sd**2)
         return LearnedAnswer(
             size_mm=flat_mm * np.exp(fold),
             size_log_sd=fold_sd,
@@ -192,18 +193,18 @@ class LearnedModel:
             poisson_sd=deviations[12:],
         )
 
-    def folded(self, samples: Samples, straight: Array | None) -> tuple[Array, Array]:
+    def folded(self, samples: Samples, found: Densities, *, simulated: bool) -> tuple[Array, Array]:
         """Logarithms of size over the mixture's and their standard deviations, (m, 2) each.
 
         Parameters
         ----------
-        straight : (m, 2) how straight fold lines run on in knitted cloth; None on the yarn level.
+        simulated : on the yarn level, which folds more than knitted cloth.
         """
         fold, variance = self.folding(samples)
-        deviation = self.folding_scale * np.sqrt(variance)[:, None]
-        if straight is None:
+        deviation = found.ways @ self.folding_scale * np.sqrt(variance)[:, None]
+        if simulated:
             return fold, deviation
-        shown = straight**2 / (1.0 + np.abs(fold) / self.most_folded)
+        shown = found.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
         return shown * fold, np.hypot(SHOWN_LOG_SD, shown * deviation)
 
     def relaxed_mm(self, found: Densities, material: Material) -> Array:
@@ -223,8 +224,8 @@ class LearnedModel:
             found.features,
             None if numbers is None else shares[:, phases] @ numbers[:, :-1],
         )
-        knitted = any(record.origin is not Origin.SIMULATED for record in records)
-        fold, _ = self.folded(samples, found.straight if knitted else None)
+        simulated = all(record.origin is Origin.SIMULATED for record in records)
+        fold, _ = self.folded(samples, found, simulated=simulated)
         return np.asarray(flat * np.exp(fold))
 
     def sample(self, features: Array, numbers: Array | None) -> Samples:
