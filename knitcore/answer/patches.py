@@ -230,13 +230,18 @@ def _difference(whole: Densities, parts: list[Densities], counts: NDArray[np.int
     def off(of: Callable[[Densities], Array]) -> Array:
         return np.asarray(of(whole) - np.average([of(p) for p in parts], axis=0, weights=counts))
 
-    return Densities(off(lambda d: d.shares), off(lambda d: d.excess), off(lambda d: d.straight))
+    return Densities(
+        off(lambda d: d.shares),
+        off(lambda d: d.excess),
+        off(lambda d: d.straight),
+        off(lambda d: d.ways),
+    )
 
 
 def _sum(own: Densities, moved: Densities) -> Densities:
-    shares = np.maximum(own.shares + moved.shares, 0.0)
+    shares, ways = (np.maximum(v, 0.0) for v in (own.shares + moved.shares, own.ways + moved.ways))
     straight = np.clip(own.straight + moved.straight, 0.0, 1.0)
-    return Densities(shares / shares.sum(), own.excess + moved.excess, straight)
+    return Densities(shares / shares.sum(), own.excess + moved.excess, straight, ways / ways.sum())
 
 
 def _scaled(answer: Answer, factors: tuple[float, float], gauge: RelaxedSize) -> RelaxedSize:
