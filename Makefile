@@ -103,9 +103,9 @@ stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--schedu
 lock: $(VENV)/.installed-dev ## Pin the dependencies again
 	$(BIN)/pip install --quiet uv
 	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
-		pyproject.toml -o requirements.lock
+		--extra service --extra cluster pyproject.toml -o requirements.lock
 	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
-		--extra dev pyproject.toml -c requirements.lock -o requirements-dev.lock
+		--extra service --extra cluster --extra dev pyproject.toml -c requirements.lock -o requirements-dev.lock
 
 clean:           ## Remove what was installed and built
 	rm -rf $(VENV) .audit frontend/node_modules frontend/dist build *.egg-info

@@ -38,7 +38,10 @@ class Operations(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of that name."""
-        operation = operation_of_command(cmd_name, self.operations_of)
+        try:
+            operation = operation_of_command(cmd_name, self.operations_of)
+        except ModuleNotFoundError as error:
+            return _not_installed(cmd_name, error)
         if operation is None:
             return None
         from app.cli.commands import command_of
@@ -63,7 +66,10 @@ class Commands(Operations):
         if cmd_name in GROUPS:
             return Operations(cmd_name, help=GROUPS[cmd_name])
         if cmd_name in _own_commands():
-            module = importlib.import_module(f"{package.__name__}.{cmd_name}")
+            try:
+                module = importlib.import_module(f"{package.__name__}.{cmd_name}")
+            except ModuleNotFoundError as error:
+                return _not_installed(cmd_name, error)
             found: click.Command = module.command
             return found
         return super().get_command(ctx, cmd_name)
@@ -74,10 +80,27 @@ class Commands(Operations):
             return super().invoke(ctx)
         except KnitcoreError as error:
             raise Failure(str(error)) from error
+        except ModuleNotFoundError as error:
+            raise Failure(_remedy(error)) from error
         except ValidationError as error:
             first = error.errors()[0]
             field = ".".join(str(part) for part in first["loc"])
             raise Failure(f"{field}: {first['msg']} (given: {first['input']!r}).") from error
+
+
+def _not_installed(name: str, error: ModuleNotFoundError) -> click.Command:
+    """Stands for a command that needs more than the light library brings."""
+    remedy = _remedy(error)
+
+    def refuse() -> None:
+        raise Failure(remedy)
+
+    anything = {"ignore_unknown_options": True, "allow_extra_args": True}
+    return click.Command(name, callback=refuse, help=remedy, context_settings=anything)
+
+
+def _remedy(error: ModuleNotFoundError) -> str:
+    return f"{error.name} is not installed. Run: pip install 'knitcore[service]'"
 
 
 def _own_commands() -> set[str]:

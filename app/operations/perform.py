@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,8 +10,10 @@ from typing import Any, Protocol
 
 from pydantic import BaseModel
 
-from app.http.packed import packed
 from app.operations.context import Context
+
+LEVEL = 4
+"""Of gzip: twice as fast as the usual one, for a few per cent more bytes."""
 
 
 class View(Protocol):
@@ -59,6 +62,5 @@ def perform(
 ) -> Answer:
     """Do an operation; megabytes of numbers are packed here and not on the event loop."""
     found = run(request, Context(data_dir, cancelled=cancelled, progress=progress))
-    if isinstance(found, Viewed):
-        return Answer(packed(found.result), found.view)
-    return Answer(packed(found))
+    result, view = (found.result, found.view) if isinstance(found, Viewed) else (found, None)
+    return Answer(gzip.compress(result.model_dump_json().encode(), LEVEL), view)

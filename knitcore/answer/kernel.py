@@ -12,8 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_solve, cholesky, solve_triangular
-from scipy.spatial.distance import cdist
 
 Array = NDArray[np.float64]
 
@@ -57,6 +55,8 @@ _PURE_NOISE = 1e-3
 
 def covariance(settings: KernelSettings, first: Samples, second: Samples) -> Array:
     """(n, m) prior covariance of two sets of charts."""
+    from scipy.spatial.distance import cdist
+
     size = first.features.shape[1]
     linear = settings.linear * (first.features @ second.features.T / size)
     linear *= 1.0 + settings.linear_by_yarn * (first.numbers @ second.numbers.T)
@@ -93,11 +93,15 @@ class KernelModel:
     @classmethod
     def fit(cls, settings: KernelSettings, samples: Samples, targets: Array) -> KernelModel:
         """Fit to targets (n, outputs)."""
+        from scipy.linalg import cho_solve, cholesky
+
         factor = cholesky(noisy_covariance(settings, samples), lower=True)
         return cls(settings, samples, factor, cho_solve((factor, True), targets))
 
     def __call__(self, wanted: Samples) -> tuple[Array, Array]:
         """Mean (m, outputs), and variance (m,) of an observation in units of each output's own."""
+        from scipy.linalg import solve_triangular
+
         cross = covariance(self.settings, wanted, self.samples)
         reduced = solve_triangular(self.factor, cross.T, lower=True)
         prior = self._prior_variance(wanted)

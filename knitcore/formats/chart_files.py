@@ -11,7 +11,6 @@ from knitcore.formats.design import FORMAT as DESIGN_FORMAT
 from knitcore.formats.design import VERSION as DESIGN_VERSION
 from knitcore.formats.design import read_design
 from knitcore.formats.knitspeak import looks_knitspeak, read_knitspeak
-from knitcore.formats.png import read_png_piece
 from knitcore.formats.written_reader import looks_written, read_piece_rows
 from knitcore.garment.piece import Piece
 
@@ -95,10 +94,16 @@ def _text(file: Path) -> str:
         ) from None
 
 
+def _picture(file: Path) -> Piece:
+    from knitcore.formats.png import read_png_piece  # needs Pillow, which texts do not
+
+    return read_png_piece(file)
+
+
 _READERS: dict[str, Callable[[Path], Piece]] = {
     ".txt": _read_text,
     ".ks": lambda file: Piece.plain(read_knitspeak(_text(file))),
-    ".png": read_png_piece,
+    ".png": _picture,
     ".json": lambda file: read_design(file).to_piece(),
     ".k": _read_knitout,
     ".knitout": _read_knitout,

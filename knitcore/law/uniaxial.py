@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -90,7 +89,11 @@ def strain_at_stress(
     lock_up = law.lock_up_strain(direction)
     # Without coupling the linear part alone bounds the strain; free contraction only softens it.
     upper = min(stress / law.modulus(direction), lock_up * (1 - 1e-12))
-    return upper if excess(upper) <= 0 else float(brentq(excess, 0.0, upper, xtol=1e-12))
+    if excess(upper) <= 0:
+        return upper
+    from scipy.optimize import brentq  # takes a fifth of a second to load
+
+    return float(brentq(excess, 0.0, upper, xtol=1e-12))
 
 
 def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
@@ -160,6 +163,8 @@ def _free_strain(
     def residual(across: float) -> float:
         pair = (axial, across) if direction is Direction.COURSE else (across, axial)
         return float(law.stress(*pair, form=form)[direction.other.axis])
+
+    from scipy.optimize import brentq
 
     try:
         return float(brentq(residual, min(linear * 2, 0.0), max(linear * 2, 0.0), xtol=1e-14))
