@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 
 from app.api import routers
+from app.budgets import InUse
 from app.compute import memory
 from app.compute.answers import Answers
 from app.compute.compute import Compute
@@ -98,6 +99,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings = chosen
     app.state.stopping = False
+    app.state.in_use = InUse()
     app.state.metrics = Metrics(_gauges(app))
     install_problem_handlers(app)
     install_schema(app)

@@ -82,6 +82,7 @@ async def get_events(
 ) -> StreamingResponse:
     """Server-sent events, one per change, each a job as `GET /jobs/{job}` has it; ends with it."""
     first = await runner.status(owner, job)
+    request.app.state.in_use.check("streams", owner)
     return StreamingResponse(
         _events(first, job, request, runner, owner),
         media_type="text/event-stream",
@@ -93,7 +94,8 @@ async def _events(
     status: JobStatus, job: str, request: Request, runner: JobRunner, owner: str
 ) -> AsyncIterator[bytes]:
     told, quiet = "", 0
-    with contextlib.suppress(NotFoundError):  # deleted while it was followed
+    hold = request.app.state.in_use.hold("streams", owner)
+    with hold, contextlib.suppress(NotFoundError):  # deleted while it was followed
         while not request.app.state.stopping:
             text = status.model_dump_json()
             if text != told:

@@ -12,6 +12,8 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
+from app.budgets import InUse
+from app.http.identity import current_user
 from app.http.problems import NotFoundError, Problem
 from app.models.base import RequestModel
 from app.operations.context import Context
@@ -35,7 +37,7 @@ MISSING: dict[int | str, dict[str, Any]] = {
 T = TypeVar("T")
 # Threads of their own: for those that asyncio has, everybody's logins and jobs would wait.
 _drawing = ThreadPoolExecutor(4, "drawing")
-_pictures = ThreadPoolExecutor(4, "pictures")  # waiting for browsers, up to 25 s each
+_pictures = ThreadPoolExecutor(16, "pictures")  # waiting for browsers, up to 25 s each
 
 router = APIRouter(tags=["views"], responses=MISSING)
 
@@ -103,6 +105,7 @@ async def get_events(design: DesignId, request: Request) -> StreamingResponse:
     Ends with the view.
     """
     _view(design, request)
+    request.app.state.in_use.check("streams", current_user.get())
     return StreamingResponse(
         _events(private_name(design), request),
         media_type="text/event-stream",
@@ -127,7 +130,9 @@ async def get_picture(
 ) -> Response:
     """As a browser that watches `/view/{design}/` sees it; somebody must be watching."""
     view = _view(design, request)
-    content = await _in(_pictures, picture_png, view, width, height)
+    uses: InUse = request.app.state.in_use
+    with uses.hold("pictures", current_user.get()):
+        content = await _in(_pictures, picture_png, view, width, height)
     return Response(content, media_type="image/png")
 
 
@@ -206,7 +211,8 @@ def _view(design: str, request: Request) -> View:
 
 async def _events(name: str, request: Request) -> AsyncIterator[bytes]:
     state, quiet = request.app.state, 0
-    with state.views.clicks.listen(name) as queue:
+    owner = current_user.get()
+    with state.in_use.hold("streams", owner), state.views.clicks.listen(name) as queue:
         yield b"retry: 2000\n\n"
         while not state.stopping and state.views.get(name) is not None:
             try:

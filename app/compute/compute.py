@@ -9,6 +9,7 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any, TypeVar
 
+from app.budgets import BUDGETS
 from app.compute.places import (
     AbandonedError,
     NotBegunError,
@@ -28,7 +29,6 @@ GRACE_S = 3.0
 START_S = 120.0
 """How long a job may lie with a place before it starts: a new process loads, a cluster looks for a
 worker."""
-WAITING_EACH = 100
 
 
 class Compute:
@@ -47,7 +47,7 @@ class Compute:
             self._places,
             most_background=max(1, len(places) - 1),
             most_waiting=4 * len(places),
-            most_waiting_each=WAITING_EACH,
+            most_waiting_each=BUDGETS.jobs,
         )
 
     async def run(

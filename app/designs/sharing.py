@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import secrets
 
-from sqlalchemy import Connection, Row, insert, select, update
+from sqlalchemy import Connection, Row, func, insert, select, update
 
+from app.budgets import BUDGETS
+from app.designs.conditions import ConflictError
 from app.designs.document import (
     Design,
     NewShare,
@@ -40,7 +42,15 @@ class Sharing:
         share, at = secrets.token_urlsafe(12), now()
 
         def action(connection: Connection) -> None:
-            find(connection, owner, design)
+            find(connection, owner, design, change=True)
+            given = select(func.count()).where(
+                shares.c.design_id == design, shares.c.revoked_at.is_(None)
+            )
+            if connection.execute(given).scalar_one() >= BUDGETS.links:
+                raise ConflictError(
+                    f"The design has {BUDGETS.links} open links, which is as many as it may.",
+                    remedy="Take some back.",
+                )
             connection.execute(
                 insert(shares).values(
                     id=share,

@@ -10,6 +10,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Row, Select, bindparam, func, insert, select, tuple_, update
 
+from app.budgets import BUDGETS
 from app.designs.conditions import ConflictError, check_match
 from app.designs.document import (
     Design,
@@ -32,12 +33,11 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.layout import DesignLayout, check_layout
 
-MAX_DESIGNS = 5_000
-MAX_VERSIONS = 500
 DELETED_KEPT_S = 30 * 86_400.0
 """How long a deleted design can be recovered."""
 
-_SUMMARY = [c for c in designs.c if c.name not in ("chart", "note", "layout", "owner")]
+_HIDDEN = ("owner", "chart", "note", "layout", "size_bytes")
+_SUMMARY = [c for c in designs.c if c.name not in _HIDDEN]
 _VERSION_SUMMARY = [
     design_versions.c[n] for n in ("number", "name", "automatic", "revision", "created_at")
 ]
@@ -297,11 +297,12 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
         If the owner has as many as the service keeps.
     """
     count = select(func.count()).select_from(designs).where(designs.c.owner == owner)
-    if connection.execute(count).scalar_one() >= MAX_DESIGNS:
+    if connection.execute(count).scalar_one() >= BUDGETS.designs:
         raise ConflictError(
-            f"You have {MAX_DESIGNS} designs, deleted ones included; no more are kept.",
+            f"You have {BUDGETS.designs} designs, deleted ones included; no more are kept.",
             remedy="Export and delete some; deleted ones leave for good after 30 days.",
         )
+    content = _sized(connection, owner, content)
     at = now()
     values = content | {
         "id": secrets.token_urlsafe(16),
@@ -322,7 +323,7 @@ def copied(row: Row[Any]) -> dict[str, Any]:
 
 def full(row: Row[Any]) -> Design:
     """A row as clients get it."""
-    return Design(**_public(row, "owner", "chart", "note", "layout"), document=document_of(row))
+    return Design(**_public(row, *_HIDDEN), document=document_of(row))
 
 
 def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
@@ -338,6 +339,8 @@ def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
 
 
 def _changed(connection: Connection, row: Row[Any], values: dict[str, Any]) -> Design:
+    if not values.keys().isdisjoint(_SIZED):
+        values = _sized(connection, row.owner, values, row)
     stamped = values | {"revision": row.revision + 1, "changed_at": now()}
     connection.execute(_CHANGE, stamped | {"design": row.id})
     return full(connection.execute(select(designs).where(designs.c.id == row.id)).one())
@@ -357,13 +360,50 @@ def _content(document: DesignDocument) -> dict[str, Any]:
     }
 
 
+_SIZED = ("chart", "note", "layout")
+
+
+def _sized(
+    connection: Connection, owner: str, values: dict[str, Any], row: Row[Any] | None = None
+) -> dict[str, Any]:
+    """A design's values with their size, if there is room for what is more than before."""
+    whole = values if row is None else dict(row._mapping) | values
+    size = sum(len(whole.get(name, "").encode()) for name in _SIZED)
+    before = 0 if row is None else row.size_bytes
+    if size > before:
+        _check_room(connection, owner, size - before)
+    return values | {"size_bytes": size}
+
+
+def _check_room(connection: Connection, owner: str, more: int) -> None:
+    """Refuse what an owner has no room for.
+
+    Raises
+    ------
+    ConflictError
+    """
+    kept = select(func.coalesce(func.sum(designs.c.size_bytes), 0)).where(designs.c.owner == owner)
+    versions = (
+        select(func.coalesce(func.sum(design_versions.c.size_bytes), 0))
+        .join(designs, designs.c.id == design_versions.c.design_id)
+        .where(designs.c.owner == owner)
+    )
+    total = sum(connection.execute(query).scalar_one() for query in (kept, versions))
+    if total + more > BUDGETS.kept_bytes:
+        raise ConflictError(
+            f"Your designs and their versions have {total / 1e6:.1f} of "
+            f"{BUDGETS.kept_bytes / 1e6:.0f} MB; this would be {more / 1e6:.1f} MB more.",
+            remedy="Export and delete some; deleted ones leave for good after 30 days.",
+        )
+
+
 def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) -> VersionSummary:
     mine = design_versions.c.design_id == row.id
     last = connection.execute(select(func.max(design_versions.c.number)).where(mine)).scalar()
     number = (last or 0) + 1
-    if number > MAX_VERSIONS:
+    if number > BUDGETS.versions:
         raise ConflictError(
-            f"{MAX_VERSIONS} versions of this design are kept, which is as many as there can be.",
+            f"{BUDGETS.versions} versions of this design are kept, as many as there can be.",
             remedy="Duplicate the design and go on with the copy.",
         )
     values = {
@@ -378,7 +418,9 @@ def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) 
         "layout": row.layout,
         "revision": row.revision,
         "created_at": now(),
+        "size_bytes": row.size_bytes,
     }
+    _check_room(connection, row.owner, row.size_bytes)
     connection.execute(insert(design_versions).values(values))
     return VersionSummary(
         number=number,

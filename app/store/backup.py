@@ -23,7 +23,7 @@ from knitcore.errors import InputError
 
 FORMAT = "knitcore-backup"
 VERSION = 1
-LEFT_OUT = frozenset({"results", "idempotency_keys", "service_keys"})
+LEFT_OUT = frozenset({"results", "idempotency_keys", "service_keys", "sessions"})
 """What can be computed again, is over in a day, or would let a thief sign sessions."""
 CHUNK = 200
 LEVEL = 6

@@ -42,7 +42,9 @@ designs = Table(
     Column("created_at", Float, nullable=False),  # seconds since 1970, UTC
     Column("changed_at", Float, nullable=False),
     Column("deleted_at", Float),
+    Column("size_bytes", Integer, nullable=False, server_default="0"),  # of chart, note and layout
     Index(None, "owner", "changed_at", "id"),
+    Index(None, "owner", "size_bytes"),
 )
 
 design_versions = Table(
@@ -59,6 +61,8 @@ design_versions = Table(
     Column("layout", Text, nullable=False, server_default="{}"),
     Column("revision", Integer, nullable=False),
     Column("created_at", Float, nullable=False),
+    Column("size_bytes", Integer, nullable=False, server_default="0"),
+    Index(None, "design_id", "size_bytes"),
 )
 
 shares = Table(
@@ -129,4 +133,13 @@ service_keys = Table(
     metadata,
     Column("name", String(40), primary_key=True),
     Column("value", String(200), nullable=False),
+)
+
+sessions = Table(
+    "sessions",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    Column("token", String(64), nullable=False),  # with which it was opened
+    Column("user", String(80), nullable=False, index=True),
+    Column("created_at", Float, nullable=False),
 )

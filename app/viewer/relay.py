@@ -13,6 +13,8 @@ import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from app.budgets import InUse, OverBudgetError
+from app.http.identity import current_user
 from app.http.rate import RateLimit
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on
@@ -69,6 +71,15 @@ async def relay(socket: WebSocket, design: DesignId) -> None:
     if view is None:
         await socket.close(code=1013, reason="This view is not open yet.")
         return
+    uses: InUse = socket.app.state.in_use
+    try:
+        with uses.hold("watchers", current_user.get()):
+            await _watched(socket, name, view, views)
+    except OverBudgetError as error:
+        await socket.close(code=1013, reason=error.detail)
+
+
+async def _watched(socket: WebSocket, name: str, view: View, views: Views) -> None:
     offered = list(socket.scope["subprotocols"])
     async with websockets.connect(
         f"ws://127.0.0.1:{view.port}",

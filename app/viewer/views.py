@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 
 import viser
 
-from app.http.problems import UnavailableError
+from app.budgets import BUDGETS, OverBudgetError
+from app.http.problems import ServiceError, UnavailableError
 from app.viewer.camera import FARTHEST
 from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.cloth import UNITS_PER_MM
@@ -73,17 +74,19 @@ class Views:
         self._lock = threading.Lock()
 
     def open(self, design: str) -> View:
-        """The design's view, made if it is not there.
+        """The design's view, made if it is not there; its name begins with its owner's.
 
         Raises
         ------
+        OverBudgetError
+            If the owner watches as many as one user may.
         UnavailableError
             If as many views as allowed are being watched.
         """
         with self._lock:
             view = self._views.get(design)
             if view is None:
-                self._make_room()
+                self._make_room(design.rpartition("/")[0])
                 view = self._views[design] = new_view()
                 self._pass_clicks_on(design, view)
             view.last_used = time.monotonic()
@@ -134,12 +137,20 @@ class Views:
             if cell is not None:
                 self.clicks.tell(design, cell)
 
-    def _make_room(self) -> None:
-        if len(self._views) < self._most:
-            return
-        unwatched = [(v.last_used, d) for d, v in self._views.items() if not v.watchers]
+    def _make_room(self, owner: str) -> None:
+        mine = [d for d in self._views if d.rpartition("/")[0] == owner]
+        if len(mine) >= BUDGETS.views:
+            self._close_oldest(
+                mine, OverBudgetError(f"You watch {len(mine)} of {BUDGETS.views} 3D views.")
+            )
+        if len(self._views) >= self._most:
+            full = UnavailableError(f"All {self._most} 3D views are in use.")
+            self._close_oldest(list(self._views), full)
+
+    def _close_oldest(self, among: list[str], refusal: ServiceError) -> None:
+        unwatched = [(self._views[d].last_used, d) for d in among if not self._views[d].watchers]
         if not unwatched:
-            raise UnavailableError(f"All {self._most} 3D views are in use.")
+            raise refusal
         self._views.pop(min(unwatched)[1]).stop()
 
 

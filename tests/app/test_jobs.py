@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app.budgets import Budgets
 from app.compute import compute as compute_module
 from app.compute.compute import Compute
 from app.compute.processes import processes
@@ -128,7 +129,7 @@ def test_who_has_too_many_waiting_is_refused_at_once(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
-        monkeypatch.setattr(compute_module, "WAITING_EACH", 1)
+        monkeypatch.setattr(compute_module, "BUDGETS", Budgets(jobs=1))
         pool = Compute(processes(1), timeout_s=60)
         runner = _runner(database, pool)
         first = await runner.submit("ada", "work", _wish("wait"))

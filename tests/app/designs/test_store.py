@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from app.budgets import Budgets
 from app.designs import store as store_module
 from app.designs.conditions import ConflictError, StaleError, UnconditionalError
 from app.designs.document import DesignDocument, DesignPatch, Run, ShareMode, Strokes
@@ -183,8 +184,7 @@ def test_a_copy_is_a_design_of_its_own(designs: DesignStore) -> None:
 def test_there_is_a_bound_to_what_one_owner_keeps(
     designs: DesignStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store_module, "MAX_DESIGNS", 2)
-    monkeypatch.setattr(store_module, "MAX_VERSIONS", 1)
+    monkeypatch.setattr(store_module, "BUDGETS", Budgets(designs=2, versions=1))
     made = designs.create("ada", RIB)
     designs.create("ada", RIB)
     designs.create("bob", RIB)
