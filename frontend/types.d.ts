@@ -100,7 +100,7 @@ export interface BendingPhotoResult {
   rms_mm: number;
 }
 
-/** Photos of hanging yarn, and what they do not show. */
+/** Photos of hanging yarn, and facts that they do not show. */
 export interface BendingRequest {
   images: UploadedFile[];
   /** Mass per length: weigh some metres; 0.5 g/m is 500 tex. */
@@ -148,7 +148,7 @@ export interface CalibrateRequest {
   tests?: UploadedFile[];
 }
 
-/** The calibrated law; its shear modulus is no assumption any more. */
+/** The calibrated law; its shear modulus is calibrated, too. */
 export interface CalibrateResult {
   stiffness_xxxx_n_per_mm: number;
   stiffness_yyyy_n_per_mm: number;
@@ -279,10 +279,10 @@ export interface ChartResult {
 /** How the ends are held: gripped, or free to slide along the clamp. */
 export type Clamps = "clamped" | "sliding";
 
-/** What the colours of the stitches mean. */
+/** The quantity that colours the stitches. */
 export type Colour = "yarn" | "region" | "fabric" | "phase" | "course" | "wale" | "anisotropy" | "strain" | "utilisation" | "field";
 
-/** A law, or a fabric of a material, beside a field. */
+/** A law, or a fabric of a material, and a field to compare it with. */
 export interface CompareRequest {
   /** .npz: displacement (frames, 2, rows, columns), frame. */
   field: UploadedFile;
@@ -296,7 +296,7 @@ export interface CompareRequest {
   /** LAW.json, instead of material and fabric. */
   law?: UploadedFile | null;
   edges?: Edges;
-  /** full, or what the law file says. */
+  /** Default: full, or as in the law file. */
   model?: EnergyModel | null;
 }
 
@@ -381,7 +381,7 @@ export interface CurlResult {
   width_mm: number;
   height_mm: number;
   depth_mm: number;
-  /** How far the sides stand out from the cloth beside them: negative to the back. */
+  /** Height of the sides above the fabric next to them; negative to the back. */
   curl_course_mm: number;
   /** The same of top and bottom. */
   curl_wale_mm: number;
@@ -570,7 +570,7 @@ export interface EstimateInterval {
   high: number;
 }
 
-/** What is known of the yarn and of the product. */
+/** Known facts of the yarn and the product. */
 export interface EstimateRequest {
   /** B of the yarn (`measure bending`). */
   bending_modulus_n_mm2: number;
@@ -732,7 +732,7 @@ export interface FigureResult {
 export interface FillRequest {
   /** Id of the library. */
   material: string;
-  /** [row][column], the bottom row first; null is no wish. */
+  /** [row][column], the bottom row first; null for no wish. */
   modulus_course_n_per_mm?: ((number | null)[])[] | null;
   modulus_wale_n_per_mm?: ((number | null)[])[] | null;
   /** Of the chart, with wishes. */
@@ -807,7 +807,7 @@ export interface FitRequest {
   format?: "csv" | "h5" | null;
   /** published: as in the paper; recommended: clamp to clamp, every pull counts the same. */
   reduction?: Reduction;
-  /** Whether to return points beside the fit. */
+  /** Whether to return residuals at each point. */
   residuals?: boolean;
 }
 
@@ -952,7 +952,7 @@ export interface ImportRequest {
   file: UploadedFile;
 }
 
-/** What a file holds. */
+/** The content of a file. */
 export interface ImportResult {
   /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
   outline: string | null;
@@ -993,7 +993,7 @@ export interface JobStatus {
   id: string;
   kind: string;
   state: JobState;
-  /** Share done, where the computation tells it. */
+  /** Share done, where the computation reports it. */
   progress: number;
   /** Why it failed or was interrupted. */
   problem: Problem | null;
@@ -1093,7 +1093,7 @@ export interface LimbInput {
   worn_mm: number;
 }
 
-/** The most that knitting may ask; null is no limit. */
+/** Limits on the cost of knitting; null for no limit. */
 export interface LimitsInput {
   transfers_per_stitch?: number | null;
   crossings_per_stitch?: number | null;
@@ -1213,7 +1213,7 @@ export interface Palette {
 /** Symmetry of a connecting segment: even between like stitches, odd between unlike ones. */
 export type Parity = "even" | "odd";
 
-/** A chart text as somebody typed it. */
+/** A chart as typed text. */
 export interface ParseRequest {
   /** K/P lines, the top row first, as seen from the face. */
   text: string;
@@ -1502,7 +1502,7 @@ export interface ResidualPoints {
   fitted_n_per_mm: number[];
 }
 
-/** Stitches beside each other in one row, all of one kind. */
+/** Adjacent stitches of one kind in a row. */
 export interface Run {
   /** 0 is the bottom row. */
   row: number;
@@ -1525,7 +1525,7 @@ export interface ShapeRequest {
   direction?: Direction;
   /** From clamp to clamp: 0.3 is 30 %. */
   strain: number;
-  /** Stretched width over width at rest, line by line across the pull, from the bottom (wale-wise) or the left (course-wise); null is no wish. */
+  /** Stretched width over width at rest, line by line across the pull, from the bottom (wale-wise) or the left (course-wise); null for no wish. */
   width: (number | null)[];
   /** Stitches of a line. */
   across: number;
@@ -1542,7 +1542,7 @@ export interface ShapeResult {
   columns: number;
   chart: string;
   bands: BandResult[];
-  /** As the finite swatch has it, beside what was wanted. */
+  /** Width in the finite swatch, for comparison with the wanted one. */
   width: number[];
   wanted: (number | null)[];
   /** Of the differences, as parts of the width at rest. */
@@ -1561,7 +1561,7 @@ export interface Share {
   created_at: string;
 }
 
-/** What a link allows. */
+/** Rights that a link gives. */
 export type ShareMode = "read" | "copy";
 
 /** A link to give away. */
@@ -1569,7 +1569,7 @@ export interface ShareRequest {
   mode?: ShareMode;
 }
 
-/** What a link shows. */
+/** The design behind a link. */
 export interface SharedDesign {
   mode: ShareMode;
   document: DesignDocument;
@@ -1720,7 +1720,7 @@ export interface StretchResult {
   dofs: number;
   width_mm: number;
   length_mm: number;
-  /** Whether C_xyxy is the paper's assumption; nobody measured it. */
+  /** Whether C_xyxy is the paper's assumption rather than measured. */
   shear_modulus_assumed: boolean;
   nearest_lock_up: NearestLockUp | null;
   messages: string[];
@@ -1738,7 +1738,7 @@ export interface StretchStep {
   step: number;
 }
 
-/** What somebody painted: it says what stitches become, so strokes of several people merge. */
+/** Paint: new values of stitches, so that strokes of several people merge. */
 export interface Strokes {
   /** Size of the chart that was painted on. */
   rows: number;
@@ -1776,7 +1776,7 @@ export interface SweepRequest {
   /** Largest strain: 0.5 is 50 %. */
   max_strain: number;
   points?: number;
-  /** Keep the yarn from sliding where it touches at rest. The published branch does so for seed along the course, as the paper did, and takes no other wish. */
+  /** Keep the yarn from sliding where it touches at rest. The published branch does so for seed along the course, as the paper did, and has no other setting. */
   slide_quenching?: boolean;
 }
 
@@ -1903,7 +1903,7 @@ export interface ViewRequest {
   focus?: Focus | null;
 }
 
-/** What is shown, and where. */
+/** The view of a design and its address. */
 export interface ViewResult {
   /** Stitches drawn as yarn. */
   stitches: number;

@@ -36,7 +36,7 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
     if isinstance(described, click.Command):
         return described
     if described is None:
-        raise TypeError(f"{operation.name} is no command")
+        raise TypeError(f"{operation.name} is not a command")
     options = _Options(operation.request, described)
 
     def callback(as_json: bool, **given: Any) -> None:

@@ -37,7 +37,9 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
             raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
         match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", size.strip().lower())
         if match is None:
-            raise InputError("size", f"{size!r} is no size.", "Write COLUMNSxROWS, such as 31x20.")
+            raise InputError(
+                "size", f"{size!r} is not a size.", "Write COLUMNSxROWS, such as 31x20."
+            )
         columns, rows = int(match[1]), int(match[2])
         return StitchChart.of_fabric(chart, rows=rows, columns=columns)
     if size is not None:

@@ -75,7 +75,7 @@ class Commands(Operations):
         return super().get_command(ctx, cmd_name)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; what goes wrong on purpose is told in one line."""
+        """Run a command; expected errors are printed in one line."""
         try:
             return super().invoke(ctx)
         except KnitcoreError as error:

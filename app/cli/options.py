@@ -1,4 +1,4 @@
-"""Options that operations give their commands beside the fields of their requests."""
+"""Options of commands besides the fields of their requests."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def loop_lengths(loop_lengths_mm: str | None) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it is no list of lengths.
+        If it is not a list of lengths.
     """
     if loop_lengths_mm is None:
         return {}
@@ -65,7 +65,7 @@ def loop_lengths(loop_lengths_mm: str | None) -> dict[str, Any]:
     except ValueError:
         raise InputError(
             "loop-lengths-mm",
-            f"{loop_lengths_mm!r} is no list of lengths.",
+            f"{loop_lengths_mm!r} is not a list of lengths.",
             "Write one for every row from the bottom, such as 14/12, or one for every stitch, "
             "such as 14,13/12,12.",
         ) from None
@@ -93,7 +93,7 @@ def check_writable(path: Path | None, field: str) -> None:
         return
     if not path.parent.is_dir():
         raise InputError(
-            field, f"{path.parent} is no folder.", "Name a file in a folder that exists."
+            field, f"{path.parent} is not a folder.", "Name a file in a folder that exists."
         )
     if path.is_dir():
         raise InputError(field, f"{path} is a folder.", "Name a file in it.")

@@ -38,7 +38,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     from app.http.observing import configure_logging
     from app.http.problems import ServiceError
 
-    os.umask(0o077)  # what is written here is nobody else's
+    os.umask(0o077)  # files are readable by this user only
     configure_logging(settings.log_format)
     try:
         with _prepared(settings):
@@ -50,7 +50,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
 
 @contextlib.contextmanager
 def _prepared(settings: Settings) -> Iterator[None]:
-    """Hold the data, have them up to date, and tell what is not as it should be."""
+    """Lock and migrate the data, and report failed checks."""
     from app.doctor import examine
     from app.store.database import Database
     from app.store.lock import held

@@ -6,7 +6,7 @@ from app.http.problems import ServiceError
 
 
 class StaleError(ServiceError):
-    """The design was changed by somebody else in the meantime."""
+    """Someone else changed the design in the meantime."""
 
     status, type, title = 412, "stale", "The design has changed in the meantime"
 

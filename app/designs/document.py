@@ -1,4 +1,4 @@
-"""A design at the border: the JSON document, what surrounds it, and requests that change it."""
+"""A design in the API: the JSON document, its metadata, and requests that change it."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class DesignPatch(BaseModel):
 
 
 class Run(BaseModel):
-    """Stitches beside each other in one row, all of one kind."""
+    """Adjacent stitches of one kind in a row."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -94,7 +94,7 @@ class Run(BaseModel):
 
 
 class Strokes(BaseModel):
-    """What somebody painted: it says what stitches become, so strokes of several people merge."""
+    """Paint: new values of stitches, so that strokes of several people merge."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -152,7 +152,7 @@ class Versions(BaseModel):
 
 
 class ShareMode(StrEnum):
-    """What a link allows."""
+    """Rights that a link gives."""
 
     READ = "read"
     COPY = "copy"
@@ -187,7 +187,7 @@ class Shares(BaseModel):
 
 
 class SharedDesign(BaseModel):
-    """What a link shows."""
+    """The design behind a link."""
 
     mode: ShareMode
     document: DesignDocument

@@ -33,7 +33,7 @@ class Retry:
     Attributes
     ----------
     owner : who asks.
-    key : what the client sent.
+    key : as sent by the client.
     fingerprint : of method, path and body.
     """
 
@@ -50,7 +50,7 @@ class Retry:
     def once(
         self, database: Database, kind: type[Answer], action: Callable[[Connection], Answer]
     ) -> Answer:
-        """Run an action in a transaction, or return what it returned the first time.
+        """Run an action in a transaction, or return its first result.
 
         Raises
         ------

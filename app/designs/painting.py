@@ -34,7 +34,7 @@ def paint(chart: str, rows: int, columns: int, runs: Iterable[Run]) -> str:
 
 
 def kinds_around(chart: str, rows: int, columns: int, runs: Sequence[Run]) -> StitchKinds:
-    """The kinds of the stitches in runs and beside them, which their change may have changed."""
+    """The kinds of the stitches in runs and of their neighbours, which the change may affect."""
     bottom = max(min(run.row for run in runs) - 1, 0)
     top = min(max(run.row for run in runs) + 2, rows)
     left = max(min(run.column for run in runs) - 1, 0)

@@ -37,7 +37,7 @@ class Sharing:
         self._database = database
 
     def give(self, owner: str, design: str, mode: ShareMode) -> NewShare:
-        """Make a link; its token is told this once."""
+        """Make a link; its token is returned this once only."""
         token = secrets.token_urlsafe(32)
         share, at = secrets.token_urlsafe(12), now()
 
@@ -100,7 +100,7 @@ class Sharing:
         self._database.write(action)
 
     def open(self, token: str) -> SharedDesign:
-        """What a link shows, at its present state."""
+        """The design behind a link, in its present state."""
         with self._database.read() as connection:
             row = _shared(connection, token)
         return SharedDesign(
@@ -111,7 +111,7 @@ class Sharing:
         )
 
     def copy(self, owner: str, token: str, retry: Retry | None = None) -> Design:
-        """A copy of one's own of what a link shows.
+        """A copy of the design behind a link, for the caller.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Designs in the database. Every method is one transaction; nobody sees what is not theirs."""
+"""Designs in the database. Every method is one transaction; users see their own designs only."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class DesignStore:
         return self._made(owner, lambda connection: content, retry)
 
     def duplicate(self, owner: str, design: str, retry: Retry | None = None) -> Design:
-        """A copy of one's own design."""
+        """A copy of the caller's design."""
 
         def content(connection: Connection) -> dict[str, Any]:
             return copied(find(connection, owner, design))
@@ -119,7 +119,7 @@ class DesignStore:
         return self._database.write(action)
 
     async def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
-        """Merge strokes into the present chart, whoever else has painted since.
+        """Merge strokes into the present chart, also if others have painted since.
 
         Asynchronous, because people paint more often than they do all the rest.
 
@@ -213,7 +213,7 @@ class DesignStore:
         )
 
     def restore(self, owner: str, design: str, number: int, if_match: str | None) -> Design:
-        """Make a kept state the present one; what it replaces is kept as a version first."""
+        """Restore a version; the present state is saved as a version first."""
 
         def action(connection: Connection) -> Design:
             row = find(connection, owner, design, change=True)
@@ -235,7 +235,7 @@ class DesignStore:
         return self._database.write(action)
 
     def forget_deleted(self) -> int:
-        """Remove for good what was deleted 30 days ago; returns how many designs that were."""
+        """Remove designs that were deleted 30 days ago for good; returns their number."""
 
         def action(connection: Connection) -> int:
             gone = connection.execute(
@@ -269,13 +269,13 @@ def _finding(change: bool, deleted: bool) -> Select[Any]:
 def find(
     connection: Connection, owner: str, design: str, *, change: bool = False, deleted: bool = False
 ) -> Row[Any]:
-    """An owner's design; with ``change`` nobody else changes it until the transaction ends.
+    """An owner's design; with ``change`` it is locked until the transaction ends.
 
     Raises
     ------
     NotFoundError
-        If there is none, it is deleted (or, with ``deleted``, is not), or is somebody else's: a
-        stranger cannot tell which.
+        If there is none, it is deleted (or, with ``deleted``, is not), or belongs to someone
+        else. The error does not say which.
     """
     wanted = {"design": design, "owner": owner}
     row = connection.execute(_finding(change, deleted), wanted).one_or_none()

@@ -1,4 +1,4 @@
-"""Jobs at the border."""
+"""Jobs in the API."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class JobStatus(BaseModel):
     id: str
     kind: str
     state: JobState
-    progress: float = Field(ge=0, le=1, description="Share done, where the computation tells it.")
+    progress: float = Field(ge=0, le=1, description="Share done, where the computation reports it.")
     problem: Problem | None = Field(None, description="Why it failed or was interrupted.")
     created_at: AwareDatetime
     started_at: AwareDatetime | None = None

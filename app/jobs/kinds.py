@@ -1,4 +1,4 @@
-"""What can run in the background: the operations that take longer than a page should wait."""
+"""Operations that run in the background because they may take longer than a page should wait."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KINDS: dict[str, Operation[Any, Any]] = {
 
 
 class JobOf(RequestModel):
-    """An operation and what it is asked."""
+    """An operation and its request."""
 
     kind: str
     request: RequestModel

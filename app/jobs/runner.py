@@ -21,7 +21,7 @@ from app.store.database import StoreError
 log = logging.getLogger("knitcore.jobs")
 
 BEAT_S = 2.0
-"""How often other processes hear of this one's jobs, and it of what they cancelled."""
+"""Interval at which processes exchange the state of their jobs and cancellations."""
 BEATS_TO_LOOK_ROUND = 10
 AGAIN_S = 10.0
 """After which a job that no worker began is tried again."""
@@ -42,7 +42,7 @@ class JobRunner:
 
     Parameters
     ----------
-    store : what a restart must not forget.
+    store : jobs and results that survive a restart.
     answers : where operations are asked.
     timeout_s : longest run of one job.
     """
@@ -143,8 +143,8 @@ class JobRunner:
                     beats = 0
                     await self._go_on(await asyncio.to_thread(self.store.adopt_orphans))
             except ServiceError as error:
-                log.warning("the other processes cannot be told of the jobs here: %s", error)
-                beats = 0  # after an outage nobody was seen for a while: first let them tell
+                log.warning("cannot share the state of the jobs of this process: %s", error)
+                beats = 0  # after an outage, let the other processes report first
 
     def _start(self, job: str, owner: str, kind: str, request: str) -> None:
         task = asyncio.create_task(self._work(job, owner, kind, request), name=f"job {job}")
@@ -195,7 +195,7 @@ class JobRunner:
             await self._fail(job, problem)
 
     async def _begun(self, *args: Any, **turn: Any) -> Any:
-        """What a job computes; one that no worker began waits on."""
+        """Compute a job; one that no worker has started keeps waiting."""
         while True:
             try:
                 return await self._answers.answer(*args, **turn)

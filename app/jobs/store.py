@@ -1,4 +1,4 @@
-"""Jobs and results in the database: what a restart must not forget."""
+"""Jobs and results in the database, which survive a restart."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class JobStore:
     ) -> JobStatus:
         """Keep a new job, of this id if one is given; one whose result is known already is done.
 
-        If the request came before, its job of then is told, which has another id.
+        If the request came before, its first job is returned, which has another id.
         """
         at = now()
         values = {

@@ -28,7 +28,7 @@ class NoRequest(RequestModel):
 
 
 class ResultModel(BaseModel):
-    """A result, or a part of one, read from the attributes of what the library returned.
+    """A result, or a part of one, read from attributes of a result of the library.
 
     A field takes the attribute of its name, or of its name without the unit N/mm, for laws have
     ``stiffness_xxxx`` where a result has ``stiffness_xxxx_n_per_mm``.

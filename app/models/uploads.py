@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, EncodedBytes, EncoderProtocol, Field
 from pydantic_core import PydanticCustomError
 
 MOST_NAME_BYTES = 200
-"""What a file system takes as a name, with room to spare."""
+"""A length that every file system accepts, with room to spare."""
 
 
 class _Strict(EncoderProtocol):
@@ -25,7 +25,7 @@ class _Strict(EncoderProtocol):
             return base64.b64decode(data, validate=True)
         except ValueError as error:
             raise PydanticCustomError(
-                "base64", "This is no base64: {error}", {"error": str(error)}
+                "base64", "This is not base64: {error}", {"error": str(error)}
             ) from None
 
     @classmethod

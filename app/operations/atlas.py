@@ -1,4 +1,4 @@
-"""The atlas of a material: every small repeat with what it will do."""
+"""The atlas of a material: the mechanics of every small repeat."""
 
 from __future__ import annotations
 

@@ -159,7 +159,7 @@ def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float
 
 
 def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> list[str]:
-    """What the state without symmetries does otherwise."""
+    """How the state without symmetries differs."""
     if mirrored is None or free is None:
         return []
     both = {
@@ -168,7 +168,7 @@ def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> lis
     }
     return [
         f"Bent {way}, the rigidity is {second:.3g} N·mm without the symmetries of the chart, "
-        f"{max(first / second, second / first):.1f} times apart: a range, not a figure."
+        f"{max(first / second, second / first):.1f} times apart: treat it as a range."
         for way, (first, second) in both.items()
         if max(first / second, second / first) > FAR_APART
     ]

@@ -14,7 +14,7 @@ MAX_PHOTOS = 100
 
 
 class BendingRequest(RequestModel):
-    """Photos of hanging yarn, and what they do not show."""
+    """Photos of hanging yarn, and facts that they do not show."""
 
     images: list[UploadedFile] = Field(min_length=1, max_length=MAX_PHOTOS)
     linear_density_g_per_m: float = Field(

@@ -41,7 +41,7 @@ class CalibrateRequest(FieldRequest):
 
 
 class CalibrateResult(LawResult):
-    """The calibrated law; its shear modulus is no assumption any more."""
+    """The calibrated law; its shear modulus is calibrated, too."""
 
     stiffening_coupling: float
     parameters: dict[str, float]

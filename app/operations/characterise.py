@@ -1,4 +1,4 @@
-"""Characterise a yarn: what the yarn level says of its pure fabrics, as one table."""
+"""Characterise a yarn: its pure fabrics on the yarn level, as one table."""
 
 from __future__ import annotations
 
@@ -309,7 +309,9 @@ def _listed(field: str, text: str | None, read: Callable[[str], Item]) -> list[I
     except ValueError as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(field, f"{text!r} is no list of numbers.", "Write 10.5,11,11.5.") from None
+        raise InputError(
+            field, f"{text!r} is not a list of numbers.", "Write 10.5,11,11.5."
+        ) from None
 
 
 def _show(told: BatchProgress) -> None:

@@ -1,4 +1,4 @@
-"""A law beside a measured displacement field."""
+"""A law compared with a measured displacement field."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from knitcore.swatch.models import EnergyModel, SheetModel
 
 
 class CompareRequest(FieldRequest):
-    """A law, or a fabric of a material, beside a field."""
+    """A law, or a fabric of a material, and a field to compare it with."""
 
     material: MaterialName | None = None
     fabric: Fabric | None = Field(None, description="Of the material.")
     law: UploadedFile | None = Field(None, description="LAW.json, instead of material and fabric.")
     edges: Edges = Edges.MEASURED
-    model: EnergyModel | None = Field(None, description="full, or what the law file says.")
+    model: EnergyModel | None = Field(None, description="Default: full, or as in the law file.")
 
 
 class CompareResult(ResultModel):
@@ -84,7 +84,7 @@ def _text(r: CompareResult) -> str:
 OPERATION = Operation(
     name="compare",
     tag="displacement fields",
-    summary="A law beside a measured displacement field",
+    summary="A law compared with a measured displacement field",
     request=CompareRequest,
     result=CompareResult,
     run=compare,

@@ -1,4 +1,4 @@
-"""What an operation works with beside its request, wherever it runs."""
+"""Services for an operation, wherever it runs."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ def _untold(done: float, total: float) -> None:
 
 
 class Context:
-    """Materials, kept results, and how to stop and to tell.
+    """Materials, kept results, cancellation and progress.
 
     Parameters
     ----------
     data_dir : folder of own materials and kept results, or what finds it when it is needed.
     local : whether the caller sits at this machine: then materials may be files, and charts are
         as large as the library takes.
-    cancelled : whether nobody waits for the result any more.
-    progress : told (done, total).
+    cancelled : whether the caller has given up.
+    progress : called with (done, total).
     """
 
     def __init__(

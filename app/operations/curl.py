@@ -1,4 +1,4 @@
-"""How a piece curls and folds when nobody holds it."""
+"""How a piece curls and folds under no load."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class CurlResult(ResultModel):
     height_mm: float
     depth_mm: float
     curl_course_mm: float = Field(
-        description="How far the sides stand out from the cloth beside them: negative to the back."
+        description="Height of the sides above the fabric next to them; negative to the back."
     )
     curl_wale_mm: float = Field(description="The same of top and bottom.")
     flat_width_mm: float = Field(description="Extent if it lay flat.")

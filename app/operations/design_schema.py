@@ -17,7 +17,7 @@ class DesignSchema(RootModel[dict[str, Any]]):
 
 
 def design_schema(request: NoRequest, context: Context) -> DesignSchema:
-    """What a design file may hold."""
+    """The JSON schema of a design file."""
     del request, context
     return DesignSchema(schema_of_designs())
 

@@ -44,7 +44,7 @@ class SwatchInput(RequestModel):
 
 
 class EstimateRequest(RequestModel):
-    """What is known of the yarn and of the product."""
+    """Known facts of the yarn and the product."""
 
     bending_modulus_n_mm2: float = Field(description="B of the yarn (`measure bending`).")
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
@@ -230,7 +230,9 @@ def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
         try:
             value = float(number)
         except ValueError:
-            raise InputError(field, f"{text!r} is no length.", "Write MM or FABRIC=MM.") from None
+            raise InputError(
+                field, f"{text!r} is not a length.", "Write MM or FABRIC=MM."
+            ) from None
         if name:
             found[Fabric.parse(name)] = value
         else:

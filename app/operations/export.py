@@ -42,7 +42,7 @@ class ExportRequest(DesignLayout):
 
 
 class ExportFacts(ResultModel):
-    """What was written."""
+    """The exported file."""
 
     kind: ExportKind
     rows: int

@@ -65,7 +65,7 @@ class FillRequest(RequestModel):
 
     material: MaterialName
     modulus_course_n_per_mm: Map | None = Field(
-        None, description="[row][column], the bottom row first; null is no wish."
+        None, description="[row][column], the bottom row first; null for no wish."
     )
     modulus_wale_n_per_mm: Map | None = None
     rows: int | None = Field(None, ge=1, le=1000, description="Of the chart, with wishes.")
@@ -115,7 +115,7 @@ class FillResult(ResultModel):
 
 
 def fill(request: FillRequest, context: Context) -> FillResult:
-    """Patches from the atlas, fitted to each other; tells what is not reached.
+    """Patches from the atlas, fitted to each other; reports wishes that are not met.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def _wanted(request: FillRequest) -> Maps:
         course, wale = (_array(rows, name) for name, rows in maps.items())
         return course, wale
     if any(rows is not None for rows in maps.values()):
-        raise InputError("wishes", "are given beside maps.", "Give either.")
+        raise InputError("wishes", "are given together with maps.", "Give either.")
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
     return wanted_maps(

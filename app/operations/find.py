@@ -1,4 +1,4 @@
-"""Fabrics that do what is wanted, in one yarn or across many."""
+"""Fabrics with wanted properties, in one yarn or several."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class TargetInput(RequestModel):
 
 
 class LimitsInput(RequestModel):
-    """The most that knitting may ask; null is no limit."""
+    """Limits on the cost of knitting; null for no limit."""
 
     transfers_per_stitch: float | None = Field(None, ge=0, le=1)
     crossings_per_stitch: float | None = Field(None, ge=0, le=1)
@@ -293,7 +293,7 @@ def _value(c: CandidateResult, label: str) -> str:
 OPERATION = Operation(
     name="find",
     tag="design",
-    summary="Fabrics that do what is wanted",
+    summary="Fabrics with wanted properties",
     request=FindRequest,
     result=FindResult,
     run=find,

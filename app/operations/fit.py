@@ -36,7 +36,7 @@ class FitRequest(RequestModel):
         description="published: as in the paper; recommended: clamp to clamp, every pull counts "
         "the same.",
     )
-    residuals: bool = Field(False, description="Whether to return points beside the fit.")
+    residuals: bool = Field(False, description="Whether to return residuals at each point.")
 
 
 class LawErrors(ResultModel):

@@ -27,7 +27,7 @@ class ImportRequest(RequestModel):
 
 
 class FoundDesign(DesignLayout, ResultModel):
-    """A design, or what a file of another kind has of one."""
+    """A design, or the parts of one that a file of another kind holds."""
 
     chart: str = Field(description="K/P lines, the top row first.")
     name: str | None = Field(None, description="Of a design.")
@@ -36,7 +36,7 @@ class FoundDesign(DesignLayout, ResultModel):
 
 
 class ImportResult(FoundDesign):
-    """What a file holds."""
+    """The content of a file."""
 
     rows: int
     columns: int
@@ -62,7 +62,7 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
 
 
 def design_in(path: Path) -> FoundDesign:
-    """What a file holds of a design.
+    """The parts of a design that a file holds.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Reading a chart as somebody typed it."""
+"""Reading a typed chart."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from knitcore.chart import StitchChart
 
 
 class ParseRequest(RequestModel):
-    """A chart text as somebody typed it."""
+    """A chart as typed text."""
 
     text: ChartText
 

@@ -17,7 +17,7 @@ LEVEL = 4
 
 
 class View(Protocol):
-    """What the 3D view needs of a result."""
+    """Data of a result for the 3D view."""
 
     @property
     def size_bytes(self) -> int:
@@ -40,7 +40,7 @@ class Answer:
     Attributes
     ----------
     body : the result as packed JSON.
-    view : what the 3D view needs of it.
+    view : data for the 3D view.
     """
 
     body: bytes

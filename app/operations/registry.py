@@ -61,7 +61,7 @@ class Operation(Generic[Request, Result]):
     name : of the client's method, the kind of job and, by default, of the address.
     summary : one line.
     tag : heading in the API's reference.
-    request, result : models of what it takes and gives.
+    request, result : its pydantic models.
     run : does it, given the request and a :class:`app.operations.context.Context`; the docstring
         is the description in the API's reference.
     path : address under ``/api/v1``; None if it is a job only.
@@ -90,7 +90,7 @@ class Operation(Generic[Request, Result]):
 
     @property
     def description(self) -> str:
-        """What the API's reference says."""
+        """Description in the reference of the API."""
         return (inspect.getdoc(self.run) or "").partition("\n\nRaises\n")[0]
 
     def key(self, request: BaseModel) -> str:

@@ -49,7 +49,7 @@ class RSResult(ResultModel):
 
 
 def rs(request: RSRequest, context: Context) -> RSResult:
-    """Even and odd segments as springs, in series and side by side, beside the paper's values."""
+    """Even and odd segments as springs in series and in parallel, with the paper's values."""
     del context
     fabrics = {}
     for fabric, found in rs_fabrics(request.material).items():

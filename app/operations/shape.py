@@ -43,7 +43,7 @@ class ShapeRequest(RequestModel):
         min_length=3,
         max_length=1000,
         description="Stretched width over width at rest, line by line across the pull, from the "
-        "bottom (wale-wise) or the left (course-wise); null is no wish.",
+        "bottom (wale-wise) or the left (course-wise); null for no wish.",
     )
     across: int = Field(ge=3, le=1000, description="Stitches of a line.")
     repeats: Extent = "small"
@@ -66,7 +66,9 @@ class ShapeResult(ResultModel):
     columns: int
     chart: str
     bands: list[BandResult]
-    width: Rounded = Field(description="As the finite swatch has it, beside what was wanted.")
+    width: Rounded = Field(
+        description="Width in the finite swatch, for comparison with the wanted one."
+    )
     wanted: Gaps
     rms: float = Field(description="Of the differences, as parts of the width at rest.")
     largest: float
@@ -113,7 +115,7 @@ def _command(
 
 
 def _read(file: Path) -> list[float | None]:
-    """The column ``width`` of a CSV; an empty line is no wish."""
+    """The column ``width`` of a CSV; empty for no wish."""
     try:
         with file.open(newline="", encoding="utf-8") as stream:
             names, *rows = csv.reader(stream)
@@ -124,7 +126,7 @@ def _read(file: Path) -> list[float | None]:
         raise InputError("profile", f"there is no file {file}.", "Check its name.") from None
     except (IndexError, ValueError):
         raise InputError(
-            "profile", f"{file.name} is no profile.", "Give a column `width` of numbers."
+            "profile", f"{file.name} is not a profile.", "Give a column `width` of numbers."
         ) from None
 
 
@@ -150,7 +152,7 @@ OPERATION = Operation(
         _text,
         help="Make a chart that, stretched, has the widths of PROFILE: a CSV with a column "
         "`width`, stretched width over width at rest, one line across the pull after the other "
-        "from the bottom (or the left); an empty one is no wish.",
+        "from the bottom (or the left); empty for no wish.",
         names={"width": None},
         fields=_widths,
         run=_command,

@@ -1,4 +1,4 @@
-"""The stretch test of a chart: what is asked, what comes back, and what the 3D view needs of it."""
+"""The stretch test of a chart: request, result, and data for the 3D view."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class StretchCurve(ResultModel):
     width_mm: float
     length_mm: float
     shear_modulus_assumed: bool = Field(
-        description="Whether C_xyxy is the paper's assumption; nobody measured it."
+        description="Whether C_xyxy is the paper's assumption rather than measured."
     )
     nearest_lock_up: NearestLockUp | None
     messages: list[str]
@@ -122,7 +122,7 @@ class StretchResult(StretchCurve):
 
 @dataclass(frozen=True, eq=False)
 class StretchView:
-    """What the 3D view shows of a test.
+    """A test for the 3D view.
 
     Attributes
     ----------
@@ -218,7 +218,7 @@ def _curve(
 
 
 def _messages(test: StripTest) -> list[str]:
-    """What went wrong, and what a careful reader should know."""
+    """Warnings and notes about a test."""
     messages = [test.problem] if test.problem else []
     used = float(test.utilisation.max(initial=0.0))
     full = test.sheet.model.energy is EnergyModel.FULL
@@ -240,7 +240,7 @@ def _messages(test: StripTest) -> list[str]:
 
 
 def warm_up(*, cancelled: object) -> None:
-    """Load (and on the very first start compile) what a test needs."""
+    """Load the modules of a test, and compile them on the very first start."""
     del cancelled
     request = StretchRequest(
         chart=PureFabricChart(fabric="garter", columns=3, rows=3),
@@ -300,7 +300,7 @@ def _carried(
     strain: NDArray[np.float64],
     there: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Positions at each step; where there is no stitch, as the nearest one would carry it on, for
+    """Positions at each step, extrapolated from the nearest stitch where there is none, for
     the loops of an edge are drawn by the distances to all neighbours.
     """
     row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)

@@ -34,7 +34,7 @@ class SweepRequest(YarnLevelRequest):
     slide_quenching: bool = Field(
         False,
         description="Keep the yarn from sliding where it touches at rest. The published branch "
-        "does so for seed along the course, as the paper did, and takes no other wish.",
+        "does so for seed along the course, as the paper did, and has no other setting.",
     )
 
 

@@ -82,7 +82,7 @@ class KeptResults:
         return found
 
     def _write(self, file: Path, content: bytes) -> None:
-        """Keep a result; where there is no room for it, it is still told."""
+        """Keep a result if there is room for it."""
         if len(content) > self.max_bytes:
             return
         try:

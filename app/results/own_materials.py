@@ -1,4 +1,4 @@
-"""Materials of one's own beside the library: files in the folder ``materials`` of the data folder.
+"""The user's own materials: files in the folder ``materials`` of the data folder.
 
 Every process reads them for itself, workers too. An identifier ends in a mark of the file's
 content, for designs, atlases and results of jobs are kept by it: a file that was changed is another
@@ -25,7 +25,7 @@ _log = logging.getLogger("knitcore.materials")
 
 
 def find_own_material(identifier: str, data_dir: Path) -> Material:
-    """A material of one's own.
+    """A user's own material.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def own_materials(data_dir: Path) -> dict[str, Material]:
             facts = file.stat()
             own = _read(file, facts.st_mtime_ns, facts.st_size)
         except (InputError, OSError) as error:
-            _log.warning("%s is no material: %s", file, error)
+            _log.warning("%s is not a material: %s", file, error)
             continue
         found[own.identifier] = own
     return found

@@ -1,4 +1,4 @@
-"""What the program is: results that are kept hold for one version of it only."""
+"""The version of the program; kept results hold for one version only."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class CameraSide(StrEnum):
 
 
 _TOWARDS: dict[CameraSide, tuple[tuple[float, float, float], tuple[float, float, float]]] = {
-    # where the camera stands, and what is up in the picture
+    # position and up direction of the camera
     CameraSide.FACE: ((0.0, -0.06, 1.0), (0.0, 1.0, 0.0)),
     CameraSide.BACK: ((0.0, -0.06, -1.0), (0.0, 1.0, 0.0)),
     CameraSide.EDGE: ((0.0, -1.0, 0.16), (0.0, 0.0, 1.0)),
@@ -43,7 +43,7 @@ _TOWARDS: dict[CameraSide, tuple[tuple[float, float, float], tuple[float, float,
 
 
 def stand(side: CameraSide, extent: Array) -> tuple[Array, Array, Array]:
-    """Where the camera stands, what it looks at, and what is up, so that the whole fabric is seen.
+    """Position, target and up direction of a camera that sees the whole fabric.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def stand(side: CameraSide, extent: Array) -> tuple[Array, Array, Array]:
     direction, up = (np.array(vector) for vector in _TOWARDS[side])
     direction /= np.linalg.norm(direction)
     width, height = extent
-    # What is nearer than the middle looks larger.
+    # The near side looks larger than the middle.
     nearer = (abs(direction[0]) * width + abs(direction[1]) * height) / 2
     if side is CameraSide.EDGE:
         height = 0.3 * width

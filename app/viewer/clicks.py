@@ -13,7 +13,7 @@ Cell = tuple[int, int]
 
 
 class Clicks:
-    """Tells whoever listens to a design which of its stitches was clicked.
+    """Reports clicks on stitches to the listeners of a design.
 
     Clicks come from viser's threads; listeners wait on the event loop.
     """
@@ -53,7 +53,7 @@ def clicked_stitch(
     origin: tuple[float, float, float],
     direction: tuple[float, float, float],
 ) -> Cell | None:
-    """The stitch where a ray meets the fabric's middle plane; None beside the fabric.
+    """The stitch where a ray meets the fabric's middle plane; None outside the fabric.
 
     Tubes are thin and often missed, the plane never is.
     """

@@ -31,7 +31,7 @@ class Cloth:
     ----------
     server : where they are drawn.
     name : of their node in the scene.
-    scene : what is drawn, all of it as yarn.
+    scene : drawn as yarn throughout.
     middle_mm : (2,) the scene's origin.
     level : points along and around a tube.
     visible : False makes the browsers build them without showing them.

@@ -18,5 +18,5 @@ DesignId = Annotated[
 
 
 def private_name(design: str) -> str:
-    """The name of a design's view among all users': nobody sees or draws another's."""
+    """The name of a design's view, unique among users, so that views are private."""
     return f"{current_user.get()}/{design}"

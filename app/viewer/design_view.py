@@ -1,4 +1,4 @@
-"""What the 3D view shows of a design."""
+"""A design in the 3D view."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class ViewRequest(RequestModel):
 
 
 class ViewResult(BaseModel):
-    """What is shown, and where."""
+    """The view of a design and its address."""
 
     stitches: int = Field(description="Stitches drawn as yarn.")
     source: str = Field(description="Where the shapes of the stitches come from.")
@@ -136,7 +136,7 @@ def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: Stit
 
 
 def _drawn(request: ViewRequest, chart: StitchChart) -> NDArray[np.bool_] | None:
-    """Where there are stitches; an outline that falls apart while it is drawn is shown as it is."""
+    """Where there are stitches; an outline in several parts is shown as it is."""
     if request.outline is None:
         return None
     drawn = outline_marks(request.outline)

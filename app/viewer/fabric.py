@@ -67,7 +67,7 @@ class FabricScene:
         return extent
 
     def window(self) -> FabricScene:
-        """The part that is drawn as yarn: all, or what a browser's triangles allow."""
+        """The part drawn as yarn: all of it, or as much as a browser can draw."""
         rows, columns = self.shapes.index.shape
         if rows * columns <= MOST_STITCHES:
             return self
@@ -93,7 +93,7 @@ class FabricScene:
         )
 
     def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
-        """The stitch at a place of the scene, (row, column); None beside the fabric."""
+        """The stitch at a place of the scene, (row, column); None outside the fabric."""
         places = self.placement
         away = np.abs(places.centres_mm - self.middle_mm - (x_mm, y_mm)) / places.sizes_mm
         distance = away.max(axis=2)

@@ -1,4 +1,4 @@
-"""What a browser may send into a view: where it looks, clicks, and the picture it was asked for.
+"""Messages that a browser may send into a view: camera, clicks, and a picture it was asked for.
 
 viser reads every message with all that it holds, in the service's own process. So the relay passes
 on nothing else than the page needs, nothing large, and no picture: that is checked by its header,
@@ -47,7 +47,7 @@ class WantedPicture:
         head = len(PNG_HEAD)
         sizes = content[head : head + 8]
         if content[:head] != PNG_HEAD or len(sizes) < 8:
-            raise RefusedMessageError("the picture is no PNG")
+            raise RefusedMessageError("the picture is not a PNG")
         if struct.unpack(">II", sizes) != (self.width, self.height):
             raise RefusedMessageError("the picture has another size than was asked for")
         self.content = content

@@ -20,7 +20,7 @@ import websockets.asyncio.server
 
 HEADER = "X-Knitcore-Relay"
 RELAY_HEADERS = {HEADER: secrets.token_urlsafe(32)}
-"""What the relay sends along; new in every process."""
+"""Secret that the relay sends along; new in every process."""
 
 rich.get_console().quiet = True  # viser's notices; stdout is for the service's address
 

@@ -37,7 +37,7 @@ VIEW_STYLE = """<style>
   canvas[width="0"] { display: none !important; }
 </style>"""
 VIEW_SCRIPT = """<script>
-  // Notices of viser's client that nobody here can act on: its sorter of point clouds, unused here,
+  // Notices of viser's client that users cannot act on: its sorter of point clouds, unused here,
   // builds functions from text, which our policy forbids; and three.js renames a class.
   for (const name of ["error", "unhandledrejection"]) {
     addEventListener(name, (event) => {
@@ -51,7 +51,7 @@ VIEW_SCRIPT = """<script>
 
 @router.get("/view/{design}")
 async def with_slash(design: DesignId) -> RedirectResponse:
-    """The client finds its websocket beside its own address, so the address must end in a slash."""
+    """The client looks for its websocket next to its own address, which must end in a slash."""
     return RedirectResponse(f"/view/{design}/")
 
 

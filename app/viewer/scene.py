@@ -1,4 +1,4 @@
-"""What a viser server shows of a fabric: its yarn, rectangles, a mark."""
+"""The scene of a fabric in viser: yarn, rectangles, a mark."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class SceneWriter:
 
     @property
     def scene(self) -> FabricScene | None:
-        """What is shown."""
+        """The fabric shown."""
         return self._scene
 
     def write(self, scene: FabricScene) -> int:
@@ -104,7 +104,7 @@ class SceneWriter:
         room = self._scene.extent_mm
         if self._scene.room_mm is not None:
             room = np.maximum(room, self._scene.room_mm)
-        # Loops reach into the rows and columns beside theirs, the outermost beyond all.
+        # Loops reach into neighbouring rows and columns, the outermost beyond the chart.
         extent = UNITS_PER_MM * (room + self._scene.placement.sizes_mm[0, 0])
         place_camera(self._server, self._side, extent, everybody=everybody)
 
@@ -206,7 +206,7 @@ class SceneWriter:
 
 
 def _room(scene: FabricScene) -> tuple[float, ...]:
-    """What the camera is placed for; it stays where people turned it until this changes."""
+    """The size that the camera was placed for; until it changes the camera stays as turned."""
     shape = scene.shapes.index.shape
     return shape if scene.room_mm is None else (*shape, *scene.room_mm.round(1).tolist())
 

@@ -35,12 +35,12 @@ def picture_png(view: View, width: int, height: int) -> bytes:
     Raises
     ------
     NoPictureError
-        If nobody looks, another picture is being taken, or the browser does not answer.
+        If no browser shows the view or answers, or another picture is being taken.
     """
     clients = sorted(view.server.get_clients().items())
     if not clients:
         raise NoPictureError(
-            "Nobody looks at this view, so there is no picture of it.", remedy="Open the view."
+            "No browser shows this view, so there is no picture of it.", remedy="Open the view."
         )
     if not view.picturing.acquire(blocking=False):
         raise NoPictureError("Another picture of this view is being taken.", remedy="Wait for it.")
@@ -79,7 +79,7 @@ def recording(scenes: Iterable[FabricScene]) -> bytes:
 
 @contextmanager
 def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
-    """A server of one's own: nobody who looks at the design sees the steps run by."""
+    """A separate server, so that viewers of the design are not disturbed."""
     view = new_view()
     try:
         remaining = iter(scenes)

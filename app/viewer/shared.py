@@ -1,4 +1,4 @@
-"""What is given away of a design's 3D view."""
+"""Files of a design's 3D view to share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The colours of the stitches in the 3D view, by what they are to show."""
+"""The colours of the stitches in the 3D view, by quantity."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Value = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Colour(StrEnum):
-    """What the colours of the stitches mean."""
+    """The quantity that colours the stitches."""
 
     YARN = "yarn"
     REGION = "region"

@@ -1,4 +1,4 @@
-"""One private viser server per open design, closed when nobody looks for a while."""
+"""One private viser server per open design, closed when it is not watched for a while."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class View:
 class Views:
     """The open views by design.
 
-    Views are disposable: the scene is built from the design again when somebody comes back.
+    Views are disposable: the scene is rebuilt from the design when it is opened again.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class Views:
                 view.last_used = time.monotonic()
 
     def close_idle(self) -> int:
-        """Close what nobody has watched for a while; returns how many views that were."""
+        """Close views that have not been watched for a while; returns their number."""
         deadline = time.monotonic() - self._idle_s
         with self._lock:
             idle = [d for d, v in self._views.items() if not v.watchers and v.last_used < deadline]

@@ -151,4 +151,4 @@ def test_a_missing_folder_is_named(tmp_path: Path) -> None:
         main, ["export", "rib", "--size", "2x2", "--to", "png", "-o", str(out)]
     )
     assert result.exit_code == 2
-    assert "is no folder" in result.stderr
+    assert "is not a folder" in result.stderr

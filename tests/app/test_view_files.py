@@ -109,7 +109,7 @@ def test_a_picture_needs_somebody_who_looks(client: TestClient) -> None:
     client.put(f"/api/v1/views/{design}", json=SMALL)
     problem = client.get(address)
     assert problem.status_code == 409
-    assert "Nobody looks" in problem.json()["detail"]
+    assert "No browser shows" in problem.json()["detail"]
     assert client.get(f"{address}?width=9000").status_code == 422
 
 
