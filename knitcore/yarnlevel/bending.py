@@ -396,14 +396,11 @@ class _Cell:
         energy, cell, kappa = self.energy, self.energy.cell, d.curvature_per_mm
         frame = _Frame(self.curve, d.angle, kappa)
         speeds = np.linalg.norm(frame.bent[:, 1], axis=1)
-        force = np.zeros((len(self.curve) + 1, 3))
-        weight_slope = np.zeros(len(self.curve))
-        value = kernels.bent_contact(
-            self.curve, self.state[_COURSE], self.state[_WALE], self._pairs, cell.place, cell.wales,
-            cell.rows, energy.contact_parameters, speeds, kappa,
-            (np.cos(d.angle), np.sin(d.angle)), d.skew, force, weight_slope,
+        value, force, by_speed = kernels.bent_contact(
+            self.curve, self.state[_COURSE], self.state[_WALE], self._pairs, cell.layout,
+            energy.contact_law, speeds, kappa, (np.cos(d.angle), np.sin(d.angle)), d.skew,
         )  # fmt: skip
-        rod, gauge, slopes = energy.along_yarn(frame.bent, self.tension, weight_slope)
+        rod, gauge, slopes = energy.along_yarn(frame.bent, self.tension, by_speed)
         lengths = np.bincount(energy.stretch_of, speeds) / cell.grid.samples
         excess = lengths - energy.prescribed_mm
         by_height, slopes = frame.pulled_back(slopes)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
+from knitcore.yarnlevel.kernels.structures import Layout
 from knitcore.yarnlevel.spline import SplineGrid
 
 FACE_LEGS = 1.0
@@ -119,6 +120,14 @@ class YarnCell:
     def unknowns(self) -> int:
         """Number of unknowns: free control coordinates and the two sizes of a stitch."""
         return self._ties[2] + 2
+
+    @cached_property
+    def layout(self) -> Layout:
+        """How the unknowns make the curves, as the kernels take it."""
+        return Layout(
+            self.rows, self.wales, self.mirror[0], self.place, self.grid.basis, self.dof,
+            self.sign, self.unknowns,
+        )  # fmt: skip
 
     def controls(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
         """Control points (rows, controls, 3), mm, without the drift of the cell."""

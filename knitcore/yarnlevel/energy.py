@@ -13,6 +13,7 @@ from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarnlevel.grip import Grip
 from knitcore.yarnlevel.held import foot_rows, plane_rows
+from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -53,12 +54,12 @@ class Slope:
     ----------
     gradient : (unknowns,) of the Lagrangian.
     lengths : (constraints, unknowns), of the prescribed lengths and of what else is held.
-    hessian : (unknowns, unknowns) of the Lagrangian; empty where it was not wanted.
+    hessian : (unknowns, unknowns) of the Lagrangian; None where it was not wanted.
     """
 
     gradient: Array
     lengths: Array
-    hessian: Array
+    hessian: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,29 +142,24 @@ class CellEnergy:
         return PENALTY_PER_BENDING * self.unit / self.mean_loop_mm**2 / self.cell.wales
 
     @cached_property
-    def contact_parameters(self) -> Array:
-        """Factor of a pair, k, p, r, r_core and dt, as the kernels take them."""
-        y = self.yarn
-        return np.array(
-            [
-                self.convention.unordered_pair_factor,
-                y.contact_stiffness_n_per_mm3,
-                y.contact_exponent,
-                y.radius_mm,
-                y.core_radius_mm,
-                1.0 / self.cell.grid.samples,
-            ]
+    def contact_law(self) -> kernels.ContactLaw:
+        """The contact as the kernels take it."""
+        return kernels.ContactLaw(
+            weight=self.convention.unordered_pair_factor / self.cell.grid.samples**2,
+            stiffness=self.yarn.contact_stiffness_n_per_mm3,
+            exponent=self.yarn.contact_exponent,
+            radius=self.yarn.radius_mm,
+            core=self.yarn.core_radius_mm,
         )
 
     @cached_property
-    def _rod_parameters(self) -> Array:
-        return np.array(
-            [
-                self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
-                self.convention.regularisation_factor * self.regularisation_n_mm4,
-                GAUGE_PER_BENDING * self.unit,
-                1.0 / self.cell.grid.samples,
-            ]
+    def rod_law(self) -> kernels.RodLaw:
+        """Bending, regularisation and gauge penalty as the kernels take them."""
+        return kernels.RodLaw(
+            bend=self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
+            regular=self.convention.regularisation_factor * self.regularisation_n_mm4,
+            gauge=GAUGE_PER_BENDING * self.unit,
+            step=1.0 / self.cell.grid.samples,
         )
 
     def curve(self, state: Array) -> Array:
@@ -174,7 +170,7 @@ class CellEnergy:
         )
         return sampled.reshape(-1, 4, 3)
 
-    def pairs(self, curve: Array, state: Array, reach: float) -> tuple[Ints, Ints]:
+    def pairs(self, curve: Array, state: Array, reach: float) -> tuple[Pairs, Ints]:
         """Pairs of samples nearer than ``reach`` (see neighbours)."""
         cell = self.cell
         pairs, start = neighbour_pairs(
@@ -202,18 +198,12 @@ class CellEnergy:
         slid = np.array([grip.value(state) for grip in self.grips])
         return np.concatenate([lengths - self.prescribed_mm, self.held @ state, slid])
 
-    def value(self, state: Array, curve: Array, pairs: Ints) -> Terms:
+    def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
         """Parts of the energy."""
-        cell = self.cell
-        none = np.zeros((0, 3)), np.zeros(0)
-        contact = kernels.contact(
-            curve, state[-2], state[-1], pairs, cell.place, cell.wales, cell.rows,
-            self.contact_parameters, 0, *none,
-        )  # fmt: skip
-        rod, gauge = kernels.rod(
-            curve, self._rod_parameters, self._speeds, np.zeros(0), np.zeros(0), 0,
-            np.zeros((0, 3, 3)), np.zeros((0, 9, 9)),
-        )  # fmt: skip
+        contact = kernels.contact_energy(
+            curve, state[-2], state[-1], pairs, self.cell.layout, self.contact_law
+        )
+        rod, gauge = kernels.rod_energy(curve, self.rod_law, self._speeds)
         return Terms(rod, contact, gauge, self.excess(state, curve))
 
     def merit(self, terms: Terms, tension: Array) -> float:
@@ -224,93 +214,67 @@ class CellEnergy:
         )
 
     def derivatives(
-        self, state: Array, curve: Array, pairs: Ints, start: Ints, tension: Array,
+        self, state: Array, curve: Array, pairs: Pairs, start: Ints, tension: Array,
         *, hessian: bool = True,
     ) -> Slope:  # fmt: skip
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty."""
-        cell = self.cell
-        n, size = len(curve), cell.unknowns
-        force = np.zeros((n + 1, 3))
-        weight_slope = np.zeros(n)
-        kernels.contact(
-            curve, state[-2], state[-1], pairs, cell.place, cell.wales, cell.rows,
-            self.contact_parameters, 1, force, weight_slope,
-        )  # fmt: skip
-        slopes = np.zeros((n, 3, 3))
-        local = np.zeros((n if hessian else 0, 9, 9))
-        kernels.rod(
-            curve, self._rod_parameters, self._speeds, tension[self.stretch_of], weight_slope,
-            2 if hessian else 1, slopes, local,
-        )  # fmt: skip
-        gradient = np.zeros(size)
-        gradient[-2:] = force[n, :2]
-        kernels.scatter_gradient(force, slopes, *self._layout, gradient)
-        slides = np.array([grip.gradient(state) for grip in self.grips]).reshape(-1, size)
-        lengths = np.concatenate([self.length_gradients(curve), self.held, slides])
+        layout, law = self.cell.layout, self.contact_law
+        force, by_speed = kernels.contact_slopes(curve, state[-2], state[-1], pairs, layout, law)
+        along = curve, self.rod_law, self._speeds, tension[self.stretch_of], by_speed
+        if hessian:
+            slopes, local = kernels.rod_hessian(*along)
+        else:
+            slopes = kernels.rod_slopes(*along)
+        gradient = kernels.scatter_gradient(force, slopes, layout)
+        gradient[-2:] += force[-1, :2]
+        slides = np.array([grip.gradient(state) for grip in self.grips])
+        lengths = np.concatenate(
+            [self.length_gradients(curve), self.held, slides.reshape(-1, len(gradient))]
+        )
         beside = len(self.prescribed_mm)
         gradient += tension[beside:] @ lengths[beside:]
         if not hessian:
-            return Slope(gradient, lengths, np.zeros((0, 0)))
-        matrix = np.zeros((size, size))
-        position = np.zeros((n, 3, 3))
-        position_speed = np.zeros((n, 3, 3))
-        kernels.contact_hessian(
-            curve, state[-2], state[-1], pairs, start, cell.place, cell.wales, cell.rows,
-            cell.mirror[0], self.contact_parameters, cell.grid.basis, cell.dof, cell.sign,
-            position, position_speed, matrix,
-        )  # fmt: skip
-        kernels.scatter_local(local, position, position_speed, *self._layout, matrix)
+            return Slope(gradient, lengths)
+        matrix, position, position_speed = kernels.contact_hessian(
+            curve, state[-2], state[-1], pairs, start, layout, law
+        )
+        kernels.scatter_local(local, position, position_speed, layout, matrix)
         for force_of_grip, grip in zip(tension[beside + len(self.held) :], self.grips, strict=True):
             matrix += force_of_grip * grip.hessian()
         return Slope(gradient, lengths, matrix)
 
     def along_yarn(
-        self, curve: Array, tension: Array, weight_slope: Array
+        self, curve: Array, tension: Array, by_speed: Array
     ) -> tuple[float, float, Array]:
         """What the yarn has by itself: rod and gauge energy, and slopes (n, 3, 3) by d1, d2, d3.
 
-        The slopes include the tensions and ``weight_slope``, that of the contact by |d1|.
+        The slopes include the tensions and ``by_speed``, the slope of the contact by |d1|.
         """
-        slopes = np.zeros((len(curve), 3, 3))
-        rod, gauge = kernels.rod(
-            curve, self._rod_parameters, self._speeds, tension[self.stretch_of], weight_slope, 1,
-            slopes, np.zeros((0, 9, 9)),
-        )  # fmt: skip
-        return rod, gauge, slopes
+        along = curve, self.rod_law, self._speeds
+        rod, gauge = kernels.rod_energy(*along)
+        return rod, gauge, kernels.rod_slopes(*along, tension[self.stretch_of], by_speed)
 
     def gathered(self, force: Array, slopes: Array) -> Array:
         """(unknowns,) gradient from slopes (n, 3) by the positions and (n, 3, 3) by d1, d2, d3."""
-        out = np.zeros(self.cell.unknowns)
-        kernels.scatter_gradient(force, slopes, *self._layout, out)
-        return out
+        return np.asarray(kernels.scatter_gradient(force, slopes, self.cell.layout))
 
     def length_gradients(self, curve: Array) -> Array:
         """(m, unknowns): gradient of each prescribed length."""
         cell = self.cell
         tangent = curve[:, 1] / np.linalg.norm(curve[:, 1], axis=1)[:, None] / cell.grid.samples
-        rows = np.zeros((len(self.prescribed_mm), cell.unknowns))
         if self.per_stitch:
-            for k, row in enumerate(rows):
-                self._scatter(np.where((self.stretch_of == k)[:, None], tangent, 0.0), row)
-            return rows
-        every = np.zeros(cell.unknowns)
-        self._scatter(tangent, every)
+            own = self.stretch_of == np.arange(len(self.prescribed_mm))[:, None]
+            return np.array([self._by_tangent(np.where(o[:, None], tangent, 0.0)) for o in own])
+        every = self._by_tangent(tangent)
+        rows = np.zeros((cell.rows, cell.unknowns))
         for row, dof, sign in zip(rows, cell.dof, cell.sign, strict=True):
-            own = dof[sign != 0.0]  # no unknown belongs to two courses
-            row[own] = every[own]
+            unknowns = dof[sign != 0.0]  # no unknown belongs to two courses
+            row[unknowns] = every[unknowns]
         rows[:, -2] = tangent[:, 0].reshape(cell.rows, -1).sum(axis=1)
         return rows
 
-    def _scatter(self, by_speed: Array, out: Array) -> None:
+    def _by_tangent(self, by_speed: Array) -> Array:
         """Gradient by the unknowns of what depends on d1 as given."""
         slopes = np.zeros((len(by_speed), 3, 3))
         slopes[:, 0] = by_speed
-        kernels.scatter_gradient(np.zeros((len(by_speed), 3)), slopes, *self._layout, out)
-
-    @property
-    def _layout(self) -> tuple[int, int, int, Array, Ints, Array]:
-        cell = self.cell
-        return (
-            cell.rows, cell.controls_per_course, cell.mirror[0], cell.grid.basis,
-            cell.dof, cell.sign,
-        )  # fmt: skip
+        return self.gathered(np.zeros((len(by_speed), 3)), slopes)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.held import is_independent
 from knitcore.yarnlevel.kernels import control_of
+from knitcore.yarnlevel.kernels.structures import Pairs
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -56,7 +57,7 @@ class Grip:
 
 
 def grips_at(
-    cell: YarnCell, state: Array, pairs: Ints, distances: Array, touch_mm: float, loop_mm: float
+    cell: YarnCell, state: Array, pairs: Pairs, distances: Array, touch_mm: float, loop_mm: float
 ) -> tuple[Grip, ...]:
     """Grips at the crossovers of a state, two to a stitch.
 

@@ -31,7 +31,7 @@ _OPENING = 0.02
 _STIFFENED = 20.0
 """Factor on the contact stiffness while the core grows."""
 _STAGES = 40
-_STAGE = Options(tolerance=1e-3, iterations=12)
+STAGE = Options(tolerance=1e-3, iterations=12)
 _START_HEIGHT = 0.8
 
 
@@ -88,36 +88,36 @@ def grow(
     tension: Array | None = None
     steps = evaluations = 0
     for stage in range(_STAGES):
-        young = replace(
-            yarn,
-            core_radius_mm=core,
-            contact_stiffness_n_per_mm3=_STIFFENED * yarn.contact_stiffness_n_per_mm3,
-        )
         found = minimise(
-            replace(energy, yarn=young),
+            replace(energy, yarn=stiffened(replace(yarn, core_radius_mm=core))),
             state,
             tension=tension,
             fixed=(COURSE, WALE) if stage == 0 else (),
-            options=_STAGE,
+            options=STAGE,
             cancel=cancel,
         )
         state, tension = found.state, found.tension
         steps += found.steps
         evaluations += found.evaluations
         grown = _core_that_fits(yarn, found.min_distance_mm, _OPENING)
-        if grown >= yarn.core_radius_mm:
+        stuck = grown <= core and found.converged and stage > 0
+        if stuck or grown >= yarn.core_radius_mm:
             break
         core = max(core, grown)
-    else:
-        # where bending presses weak shells together there is no more room around a grown core
-        if core < yarn.core_radius_mm or found.min_distance_mm <= 2.0 * core:
-            raise ConvergenceError(
-                f"The yarn does not fit into its loop: of a core radius of "
-                f"{yarn.core_radius_mm:g} mm only {core:.3g} mm found room. Give a longer loop or "
-                "a thinner core."
-            )
+    # where bending presses weak shells together there is no more room around a grown core
+    short = grown < yarn.core_radius_mm
+    if short and (core < yarn.core_radius_mm or found.min_distance_mm <= 2.0 * core):
+        raise ConvergenceError(
+            f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
+            f"only {core:.3g} mm found room. Give a longer loop or a thinner core."
+        )
     found = minimise(energy, state, tension=tension, options=options, cancel=cancel)
     return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)
+
+
+def stiffened(yarn: YarnModel) -> YarnModel:
+    """The yarn with a shell so stiff that its strands push each other apart."""
+    return replace(yarn, contact_stiffness_n_per_mm3=_STIFFENED * yarn.contact_stiffness_n_per_mm3)
 
 
 def shaken(cell: YarnCell, state: Array, noise_mm: float, seed: int) -> Array:

@@ -12,9 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.yarnlevel.kernels.curve import laid_out
+from knitcore.yarnlevel.kernels.structures import Pairs
 
 EXCLUSION_RADII = 2.1
 """Samples of one yarn nearer than this many radii along it do not touch (authors' code)."""
+_BINS = 3
+"""Bins per reach: finer ones follow its circle more closely."""
 
 
 @numba.njit(cache=True)
@@ -26,7 +29,7 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
     mirror: tuple[int, int],
     reach: float,
     exclusion: float,
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[Pairs, NDArray[np.int64]]:
     """All pairs of samples nearer than ``reach``.
 
     Parameters
@@ -49,8 +52,8 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
     samples = place.shape[0]
     width = cell[0] * wales
     height = cell[1] * rows
-    bins_x = max(1, int(width / reach))
-    bins_y = max(1, int(height / reach))
+    bins_x = max(1, int(_BINS * width / reach))
+    bins_y = max(1, int(_BINS * height / reach))
     span_x = int(np.ceil(reach * bins_x / width))
     span_y = int(np.ceil(reach * bins_y / height))
     x = np.empty(n)
@@ -75,7 +78,7 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
         following[i] = head[b]
         head[b] = i
     capacity = 64 * n
-    pairs = np.empty((capacity, 5), np.int64)
+    pairs = np.empty((capacity, 5), np.int32)
     start = np.zeros(n + 1, np.int64)
     count = 0
     square = reach * reach
@@ -108,7 +111,7 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
                             if not (same and along <= exclusion):
                                 if count == capacity:
                                     capacity *= 2
-                                    grown = np.empty((capacity, 5), np.int64)
+                                    grown = np.empty((capacity, 5), np.int32)
                                     grown[:count] = pairs[:count]
                                     pairs = grown
                                 pairs[count, 0] = i
@@ -130,7 +133,7 @@ def pair_changes(
     later_cell: tuple[float, float],
     place: NDArray[np.float64],
     shape: tuple[int, int],
-    pairs: NDArray[np.int64],
+    pairs: Pairs,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Distance of each pair, and length of the change of its vector to a later curve, mm."""
     rows, wales = shape

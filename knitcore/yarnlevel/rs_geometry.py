@@ -112,10 +112,8 @@ def _contact_load(relaxed: RelaxedRepeat) -> Array:
     energy = relaxed.energy
     curve = energy.curve(relaxed.state)
     pairs, _ = energy.pairs(curve, relaxed.state, 2.0 * relaxed.yarn.radius_mm)
-    load = np.zeros(len(curve))
-    cell = relaxed.cell
-    kernels.contact(
-        curve, relaxed.cell_course_mm, relaxed.cell_wale_mm, pairs, cell.place, cell.wales,
-        cell.rows, energy.contact_parameters, 1, np.zeros((len(curve) + 1, 3)), load,
+    _, load = kernels.contact_slopes(
+        curve, relaxed.cell_course_mm, relaxed.cell_wale_mm, pairs, relaxed.cell.layout,
+        energy.contact_law,
     )  # fmt: skip
-    return load
+    return np.asarray(load)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.growth import Start, grow, shaken
+from knitcore.yarnlevel.growth import STAGE, Start, grow, shaken, stiffened
 from knitcore.yarnlevel.results import StartReport
 from knitcore.yarnlevel.solver import Minimum, Options, minimise
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
@@ -143,15 +144,25 @@ class Search:
             If it is no state of the fabric there.
         """
         best = self.best()
-        found = minimise(
-            energy, refined_state(self.energy.cell, best.state, energy.cell),
-            tension=None if energy.held.size else best.tension,
-            options=options, cancel=self.cancel,
-        )  # fmt: skip
-        self.evaluations += found.evaluations
+        state = refined_state(self.energy.cell, best.state, energy.cell)
+        tension = None if energy.held.size else best.tension
+        found = self._minimised(energy, state, tension, options)
+        if outcome(energy, found) not in (RELAXED, UNSETTLED):
+            # between the old samples the yarn may lie in its core: push it out first
+            apart = self._minimised(
+                replace(energy, yarn=stiffened(energy.yarn)), state, tension, STAGE
+            )
+            found = self._minimised(energy, apart.state, apart.tension, options)
         became = outcome(energy, found)
         if became not in (RELAXED, UNSETTLED):
             raise ConvergenceError(f"The relaxed shape does not hold on a finer grid: {became}.")
+        return found
+
+    def _minimised(
+        self, energy: CellEnergy, state: Array, tension: Array | None, options: Options
+    ) -> Minimum:
+        found = minimise(energy, state, tension=tension, options=options, cancel=self.cancel)
+        self.evaluations += found.evaluations
         return found
 
     def notes(self, best: Minimum) -> tuple[str, ...]:

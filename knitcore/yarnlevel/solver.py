@@ -301,6 +301,7 @@ class _System:
         self._penalty = penalty
         self._free = free
         self._held = np.flatnonzero(~free)
+        assert slope.hessian is not None  # noqa: S101 - a system is made of both derivatives
         with one_blas_thread():
             # the Hessian of the penalty, added in place (the matrix is symmetric)
             self._hessian = blas.dgemm(

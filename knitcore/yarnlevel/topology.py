@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.yarnlevel.cell import YarnCell
+from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.neighbours import pair_changes
 
 Array = NDArray[np.float64]
@@ -45,7 +46,7 @@ class Guard:
     cell: YarnCell
     state: Array
     curve: Array
-    pairs: NDArray[np.int64]
+    pairs: Pairs
     reach_mm: float
     touch_mm: float
 

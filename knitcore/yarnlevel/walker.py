@@ -12,7 +12,7 @@ from knitcore.yarnlevel.topology import Guard
 
 Array = NDArray[np.float64]
 
-SKIN = 1.4
+SKIN = 0.9
 """How much farther than 2r the list of near pairs reaches when it is made, in radii."""
 RENEW = 0.4
 """The list is made anew when it is only known to reach so far beyond 2r."""

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.yarnlevel.kernels.curve import laid_out
+from knitcore.yarnlevel.kernels.structures import Array, ContactLaw, Layout, Pairs
 from knitcore.yarnlevel.potential import potential_and_derivatives
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @numba.njit(cache=True)
@@ -18,19 +15,15 @@ def bent_contact(
     curve: Array,
     course_mm: float,
     wale_mm: float,
-    pairs: Ints,
-    place: Array,
-    wales: int,
-    rows: int,
-    parameters: Array,
+    pairs: Pairs,
+    layout: Layout,
+    law: ContactLaw,
     speeds: Array,
     curvature_per_mm: float,
     along: tuple[float, float],
     skew: float,
-    force: Array,
-    weight_slope: Array,
-) -> float:
-    """Contact energy of the bent or skewed cell, N·mm; adds to ``force`` and ``weight_slope``.
+) -> tuple[float, Array, Array]:
+    """Contact energy of the bent or skewed cell, N·mm, and its derivatives.
 
     Neighbours of the cell are rotated images: with the unrolled distances Δs along the bent
     direction and Δo across it, and g = 1 + κz, two samples are
@@ -41,16 +34,17 @@ def bent_contact(
 
     Parameters
     ----------
-    curve, course_mm, wale_mm, pairs, place, wales, rows, parameters, force, weight_slope : as for
-        :func:`~knitcore.yarnlevel.kernels.contact.contact`; no pair is mirrored.
+    curve, course_mm, wale_mm, pairs, layout, law : as for
+        :func:`~knitcore.yarnlevel.kernels.contact.contact_slopes`, which also says what the
+        derivatives are; no pair is mirrored.
     speeds : (n,) length of d1 on the cylinder.
     along : cosine and sine of the angle from the course to the bent direction.
     """
-    factor, k, p, radius, core, dt = parameters
-    reach = 4.0 * radius * radius
+    reach = 4.0 * law.radius * law.radius
     n = curve.shape[0]
-    at = laid_out(curve, place, course_mm, wale_mm)
-    w = factor * dt * dt
+    wales, rows, w = layout.wales, layout.rows, law.weight
+    force, weight_slope = np.zeros((n + 1, 3)), np.zeros(n)
+    at = laid_out(curve, layout.place, course_mm, wale_mm)
     cos, sin = along
     half = 0.5 * curvature_per_mm
     total = 0.0
@@ -70,7 +64,9 @@ def bent_contact(
             continue
         distance = np.sqrt(square)
         si, sj = speeds[i], speeds[j]
-        v0, v1, _ = potential_and_derivatives(distance, k, p, radius, core)
+        v0, v1, _ = potential_and_derivatives(
+            distance, law.stiffness, law.exponent, law.radius, law.core
+        )
         total += w * v0 * si * sj
         weight_slope[i] += w * v0 * sj
         weight_slope[j] += w * v0 * si
@@ -88,4 +84,4 @@ def bent_contact(
         force[j, 2] += lift * gi + slope * dz
         force[n, 0] += fx * across
         force[n, 1] += (fy + skew * fx) * up
-    return total
+    return total, force, weight_slope

@@ -4,69 +4,77 @@ from __future__ import annotations
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.yarnlevel.kernels.curve import control_of, laid_out
+from knitcore.yarnlevel.kernels.structures import Array, ContactLaw, Ints, Layout, Pairs
 from knitcore.yarnlevel.potential import potential, potential_and_derivatives
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @numba.njit(cache=True)
-def contact(
-    curve: Array,
-    course_mm: float,
-    wale_mm: float,
-    pairs: Ints,
-    place: Array,
-    wales: int,
-    rows: int,
-    parameters: Array,
-    order: int,
-    force: Array,
-    weight_slope: Array,
-) -> float:
-    """Contact energy; fills ``force`` (dE/dx, n x 3) and ``weight_slope`` (dE/d√a, n) if order.
+def _apart(
+    at: Array, pairs: Pairs, q: int, layout: Layout, course_mm: float, wale_mm: float
+) -> tuple[float, float, float]:
+    """Vector from the first sample of a pair to the image of the second, mm."""
+    i, j = pairs[q, 0], pairs[q, 1]
+    return (
+        at[j, 0] - at[i, 0] + layout.wales * pairs[q, 2] * course_mm,
+        at[j, 1] - at[i, 1] + layout.rows * pairs[q, 3] * wale_mm,
+        pairs[q, 4] * at[j, 2] - at[i, 2],
+    )
 
-    ``pairs`` is (n, 5): sample i, sample j, image across, image up, sign of z; each pair once.
-    ``parameters``: factor of a pair, k, p, r, r_core, dt. ``place``: t of each sample.
-    The slope with respect to the cell is left in force[n] (last row: course, wale, unused).
-    """
-    factor, k, p, radius, core, dt = parameters
-    reach = 4.0 * radius * radius
-    n = curve.shape[0]
-    at = laid_out(curve, place, course_mm, wale_mm)
-    w = factor * dt * dt
+
+@numba.njit(cache=True)
+def contact_energy(
+    curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
+) -> float:
+    """Contact energy of the cell, N·mm."""
+    reach = 4.0 * law.radius * law.radius
+    at = laid_out(curve, layout.place, course_mm, wale_mm)
     total = 0.0
     for q in range(pairs.shape[0]):
-        i, j = pairs[q, 0], pairs[q, 1]
-        right, up = wales * pairs[q, 2], rows * pairs[q, 3]
-        dx = at[j, 0] - at[i, 0] + right * course_mm
-        dy = at[j, 1] - at[i, 1] + up * wale_mm
-        dz = pairs[q, 4] * at[j, 2] - at[i, 2]
+        dx, dy, dz = _apart(at, pairs, q, layout, course_mm, wale_mm)
+        square = dx * dx + dy * dy + dz * dz
+        if square < reach:
+            value = potential(np.sqrt(square), law.stiffness, law.exponent, law.radius, law.core)
+            total += law.weight * value * at[pairs[q, 0], 5] * at[pairs[q, 1], 5]
+    return total
+
+
+@numba.njit(cache=True)
+def contact_slopes(
+    curve: Array, course_mm: float, wale_mm: float, pairs: Pairs, layout: Layout, law: ContactLaw
+) -> tuple[Array, Array]:
+    """Derivatives of the contact energy by the positions, (n + 1, 3), and by |d1|, (n,).
+
+    The last row holds those by the size of a stitch, course-wise and wale-wise.
+    """
+    reach = 4.0 * law.radius * law.radius
+    n = curve.shape[0]
+    force, by_speed = np.zeros((n + 1, 3)), np.zeros(n)
+    at = laid_out(curve, layout.place, course_mm, wale_mm)
+    for q in range(pairs.shape[0]):
+        dx, dy, dz = _apart(at, pairs, q, layout, course_mm, wale_mm)
         square = dx * dx + dy * dy + dz * dz
         if square >= reach:
             continue
+        i, j = pairs[q, 0], pairs[q, 1]
         distance = np.sqrt(square)
         si, sj = at[i, 5], at[j, 5]
-        if order == 0:
-            total += w * potential(distance, k, p, radius, core) * si * sj
-            continue
-        v0, v1, _ = potential_and_derivatives(distance, k, p, radius, core)
-        total += w * v0 * si * sj
-        slope = w * v1 * si * sj / distance
+        v0, v1, _ = potential_and_derivatives(
+            distance, law.stiffness, law.exponent, law.radius, law.core
+        )
+        slope = law.weight * v1 * si * sj / distance
         force[i, 0] -= slope * dx
         force[i, 1] -= slope * dy
         force[i, 2] -= slope * dz
         force[j, 0] += slope * dx
         force[j, 1] += slope * dy
         force[j, 2] += slope * dz * pairs[q, 4]
-        force[n, 0] += slope * dx * (at[j, 3] - at[i, 3] + right)
-        force[n, 1] += slope * dy * (at[j, 4] - at[i, 4] + up)
-        weight_slope[i] += w * v0 * sj
-        weight_slope[j] += w * v0 * si
-    return total
+        force[n, 0] += slope * dx * (at[j, 3] - at[i, 3] + layout.wales * pairs[q, 2])
+        force[n, 1] += slope * dy * (at[j, 4] - at[i, 4] + layout.rows * pairs[q, 3])
+        by_speed[i] += law.weight * v0 * sj
+        by_speed[j] += law.weight * v0 * si
+    return force, by_speed
 
 
 @numba.njit(cache=True)
@@ -87,32 +95,29 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     curve: Array,
     course_mm: float,
     wale_mm: float,
-    pairs: Ints,
+    pairs: Pairs,
     start: Ints,
-    place: Array,
-    wales: int,
-    rows: int,
-    mirror: int,
-    parameters: Array,
-    basis: Array,
-    dof: Ints,
-    sign: Array,
-    position: Array,
-    position_speed: Array,
-    hessian: Array,
-) -> None:
-    """Fill ``hessian``, which comes as zeros, with that of the contact between samples; blocks of a
-    sample with itself are left in ``position`` and ``position_speed``. ``start[i] … start[i + 1]``
-    are the pairs of sample i. Samples of a span share their control points, so they are summed
-    before anything is written into the large matrix."""
-    factor, k, p, radius, core, dt = parameters
-    reach = 4.0 * radius * radius
-    samples = place.shape[0]
+    layout: Layout,
+    law: ContactLaw,
+) -> tuple[Array, Array, Array]:
+    """Hessian of the contact between different samples, (unknowns, unknowns), and the blocks of
+    samples with themselves: (n, 3, 3) in x, and (n, 3, 3) between x (first) and d1 (second).
+
+    ``start[i] … start[i + 1]`` are the pairs of sample i. Samples of a span share their control
+    points, so they are summed before anything is written into the large matrix.
+    """
+    reach = 4.0 * law.radius * law.radius
+    rows, wales, mirror, basis = layout.rows, layout.wales, layout.mirror, layout.basis
+    dof, sign = layout.dof, layout.sign
+    samples = layout.place.shape[0]
     per_span = basis.shape[1]
     count = samples // per_span
-    size = hessian.shape[0]
+    size = layout.unknowns
+    hessian = np.zeros((size, size))
+    position = np.zeros((curve.shape[0], 3, 3))
+    position_speed = np.zeros((curve.shape[0], 3, 3))
     n_controls = rows * count
-    at = laid_out(curve, place, course_mm, wale_mm)
+    at = laid_out(curve, layout.place, course_mm, wale_mm)
     # between the samples of a span and the control points that touch them, which have slots
     slot = np.full(n_controls, -1, np.int64)
     touched = np.empty(n_controls, np.int64)
@@ -123,7 +128,7 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     cell_speed = np.zeros((curve.shape[0], 2, 3))
     stiffness = np.zeros((3, 3))
     blocks = np.zeros((4, 9))
-    w = factor * dt * dt
+    w = law.weight
     for row_i in range(rows):
         for span_i in range(count):
             n_touched = 0
@@ -135,9 +140,7 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                     j = pairs[q, 1]
                     flip = float(pairs[q, 4])
                     right, above = wales * pairs[q, 2], rows * pairs[q, 3]
-                    dx = at[j, 0] - at[i, 0] + right * course_mm
-                    dy = at[j, 1] - at[i, 1] + above * wale_mm
-                    dz = flip * at[j, 2] - at[i, 2]
+                    dx, dy, dz = _apart(at, pairs, q, layout, course_mm, wale_mm)
                     square = dx * dx + dy * dy + dz * dz
                     if square >= reach:
                         continue
@@ -147,7 +150,9 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                     normal = (dx / distance, dy / distance, dz / distance)
                     sj = at[j, 5]
                     tj = (curve[j, 1, 0] / sj, curve[j, 1, 1] / sj, curve[j, 1, 2] / sj)
-                    v0, v1, v2 = potential_and_derivatives(distance, k, p, radius, core)
+                    v0, v1, v2 = potential_and_derivatives(
+                        distance, law.stiffness, law.exponent, law.radius, law.core
+                    )
                     v0, v1, v2 = w * v0, w * v1, w * v2
                     lateral = si * sj * v1 / distance
                     axial = si * sj * v2 - lateral
@@ -251,3 +256,4 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                     value = s1 * (b0 * cell_position[i, g, m] + b1 * cell_speed[i, g, m])
                     hessian[r1, size - 2 + g] += value
                     hessian[size - 2 + g, r1] += value
+    return hessian, position, position_speed

@@ -14,10 +14,8 @@ from __future__ import annotations
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from knitcore.yarnlevel.kernels.structures import Array, RodLaw
 
 
 @numba.njit(cache=True)
@@ -79,48 +77,76 @@ def rod_sample(
 
 
 @numba.njit(cache=True)
-def rod(
-    curve: Array,
-    parameters: Array,
-    lengths: Array,
-    tension: Array,
-    weight_slope: Array,
-    order: int,
-    gradient: Array,
-    local: Array,
-) -> tuple[float, float]:
-    """Terms that one sample has by itself; returns (bending + regularisation, gauge).
+def _length(d: Array) -> float:
+    return float(np.sqrt(d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2))
 
-    ``gradient`` (n, 3, 3) receives dE/d(d1, d2, d3), ``local`` (n, 9, 9) their Hessian; both
-    include the tension and the weights of the contact (``weight_slope``).
-    ``parameters``: bend, regular, gauge stiffness, dt. ``lengths``: what |d1| should be at each
-    sample; ``tension``: at each sample.
+
+@numba.njit(cache=True)
+def rod_energy(curve: Array, law: RodLaw, lengths: Array) -> tuple[float, float]:
+    """Bending with regularisation, and gauge penalty, N·mm.
+
+    ``lengths``: what |d1| should be at each sample, mm.
     """
-    bend, regular, gauge, dt = parameters
-    slope = np.zeros(6)
-    curvature = np.zeros((6, 6))
-    lift = np.zeros((6, 9))
-    bent = np.zeros((6, 9))
-    rod_energy = 0.0
-    gauge_energy = 0.0
+    slope, curvature = np.empty(6), np.empty((6, 6))
+    bend, regular = law.step * law.bend, law.step * law.regular
+    rod = gauge = 0.0
+    for i in range(curve.shape[0]):
+        rod += rod_sample(curve[i], bend, regular, 0, slope, curvature)
+        stretch = _length(curve[i]) / lengths[i] - 1.0
+        gauge += 0.5 * law.step * law.gauge * stretch * stretch
+    return rod, gauge
+
+
+@numba.njit(cache=True)
+def _pull(d: Array, law: RodLaw, length: float, tension: float, by_speed: float) -> float:
+    """Derivative by |d1| of gauge penalty, tension and contact."""
+    stretch = _length(d) / length - 1.0
+    return law.step * (tension + law.gauge * stretch / length) + by_speed
+
+
+@numba.njit(cache=True)
+def _by_derivatives(d: Array, slope: Array, out: Array) -> None:
+    """Slopes by d1, d2, d3 from those by the products a … f."""
+    for m in range(3):
+        out[0, m] = 2.0 * slope[0] * d[1, m] + slope[1] * d[2, m] + slope[3] * d[3, m]
+        out[1, m] = slope[1] * d[1, m] + 2.0 * slope[2] * d[2, m] + slope[4] * d[3, m]
+        out[2, m] = slope[3] * d[1, m] + slope[4] * d[2, m] + 2.0 * slope[5] * d[3, m]
+
+
+@numba.njit(cache=True)
+def rod_slopes(curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array) -> Array:
+    """Derivatives by d1, d2, d3 at each sample, (n, 3, 3).
+
+    ``tension`` at each sample and ``by_speed``, the slope of the contact by |d1|, are included.
+    """
+    slope, curvature = np.empty(6), np.empty((6, 6))
+    bend, regular = law.step * law.bend, law.step * law.regular
+    gradient = np.empty((curve.shape[0], 3, 3))
     for i in range(curve.shape[0]):
         d = curve[i]
-        rod_energy += rod_sample(d, dt * bend, dt * regular, order, slope, curvature)
-        speed = np.sqrt(d[1, 0] ** 2 + d[1, 1] ** 2 + d[1, 2] ** 2)
-        loop = lengths[i]
-        stretch = speed / loop - 1.0
-        gauge_energy += 0.5 * dt * gauge * stretch * stretch
-        if order == 0:
-            continue
-        pull = dt * (tension[i] + gauge * stretch / loop) + weight_slope[i]
+        rod_sample(d, bend, regular, 1, slope, curvature)
+        slope[0] += 0.5 * _pull(d, law, lengths[i], tension[i], by_speed[i]) / _length(d)
+        _by_derivatives(d, slope, gradient[i])
+    return gradient
+
+
+@numba.njit(cache=True)
+def rod_hessian(
+    curve: Array, law: RodLaw, lengths: Array, tension: Array, by_speed: Array
+) -> tuple[Array, Array]:
+    """What :func:`rod_slopes` gives, and the second derivatives by d1, d2, d3, (n, 9, 9)."""
+    slope, curvature = np.empty(6), np.empty((6, 6))
+    lift, bent = np.zeros((6, 9)), np.empty((6, 9))
+    bend, regular = law.step * law.bend, law.step * law.regular
+    gradient = np.empty((curve.shape[0], 3, 3))
+    local = np.empty((curve.shape[0], 9, 9))
+    for i in range(curve.shape[0]):
+        d, speed = curve[i], _length(curve[i])
+        rod_sample(d, bend, regular, 2, slope, curvature)
+        pull = _pull(d, law, lengths[i], tension[i], by_speed[i])
         slope[0] += 0.5 * pull / speed
-        for m in range(3):
-            gradient[i, 0, m] = 2.0 * slope[0] * d[1, m] + slope[1] * d[2, m] + slope[3] * d[3, m]
-            gradient[i, 1, m] = slope[1] * d[1, m] + 2.0 * slope[2] * d[2, m] + slope[4] * d[3, m]
-            gradient[i, 2, m] = slope[3] * d[1, m] + slope[4] * d[2, m] + 2.0 * slope[5] * d[3, m]
-        if order == 1:
-            continue
-        curvature[0, 0] += 0.25 * (dt * gauge / loop**2 - pull / speed) / speed**2
+        _by_derivatives(d, slope, gradient[i])
+        curvature[0, 0] += 0.25 * (law.step * law.gauge / lengths[i] ** 2 - pull / speed) / speed**2
         for m in range(3):
             lift[0, m] = 2.0 * d[1, m]
             lift[1, m] = d[2, m]
@@ -155,4 +181,4 @@ def rod(
             local[i, 6 + m, m] += slope[3]
             local[i, 3 + m, 6 + m] += slope[4]
             local[i, 6 + m, 3 + m] += slope[4]
-    return rod_energy, gauge_energy
+    return gradient, local

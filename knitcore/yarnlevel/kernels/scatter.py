@@ -1,38 +1,24 @@
-"""From samples to unknowns: gradients and Hessian blocks added up.
-
-Unknowns are the control points ("dofs", through an index map that ties symmetric ones together and
-carries their signs) and the size of a stitch, course-wise and wale-wise (the last two).
-"""
+"""From samples to unknowns: gradients and Hessian blocks added up."""
 
 from __future__ import annotations
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.yarnlevel.kernels.curve import control_of
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from knitcore.yarnlevel.kernels.structures import Array, Layout
 
 
 @numba.njit(cache=True)
-def scatter_gradient(
-    force: Array,
-    gradient: Array,
-    courses: int,
-    count: int,
-    mirror: int,
-    basis: Array,
-    dof: Ints,
-    sign: Array,
-    out: Array,
-) -> None:
-    """Add dE/dx (n, 3) and dE/d(d1, d2, d3) (n, 3, 3) to the gradient of the unknowns."""
+def scatter_gradient(force: Array, gradient: Array, layout: Layout) -> Array:
+    """Gradient by the unknowns from dE/dx (n or n + 1, 3) and dE/d(d1, d2, d3) (n, 3, 3)."""
+    basis, dof, sign, mirror = layout.basis, layout.dof, layout.sign, layout.mirror
     per_span = basis.shape[1]
-    samples = count * per_span
-    size = out.shape[0]
-    for j in range(courses):
+    samples = layout.place.shape[0]
+    count = samples // per_span
+    size = layout.unknowns
+    out = np.zeros(size)
+    for j in range(layout.rows):
         for s in range(samples):
             i = j * samples + s
             span, o = s // per_span, s % per_span
@@ -46,6 +32,7 @@ def scatter_gradient(
                     if m == 2:
                         value *= z_sign
                     out[dof[j, c, m]] += sign[j, c, m] * value
+    return out
 
 
 @numba.njit(cache=True)
@@ -53,12 +40,7 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     local: Array,
     position: Array,
     position_speed: Array,
-    courses: int,
-    count: int,
-    mirror: int,
-    basis: Array,
-    dof: Ints,
-    sign: Array,
+    layout: Layout,
     hessian: Array,
 ) -> None:
     """Add the Hessian blocks that one sample has with itself.
@@ -66,15 +48,17 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     ``local`` (n, 9, 9) in d1, d2, d3; ``position`` (n, 3, 3) in x; ``position_speed`` (n, 3, 3)
     between x (first) and d1 (second).
     """
+    basis, dof, sign, mirror = layout.basis, layout.dof, layout.sign, layout.mirror
     per_span = basis.shape[1]
-    samples = count * per_span
-    size = hessian.shape[0]
+    samples = layout.place.shape[0]
+    count = samples // per_span
+    size = layout.unknowns
     block = np.zeros((12, 12))
     half = np.zeros((18, 12))
     full = np.zeros((18, 18))
     index = np.zeros(18, np.int64)
     factor = np.zeros(18)
-    for j in range(courses):
+    for j in range(layout.rows):
         for span in range(count):
             full[:] = 0.0
             for a in range(6):

@@ -40,11 +40,8 @@ def test_a_circle_has_its_known_bending_and_regularisation(bend, regular, exact)
     points[0, :, 0] = grid.interpolate(radius * np.cos(2 * np.pi * t))
     points[0, :, 1] = grid.interpolate(radius * np.sin(2 * np.pi * t))
     curve = kernels.sample_curve(points, 0.0, 1, grid.basis).reshape(-1, 4, 3)
-    parameters = np.array([bend, regular, 0.0, 1.0 / grid.samples])
-    found, _ = kernels.rod(
-        curve, parameters, np.ones(len(curve)), np.zeros(0), np.zeros(0), 0,
-        np.zeros((0, 3, 3)), np.zeros((0, 9, 9)),
-    )  # fmt: skip
+    law = kernels.RodLaw(bend, regular, 0.0, 1.0 / grid.samples)
+    found, _ = kernels.rod_energy(curve, law, np.ones(len(curve)))
     assert found == pytest.approx(exact, rel=1e-6)
 
 
@@ -72,10 +69,7 @@ def _rod_of_ellipse(wobble):
         ],
         axis=1,
     )
-    return kernels.rod(
-        curve, np.array([0.3, 0.1, 0.0, 1 / n]), np.ones(n), np.zeros(0), np.zeros(0), 0,
-        np.zeros((0, 3, 3)), np.zeros((0, 9, 9)),
-    )[0]  # fmt: skip
+    return kernels.rod_energy(curve, kernels.RodLaw(0.3, 0.1, 0.0, 1 / n), np.ones(n))[0]
 
 
 @pytest.mark.parametrize(("text", "kind"), CASES)
