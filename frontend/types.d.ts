@@ -2,6 +2,8 @@
 
 /** Which atlas. */
 export interface AtlasRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Id of the library. */
   material: string;
   /** small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics. */
@@ -45,6 +47,8 @@ export interface BandResult {
 
 /** A repeat and its yarn. */
 export interface BendRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   chart: string | PureFabricChart;
   /** Id of the library. */
   material: string;
@@ -158,9 +162,11 @@ export interface CalibrateResult {
   alpha_yy: number;
   beta_xx_n_per_mm: number;
   beta_yy_n_per_mm: number;
-  /** An assumption unless it was calibrated. */
+  /** An assumption unless it was fitted or calibrated. */
   shear_modulus_n_per_mm: number;
-  stiffening_coupling: number;
+  /** Share of the strain across in the stiffening. */
+  kappa_xx: number;
+  kappa_yy: number;
   parameters: Record<string, number>;
   standard_errors: Record<string, number>;
   /** Pictures that were used. */
@@ -284,6 +290,8 @@ export type Colour = "yarn" | "region" | "fabric" | "phase" | "course" | "wale" 
 
 /** A law, or a fabric of a material, and a field to compare it with. */
 export interface CompareRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** .npz: displacement (frames, 2, rows, columns), frame. */
   field: UploadedFile;
   /** In which the fabric was pulled. */
@@ -296,8 +304,7 @@ export interface CompareRequest {
   /** LAW.json, instead of material and fabric. */
   law?: UploadedFile | null;
   edges?: Edges;
-  /** Default: full, or as in the law file. */
-  model?: EnergyModel | null;
+  model?: EnergyModel;
 }
 
 /** Errors per picture, in the order of the stretch. */
@@ -407,6 +414,8 @@ export interface CurveDocument {
 
 /** A chart, a direction and the stresses to ask for. */
 export interface CurveRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   chart: string | PureFabricChart;
   /** Id of the library. */
   material: string;
@@ -594,6 +603,8 @@ export type ExportKind = "knitout" | "knitspeak" | "png" | "svg" | "pdf" | "repo
 
 /** A chart and the format that it shall become. */
 export interface ExportRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
   outline?: string | null;
   regions?: DesignRegion[];
@@ -730,6 +741,8 @@ export interface FigureResult {
 
 /** Wanted moduli, stitch by stitch or part by part. */
 export interface FillRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Id of the library. */
   material: string;
   /** [row][column], the bottom row first; null for no wish. */
@@ -766,6 +779,8 @@ export interface FillResult {
 
 /** Wishes, and the yarns to search. */
 export interface FindRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   materials: string[];
   targets: TargetInput[];
   limits?: LimitsInput | null;
@@ -805,13 +820,17 @@ export interface FitRequest {
   test_wale: UploadedFile;
   /** Found out from the content if not given. */
   format?: "csv" | "h5" | null;
-  /** published: as in the paper; recommended: clamp to clamp, every pull counts the same. */
+  /** recommended: force and waist of the simulated test, clamp to clamp; uniform: clamp to clamp, as if the cloth strained evenly; published: as in the paper. */
   reduction?: Reduction;
+  /** Clamped width, in place of the course-wise test's. */
+  width_course_mm?: number | null;
+  /** The same, wale-wise. */
+  width_wale_mm?: number | null;
   /** Whether to return residuals at each point. */
   residuals?: boolean;
 }
 
-/** The constants of a law (its shear modulus is an assumption), with their uncertainty. */
+/** The constants of a law with their uncertainty. */
 export interface FitResult {
   stiffness_xxxx_n_per_mm: number;
   stiffness_yyyy_n_per_mm: number;
@@ -821,8 +840,11 @@ export interface FitResult {
   alpha_yy: number;
   beta_xx_n_per_mm: number;
   beta_yy_n_per_mm: number;
-  /** An assumption unless it was calibrated. */
+  /** An assumption unless it was fitted or calibrated. */
   shear_modulus_n_per_mm: number;
+  /** Share of the strain across in the stiffening. */
+  kappa_xx: number;
+  kappa_yy: number;
   standard_errors: LawErrors;
   /** Contraction wale-wise when pulled course-wise. */
   poisson_yx: number;
@@ -841,6 +863,8 @@ export interface FitResult {
   reduction: Reduction;
   error_method: string;
   notes: string[];
+  /** Simulated minus measured strain of the waist (recommended reduction). */
+  waist_rms: Record<Direction, number> | null;
   residuals: Record<Direction, ResidualPoints> | null;
   /** Median curve of the pulls in each direction; kept with the law in a file. */
   curves: Record<Direction, CurveDocument>;
@@ -864,6 +888,8 @@ export interface FrameErrorResult {
 
 /** A template with measurements, and the yarn. */
 export interface GarmentRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   garment: WristBrace | SockLeg | Limb | Glove;
   /** Id of the library. */
   material: string;
@@ -1024,6 +1050,8 @@ export interface LawDocument {
   beta_yy: number;
   /** N/mm */
   shear_modulus: number;
+  kappa_xx: number;
+  kappa_yy: number;
 }
 
 /** Standard errors of a law's constants. */
@@ -1040,9 +1068,13 @@ export interface LawErrors {
   poisson_xy: number;
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
+  /** Recommended reduction only, and mostly its prior's: a factor of 1.5. */
+  shear_modulus_n_per_mm: number | null;
+  kappa_xx: number | null;
+  kappa_yy: number | null;
 }
 
-/** The nine constants of a constitutive law. */
+/** The constants of a constitutive law. */
 export interface LawResult {
   stiffness_xxxx_n_per_mm: number;
   stiffness_yyyy_n_per_mm: number;
@@ -1052,9 +1084,15 @@ export interface LawResult {
   alpha_yy: number;
   beta_xx_n_per_mm: number;
   beta_yy_n_per_mm: number;
-  /** An assumption unless it was calibrated. */
+  /** An assumption unless it was fitted or calibrated. */
   shear_modulus_n_per_mm: number;
+  /** Share of the strain across in the stiffening. */
+  kappa_xx: number;
+  kappa_yy: number;
 }
+
+/** Which laws of the paper's yarns: refitted clamp to clamp, or as published. */
+export type Laws = "refitted" | "published";
 
 /** How well the library's yarns are predicted when they are left out; factors of the rms. */
 export interface LeftOutResult {
@@ -1266,6 +1304,8 @@ export interface Placement {
 
 /** A chart and its material; of a shaped piece, the largest rectangle inside counts. */
 export interface PredictRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   chart: string | PureFabricChart;
   /** Id of the library. */
   material: string;
@@ -1313,6 +1353,8 @@ export interface PredictResult {
 
 /** A fabric of a material, or a law, as a tube on a limb. */
 export interface PressureRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** The material direction around the limb. */
   direction: Direction;
   /** Circumference of the unworn tube. */
@@ -1333,7 +1375,7 @@ export interface PressureResult {
   /** From axially free to axially fixed. */
   mmhg: IntervalResult;
   kpa: IntervalResult;
-  /** The same, widened by the 90 % interval of the fabric's modulus, where known. */
+  /** The same, widened by the 90 % interval of the fabric's stress, where known. */
   mmhg_with_law_spread: IntervalResult | null;
   /** Around the limb. */
   strain: number;
@@ -1347,6 +1389,8 @@ export interface PressureResult {
   /** Sizes that press by the target: axially free to axially fixed. */
   rest_mm_for_target: IntervalResult | null;
   warnings: string[];
+  /** Where the law comes from; empty if unknown. */
+  law_source: string;
 }
 
 /** What every error response looks like. */
@@ -1416,7 +1460,7 @@ export interface RSSegment {
 export type RectangleGroups = "stitch" | "block" | "region";
 
 /** How points become constants: as published, or as recommended. */
-export type Reduction = "published" | "recommended";
+export type Reduction = "published" | "uniform" | "recommended";
 
 /** One region: the fabric's repeat, its colour, its size, and means over its stitches. */
 export interface RegionResult {
@@ -1519,6 +1563,8 @@ export interface SegmentCountsResult {
 
 /** A profile of widths under a stretch. */
 export interface ShapeRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Id of the library. */
   material: string;
   /** Of the pull. */
@@ -1680,6 +1726,8 @@ export interface StitchTableResult {
 
 /** A chart between two clamps, which hold the outermost stitches, and how it is pulled. */
 export interface StretchRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   chart: string | PureFabricChart;
   /** Id of the library. */
   material: string;

@@ -1,14 +1,51 @@
-"""Laws in results."""
+"""Laws in requests and results."""
 
 from __future__ import annotations
 
-from pydantic import Field
+from typing import Self
 
-from app.models.base import ResultModel
+from pydantic import Field, model_validator
+
+from app.models.base import RequestModel, ResultModel
+from knitcore.materials import Laws, load_library
+
+
+class LawsRequest(RequestModel):
+    """A request about materials, with a choice of the laws of the paper's yarns.
+
+    The choice becomes part of the materials' names, so that nothing else has to know of it.
+    """
+
+    laws: Laws | None = Field(
+        None,
+        description="Of the library's yarns: refitted clamp to clamp (default), or as published.",
+    )
+
+    @model_validator(mode="after")
+    def _name_laws(self) -> Self:
+        if self.laws is not None:
+            for field in ("material", "materials"):
+                given = getattr(self, field, None)
+                if isinstance(given, str):
+                    setattr(self, field, self._named(given))
+                elif given:
+                    setattr(self, field, [self._named(name) for name in given])
+        return self
+
+    def _named(self, material: str) -> str:
+        """A material's name with the laws chosen; files and own materials have no choice."""
+        yarn = material.strip().lower().partition(":")[0]
+        if self.laws is None or yarn not in load_library():
+            if self.laws is Laws.PUBLISHED:
+                raise ValueError(
+                    f"{material} has one law only; leave laws out, or take a yarn of the library."
+                )
+            return material
+        return self.laws.of(material)
 
 
 class LawResult(ResultModel):
-    """The nine constants of a constitutive law."""
+    """The constants of a constitutive law."""
 
     stiffness_xxxx_n_per_mm: float
     stiffness_yyyy_n_per_mm: float
@@ -18,4 +55,8 @@ class LawResult(ResultModel):
     alpha_yy: float
     beta_xx_n_per_mm: float
     beta_yy_n_per_mm: float
-    shear_modulus_n_per_mm: float = Field(description="An assumption unless it was calibrated.")
+    shear_modulus_n_per_mm: float = Field(
+        description="An assumption unless it was fitted or calibrated."
+    )
+    kappa_xx: float = Field(description="Share of the strain across in the stiffening.")
+    kappa_yy: float

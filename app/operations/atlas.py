@@ -12,8 +12,9 @@ from pydantic import BeforeValidator, Field
 
 from app.cli.common import emit, json_option, material_option, user_data_dir
 from app.cli.options import out_option
-from app.models.base import RequestModel, ResultModel
+from app.models.base import ResultModel
 from app.models.charts import MaterialName
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
@@ -34,7 +35,7 @@ def _rounded(values: Iterable[float]) -> list[float]:
 Column = Annotated[list[float], BeforeValidator(_rounded)]
 
 
-class AtlasRequest(RequestModel):
+class AtlasRequest(LawsRequest):
     """Which atlas."""
 
     material: MaterialName

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pydantic import Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
-from app.models.base import RequestModel, ResultModel
+from app.models.base import ResultModel
 from app.models.charts import MaterialName, RepeatInput, to_repeat
+from app.models.laws import LawsRequest
 from app.models.yarn_level import YarnResult
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -32,7 +33,7 @@ _FRICTIONLESS = (
 )
 
 
-class BendRequest(RequestModel):
+class BendRequest(LawsRequest):
     """A repeat and its yarn."""
 
     chart: RepeatInput

@@ -17,8 +17,7 @@ from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.formats.calibrated_files import save_calibrated
-from knitcore.formats.law_files import LawFile
+from knitcore.formats.law_files import LawFile, save_law
 from knitcore.measure.stretch_test import stated_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
@@ -43,7 +42,6 @@ class CalibrateRequest(FieldRequest):
 class CalibrateResult(LawResult):
     """The calibrated law; its shear modulus is calibrated, too."""
 
-    stiffening_coupling: float
     parameters: dict[str, float]
     standard_errors: dict[str, float]
     frames: list[int] = Field(description="Pictures that were used.")
@@ -71,7 +69,7 @@ def _calibration(request: CalibrateRequest, context: Context) -> Calibration:
     with stored(request.tests) as paths:
         tests = _course_first(paths) if len(paths) == 2 else paths
         if len(tests) == 2:
-            law = fit_files(tests[0], tests[1], reduction=Reduction.RECOMMENDED).law
+            law = fit_files(tests[0], tests[1], reduction=Reduction.UNIFORM).law
         if tests:
             chosen = tests[request.direction.axis] if len(tests) == 2 else tests[0]
             test = read_stretch_test(chosen, gauge=Gauge.CLAMPS)
@@ -96,13 +94,8 @@ def _course_first(tests: list[Path]) -> list[Path]:
 def _result(request: CalibrateRequest, found: Calibration) -> CalibrateResult:
     """The numbers of a calibration, with the errors of all pictures, used or not."""
     field, direction = load(request.field), request.direction
-    errors = compare(field, found.law, direction, edges=Edges.MEASURED, model=found.model)
-    return CalibrateResult.of(
-        found,
-        found.law,
-        stiffening_coupling=found.model.stiffening_coupling,
-        comparison=errors.frames,
-    )
+    errors = compare(field, found.law, direction, edges=Edges.MEASURED)
+    return CalibrateResult.of(found, found.law, comparison=errors.frames)
 
 
 @click.argument("more_tests", nargs=-1, metavar="", type=click.Path(path_type=Path))
@@ -123,7 +116,7 @@ def _command(
         f"{request.field.name}, frames {numbers}"
     )
     shear = {n: error for n, error in found.standard_errors.items() if n == "shear_modulus"}
-    save_calibrated(LawFile(found.law, source, shear), found.model, out)
+    save_law(LawFile(found.law, source, shear), out)
     return _result(request, found)
 
 

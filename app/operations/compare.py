@@ -7,26 +7,27 @@ from pydantic import Field
 from app.models.base import ResultModel
 from app.models.charts import MaterialName
 from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
+from app.models.laws import LawsRequest
 from app.models.uploads import UploadedFile, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.formats.calibrated_files import load_calibrated
+from knitcore.formats.law_files import load_law
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch.comparison import Edges
 from knitcore.swatch.comparison import compare as compared
 from knitcore.swatch.models import EnergyModel, SheetModel
 
 
-class CompareRequest(FieldRequest):
+class CompareRequest(FieldRequest, LawsRequest):
     """A law, or a fabric of a material, and a field to compare it with."""
 
     material: MaterialName | None = None
     fabric: Fabric | None = Field(None, description="Of the material.")
     law: UploadedFile | None = Field(None, description="LAW.json, instead of material and fabric.")
     edges: Edges = Edges.MEASURED
-    model: EnergyModel | None = Field(None, description="Default: full, or as in the law file.")
+    model: EnergyModel = EnergyModel.FULL
 
 
 class CompareResult(ResultModel):
@@ -58,21 +59,18 @@ def compare(request: CompareRequest, context: Context) -> CompareResult:
 
 
 def _law_and_model(request: CompareRequest, context: Context) -> tuple[ConstitutiveLaw, SheetModel]:
-    """The law of a file, or of a fabric of a material; a model overrules the file's."""
-    model = request.model
+    """The law of a file, or of a fabric of a material, and the model."""
+    model = SheetModel(request.model)
     if request.law is not None and request.material is None:
         with stored([request.law]) as (path,):
-            file, stored_model = load_calibrated(path)
-        overruled = model is not None and model is not stored_model.energy
-        return file.law, SheetModel(model) if overruled and model else stored_model
+            return load_law(path).law, model
     if request.law is not None or request.material is None:
         raise InputError(
             "law", "give either a law file or a material.", "Use --law, or --material and --fabric."
         )
     if request.fabric is None:
         raise InputError("fabric", "is missing.", "Name the fabric of the material.")
-    law = context.material(request.material).law(request.fabric)
-    return law, SheetModel(model or EnergyModel.FULL)
+    return context.material(request.material).law(request.fabric), model
 
 
 def _text(r: CompareResult) -> str:

@@ -8,9 +8,10 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.models.base import Floats, RequestModel, ResultModel
+from app.models.base import Floats, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.gauge import GaugeInput
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
@@ -21,7 +22,7 @@ from knitcore.fabric import Direction
 Stress = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 
 
-class CurveRequest(RequestModel):
+class CurveRequest(LawsRequest):
     """A chart, a direction and the stresses to ask for."""
 
     chart: ChartInput

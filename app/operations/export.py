@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field
 from app.cli.options import out_option
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
@@ -23,7 +24,7 @@ MAX_STITCHES = {ExportKind.KNITOUT: 20_000, ExportKind.GLB: 2_500, ExportKind.ST
 """Over REST; the command line takes larger ones."""
 
 
-class ExportRequest(DesignLayout):
+class ExportRequest(DesignLayout, LawsRequest):
     """A chart and the format that it shall become."""
 
     model_config = ConfigDict(extra="forbid")

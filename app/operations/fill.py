@@ -14,6 +14,7 @@ from app.cli.common import resolve_chart
 from app.cli.options import atlas_option, design_option, write_design_of
 from app.models.base import Known, RequestModel, ResultModel
 from app.models.charts import ChartText, MaterialName, OutlineInput
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
@@ -60,7 +61,7 @@ class WishInput(RequestModel):
         )
 
 
-class FillRequest(RequestModel):
+class FillRequest(LawsRequest):
     """Wanted moduli, stitch by stitch or part by part."""
 
     material: MaterialName

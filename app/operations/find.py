@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Field
 from app.cli.common import emit, json_option, user_data_dir
 from app.models.base import Ends, Known, RequestModel, ResultModel
 from app.models.charts import MaterialName
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of
@@ -81,7 +82,7 @@ class LimitsInput(RequestModel):
         return CostLimits(self.transfers_per_stitch, self.crossings_per_stitch, self.curl)
 
 
-class FindRequest(RequestModel):
+class FindRequest(LawsRequest):
     """Wishes, and the yarns to search."""
 
     materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)

@@ -17,7 +17,8 @@ from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
 from knitcore.formats.law_files import LawFile, save_law
 from knitcore.materials.document import CurveDocument
-from knitcore.measure.uniaxial import LawFit, Reduction, Residuals, fit_files
+from knitcore.measure.uniaxial import LawFit, Reduction, Residuals
+from knitcore.swatch.strip_fit import fit_tests
 
 PLOTTED_POINTS = 2000
 """Points of a residual plot; more than a screen shows."""
@@ -33,9 +34,13 @@ class FitRequest(RequestModel):
     )
     reduction: Reduction = Field(
         Reduction.RECOMMENDED,
-        description="published: as in the paper; recommended: clamp to clamp, every pull counts "
-        "the same.",
+        description="recommended: force and waist of the simulated test, clamp to clamp; uniform: "
+        "clamp to clamp, as if the cloth strained evenly; published: as in the paper.",
     )
+    width_course_mm: float | None = Field(
+        None, ge=5, le=10_000, description="Clamped width, in place of the course-wise test's."
+    )
+    width_wale_mm: float | None = Field(None, ge=5, le=10_000, description="The same, wale-wise.")
     residuals: bool = Field(False, description="Whether to return residuals at each point.")
 
 
@@ -54,6 +59,11 @@ class LawErrors(ResultModel):
     poisson_xy: float
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float
+    shear_modulus_n_per_mm: float | None = Field(
+        None, description="Recommended reduction only, and mostly its prior's: a factor of 1.5."
+    )
+    kappa_xx: float | None = None
+    kappa_yy: float | None = None
 
 
 class ResidualPoints(ResultModel):
@@ -66,7 +76,7 @@ class ResidualPoints(ResultModel):
 
 
 class FitResult(LawResult):
-    """The constants of a law (its shear modulus is an assumption), with their uncertainty."""
+    """The constants of a law with their uncertainty."""
 
     standard_errors: LawErrors
     poisson_yx: float = Field(description="Contraction wale-wise when pulled course-wise.")
@@ -81,6 +91,9 @@ class FitResult(LawResult):
     reduction: Reduction
     error_method: str
     notes: list[str]
+    waist_rms: dict[Direction, float] | None = Field(
+        None, description="Simulated minus measured strain of the waist (recommended reduction)."
+    )
     residuals: dict[Direction, ResidualPoints] | None = None
     curves: dict[Direction, CurveDocument] = Field(
         description="Median curve of the pulls in each direction; kept with the law in a file."
@@ -88,14 +101,21 @@ class FitResult(LawResult):
 
 
 def fit(request: FitRequest, context: Context) -> FitResult:
-    """Eight constants with standard errors from a course-wise and a wale-wise test."""
-    del context  # a tenth of a second
-    return _result(_fit(request), residuals=request.residuals)
+    """A law with standard errors from a course-wise and a wale-wise test."""
+    return _result(_fit(request, context), residuals=request.residuals)
 
 
-def _fit(request: FitRequest) -> LawFit:
+def _fit(request: FitRequest, context: Context) -> LawFit:
     with stored([request.test_course, request.test_wale]) as (course, wale):
-        return fit_files(course, wale, reduction=request.reduction, file_format=request.format)
+        return fit_tests(
+            course,
+            wale,
+            reduction=request.reduction,
+            file_format=request.format,
+            width_course_mm=request.width_course_mm,
+            width_wale_mm=request.width_wale_mm,
+            cancelled=context.cancelled,
+        )
 
 
 def _result(found: LawFit, *, residuals: bool) -> FitResult:
@@ -104,7 +124,7 @@ def _result(found: LawFit, *, residuals: bool) -> FitResult:
     return FitResult.of(
         found,
         found.law,
-        standard_errors={name: errors[constant] for name, constant in names.items()},
+        standard_errors={name: errors.get(constant) for name, constant in names.items()},
         residuals={d: _points(r) for d, r in found.residuals.items()} if residuals else None,
         curves={d: CurveDocument.from_curve(c) for d, c in found.curves.items()},
     )
@@ -125,8 +145,7 @@ def _points(residuals: Residuals) -> ResidualPoints:
 def _command(
     request: FitRequest, context: Context, out: Path | None, residuals: Path | None
 ) -> FitResult:
-    del context
-    found = _fit(request)
+    found = _fit(request, context)
     if out is not None:
         tests = f"{request.test_course.name} and {request.test_wale.name}"
         source = f"fitted to {tests}, {found.reduction} reduction"
@@ -150,7 +169,7 @@ def _write_residuals(found: LawFit, path: Path) -> None:
 
 def _text(r: FitResult) -> str:
     lines = []
-    for name, error in r.standard_errors.model_dump().items():
+    for name, error in r.standard_errors.model_dump(exclude_none=True).items():
         unit = " N/mm" if name.endswith("_n_per_mm") else ""
         value = getattr(r, name)
         lines.append(f"{name.removesuffix('_n_per_mm'):16} {value:9.4f} ± {error:.4f}{unit}")

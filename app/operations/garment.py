@@ -13,6 +13,7 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.models.base import IntervalResult, RequestModel, ResultModel
 from app.models.charts import MaterialName
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
@@ -178,7 +179,7 @@ class Glove(RequestModel):
         )
 
 
-class GarmentRequest(RequestModel):
+class GarmentRequest(LawsRequest):
     """A template with measurements, and the yarn."""
 
     garment: Annotated[WristBrace | SockLeg | Limb | Glove, Field(discriminator="template")]

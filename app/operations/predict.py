@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.models.base import Ends, RequestModel, ResultModel
+from app.models.base import Ends, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
 from app.models.gauge import GaugeInput
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
@@ -17,7 +18,7 @@ from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.segments import segment_map
 
 
-class PredictRequest(RequestModel):
+class PredictRequest(LawsRequest):
     """A chart and its material; of a shaped piece, the largest rectangle inside counts."""
 
     chart: ChartInput

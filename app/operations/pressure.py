@@ -8,19 +8,20 @@ from pathlib import Path
 import click
 from pydantic import Field
 
-from app.models.base import IntervalResult, RequestModel, ResultModel
+from app.models.base import IntervalResult, ResultModel
 from app.models.charts import MaterialName
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.uncertainty import Z_SCORE, log_deviation
-from knitcore.mechanics.pressure import limb_pressure, rest_circumference
+from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty, log_deviation
+from knitcore.mechanics.pressure import limb_pressure, rest_circumference, stress_log_sd
 
 
-class PressureRequest(RequestModel):
+class PressureRequest(LawsRequest):
     """A fabric of a material, or a law, as a tube on a limb."""
 
     direction: Direction = Field(description="The material direction around the limb.")
@@ -40,7 +41,7 @@ class PressureResult(ResultModel):
     mmhg: IntervalResult = Field(description="From axially free to axially fixed.")
     kpa: IntervalResult
     mmhg_with_law_spread: IntervalResult | None = Field(
-        description="The same, widened by the 90 % interval of the fabric's modulus, where known."
+        description="The same, widened by the 90 % interval of the fabric's stress, where known."
     )
     strain: float = Field(description="Around the limb.")
     rest_mm: float
@@ -52,6 +53,7 @@ class PressureResult(ResultModel):
         description="Sizes that press by the target: axially free to axially fixed."
     )
     warnings: list[str]
+    law_source: str = Field(description="Where the law comes from; empty if unknown.")
 
 
 def pressure(request: PressureRequest, context: Context) -> PressureResult:
@@ -69,22 +71,26 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
     if request.fabric is None:
         raise InputError("fabric", "is missing.", "Name the fabric of the material.")
     record = context.material(request.material).record(request.fabric)
-    return _of_law(record.law, request, spread=record.uncertainty.log_modulus(request.direction))
+    return _of_law(record.law, request, uncertainty=record.uncertainty, source=record.law_source)
 
 
 def _of_file(file: LawFile, request: PressureRequest) -> PressureResult:
     direction = request.direction
     error = file.standard_errors.get(f"modulus_{direction}")
-    spread = None if error is None else log_deviation(file.law.modulus(direction), error)
+    uncertainty = None
+    if error is not None:
+        spread = log_deviation(file.law.modulus(direction), error)
+        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, file.source)
     tested = file.largest_strain.get(direction)
-    return _of_law(file.law, request, spread=spread, tested=tested)
+    return _of_law(file.law, request, uncertainty=uncertainty, source=file.source, tested=tested)
 
 
 def _of_law(
     law: ConstitutiveLaw,
     request: PressureRequest,
     *,
-    spread: float | None,
+    uncertainty: LawUncertainty | None,
+    source: str,
     tested: float | None = None,
 ) -> PressureResult:
     direction, rest, worn, sizes = request.direction, request.rest_mm, request.worn_mm, None
@@ -96,8 +102,9 @@ def _of_law(
     rest = rest or 0.0
     found = limb_pressure(law, direction, rest, worn, tested_strain=tested)
     widened = None
-    if spread is not None:
-        factor = math.exp(Z_SCORE * spread)
+    if uncertainty is not None:
+        curve = uncertainty.curve(direction)
+        factor = math.exp(Z_SCORE * stress_log_sd(law, direction, found.strain, curve))
         widened = IntervalResult(low=found.mmhg.low / factor, high=found.mmhg.high * factor)
     return PressureResult.of(
         found,
@@ -107,6 +114,7 @@ def _of_law(
         worn_mm=worn,
         lock_up_share=found.utilisation,
         rest_mm_for_target=sizes,
+        law_source=source,
     )
 
 

@@ -11,8 +11,9 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from app.cli.options import atlas_option, design_option, write_design_of
-from app.models.base import Known, RequestModel, ResultModel
+from app.models.base import Known, ResultModel
 from app.models.charts import MaterialName
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
@@ -31,7 +32,7 @@ Gaps = Annotated[list[Known], BeforeValidator(list)]
 Width = Annotated[float, Field(gt=0.05, lt=3, allow_inf_nan=False)] | None
 
 
-class ShapeRequest(RequestModel):
+class ShapeRequest(LawsRequest):
     """A profile of widths under a stretch."""
 
     material: MaterialName

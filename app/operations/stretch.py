@@ -12,8 +12,9 @@ from pydantic import Field
 from scipy.ndimage import distance_transform_edt
 
 from app.cli.options import out_option
-from app.models.base import Floats, RequestModel, ResultModel
+from app.models.base import Floats, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, PureFabricChart, to_chart
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -34,7 +35,7 @@ MAX_VALUES = 60 * MAX_STITCHES
 NEAR_LOCK_UP = 0.95
 
 
-class StretchRequest(RequestModel):
+class StretchRequest(LawsRequest):
     """A chart between two clamps, which hold the outermost stitches, and how it is pulled."""
 
     chart: ChartInput

@@ -92,13 +92,14 @@ def law_in_material(
     Examples
     --------
     >>> from knitcore.materials import material
-    >>> simulated, measured = material("acrylic:simulation"), material("acrylic")
+    >>> simulated, measured = material("acrylic:simulation"), material("acrylic:published")
     >>> laws = {fabric: simulated.law(fabric) for fabric in Fabric}
     >>> rib = StitchChart.parse("KP")
     >>> round(law_in_material(laws[Fabric.RIB], laws, rib, measured).modulus_wale, 3)
     0.119
     """
     logs = dict.fromkeys(("modulus_course", "modulus_wale", *_STIFFENING), 0.0)
+    kappa = dict.fromkeys(("kappa_xx", "kappa_yy"), 0.0)
     counts = np.bincount(quarter_phases(repeat, periodic=True).ravel(), minlength=4)
     for phase in np.flatnonzero(counts):
         fabric, share = PHASES[phase], float(counts[phase] / counts.sum())
@@ -112,6 +113,8 @@ def law_in_material(
             # A constant that is 0 in either (no stiffening) has no ratio: it is left as it is.
             if have > 0 and need > 0:
                 logs[name] += share * math.log(need / have)
+        for name in kappa:
+            kappa[name] += share * getattr(measured, name)
     course, wale = math.exp(logs["modulus_course"]), math.exp(logs["modulus_wale"])
     coupling = math.sqrt(course * wale)
     return replace(
@@ -121,6 +124,7 @@ def law_in_material(
         stiffness_xxyy=law.stiffness_xxyy * coupling,
         stiffness_yyxx=law.stiffness_yyxx * coupling,
         **{name: getattr(law, name) * math.exp(logs[name]) for name in _STIFFENING},
+        **kappa,
     )
 
 

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.cost import CostLimits, KnittingCost
 from knitcore.design.targets import Limb, Quantity, Target, values_of
 from knitcore.errors import InputError
-from knitcore.materials import Interval
+from knitcore.fabric import Fabric
+from knitcore.materials import Interval, Laws
+from knitcore.materials.library import INCONSISTENT
 
 __all__ = ["Candidate", "FoundFabrics", "Limb", "Quantity", "Target", "find_fabric"]
 
@@ -110,8 +114,12 @@ def find_fabric(
     }
     misfit, worst = _misfit(values, targets)
     stitches = np.concatenate([a.stitches[rows] for a, rows in zip(atlases, allowed, strict=True)])
-    # What is within all tolerances comes first even if its mean deviation is larger.
-    order = np.lexsort((stitches, misfit.round(3), worst > 1))[:count]
+    doubtful = np.array(
+        [_doubtful(atlases[k], int(i), targets) for k, i in zip(owner, index, strict=True)]
+    )
+    # What is within all tolerances comes first even if its mean deviation is larger; what rests on
+    # figures that contradict each other never does.
+    order = np.lexsort((stitches, misfit.round(3), worst > 1, doubtful))[:count]
     candidates = tuple(
         _candidate(
             atlases[owner[k]],
@@ -129,6 +137,27 @@ def find_fabric(
     }
     reached = candidates[0].reached
     return FoundFabrics(candidates, reached, ranges, _message(candidates[0], targets, ranges))
+
+
+def _doubtful(atlas: Atlas, index: int, targets: Sequence[Target]) -> bool:
+    """Whether a repeat is a fabric of which published figures contradict each other, in a
+    direction that is asked for.
+    """
+    asked = {target.quantity.direction for target in targets}
+    return any(
+        atlas.material == Laws.PUBLISHED.of(yarn)
+        and bool(asked & directions)
+        and _canonical(atlas.keys[index]) == _canonical(_REPEAT[fabric])
+        for (yarn, fabric), directions in INCONSISTENT.items()
+    )
+
+
+_REPEAT = {Fabric.STOCKINETTE: "K", Fabric.GARTER: "K/P", Fabric.RIB: "KP", Fabric.SEED: "KP/PK"}
+
+
+@cache
+def _canonical(key: str) -> str:
+    return StitchChart.parse(key).canonical().key
 
 
 def _allowed(atlas: Atlas, limits: CostLimits | None) -> NDArray[np.intp]:

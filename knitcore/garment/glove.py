@@ -229,7 +229,7 @@ def _notes(
     notes = [
         "Knit the wrist support on 2.0 mm needles (US 0) and all else on 2.75 mm (US 2), as the "
         "study did: each row changes needles at the support's edges."
-        if material.identifier == STUDY_GLOVE
+        if material.sample == STUDY_GLOVE
         else "The study knitted the wrist support on 2.0 mm needles and all else on 2.75 mm; "
         f"{STUDY_GLOVE} is measured so, {material.identifier} is of one needle."
     ]

@@ -48,7 +48,7 @@ class FabricLines:
 
 def stored_material(material: Material) -> str:
     """The material of the store whose stitches stand for a material's."""
-    return material.identifier if material.identifier in STORED else STORED[0]
+    return material.sample if material.sample in STORED else STORED[0]
 
 
 def fabric_lines(material: Material) -> FabricLines:
@@ -62,7 +62,7 @@ def fabric_lines(material: Material) -> FabricLines:
     sizes = tuple(
         (material.record(f).stitch_course_mm, material.record(f).stitch_wale_mm) for f in PHASES
     )
-    return _fabric_lines(stored_material(material), material.identifier in STORED, sizes)
+    return _fabric_lines(stored_material(material), material.sample in STORED, sizes)
 
 
 @lru_cache(maxsize=64)

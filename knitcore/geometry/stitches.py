@@ -127,7 +127,7 @@ def _of_stored(
     index = rows % stored.chart.rows * stored.chart.columns + columns % stored.chart.columns
     centres = np.stack([(columns + 0.5) * course, (rows + 0.5) * wale], axis=-1)
     source = f"relaxed cell of this repeat in {stored.material}"
-    if stored.material != material.identifier:
+    if stored.material != material.sample:
         source += ", scaled to this material's stitches: an estimate"
     return StitchShapes(
         lines=cell_lines(stored).reshape(-1, POINTS, 3) * (1.0, 1.0, depth),

@@ -4,6 +4,11 @@
                + beta_xx (1 / (1 - alpha_xx e_xx)**2 - 1 - 2 alpha_xx e_xx)
 
 and likewise for y. x is the course direction, y the wale direction. Stress is force per width.
+
+A law fitted to simulated tests also couples the stiffening of each direction to the strain across:
+its argument is ``alpha_xx (e_xx + kappa_xx e_yy)``, so cloth that narrows frees yarn along the
+pull, and stiffening pulls the width in. The energy stays convex for any kappa. The paper's laws
+have ``kappa = 0``.
 """
 
 from __future__ import annotations
@@ -17,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.law.stiffening import StiffeningForm, stiffening
+from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
 
 Array = NDArray[np.float64]
 
@@ -46,7 +51,7 @@ class Transverse(StrEnum):
 
 @dataclass(frozen=True)
 class ConstitutiveLaw:
-    """Eight measured constants and an assumed shear modulus.
+    """Eight measured constants, two couplings of the stiffening and a shear modulus.
 
     Parameters
     ----------
@@ -58,6 +63,9 @@ class ConstitutiveLaw:
         Stress scale of the stiffening.
     shear_modulus : N/mm
         C_xyxy, stress per engineering shear angle.
+    kappa_xx, kappa_yy : dimensionless
+        Share of the strain across that counts in the stiffening course-wise and wale-wise (full
+        form only).
 
     Raises
     ------
@@ -75,6 +83,8 @@ class ConstitutiveLaw:
     beta_xx: float
     beta_yy: float
     shear_modulus: float = DEFAULT_SHEAR_MODULUS_N_PER_MM
+    kappa_xx: float = 0.0
+    kappa_yy: float = 0.0
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -84,7 +94,7 @@ class ConstitutiveLaw:
         for name in ("stiffness_xxxx", "stiffness_yyyy", "shear_modulus"):
             if getattr(self, name) <= 0:
                 raise InputError(name, "must be above 0 N/mm.", "Give a positive stiffness.")
-        for name in ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy"):
+        for name in ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy"):
             if getattr(self, name) < 0:
                 raise InputError(name, "must not be negative.", "Give 0 or a positive number.")
         if (self.stiffness_xxyy < 0) != (self.stiffness_yyxx < 0):
@@ -127,7 +137,10 @@ class ConstitutiveLaw:
         return self.modulus_course if direction is Direction.COURSE else self.modulus_wale
 
     def lock_up_strain(self, direction: Direction) -> float:
-        """Strain at which the stress diverges, 1 / alpha (infinite if alpha is 0)."""
+        """Strain at which the stress diverges at a held width, 1 / alpha (infinite if alpha is 0).
+
+        Where kappa is above 0, cloth that is free to narrow locks a little later.
+        """
         alpha = self.alpha_xx if direction is Direction.COURSE else self.alpha_yy
         return 1.0 / alpha if alpha > 0 else math.inf
 
@@ -140,6 +153,18 @@ class ConstitutiveLaw:
                 [self.stiffness_yyxx, self.stiffness_yyyy, 0.0],
                 [0.0, 0.0, self.shear_modulus],
             ]
+        )
+
+    @property
+    def stiffening(self) -> CoupledStiffening:
+        """The nonlinear part."""
+        return CoupledStiffening(
+            self.alpha_xx,
+            self.alpha_yy,
+            self.beta_xx,
+            self.beta_yy,
+            self.kappa_xx,
+            self.kappa_yy,
         )
 
     @property
@@ -176,11 +201,10 @@ class ConstitutiveLaw:
         ex, ey = np.broadcast_arrays(
             np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
         )
-        _, slope_x, _ = stiffening(self.alpha_xx * ex, form)
-        _, slope_y, _ = stiffening(self.alpha_yy * ey, form)
+        stiff = self.stiffening.response(ex, ey, form)
         return (
-            self.stiffness_xxxx * ex + self.stiffness_xxyy * ey + self.beta_xx * slope_x,
-            self.stiffness_yyyy * ey + self.stiffness_yyxx * ex + self.beta_yy * slope_y,
+            self.stiffness_xxxx * ex + self.stiffness_xxyy * ey + stiff.stress_xx,
+            self.stiffness_yyyy * ey + self.stiffness_yyxx * ex + stiff.stress_yy,
         )
 
     def energy_density(
@@ -204,15 +228,12 @@ class ConstitutiveLaw:
                 "Call symmetrised() first.",
             )
         ex, ey, exy = (np.asarray(e, dtype=float) for e in (strain_xx, strain_yy, strain_xy))
-        energy_x, _, _ = stiffening(self.alpha_xx * ex, form)
-        energy_y, _, _ = stiffening(self.alpha_yy * ey, form)
         total: Array = (
             0.5 * self.stiffness_xxxx * ex**2
             + 0.5 * self.stiffness_yyyy * ey**2
             + self.stiffness_xxyy * ex * ey
             + 2.0 * self.shear_modulus * exy**2
-            + _over(self.beta_xx, self.alpha_xx) * energy_x
-            + _over(self.beta_yy, self.alpha_yy) * energy_y
+            + self.stiffening.response(ex, ey, form).energy
         )
         return total
 
@@ -226,14 +247,10 @@ class ConstitutiveLaw:
         ex, ey = np.broadcast_arrays(
             np.asarray(strain_xx, dtype=float), np.asarray(strain_yy, dtype=float)
         )
-        _, _, curvature_x = stiffening(self.alpha_xx * ex, form)
-        _, _, curvature_y = stiffening(self.alpha_yy * ey, form)
+        stiff = self.stiffening.response(ex, ey, form)
         tangent = np.broadcast_to(self.stiffness, (*ex.shape, 3, 3)).copy()
-        tangent[..., 0, 0] += self.alpha_xx * self.beta_xx * curvature_x
-        tangent[..., 1, 1] += self.alpha_yy * self.beta_yy * curvature_y
+        tangent[..., 0, 0] += stiff.tangent_xx
+        tangent[..., 1, 1] += stiff.tangent_yy
+        tangent[..., 0, 1] += stiff.tangent_xy
+        tangent[..., 1, 0] += stiff.tangent_xy
         return tangent
-
-
-def _over(beta: float, alpha: float) -> float:
-    """beta / alpha, and 0 where alpha = 0 (a law that never stiffens)."""
-    return beta / alpha if alpha > 0 else 0.0

@@ -17,6 +17,7 @@ Two forms by name:
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -49,3 +50,88 @@ def stiffening(
     energy = energy + slope * beyond + 0.5 * curvature * beyond**2
     slope = slope + curvature * beyond
     return energy, slope, curvature
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class StiffeningResponse:
+    """Energy density and stresses (N/mm) of the stiffening, and their derivatives (N/mm)."""
+
+    energy: Array
+    stress_xx: Array
+    stress_yy: Array
+    tangent_xx: Array
+    tangent_yy: Array
+    tangent_xy: Array
+
+
+class CoupledStiffening:
+    """The stiffening of both directions, each coupled to the strain across by its kappa.
+
+    Its energy density is ``beta_xx/alpha_xx w(alpha_xx (e_xx + kappa_xx e_yy))`` and likewise for
+    y. The published form leaves the couplings out.
+
+    Parameters
+    ----------
+    alpha_xx, alpha_yy, beta_xx, beta_yy, kappa_xx, kappa_yy : numbers or arrays
+        That broadcast with the strains; beta in N/mm.
+    """
+
+    def __init__(
+        self,
+        alpha_xx: ArrayLike,
+        alpha_yy: ArrayLike,
+        beta_xx: ArrayLike,
+        beta_yy: ArrayLike,
+        kappa_xx: ArrayLike,
+        kappa_yy: ArrayLike,
+    ) -> None:
+        self.alpha_xx, self.alpha_yy = _array(alpha_xx), _array(alpha_yy)
+        self.beta_xx, self.beta_yy = _array(beta_xx), _array(beta_yy)
+        self.kappa_xx, self.kappa_yy = _array(kappa_xx), _array(kappa_yy)
+
+    def arguments(
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
+    ) -> tuple[Array, Array]:
+        """s course-wise and wale-wise; 1 is the lock-up."""
+        xx, yy = _array(strain_xx), _array(strain_yy)
+        kappa_x, kappa_y = self._kappa(form)
+        return self.alpha_xx * (xx + kappa_x * yy), self.alpha_yy * (yy + kappa_y * xx)
+
+    def response(
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
+    ) -> StiffeningResponse:
+        """Energy, stresses and derivatives at strains that broadcast."""
+        s_x, s_y = self.arguments(strain_xx, strain_yy, form)
+        energy_x, slope_x, curvature_x = stiffening(s_x, form)
+        energy_y, slope_y, curvature_y = stiffening(s_y, form)
+        kappa_x, kappa_y = self._kappa(form)
+        stress_x, stress_y = self.beta_xx * slope_x, self.beta_yy * slope_y
+        tangent_x = self.alpha_xx * self.beta_xx * curvature_x
+        tangent_y = self.alpha_yy * self.beta_yy * curvature_y
+        return StiffeningResponse(
+            energy=_over(self.beta_xx, self.alpha_xx) * energy_x
+            + _over(self.beta_yy, self.alpha_yy) * energy_y,
+            stress_xx=stress_x + kappa_y * stress_y,
+            stress_yy=stress_y + kappa_x * stress_x,
+            tangent_xx=tangent_x + kappa_y**2 * tangent_y,
+            tangent_yy=tangent_y + kappa_x**2 * tangent_x,
+            tangent_xy=kappa_x * tangent_x + kappa_y * tangent_y,
+        )
+
+    def _kappa(self, form: StiffeningForm) -> tuple[Array, Array]:
+        if form is StiffeningForm.FULL:
+            return self.kappa_xx, self.kappa_yy
+        return np.zeros(()), np.zeros(())
+
+
+def _array(values: ArrayLike) -> Array:
+    return np.asarray(values, dtype=float)
+
+
+def _over(beta: Array, alpha: Array) -> Array:
+    """beta / alpha, and 0 where alpha = 0 (a law that never stiffens)."""
+    shape = np.broadcast_shapes(alpha.shape, beta.shape)
+    return np.asarray(np.divide(beta, alpha, out=np.zeros(shape), where=alpha > 0))

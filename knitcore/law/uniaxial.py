@@ -14,8 +14,9 @@ from knitcore.law.stiffening import StiffeningForm, stiffening
 
 Array = NDArray[np.float64]
 
-_BISECTIONS = 52
+_HALVINGS = 52
 """Halvings that bring an interval to the rounding of a double."""
+_NEWTON_STEPS = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +57,10 @@ def uniaxial_response(
     across = (
         np.zeros_like(axial)
         if transverse is Transverse.FIXED
-        else np.array([_free_strain(law, direction, e, form) for e in axial])
+        else _free_strains(law, direction, axial, form)
     )
     pair = (axial, across) if direction is Direction.COURSE else (across, axial)
-    stress = law.stress(*pair, form=form)[direction.axis]
+    stress = law.stress(pair[0], pair[1], form)[direction.axis]
     return UniaxialCurve(strain=axial, transverse_strain=across, stress=stress)
 
 
@@ -79,18 +80,18 @@ def strain_at_stress(
     """
     if not (np.isfinite(stress) and stress >= 0):
         raise InputError("stress", f"{stress} N/mm cannot be used.", "Give 0 N/mm or more.")
-    if stress == 0:
-        return 0.0
+    if transverse is Transverse.FREE:
+        return float(free_strains_at_stress(law, direction, stress))
 
     def excess(e: float) -> float:
         curve = uniaxial_response(law, direction, e, transverse=transverse)
         return float(curve.stress[0]) - stress
 
-    lock_up = law.lock_up_strain(direction)
-    # Without coupling the linear part alone bounds the strain; free contraction only softens it.
-    upper = min(stress / law.modulus(direction), lock_up * (1 - 1e-12))
+    # At a held width the linear part alone bounds the strain.
+    held = law.stiffness[direction.axis, direction.axis]
+    upper = min(stress / held, law.lock_up_strain(direction) * (1 - 1e-12))
     if excess(upper) <= 0:
-        return upper
+        return float(upper)
     from scipy.optimize import brentq  # takes a fifth of a second to load
 
     return float(brentq(excess, 0.0, upper, xtol=1e-12))
@@ -109,15 +110,14 @@ def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
     wanted = np.asarray(stress, dtype=float)
     if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
         raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
-    if min(law.poisson_yx, law.poisson_xy) < 0:
-        # The transverse direction widens and stiffens too: no closed form.
-        flat = [strain_at_stress(law, direction, float(s)) for s in wanted.ravel()]
-        return np.array(flat).reshape(wanted.shape)
+    # The linear part alone bounds the strain; free contraction only softens it.
+    low, high = np.zeros_like(wanted), wanted / law.modulus(direction)
+    if min(law.poisson_yx, law.poisson_xy) < 0 or law.kappa_xx > 0 or law.kappa_yy > 0:
+        return _by_newton(law, direction, wanted, low, high)
     modulus, course = law.modulus(direction), direction is Direction.COURSE
     alpha, beta = (law.alpha_xx, law.beta_xx) if course else (law.alpha_yy, law.beta_yy)
-    low = np.zeros_like(wanted)
-    high = np.minimum(wanted / modulus, law.lock_up_strain(direction))
-    for _ in range(_BISECTIONS):
+    high = np.minimum(high, law.lock_up_strain(direction))
+    for _ in range(_HALVINGS):
         middle = (low + high) / 2
         _, slope, _ = stiffening(alpha * middle)
         carried = modulus * middle + beta * slope
@@ -127,6 +127,29 @@ def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
         )
     result: Array = (low + high) / 2
     return result
+
+
+def _by_newton(
+    law: ConstitutiveLaw, direction: Direction, stress: Array, low: Array, high: Array
+) -> Array:
+    """Newton's method for the strain at a stress, kept between bounds by halving."""
+    along, across = direction.axis, direction.other.axis
+    strain = np.minimum(high, 0.5 * law.lock_up_strain(direction))
+    for _ in range(_NEWTON_STEPS):
+        other = _free_strains(law, direction, strain, StiffeningForm.FULL)
+        pair = (strain, other) if along == 0 else (other, strain)
+        excess = law.stress(*pair)[along] - stress
+        tangent = law.tangent(*pair)
+        slope = tangent[..., along, along] - (
+            tangent[..., along, across] * tangent[..., across, along] / tangent[..., across, across]
+        )
+        low, high = np.where(excess < 0, strain, low), np.where(excess < 0, high, strain)
+        step = strain - excess / slope
+        step = np.where((step > low) & (step < high), step, (low + high) / 2)
+        if np.all(np.abs(step - strain) <= 1e-13 * (1 + strain)):
+            return np.asarray(step)
+        strain = step
+    return strain
 
 
 def check_below_lock_up(
@@ -151,14 +174,31 @@ def check_below_lock_up(
         )
 
 
-def _free_strain(
-    law: ConstitutiveLaw, direction: Direction, axial: float, form: StiffeningForm
-) -> float:
-    """Transverse strain at which the transverse stress vanishes."""
+def _free_strains(
+    law: ConstitutiveLaw, direction: Direction, axial: Array, form: StiffeningForm
+) -> Array:
+    """Transverse strains at which the transverse stress vanishes."""
     ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
     linear = -ratio * axial
-    if linear <= 0 and form is StiffeningForm.FULL:
+    if form is StiffeningForm.PUBLISHED:
+        return np.array([_published_free_strain(law, direction, e) for e in axial])
+    if law.kappa_xx == 0 and law.kappa_yy == 0 and np.all(linear <= 0):
         return linear  # slack yarn does not stiffen: the linear answer is exact
+    # The transverse stress grows and is convex in the transverse strain: after its first step
+    # Newton's method comes down to the root from one side.
+    axis, across = direction.other.axis, np.zeros_like(axial)
+    for _ in range(_NEWTON_STEPS):
+        pair = (axial, across) if direction is Direction.COURSE else (across, axial)
+        step = law.stress(*pair)[axis] / law.tangent(*pair)[..., axis, axis]
+        across = across - step
+        if np.all(np.abs(step) <= 1e-15 * (1 + np.abs(across))):
+            break
+    return across
+
+
+def _published_free_strain(law: ConstitutiveLaw, direction: Direction, axial: float) -> float:
+    ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
+    form, linear = StiffeningForm.PUBLISHED, -ratio * axial
 
     def residual(across: float) -> float:
         pair = (axial, across) if direction is Direction.COURSE else (across, axial)

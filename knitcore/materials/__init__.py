@@ -8,7 +8,7 @@ from knitcore.materials.files import (
     save_material_file,
 )
 from knitcore.materials.library import load_library, load_variants, material
-from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
+from knitcore.materials.material import FabricRecord, Laws, Material, Origin, Yarn
 from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import Interval, LawUncertainty
 
@@ -19,6 +19,7 @@ __all__ = [
     "Interval",
     "LawDocument",
     "LawUncertainty",
+    "Laws",
     "Material",
     "MaterialDocument",
     "MeasuredCurve",

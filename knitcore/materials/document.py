@@ -45,6 +45,8 @@ class LawDocument(_Model):
     beta_xx: Annotated[float, Field(ge=0, le=1000)]
     beta_yy: Annotated[float, Field(ge=0, le=1000)]
     shear_modulus: Modulus = DEFAULT_SHEAR_MODULUS_N_PER_MM
+    kappa_xx: Annotated[float, Field(ge=0, le=5)] = 0.0
+    kappa_yy: Annotated[float, Field(ge=0, le=5)] = 0.0
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -82,6 +84,8 @@ class LawDocument(_Model):
             beta_xx=self.beta_xx,
             beta_yy=self.beta_yy,
             shear_modulus=self.shear_modulus,
+            kappa_xx=self.kappa_xx,
+            kappa_yy=self.kappa_yy,
         )
         check_stated_constants(
             law,

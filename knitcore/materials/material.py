@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
 
+from knitcore.choice import Choice
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -33,6 +34,18 @@ class Origin(StrEnum):
     SIMULATED = "simulated"
     FITTED = "fitted"
     ESTIMATED = "estimated"
+
+
+class Laws(Choice):
+    """Which laws of the paper's yarns: refitted clamp to clamp, or as published."""
+
+    REFITTED = "refitted"
+    PUBLISHED = "published"
+
+    def of(self, identifier: str) -> str:
+        """The identifier of a material with these laws."""
+        sample = identifier.removesuffix(f":{Laws.PUBLISHED}")
+        return f"{sample}:{Laws.PUBLISHED}" if self is Laws.PUBLISHED else sample
 
 
 @dataclass(frozen=True)
@@ -65,8 +78,9 @@ class FabricRecord:
     Attributes
     ----------
     fabric : which of the four.
-    law : the constants to compute with. For the paper's fabrics they are consistent with all its
-        printed figures (see :mod:`knitcore.materials.consistency`).
+    law : the constants to compute with.
+    law_source : where they come from, in words; empty where ``origin`` says all.
+    inconsistent : directions in which the paper's own figures contradict each other.
     printed : the paper's figures behind it, by quantity; empty for other materials.
     loop_length_mm : yarn per stitch (None if unknown).
     hand_loop_length_mm : the same of the hand-knit comparison sample, where the paper has one.
@@ -91,6 +105,8 @@ class FabricRecord:
     hand_yarn_diameter_mm: float | None = None
     stitch_size_source: str = ""
     setting: str = ""
+    law_source: str = ""
+    inconsistent: frozenset[Direction] = frozenset()
     printed: Mapping[str, Figure] = field(default_factory=lambda: MappingProxyType({}))
     measured: Mapping[Direction, MeasuredCurve] = field(default_factory=dict)
 
@@ -150,6 +166,11 @@ class Material:
     def law(self, fabric: Fabric) -> ConstitutiveLaw:
         """The constitutive law of one pure fabric."""
         return self.record(fabric).law
+
+    @property
+    def sample(self) -> str:
+        """The identifier without the choice of laws: what was knitted."""
+        return self.identifier.removesuffix(f":{Laws.PUBLISHED}")
 
     @property
     def is_complete(self) -> bool:

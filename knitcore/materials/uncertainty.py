@@ -37,14 +37,33 @@ class Interval:
 
 
 @dataclass(frozen=True)
+class CurveUncertainty:
+    """Standard deviations of a fabric's stress-strain curve in one direction, as logarithms.
+
+    Attributes
+    ----------
+    log_stress : of the stress at a strain, as far as it grows and falls as a whole.
+    log_strain : of the scale of strain: sigma(e) may be sigma(r e).
+    log_lock_up : of the lock-up strain 1 / alpha.
+    """
+
+    log_stress: float
+    log_strain: float = 0.0
+    log_lock_up: float = 0.0
+
+
+@dataclass(frozen=True)
 class LawUncertainty:
-    """Standard deviations of a fabric's linear constants.
+    """Standard deviations of a fabric's law.
 
     Attributes
     ----------
     log_modulus_course, log_modulus_wale : of the logarithms of Y_x and Y_y.
     poisson_yx, poisson_xy : absolute.
     source : where they come from, in words.
+    curve_course, curve_wale : of the whole curves; by default the stress is as uncertain as the
+        modulus.
+    log_shear : of the logarithm of the shear modulus; None where that is an assumption.
     """
 
     log_modulus_course: float
@@ -52,11 +71,19 @@ class LawUncertainty:
     poisson_yx: float
     poisson_xy: float
     source: str
+    curve_course: CurveUncertainty | None = None
+    curve_wale: CurveUncertainty | None = None
+    log_shear: float | None = None
 
     def log_modulus(self, direction: Direction) -> float:
         """Standard deviation of the logarithm of Young's modulus in a direction."""
         course = direction is Direction.COURSE
         return self.log_modulus_course if course else self.log_modulus_wale
+
+    def curve(self, direction: Direction) -> CurveUncertainty:
+        """Of the stress-strain curve in a direction."""
+        known = self.curve_course if direction is Direction.COURSE else self.curve_wale
+        return known or CurveUncertainty(self.log_modulus(direction))
 
 
 def log_deviation(value: float, standard_deviation: float) -> float:

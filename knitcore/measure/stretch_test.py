@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,7 @@ class StretchTest:
     description : what the file says about the sample ("" when nothing).
     runs : at least one.
     width_mm : clamped width at rest, per run.
+    length_mm : distance of the clamps at rest; None where the file does not say.
     notes : what was left out and why, in sentences.
     """
 
@@ -63,6 +64,7 @@ class StretchTest:
     runs: tuple[StretchRun, ...]
     width_mm: tuple[float, ...]
     notes: tuple[str, ...] = field(default=())
+    length_mm: float | None = None
 
     @property
     def peak_stress(self) -> float:
@@ -86,13 +88,27 @@ class StretchTest:
     def without(self, index: int) -> StretchTest:
         """The test with one run left out (for the jackknife)."""
         keep = [i for i in range(len(self.runs)) if i != index]
-        return StretchTest(
-            self.source,
-            self.description,
-            tuple(self.runs[i] for i in keep),
-            tuple(self.width_mm[i] for i in keep),
-            self.notes,
+        return replace(
+            self,
+            runs=tuple(self.runs[i] for i in keep),
+            width_mm=tuple(self.width_mm[i] for i in keep),
         )
+
+    def with_width(self, width_mm: float) -> StretchTest:
+        """The test with another clamped width: stress is force over that one.
+
+        Raises
+        ------
+        InputError
+            If it is no width.
+        """
+        if not (np.isfinite(width_mm) and width_mm > 0):
+            raise InputError("width_mm", f"{width_mm} mm is no width.", "Give it in mm.")
+        runs = tuple(
+            replace(run, stress=run.stress * (old / width_mm))
+            for run, old in zip(self.runs, self.width_mm, strict=True)
+        )
+        return replace(self, runs=runs, width_mm=(width_mm,) * len(runs))
 
 
 def misread_forces(force: Array) -> NDArray[np.bool_]:
@@ -136,6 +152,13 @@ def check_run(run: StretchRun, *, first_row: int = 1) -> None:
         )
     _check_percent(run, first_row)
     _check_stress(run, first_row)
+    for name, values in (("strain_along", run.strain_along), ("force", run.stress)):
+        if np.ptp(values) == 0:
+            raise InputError(
+                f"{run.name}, {name}",
+                f"is {values[0]:.4g} in every row.",
+                "Give the readings of a pull from rest to the largest force.",
+            )
     along, across = run.strain_along, run.strain_across
     if along.max() < 0.01:
         raise InputError(

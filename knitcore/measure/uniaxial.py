@@ -1,15 +1,19 @@
 """From two stretch tests to the eight constants of a constitutive law (the paper's Note 7).
 
-Two reductions by name:
+Reductions by name:
 
 ``published``
     What reproduces the paper's tables: strain from the fabric's centre to the lower clamp, referred
     to the first frame of the first pull; Poisson ratios by straight lines with an intercept through
     all points; plain least squares over all points in the range of strain that every complete pull
     covers, with the strain across taken from the straight line.
-``recommended``
+``uniform``
     Strain from clamp to clamp; Poisson ratios through the origin; every pull counts the same, and
-    within a pull every strain interval, whatever the number of frames.
+    within a pull every strain interval, whatever the number of frames. The cloth is taken to
+    strain evenly, as if nothing held it at the clamps.
+``recommended``
+    The test is simulated between its clamps, and force and waist are fitted together:
+    :mod:`knitcore.swatch.strip_fit`.
 
 Standard errors by the jackknife over pulls (over blocks of strain when there is one pull only).
 """
@@ -28,6 +32,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.measured import MeasuredCurve
+from knitcore.materials.uncertainty import LawUncertainty
 from knitcore.measure.law_fit import ALPHA_SHARE_LIMIT, DirectionFit, fit_direction
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
@@ -36,7 +41,7 @@ from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
 Array = NDArray[np.float64]
 
 BINS = 40
-"""Strain intervals of a pull in the recommended reduction."""
+"""Strain intervals of a pull in the uniform reduction."""
 BLOCKS = 10
 """Blocks of the jackknife when there is one pull only."""
 COMPLETE_SHARE = 0.9
@@ -49,6 +54,7 @@ class Reduction(StrEnum):
     """How points become constants: as published, or as recommended."""
 
     PUBLISHED = "published"
+    UNIFORM = "uniform"
     RECOMMENDED = "recommended"
 
     @property
@@ -91,6 +97,8 @@ class LawFit:
     runs : number of pulls used per direction.
     error_method : what the standard errors come from.
     notes : what was left out, which constants the tests do not determine.
+    uncertainty : of moduli and whole curves (recommended reduction).
+    waist_rms : simulated minus measured strain of the waist, per direction (recommended reduction).
     """
 
     law: ConstitutiveLaw
@@ -105,13 +113,15 @@ class LawFit:
     runs: dict[Direction, int]
     error_method: str
     notes: tuple[str, ...]
+    uncertainty: LawUncertainty | None = None
+    waist_rms: dict[Direction, float] | None = None
 
 
 def fit_files(
     course: Path,
     wale: Path,
     *,
-    reduction: Reduction = Reduction.RECOMMENDED,
+    reduction: Reduction = Reduction.UNIFORM,
     file_format: str | None = None,
 ) -> LawFit:
     """Fit a law to two files (see :mod:`knitcore.measure.uniaxial_files` for their layout).
@@ -129,15 +139,20 @@ def fit_files(
 
 
 def fit_law(
-    course: StretchTest, wale: StretchTest, *, reduction: Reduction = Reduction.RECOMMENDED
+    course: StretchTest, wale: StretchTest, *, reduction: Reduction = Reduction.UNIFORM
 ) -> LawFit:
-    """Fit the eight constants to a course-wise and a wale-wise test.
+    """Fit the eight constants to a course-wise and a wale-wise test, taken to strain evenly.
 
     Raises
     ------
     InputError
-        If the tests do not belong together, or no stable law describes them.
+        If the tests do not belong together, no stable law describes them, or the reduction is the
+        recommended one, which needs simulated tests (:func:`knitcore.swatch.strip_fit.fit_tests`).
     """
+    if reduction is Reduction.RECOMMENDED:
+        raise InputError(
+            "reduction", "recommended simulates the tests.", "Call swatch.strip_fit.fit_tests."
+        )
     notes = [*course.notes, *wale.notes, *check_pair(course, wale)]
     fits, ratios, law = _fit(course, wale, reduction)
     replicates = [
@@ -303,9 +318,14 @@ def _quantities(law: ConstitutiveLaw) -> dict[str, float]:
 
 def _jackknife(replicates: list[list[dict[str, float]]]) -> dict[str, float]:
     """Standard errors from estimates with one part left out, summed over independent tests."""
-    names = replicates[0][0].keys()
+    if min(len(test) for test in replicates) < 2:
+        raise InputError(
+            "tests",
+            "have too few different readings for a standard error.",
+            "Give pulls with readings all the way from rest to the largest force.",
+        )
     errors = {}
-    for name in names:
+    for name in replicates[0][0]:
         variance = 0.0
         for test in replicates:
             values = np.array([replica[name] for replica in test])

@@ -2,16 +2,20 @@
 
 HDF5: one group ``videoN`` per pull with ``forces`` (n,) in N, ``traj`` (7, 2, n) in pixels (right,
 left, bottom, top, centre, clamp bottom, clamp top; the pull is vertical in the image) and
-``frames`` (n,); the datasets ``clampSize`` (px, the length of a clamp of 35.5 mm) and
-``fabricSize`` (px, the clamped width). ``video1`` conditions the sample and is not used.
+``frames`` (n,). With four points, the two that are farthest apart across are right and left, and
+the strain along is read between the other two. The datasets ``clampSize`` (px, the length of a
+clamp of 35.5 mm) and ``fabricSize`` (px, the clamped width). ``video1`` conditions the sample and
+is not used.
 
 CSV: a header line with ``strain_along, strain_across, force_n, width_mm`` and, for repeated pulls,
-``run``; one row per point in the order of the pull.
+``run``, and the distance of the clamps at rest, ``length_mm``; one row per point in the order of
+the pull.
 """
 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
@@ -39,6 +43,8 @@ MAXIMUM_PIXEL = 1e6
 MAXIMUM_FORCE_N = 1e6
 MAXIMUM_FRAMES = 2_000_000
 MAXIMUM_VIDEOS = 100
+WIDER_THAN_CLAMPED = 1.2
+"""Tracked points farther apart than this share of the clamped width tell of a misread width."""
 _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
 
 
@@ -99,10 +105,17 @@ def _read_hdf5(path: Path, gauge: Gauge) -> StretchTest:
     try:
         with h5py.File(path, "r") as file:
             return _test_from_hdf5(path.name, file, gauge)
-    except (OSError, RuntimeError, KeyError) as error:
+    except UnicodeDecodeError:
         raise InputError(
             path.name,
-            f"cannot be read as HDF5 ({str(error).splitlines()[0]}).",
+            "has a name or a text that is not UTF-8.",
+            "Name groups and datasets in plain letters, as docs/fit-a-law.md lists them.",
+        ) from None
+    except (OSError, RuntimeError, KeyError) as error:
+        reason = (str(error).splitlines() or ["no reason given"])[0]
+        raise InputError(
+            path.name,
+            f"cannot be read as HDF5 ({reason}).",
             "The file may be cut off or damaged: copy it again.",
         ) from None
 
@@ -133,21 +146,28 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
         )
     width_mm = float(fabric_px.mean() / clamp_px.mean() * CLAMP_MM)
     runs: list[StretchRun] = []
-    reference: tuple[float, float] | None = None
+    first: _Tracked | None = None
     for _, key in videos:
         tracked = _tracked(name, file, key, gauge, notes)
         if tracked is None:
             continue
-        length, across, force = tracked
-        reference = reference or (float(length[0]), float(across[0]))
+        first = first or tracked
         runs.append(
             StretchRun(
                 name=f"{name}, {key}",
-                strain_along=length / reference[0] - 1,
-                strain_across=across / reference[1] - 1,
-                stress=force / width_mm,
+                strain_along=tracked.along / first.along[0] - 1,
+                strain_across=tracked.across / first.across[0] - 1,
+                stress=tracked.force / width_mm,
             )
         )
+    scale = CLAMP_MM / float(clamp_px.mean())
+    if first is not None and first.across[0] * scale > WIDER_THAN_CLAMPED * width_mm:
+        notes.append(
+            f"{name}: the tracked points are {first.across[0] * scale:.0f} mm apart across, but the"
+            f" clamped width is {width_mm:.1f} mm, so fabricSize may be misread: give the true"
+            " width."
+        )
+    length_mm = None if first is None else float(np.nanmedian(first.clamps[:9])) * scale
     runs = _sound(runs, notes)
     if not runs:
         raise InputError(
@@ -157,7 +177,17 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
         )
     description = np.asarray(file.attrs.get("description", "")).ravel()
     text = _text(description[0]) if description.size else ""
-    return StretchTest(name, text, tuple(runs), (width_mm,) * len(runs), tuple(notes))
+    return StretchTest(name, text, tuple(runs), (width_mm,) * len(runs), tuple(notes), length_mm)
+
+
+@dataclass(frozen=True, eq=False)
+class _Tracked:
+    """Lengths in pixels along the gauge, between the clamps and across, and the force in N."""
+
+    along: Array
+    clamps: Array
+    across: Array
+    force: Array
 
 
 def _sound(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
@@ -183,16 +213,18 @@ def _sound(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
 
 def _tracked(
     name: str, file: h5py.File, key: str, gauge: Gauge, notes: list[str]
-) -> tuple[Array, Array, Array] | None:
-    """(length along, length across, force) of the frames that are tracked, or None."""
+) -> _Tracked | None:
+    """The frames that are tracked, or None."""
     force = _numbers(name, file, f"{key}/forces").ravel()
     points = _numbers(name, file, f"{key}/traj")
-    if points.ndim != 3 or points.shape[0] < 7 or points.shape[1] != 2:
+    if points.ndim != 3 or points.shape[0] < 4 or points.shape[1] != 2:
         raise InputError(
             f"{name}, {key}/traj",
             f"has the shape {points.shape}.",
-            "It must be (7 points, 2 coordinates, frames).",
+            "It must be (7 points, 2 coordinates, frames), or (4, 2, frames).",
         )
+    if points.shape[0] < 7:
+        points = _seven(points, notes)
     frames = min(len(force), points.shape[2])
     if abs(len(force) - points.shape[2]) > max(5, 0.01 * frames):
         raise InputError(
@@ -215,16 +247,33 @@ def _tracked(
         return None
     if (~good).any():
         notes.append(f"{key}: {int((~good).sum())} of {frames} frames are left out.")
-    first, second = gauge.points
-    length = np.hypot(*(points[first] - points[second]))[good]
-    across = np.hypot(*(points[_RIGHT] - points[_LEFT]))[good]
-    if length[0] <= 0 or across[0] <= 0:
+    along, clamps, across = (
+        np.hypot(*(points[first] - points[second]))[good]
+        for first, second in (gauge.points, Gauge.CLAMPS.points, (_RIGHT, _LEFT))
+    )
+    if min(along[0], across[0]) <= 0:
         raise InputError(
             f"{name}, {key}/traj",
             "two points coincide in the first tracked frame.",
             "Track the points from the unstretched sample on.",
         )
-    return length, across, force[good]
+    return _Tracked(along, clamps, across, force[good])
+
+
+def _seven(points: Array, notes: list[str]) -> Array:
+    """Four points in the order of the seven: the outer ones along stand for the clamps."""
+    note = (
+        "Four points are tracked: the strain along is read between the lower and the upper one,"
+        " as if they were at the clamps."
+    )
+    if note not in notes:
+        notes.append(note)
+    usual = np.nanmedian(points[:4], axis=2)
+    left, right = int(np.argmin(usual[:, 0])), int(np.argmax(usual[:, 0]))
+    first, second = (i for i in range(4) if i not in (left, right))
+    middle = (points[first] + points[second]) / 2
+    ends = [points[first], points[second]]
+    return np.stack([points[right], points[left], *ends, middle, *ends])
 
 
 def _numbers(name: str, file: h5py.File, key: str) -> Array:
@@ -263,7 +312,8 @@ def _read_csv(path: Path) -> StretchTest:
         ) from None
     table.columns = [_column_name(str(c)) for c in table.columns]
     _check_header(path.name, list(table.columns))
-    values = {column: _column(path.name, column, table[column]) for column in CSV_COLUMNS}
+    given = [*CSV_COLUMNS, *(["length_mm"] if "length_mm" in table else [])]
+    values = {column: _column(path.name, column, table[column]) for column in given}
     labels = (
         table["run"].fillna("").str.strip().to_numpy(dtype=str)
         if "run" in table
@@ -278,13 +328,25 @@ def _read_csv(path: Path) -> StretchTest:
         run, width = _csv_run(path.name, label, rows, values)
         runs.append(run)
         widths.append(width)
-    return StretchTest(path.name, "", tuple(runs), tuple(widths))
+    length_mm = _csv_length(path.name, values["length_mm"]) if "length_mm" in values else None
+    return StretchTest(path.name, "", tuple(runs), tuple(widths), length_mm=length_mm)
+
+
+def _csv_length(name: str, length: Array) -> float:
+    """The distance of the clamps, the same in all rows."""
+    if length.min() < 5 or np.ptp(length) > 0.01 * length[0]:
+        raise InputError(
+            f"{name}, column length_mm",
+            f"goes from {length.min():g} to {length.max():g} mm.",
+            "Give the distance of the clamps at rest in mm, the same in every row.",
+        )
+    return float(length[0])
 
 
 def _column_name(text: str) -> str:
     """The documented name of a column: ``Force (N)`` and ``force`` are ``force_n``."""
     name = re.sub(r"[^\w%]+", "_", text.strip().lower()).strip("_")
-    return {"force": "force_n", "width": "width_mm"}.get(name, name)
+    return {"force": "force_n", "width": "width_mm", "length": "length_mm"}.get(name, name)
 
 
 def _check_header(name: str, columns: list[str]) -> None:

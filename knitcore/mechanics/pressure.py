@@ -23,6 +23,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.uniaxial import uniaxial_response
+from knitcore.materials.uncertainty import CurveUncertainty
 
 MMHG_PER_KPA = 760.0 / 101.325
 NEAR_LOCK_UP = 0.8
@@ -156,11 +157,37 @@ def rest_circumference(
         upper = lock_up * (1 - 1e-9) if math.isfinite(lock_up) else 1.0
         while not math.isfinite(lock_up) and _tension(law, direction, upper, transverse) < tension:
             upper *= 2
-        strain = brentq(
-            lambda e, t=transverse: _tension(law, direction, e, t) - tension, 0.0, upper, xtol=1e-10
+        # Cloth free to narrow may carry less than that even at the lock-up of cloth held.
+        reached = _tension(law, direction, upper, transverse) >= tension
+        strain = (
+            brentq(
+                lambda e, t=transverse: _tension(law, direction, e, t) - tension,
+                0.0,
+                upper,
+                xtol=1e-10,
+            )
+            if reached
+            else upper
         )
         found.append(worn_mm / (1 + float(strain)))
     return Interval(min(found), max(found))
+
+
+def stress_log_sd(
+    law: ConstitutiveLaw, direction: Direction, strain: float, curve: CurveUncertainty
+) -> float:
+    """Standard deviation of the logarithm of the stress at a strain.
+
+    The scale of strain counts as many times as the stress grows faster than the strain,
+    d ln(stress) / d ln(strain).
+    """
+    if strain <= 0 or curve.log_strain == 0:
+        return curve.log_stress
+    step = 1e-3
+    ends = strain * (1 - step), strain
+    low, high = uniaxial_response(law, direction, ends).stress
+    slope = math.log(high / low) / -math.log1p(-step)
+    return math.hypot(curve.log_stress, slope * curve.log_strain)
 
 
 def _tension(

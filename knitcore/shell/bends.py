@@ -51,7 +51,7 @@ def bends_of(material: Material) -> Mapping[Fabric, Bend]:
     ConvergenceError
         If a fabric does not relax.
     """
-    stored = _stored().get(material.identifier)
+    stored = _stored().get(material.sample)
     if stored is not None:
         return stored
     return MappingProxyType({fabric: computed(fabric, material) for fabric in Fabric})

@@ -26,7 +26,7 @@ from knitcore.measure.stretch_test import StretchTest
 from knitcore.swatch.comparison import Edges, field_differences, field_sheet
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.measured import MeasuredField
-from knitcore.swatch.models import EnergyModel, SheetModel
+from knitcore.swatch.models import SheetModel
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import LOCK_UP_SHARE, pull
 
@@ -98,8 +98,7 @@ class Calibration:
 
     Attributes
     ----------
-    law : the constants, with the shear modulus.
-    model : the full model with its calibrated coupling of the stiffening.
+    law : the constants, with shear modulus and coupling of the stiffening.
     parameters, standard_errors : the fitted unknowns by name; factors are on the law given.
     frames : pictures that were used.
     force_ratio : simulated over measured force at ``force_strain`` (empty without a curve).
@@ -107,7 +106,6 @@ class Calibration:
     """
 
     law: ConstitutiveLaw
-    model: SheetModel
     parameters: dict[str, float]
     standard_errors: dict[str, float]
     frames: tuple[int, ...]
@@ -167,14 +165,13 @@ def calibrate(
         max_nfev=20,
     )
     values = _to_values(fit.x)
-    fitted, model = problem.law_of(values)
+    fitted = problem.law_of(values)
     jacobian = np.asarray(fit.jac, dtype=float)
     covariance = np.linalg.pinv(jacobian.T @ jacobian)
     spread = np.sqrt(np.diag(covariance)) * _slopes(values)
-    strain, ratio = problem.force_ratios(fitted, model)
+    strain, ratio = problem.force_ratios(fitted)
     return Calibration(
         law=fitted,
-        model=model,
         parameters=dict(zip(names, values.tolist(), strict=True)),
         standard_errors=dict(zip(names, spread.tolist(), strict=True)),
         frames=tuple(frame.number for frame in field.frames),
@@ -207,8 +204,8 @@ class _Problem:
             self.strain = np.linspace(0.15 * top, top, FORCE_POINTS)
             self.stress = np.interp(self.strain, forces.strain, forces.stress_n_per_mm)
 
-    def law_of(self, values: Array) -> tuple[ConstitutiveLaw, SheetModel]:
-        """Law and model of a set of values."""
+    def law_of(self, values: Array) -> ConstitutiveLaw:
+        """The law of a set of values."""
         v = dict(zip(self.names, values, strict=True))
         wale = self.direction is Direction.WALE
         suffix = "yy" if wale else "xx"
@@ -222,11 +219,9 @@ class _Problem:
             field = f"{name}_{suffix * 2 if name == 'stiffness' else suffix}"
             constants[field] = getattr(self.law, field) * v.get(key, 1.0)
         constants[f"beta_{suffix}"] = getattr(self.law, f"beta_{suffix}") * v.get("beta_factor", 1)
-        law = replace(self.law, **{name: float(value) for name, value in constants.items()})
-        model = SheetModel(
-            EnergyModel.FULL, stiffening_coupling=float(np.clip(v["stiffening_coupling"], 0, 1))
-        )
-        return law, model
+        kappa = np.clip(v["stiffening_coupling"], 0, 1)
+        constants |= {"kappa_xx": kappa, "kappa_yy": kappa}
+        return replace(self.law, **{name: float(value) for name, value in constants.items()})
 
     def residuals(self, unknowns: Array) -> Array:
         """Weighted differences; large ones where the law is unstable or does not converge."""
@@ -243,10 +238,10 @@ class _Problem:
         counts = [2 * len(frame.points) for frame in self.field.frames]
         penalty = np.full(sum(counts) + len(self.strain) + 2, 10.0)
         try:
-            law, model = self.law_of(values)
-            sheet = field_sheet(self.field, law, self.direction, model, CELLS_ACROSS)
+            law = self.law_of(values)
+            sheet = field_sheet(self.field, law, self.direction, SheetModel(), CELLS_ACROSS)
             found, _ = field_differences(self.field, sheet, self.direction, Edges.MEASURED)
-            _, ratios = self.force_ratios(law, model)
+            _, ratios = self.force_ratios(law)
         except InputError:
             return penalty
         if len(found) < len(counts) or len(ratios) < len(self.strain):
@@ -258,7 +253,7 @@ class _Problem:
         ]
         return np.concatenate([*parts, (ratios - 1) / FORCE_NOISE, prior])
 
-    def force_ratios(self, law: ConstitutiveLaw, model: SheetModel) -> tuple[Array, Array]:
+    def force_ratios(self, law: ConstitutiveLaw) -> tuple[Array, Array]:
         """Strains and simulated over measured forces of the strip test."""
         if self.forces is None:
             return self.strain, np.empty(0)
@@ -269,7 +264,7 @@ class _Problem:
             if self.direction is Direction.WALE
             else QuarterGrid.uniform(rows, 40, along, across)
         )
-        test = pull(Sheet(grid, [law], model), self.direction, self.strain)
+        test = pull(Sheet(grid, [law], SheetModel()), self.direction, self.strain)
         return test.strain, test.stress_n_per_mm / self.stress[: test.steps]
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.law.stiffening import StiffeningForm, stiffening
+from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
 from knitcore.swatch.grid import QuarterGrid, sums_at_corners
 from knitcore.swatch.models import EnergyModel
 from knitcore.swatch.sheet import Sheet, State
@@ -94,12 +94,18 @@ def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
 
 def triangle_utilisation(sheet: Sheet, strains: CellStrains) -> Array:
     """The same of every triangle, (2, rows, columns, 4)."""
-    xx, yy = strains.xx, strains.yy
-    alpha = np.array([(law.alpha_xx, law.alpha_yy) for law in sheet.laws])[sheet.grid.law_of_cell]
-    alpha_x, alpha_y = alpha[..., 0, None], alpha[..., 1, None]
-    kappa = sheet.model.stiffening_coupling
-    used = np.stack([alpha_x * (xx + kappa * yy), alpha_y * (yy + kappa * xx)])
+    form = StiffeningForm(sheet.model.energy.value)
+    codes = sheet.grid.law_of_cell[..., None]
+    used = np.stack(stiffening_of(sheet, codes).arguments(strains.xx, strains.yy, form))
     return np.where(sheet.grid.cloth[..., None], used, 0.0)
+
+
+def stiffening_of(sheet: Sheet, codes: NDArray[np.uint8]) -> CoupledStiffening:
+    """The stiffening of the laws with these codes (an array of any shape)."""
+    names = ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy")
+    return CoupledStiffening(
+        *(np.array([getattr(law, name) for law in sheet.laws])[codes] for name in names)
+    )
 
 
 def node_fields(sheet: Sheet, state: State) -> Fields:
@@ -133,24 +139,15 @@ def _response(sheet: Sheet, xx: Array, yy: Array, xy: Array) -> dict[str, Array]
     def constant(name: str) -> Array:
         return np.array([getattr(law, name) for law in sheet.laws])[codes]
 
-    form = StiffeningForm(sheet.model.energy.value)
-    kappa = sheet.model.stiffening_coupling
-    alpha_x, alpha_y = constant("alpha_xx"), constant("alpha_yy")
-    beta_x, beta_y = constant("beta_xx"), constant("beta_yy")
+    stiff = stiffening_of(sheet, codes).response(xx, yy, StiffeningForm(sheet.model.energy.value))
     coupling, shear = constant("stiffness_xxyy"), constant("shear_modulus")
-    energy_x, slope_x, _ = stiffening(alpha_x * (xx + kappa * yy), form)
-    energy_y, slope_y, _ = stiffening(alpha_y * (yy + kappa * xx), form)
     linear_x = constant("stiffness_xxxx") * xx + coupling * yy
     linear_y = constant("stiffness_yyyy") * yy + coupling * xx
-    stiff_x, stiff_y = beta_x * slope_x, beta_y * slope_y
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stored = np.where(alpha_x > 0, beta_x / alpha_x, 0) * energy_x
-        stored = stored + np.where(alpha_y > 0, beta_y / alpha_y, 0) * energy_y
     return {
-        "stress_xx": linear_x + stiff_x + kappa * stiff_y,
-        "stress_yy": linear_y + stiff_y + kappa * stiff_x,
+        "stress_xx": linear_x + stiff.stress_xx,
+        "stress_yy": linear_y + stiff.stress_yy,
         "stress_xy": 2 * shear * xy,
-        "energy_density": (xx * linear_x + yy * linear_y) / 2 + 2 * shear * xy**2 + stored,
+        "energy_density": (xx * linear_x + yy * linear_y) / 2 + 2 * shear * xy**2 + stiff.energy,
     }
 
 

@@ -56,9 +56,9 @@ def _stiffening(s: float) -> tuple[float, float, float]:
 @njit(cache=True)
 def _axial(p: Array, ex: float, ey: float) -> tuple[float, float, float, float, float, float]:
     """Energy density, stresses and stiffness of the full law at fibre strains."""
-    cxx, cyy, cxy, kappa = p[0], p[1], p[2], p[8]
-    wx, dwx, ddwx = _stiffening(p[4] * (ex + kappa * ey))
-    wy, dwy, ddwy = _stiffening(p[5] * (ey + kappa * ex))
+    cxx, cyy, cxy, kappa_x, kappa_y = p[0], p[1], p[2], p[8], p[9]
+    wx, dwx, ddwx = _stiffening(p[4] * (ex + kappa_x * ey))
+    wy, dwy, ddwy = _stiffening(p[5] * (ey + kappa_y * ex))
     energy = 0.5 * cxx * ex * ex + 0.5 * cyy * ey * ey + cxy * ex * ey
     if p[4] > 0.0:
         energy += p[6] / p[4] * wx
@@ -68,48 +68,53 @@ def _axial(p: Array, ex: float, ey: float) -> tuple[float, float, float, float, 
     kx, ky = p[4] * p[6] * ddwx, p[5] * p[7] * ddwy
     return (
         energy,
-        cxx * ex + cxy * ey + sx + kappa * sy,
-        cxy * ex + cyy * ey + sy + kappa * sx,
-        cxx + kx + kappa * kappa * ky,
-        cyy + ky + kappa * kappa * kx,
-        cxy + kappa * (kx + ky),
+        cxx * ex + cxy * ey + sx + kappa_y * sy,
+        cxy * ex + cyy * ey + sy + kappa_x * sx,
+        cxx + kx + kappa_y * kappa_y * ky,
+        cyy + ky + kappa_x * kappa_x * kx,
+        cxy + kappa_x * kx + kappa_y * ky,
     )
 
 
 @njit(cache=True)
 def _wrinkled(p: Array, ex: float, ey: float) -> tuple[float, float, float, float, float, float]:
     """The law relaxed by wrinkling: the least energy over all longer fibres."""
-    w, sx, sy, kxx, kyy, kxy = _axial(p, ex, ey)
-    cxx, cyy, cxy = p[0], p[1], p[2]
+    taut = _axial(p, ex, ey)
     if ex <= 0.0 and ey <= 0.0:
         slack = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    elif ey > 0.0 and cxx * ex + cxy * ey < 0.0:
-        e, s, k = _single(cyy - cxy * cxy / cxx, p[5], p[7], ey)
-        slack = (e, 0.0, s, 0.0, k, 0.0)
-    elif ex > 0.0 and cyy * ey + cxy * ex < 0.0:
-        e, s, k = _single(cxx - cxy * cxy / cyy, p[4], p[6], ex)
-        slack = (e, s, 0.0, k, 0.0, 0.0)
+    elif ey > 0.0 and taut[1] < 0.0:
+        e, _, s, kxx, kyy, kxy = _axial(p, _free(p, ey, 0), ey)
+        slack = (e, 0.0, s, 0.0, kyy - kxy * kxy / kxx, 0.0)
+    elif ex > 0.0 and taut[2] < 0.0:
+        e, s, _, kxx, kyy, kxy = _axial(p, ex, _free(p, ex, 1))
+        slack = (e, s, 0.0, kxx - kxy * kxy / kyy, 0.0, 0.0)
     else:
-        return w, sx, sy, kxx, kyy, kxy
+        return taut
     r = WRINKLED_SHARE
     return (
-        r * w + (1 - r) * slack[0],
-        r * sx + (1 - r) * slack[1],
-        r * sy + (1 - r) * slack[2],
-        r * kxx + (1 - r) * slack[3],
-        r * kyy + (1 - r) * slack[4],
-        r * kxy + (1 - r) * slack[5],
+        r * taut[0] + (1 - r) * slack[0],
+        r * taut[1] + (1 - r) * slack[1],
+        r * taut[2] + (1 - r) * slack[2],
+        r * taut[3] + (1 - r) * slack[3],
+        r * taut[4] + (1 - r) * slack[4],
+        r * taut[5] + (1 - r) * slack[5],
     )
 
 
 @njit(cache=True)
-def _single(modulus: float, alpha: float, beta: float, e: float) -> tuple[float, float, float]:
-    """Energy, stress and stiffness of one fibre direction with the other one slack."""
-    w, dw, ddw = _stiffening(alpha * e)
-    energy = 0.5 * modulus * e * e
-    if alpha > 0.0:
-        energy += beta / alpha * w
-    return energy, modulus * e + beta * dw, modulus + alpha * beta * ddw
+def _free(p: Array, along: float, axis: int) -> float:
+    """Strain on an axis at which its stress vanishes, at a strain on the other one (above 0).
+
+    The stress is convex in the strain, so Newton's method comes down to the root from one side.
+    """
+    across = 0.0
+    for _ in range(100):
+        values = _axial(p, across, along) if axis == 0 else _axial(p, along, across)
+        step = values[1 + axis] / values[3 + axis]
+        across -= step
+        if abs(step) <= 1e-14:
+            break
+    return across
 
 
 @njit(cache=True)
@@ -140,7 +145,7 @@ def _point(
     la, lb = math.sqrt(a0 * a0 + a1 * a1), math.sqrt(b0 * b0 + b1 * b1)
     if la < 1e-9 or lb < 1e-9:
         return np.inf
-    if p[9] > 0.0:
+    if p[10] > 0.0:
         energy, wa, wb, waa, wbb, wab = _wrinkled(p, la - 1.0, lb - 1.0)
     else:
         energy, wa, wb, waa, wbb, wab = _axial(p, la - 1.0, lb - 1.0)

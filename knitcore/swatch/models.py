@@ -57,9 +57,6 @@ class SheetModel:
     coupling : symmetrisation rule; by default the model's own: ``geometric`` for ``full``,
         ``script`` for ``published``, because that is what the published figures show.
     shear_modulus : N/mm, replaces the laws' assumed shear modulus if given.
-    stiffening_coupling : dimensionless
-        kappa in the argument ``e_y + kappa e_x`` of the stiffening (``full`` only): part of the
-        yarn that a contracting course frees for the wale.
     tension_field : bool
         Let the sheet wrinkle instead of carrying compression along a course or wale (``full``).
 
@@ -72,7 +69,6 @@ class SheetModel:
     energy: EnergyModel = EnergyModel.FULL
     coupling: Coupling | None = None
     shear_modulus: float | None = None
-    stiffening_coupling: float = 0.0
     tension_field: bool = False
 
     def __post_init__(self) -> None:
@@ -82,23 +78,9 @@ class SheetModel:
             raise InputError(
                 "shear_modulus", f"{self.shear_modulus} N/mm is no stiffness.", "Give above 0 N/mm."
             )
-        if not 0.0 <= self.stiffening_coupling <= 1.0:
-            raise InputError(
-                "stiffening_coupling",
-                f"{self.stiffening_coupling} is out of range.",
-                "Give a number from 0 to 1.",
-            )
-        if self.energy is EnergyModel.PUBLISHED and (
-            self.stiffening_coupling != 0 or self.tension_field
-        ):
+        if self.energy is EnergyModel.PUBLISHED and self.tension_field:
             raise InputError(
                 "model", "the published model has no such option.", "Use the full model."
-            )
-        if self.tension_field and self.stiffening_coupling != 0:
-            raise InputError(
-                "tension_field",
-                "cannot be combined with a coupling of the stiffening.",
-                "Set stiffening_coupling to 0.",
             )
 
     @property
@@ -134,7 +116,7 @@ class SheetModel:
             ) from None
 
     def parameters(self, laws: Sequence[ConstitutiveLaw]) -> NDArray[np.float64]:
-        """Kernel parameters of symmetric laws, shape (laws, 10)."""
+        """Kernel parameters of symmetric laws, shape (laws, 11)."""
         return np.array(
             [
                 [
@@ -146,7 +128,8 @@ class SheetModel:
                     law.alpha_yy,
                     law.beta_xx,
                     law.beta_yy,
-                    self.stiffening_coupling,
+                    law.kappa_xx,
+                    law.kappa_yy,
                     float(self.tension_field),
                 ]
                 for law in (self.prepare(law) for law in laws)

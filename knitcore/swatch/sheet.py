@@ -109,7 +109,7 @@ class Sheet:
         self.grid = grid
         self.model = model
         self.laws = tuple(model.prepare(law) for law in laws)
-        self._parameters = model.parameters(laws)
+        self.parameters = model.parameters(laws)
         self._law_of_cell = grid.law_of_cell.ravel()
         self._cloth = grid.cloth.ravel()
         self._width = grid.natural_width.ravel()
@@ -136,15 +136,14 @@ class Sheet:
     def energy(self, state: State) -> float:
         """Stored energy, N·mm."""
         forces = np.empty_like(state.corners), np.empty_like(state.centres)
-        return self._assemble(self._parameters, state, *forces, *_NO_TANGENT)
+        return self._assemble(self.parameters, state, *forces, *_NO_TANGENT)
 
     def law_force(self, laws: Array, state: State) -> tuple[Array, Array]:
-        """Force (N) on corners (corners, 2) and centres (cells, 2) that other laws would add.
+        """Force (N) on corners (corners, 2) and centres (cells, 2) that other laws would make.
 
         Parameters
         ----------
-        laws : (laws, 10), kernel parameters as :meth:`SheetModel.parameters` gives them; changes of
-            the stiffnesses and betas are as good, for the force is linear in them.
+        laws : (laws, 11), kernel parameters as :meth:`SheetModel.parameters` gives them.
         state : positions.
         """
         forces = np.empty_like(state.corners), np.empty_like(state.centres)
@@ -187,7 +186,7 @@ class Sheet:
                 reuse.centre_rows,
                 reuse.centre_inverse,
             )
-        energy = self._assemble(self._parameters, state, *arrays)
+        energy = self._assemble(self.parameters, state, *arrays)
         return Linearisation(energy, *arrays, columns=self.grid.columns)
 
     def _assemble(self, laws: Array, state: State, *arrays: Array) -> float:

@@ -168,7 +168,7 @@ class PathSolver:
             if residual <= limit:
                 return self._accept(state, lin, level, iterations)
             force = lin.condensed_force() * self.free
-            if first and self._refresh_early:
+            if not self._has_factor or (first and self._refresh_early):
                 self._try_factorise(lin)
             before = self.factorisations
             step = self._solve(lin, -force, max(0.3 * limit / residual, FORCING))
@@ -268,6 +268,7 @@ class PathSolver:
         return lin
 
     def _factorise(self, lin: Linearisation) -> None:
+        self._has_factor = False  # one that fails half-way is of no use
         self.factor.factorise(lin.matrix)
         self.factorisations += 1
         self._has_factor = True

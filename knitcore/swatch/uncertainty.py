@@ -9,19 +9,23 @@ courses but not its wales. To first order (delta method) a parameter p of the la
 with the tangent K and the internal forces R of the equilibrium, and variances of independent
 parameters add up. The parameters are
 
-- the logarithm of each fabric's scale of stress along course and wale (C_aaaa and beta together;
-  alpha, and with it the lock-up strain, stays: tests fix it best), with the standard deviation of
-  the material's modulus;
-- each fabric's coupling, at fixed moduli, with that of its Poisson ratios;
-- the logarithm of the shear modulus of all fabrics, where it is the assumed one;
-- the composite's own error, where fabrics are mixed: one of the whole scale for the force, one of
-  each fabric apart for strains.
+- the logarithm of each fabric's scale of stress along course and wale (C_aaaa and beta together);
+- the logarithm of its scale of strain along both (sigma(e) becomes sigma(r e)), where the tests'
+  strain is uncertain;
+- each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
+- the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
+- the composite's own error, where fabrics are mixed: one of
+  the whole scale for the force, one of each fabric apart for strains.
+
+The lock-up (1 / alpha) is uncertain by itself too, and its utilisation with it.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +37,7 @@ from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, Constituti
 from knitcore.materials.material import Material
 from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_interval
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
-from knitcore.swatch.fields import cell_strains, corner_means, utilisation
+from knitcore.swatch.fields import cell_strains, corner_means, stiffening_of, utilisation
 from knitcore.swatch.models import Coupling
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.sheet import Sheet
@@ -44,6 +48,8 @@ Array = NDArray[np.float64]
 
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, stitches of mixed quarters and of one fabric."""
+STEP = 1e-3
+"""Of a parameter, for differences of forces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +79,14 @@ class _Parameter:
 
     Attributes
     ----------
-    laws : (laws, 10), derivative of the kernel's parameters.
+    up, down : (laws, 11), kernel's parameters with this one raised and lowered by ``STEP``; 0 for
+        laws without it.
     sd : of the parameter.
     model_sd : of the composite's error in it, which counts for strains.
     """
 
-    laws: Array
+    up: Array
+    down: Array
     sd: float
     model_sd: float
 
@@ -123,6 +131,7 @@ class StripSpread:
         self._factor = GridFactor(grid.columns, grid.rows, fixed.ravel())
         self._model_sd = model_log_sd(test.sheet)
         self._parameters = _parameters(test.sheet, material, self._model_sd)
+        self._lock_up_sd = _lock_up_sd(test.sheet, material)
 
     def at(self, step: int) -> StepSpread:
         """The standard deviations at a load step (negative ones count from the last)."""
@@ -135,8 +144,11 @@ class StripSpread:
         force_variance = waist_variance = 0.0
         variances = np.zeros((3, grid.rows + 1, grid.columns + 1))
         for parameter in self._parameters:
-            corner_force, centre_force = sheet.law_force(parameter.laws, state)
-            change = lin.with_force(corner_force, centre_force)
+            raised = sheet.law_force(parameter.up, state)
+            lowered = sheet.law_force(parameter.down, state)
+            change = lin.with_force(
+                *((u - d) / (2 * STEP) for u, d in zip(raised, lowered, strict=True))
+            )
             condensed = change.condensed_force()
             free = np.where(self._fixed, 0.0, -condensed)
             corner_step = self._factor.solve(free).reshape(condensed.shape)
@@ -149,6 +161,10 @@ class StripSpread:
             used = (slope * strains).sum(axis=0)
             for name, cells in enumerate((*strains, used)):
                 variances[name] += (full_sd * corner_means(grid, cells)) ** 2
+        locks = self._lock_up_sd[grid.law_of_cell]
+        used = utilisation(sheet, cell_strains(sheet, state))
+        direct = np.where(used[0] >= used[1], used[0] * locks[..., 0], used[1] * locks[..., 1])
+        variances[2] += corner_means(grid, direct) ** 2
         force_log_sd = math.hypot(math.sqrt(force_variance), self._model_sd)
         return StepSpread(
             log_interval(float(test.force_n[step]), force_log_sd),
@@ -161,14 +177,12 @@ class StripSpread:
         """d utilisation / d (strain course-wise, wale-wise) of every cell, (2, rows, columns)."""
         sheet = self.test.sheet
         used = utilisation(sheet, cell_strains(sheet, self.test.states[step]))
-        alpha = np.array([(law.alpha_xx, law.alpha_yy) for law in sheet.laws])
-        cell_alpha = alpha[sheet.grid.law_of_cell]
-        kappa = sheet.model.stiffening_coupling
+        stiff = stiffening_of(sheet, sheet.grid.law_of_cell)
         course = used[0] >= used[1]
         return np.stack(
             [
-                np.where(course, cell_alpha[..., 0], kappa * cell_alpha[..., 1]),
-                np.where(course, kappa * cell_alpha[..., 0], cell_alpha[..., 1]),
+                np.where(course, stiff.alpha_xx, np.multiply(stiff.kappa_yy, stiff.alpha_yy)),
+                np.where(course, np.multiply(stiff.kappa_xx, stiff.alpha_xx), stiff.alpha_yy),
             ]
         )
 
@@ -184,57 +198,98 @@ def model_log_sd(sheet: Sheet) -> float:
     return pure * MODEL_LOG_SD["patchwork"] + (1 - pure) * MODEL_LOG_SD["flat"]
 
 
-def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Parameter]:
-    found = []
-    shear = np.zeros((len(sheet.laws), 10))
-    for code in np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]):
-        law, spread = sheet.laws[code], material.record(PHASES[code]).uncertainty
-        for direction in Direction:
-            sd = spread.log_modulus(direction)
-            found.append(_Parameter(_table(sheet, code, _scale(law, direction)), sd, model_sd))
-        sd = _coupling_sd(material.law(PHASES[code]), sheet.model.rule, spread)
-        found.append(_Parameter(_table(sheet, code, _coupling(law)), sd, 0.0))
-        if (
-            sheet.model.shear_modulus is None
-            and law.shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
-        ):
-            shear += _table(sheet, code, (0, 0, 0, law.shear_modulus, 0, 0))
-    if shear.any():
-        found.append(_Parameter(shear, LOG_SHEAR_PRIOR[1], 0.0))
+def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
+    """Of the logarithm of the lock-up strain, course-wise and wale-wise, (laws, 2)."""
+    codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth])
+    found = np.zeros((len(sheet.laws), 2))
+    for code in codes:
+        spread = material.record(PHASES[code]).uncertainty
+        found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
     return found
 
 
-def _table(sheet: Sheet, code: int, change: tuple[float, ...]) -> Array:
-    """Kernel parameters of a change (C_xxxx, C_yyyy, C_xxyy, C_xyxy, beta_xx, beta_yy) of a law."""
-    law = sheet.laws[code]
-    table = np.zeros((len(sheet.laws), 10))
-    table[code, :4], table[code, 6:8] = change[:4], change[4:]
-    table[code, 4:6] = law.alpha_xx, law.alpha_yy
-    table[code, 8] = sheet.model.stiffening_coupling
-    return table
+def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Parameter]:
+    found = []
+    codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
+    for code in codes:
+        law, spread = material.law(PHASES[code]), material.record(PHASES[code]).uncertainty
+        for direction in Direction:
+            curve = spread.curve(direction)
+            step = _varied(sheet, [code], partial(_stress_scaled, direction))
+            found.append(_Parameter(*step, curve.log_stress, model_sd))
+            if curve.log_strain > 0:
+                step = _varied(sheet, [code], partial(_strain_scaled, direction))
+                found.append(_Parameter(*step, curve.log_strain, 0.0))
+        sd = _coupling_sd(law, sheet.model.rule, spread)
+        found.append(_Parameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+        if sheet.model.shear_modulus is None and spread.log_shear is not None:
+            found.append(_Parameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
+    assumed = [
+        code
+        for code in codes
+        if sheet.model.shear_modulus is None
+        and material.record(PHASES[code]).uncertainty.log_shear is None
+        and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
+    ]
+    if assumed:
+        found.append(_Parameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+    return found
 
 
-def _scale(law: ConstitutiveLaw, direction: Direction) -> tuple[float, ...]:
+def _varied(
+    sheet: Sheet, codes: list[int], vary: Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
+) -> tuple[Array, Array]:
+    """Kernel parameters of these laws with a parameter raised and lowered; 0 for the others."""
+    tables = []
+    for step in (STEP, -STEP):
+        table = np.zeros_like(sheet.parameters)
+        table[codes] = sheet.model.parameters([vary(sheet.laws[code], step) for code in codes])
+        tables.append(table)
+    return tables[0], tables[1]
+
+
+def _stress_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
     """By the logarithm of the scale of stress in a direction, Poisson's ratios' product fixed."""
-    coupling = law.stiffness_xxyy / 2
-    if direction is Direction.COURSE:
-        return law.stiffness_xxxx, 0, coupling, 0, law.beta_xx, 0
-    return 0, law.stiffness_yyyy, coupling, 0, 0, law.beta_yy
+    return _scaled(law, direction, math.exp(step), "beta")
 
 
-def _coupling(law: ConstitutiveLaw) -> tuple[float, ...]:
-    """By r = C_xxyy / sqrt(C_xxxx C_yyyy), Young's moduli fixed."""
-    mean = math.sqrt(law.stiffness_xxxx * law.stiffness_yyyy)
-    r = law.stiffness_xxyy / mean
-    grown = 2 * r / (1 - r * r)
-    return (
-        grown * law.stiffness_xxxx,
-        grown * law.stiffness_yyyy,
-        mean * (1 + r * grown),
-        0,
-        0,
-        0,
+def _strain_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By the logarithm of the scale of strain in a direction: sigma(e) becomes sigma(r e)."""
+    return _scaled(law, direction, math.exp(step), "alpha")
+
+
+def _scaled(
+    law: ConstitutiveLaw, direction: Direction, factor: float, constant: str
+) -> ConstitutiveLaw:
+    axis = "xx" if direction is Direction.COURSE else "yy"
+    stiffness, stiffening = f"stiffness_{axis * 2}", f"{constant}_{axis}"
+    coupling = law.stiffness_xxyy * math.sqrt(factor)
+    return replace(
+        law,
+        stiffness_xxyy=coupling,
+        stiffness_yyxx=coupling,
+        **{name: getattr(law, name) * factor for name in (stiffness, stiffening)},
     )
+
+
+def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By r = C_xxyy / sqrt(C_xxxx C_yyyy), Young's moduli fixed."""
+    r = law.stiffness_xxyy / math.sqrt(law.stiffness_xxxx * law.stiffness_yyyy)
+    grown = (1 - r**2) / (1 - (r + step) ** 2)
+    xxxx, yyyy = law.stiffness_xxxx * grown, law.stiffness_yyyy * grown
+    coupling = (r + step) * math.sqrt(xxxx * yyyy)
+    return replace(
+        law,
+        stiffness_xxxx=xxxx,
+        stiffness_yyyy=yyyy,
+        stiffness_xxyy=coupling,
+        stiffness_yyxx=coupling,
+    )
+
+
+def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By the logarithm of the shear modulus."""
+    return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
 
 
 def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:

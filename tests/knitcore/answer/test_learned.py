@@ -16,7 +16,7 @@ from knitcore.fabric import PHASES, Direction
 from knitcore.materials import material
 from tests.knitcore.charts import stitch_charts
 
-ACRYLIC = material("acrylic")
+ACRYLIC = material("acrylic:published")
 STRESS = np.array([0.05, 0.1, 0.2])
 
 

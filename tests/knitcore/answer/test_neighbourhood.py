@@ -13,7 +13,7 @@ from knitcore.fabric import PHASES
 from knitcore.materials import material
 from tests.knitcore.charts import stitch_charts
 
-ACRYLIC = material("acrylic")
+ACRYLIC = material("acrylic:published")
 
 
 @pytest.mark.parametrize("fabric", PHASES)

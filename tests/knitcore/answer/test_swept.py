@@ -13,7 +13,7 @@ SIMULATED = {f: material("acrylic:simulation").law(f) for f in Fabric}
 
 @pytest.mark.parametrize("fabric", Fabric)
 def test_pure_fabrics_get_their_measured_moduli_and_stiffening(fabric: Fabric) -> None:
-    acrylic = material("acrylic")
+    acrylic = material("acrylic:published")
     repeat = StitchChart.of_fabric(fabric, 2, 2)
     law = law_in_material(SIMULATED[fabric], SIMULATED, repeat, acrylic)
     for direction in Direction:
@@ -28,7 +28,7 @@ def test_pure_fabrics_get_their_measured_moduli_and_stiffening(fabric: Fabric) -
 
 
 def test_mixed_repeats_take_the_mean_ratio_of_their_phases() -> None:
-    acrylic, repeat = material("acrylic"), StitchChart.parse("KKPP")
+    acrylic, repeat = material("acrylic:published"), StitchChart.parse("KKPP")
     law = law_in_material(SIMULATED[Fabric.RIB], SIMULATED, repeat, acrylic)
     ratios = [
         acrylic.law(f).modulus_course / SIMULATED[f].modulus_course
@@ -42,11 +42,11 @@ def test_every_phase_must_be_known() -> None:
     rib = StitchChart.parse("KKPP")
     plain = {Fabric.STOCKINETTE: SIMULATED[Fabric.STOCKINETTE]}
     with pytest.raises(InputError, match="lacks rib"):
-        law_in_material(SIMULATED[Fabric.RIB], plain, rib, material("acrylic"))
+        law_in_material(SIMULATED[Fabric.RIB], plain, rib, material("acrylic:published"))
 
 
 def test_sizes_are_carried_over_by_their_ratio_to_a_pure_fabric() -> None:
-    acrylic, rib = material("acrylic"), StitchChart.parse("KKPP")
+    acrylic, rib = material("acrylic:published"), StitchChart.parse("KKPP")
     found = swept_answer(SIMULATED[Fabric.RIB], (1.2, 2.2), SIMULATED, (1.5, 2.2), rib, acrylic)
     record = acrylic.record(Fabric.RIB)
     assert found.provenance == "swept"

@@ -26,6 +26,9 @@ from knitcore.mechanics.pressure import limb_pressure
 ACRYLIC = material("acrylic")
 REPEATS = repeats_up_to(2, 3)
 ATLAS = build_atlas(ACRYLIC, REPEATS)
+PUBLISHED = material("acrylic:published")
+PUBLISHED_ATLAS = build_atlas(PUBLISHED, [c for c in REPEATS if len(c.text) <= 5])
+"""Laws without kappa: an atlas takes the stress of a held width from Poisson's ratios at rest."""
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
@@ -115,12 +118,14 @@ def test_curves_of_pure_fabrics_are_those_of_their_laws(fabric: Fabric) -> None:
 def test_a_wanted_pressure_is_that_of_the_pressure_model(
     fabric: Fabric, direction: Direction
 ) -> None:
-    expected = limb_pressure(ACRYLIC.law(fabric), direction, 200.0, 240.0).mmhg
+    expected = limb_pressure(PUBLISHED.law(fabric), direction, 200.0, 240.0).mmhg
     quantity = Quantity.PRESSURE_COURSE if direction is Direction.COURSE else Quantity.PRESSURE_WALE
     middle = float(np.sqrt(expected.low * expected.high))
     target = Target(quantity, middle, 0.05, limb=Limb(200.0, 240.0))
-    found = find_fabric([ATLAS], [target], count=len(ATLAS))
-    key = ATLAS.keys[ATLAS.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) or 0]
+    found = find_fabric([PUBLISHED_ATLAS], [target], count=len(PUBLISHED_ATLAS))
+    key = PUBLISHED_ATLAS.keys[
+        PUBLISHED_ATLAS.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) or 0
+    ]
     own = next(c for c in found.candidates if c.repeat == key)
     assert own.values[target.label] == pytest.approx(middle, rel=0.02)
     assert own.reached
@@ -265,7 +270,7 @@ def test_wishes_that_each_can_be_had_but_not_together() -> None:
     course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm") for d in ("course", "wale"))
     targets = [
         Target(Quantity.MODULUS_COURSE, float(course.max()), 0.01),
-        Target(Quantity.MODULUS_WALE, float(wale.max()), 0.01),
+        Target(Quantity.MODULUS_WALE, float(wale.min()), 0.01),
     ]
     found = find_fabric([ATLAS], targets)
     assert not found.reached

@@ -41,7 +41,7 @@ from knitcore.worked import Construction
 from tests.knitcore.charts import stitch_charts
 from tests.knitcore.pieces import pieces
 
-ACRYLIC = material("acrylic")
+ACRYLIC = material("acrylic:published")
 CHEAP = (
     ExportKind.TEXT,
     ExportKind.PNG,

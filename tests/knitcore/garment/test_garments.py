@@ -32,7 +32,7 @@ from knitcore.garment.worked_piece import piece_rows
 from knitcore.garment.worn import Fit
 from knitcore.materials import material
 
-WOOL = material("glove-wool")
+WOOL = material("glove-wool:published")
 PLANS = (
     glove(Hand(), WOOL),
     wrist_brace(170, 90, WOOL),

@@ -23,8 +23,8 @@ def test_four_inches_hold_a_little_more_than_ten_centimetres() -> None:
 
 
 def test_the_gauge_of_a_material_is_its_stitch() -> None:
-    record = material("acrylic").record(Fabric.SEED)
-    gauge = Gauge.of_material(material("acrylic"), Fabric.SEED)
+    record = material("acrylic:published").record(Fabric.SEED)
+    gauge = Gauge.of_material(material("acrylic:published"), Fabric.SEED)
     assert gauge.counts(GaugeLength.FIVE_CM)[0] == pytest.approx(50 / record.stitch_course_mm)
 
 

@@ -16,6 +16,7 @@ from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.law_fit import fit_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
+from knitcore.measure.uniaxial_files import read_stretch_test
 from tests.knitcore.measure.synthetic import LAW, pull, write_csv, write_h5
 
 X, Y = Direction.COURSE, Direction.WALE
@@ -37,7 +38,7 @@ def close_to(law: ConstitutiveLaw, expected: ConstitutiveLaw, rel: float) -> Non
         assert getattr(law, name) == pytest.approx(getattr(expected, name), rel=rel), name
 
 
-@pytest.mark.parametrize("reduction", list(Reduction))
+@pytest.mark.parametrize("reduction", [Reduction.PUBLISHED, Reduction.UNIFORM])
 def test_a_law_comes_back_from_csv(tmp_path: Path, reduction: Reduction) -> None:
     files = [write_csv(tmp_path / f"{d}.csv", d) for d in (X, Y)]
     fit = fit_files(files[0], files[1], reduction=reduction)
@@ -47,7 +48,7 @@ def test_a_law_comes_back_from_csv(tmp_path: Path, reduction: Reduction) -> None
     assert fit.rms_n_per_mm < 1e-3
 
 
-@pytest.mark.parametrize("reduction", list(Reduction))
+@pytest.mark.parametrize("reduction", [Reduction.PUBLISHED, Reduction.UNIFORM])
 def test_a_law_comes_back_from_the_authors_layout(tmp_path: Path, reduction: Reduction) -> None:
     files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
     fit = fit_files(files[0], files[1], reduction=reduction)
@@ -321,7 +322,7 @@ def test_published_reduction_gives_the_published_constants(study_data: Path, fab
     assert fit.rms_n_per_mm < 0.03 * max(fit.residuals[X].stress.max(), 0.1)
 
 
-def test_recommended_reduction_differs_where_the_notes_say(study_data: Path) -> None:
+def test_uniform_reduction_differs_where_the_notes_say(study_data: Path) -> None:
     """Clamp to clamp, garter's C_yyyy is 0.08 and stockinette's C_xxxx 0.31 to 0.33 N/mm."""
     folder = study_data / "uniaxial"
     stiffness = {}
@@ -335,3 +336,32 @@ def test_recommended_reduction_differs_where_the_notes_say(study_data: Path) -> 
 def test_the_curve_of_a_made_test_is_the_laws() -> None:
     along, across, stress = pull(X)
     assert LAW.stress(along, across)[0] == pytest.approx(stress)
+
+
+def test_readings_that_never_change_are_told(tmp_path: Path) -> None:
+    good = write_csv(tmp_path / "wale.csv", Y)
+    rows = [f"0.2,-0.05,{force},70" for force in range(1, 41)]
+    header = "strain_along,strain_across,force_n,width_mm"
+    still = tmp_path / "course.csv"
+    still.write_text("\n".join([header, *rows]))
+    with pytest.raises(InputError, match=r"strain_along.*0\.2 in every row"):
+        fit_files(still, good)
+
+
+def test_names_that_are_not_utf_8_are_told(tmp_path: Path) -> None:
+    path = write_h5(tmp_path / "course.h5", X)
+    with h5py.File(path, "r+") as file:
+        file.create_group(b"vid\xe9o9")
+    with pytest.raises(InputError, match="UTF-8"):
+        read_stretch_test(path)
+
+
+def test_a_width_below_that_of_the_tracked_points_is_told(tmp_path: Path) -> None:
+    path = write_h5(tmp_path / "course.h5", X)
+    with h5py.File(path, "r+") as file:
+        file["fabricSize"][:] = 35.5 * 4.0
+    assert any("fabricSize may be misread" in note for note in read_stretch_test(path).notes)
+
+
+def test_the_distance_of_the_clamps_is_read(tmp_path: Path) -> None:
+    assert read_stretch_test(write_h5(tmp_path / "x.h5", X)).length_mm == pytest.approx(90.0)

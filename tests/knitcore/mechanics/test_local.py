@@ -9,14 +9,14 @@ from hypothesis.extra import numpy as hnp
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction, Fabric
-from knitcore.materials import load_library, material
+from knitcore.materials import Laws, load_library, material
 from knitcore.mechanics.local import local_moduli, stitch_table
 from knitcore.phases import QUARTERS_OF_CODE
 
 grids = hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=8))
 
 
-@pytest.mark.parametrize("identifier", [*load_library(), "cotton:simulation"])
+@pytest.mark.parametrize("identifier", [*load_library(Laws.PUBLISHED), "cotton:simulation"])
 @pytest.mark.parametrize("fabric", Fabric)
 def test_pure_fabrics_have_their_law(identifier, fabric):
     yarn = material(identifier)
@@ -29,7 +29,7 @@ def test_pure_fabrics_have_their_law(identifier, fabric):
     )
 
 
-@pytest.mark.parametrize("identifier", load_library())
+@pytest.mark.parametrize("identifier", load_library(Laws.PUBLISHED))
 def test_every_kind_lies_between_its_phases(identifier):
     yarn = material(identifier)
     table = stitch_table(yarn)
@@ -45,7 +45,7 @@ def test_every_kind_lies_between_its_phases(identifier):
 
 
 def test_log_deviations_are_the_delta_method():
-    yarn = material("acrylic")
+    yarn = material("acrylic:published")
     table = stitch_table(yarn)
     for code in range(16):
         phases = QUARTERS_OF_CODE[code]
@@ -63,7 +63,7 @@ def test_log_deviations_are_the_delta_method():
 @given(grids)
 def test_turning_over_mirrors_the_maps(grid):
     chart = StitchChart(grid)
-    yarn = material("cotton")
+    yarn = material("cotton:published")
     face, back = local_moduli(chart, yarn), local_moduli(chart.turn_over(), yarn)
     np.testing.assert_allclose(
         face.modulus_course_n_per_mm, back.modulus_course_n_per_mm[:, ::-1], rtol=1e-13
@@ -75,7 +75,7 @@ def test_turning_over_mirrors_the_maps(grid):
 
 @given(grids, st.data())
 def test_a_stroke_updates_like_a_fresh_start(grid, data):
-    before = local_moduli(StitchChart(grid), material("acrylic"))
+    before = local_moduli(StitchChart(grid), material("acrylic:published"))
     rows, columns = (
         slice(*sorted(data.draw(st.tuples(st.integers(0, n), st.integers(0, n)))))
         for n in grid.shape
@@ -84,18 +84,19 @@ def test_a_stroke_updates_like_a_fresh_start(grid, data):
     painted[rows, columns] ^= data.draw(hnp.arrays(bool, painted[rows, columns].shape))
     chart = StitchChart(painted)
     np.testing.assert_array_equal(
-        before.updated(chart, rows, columns).codes, local_moduli(chart, material("acrylic")).codes
+        before.updated(chart, rows, columns).codes,
+        local_moduli(chart, material("acrylic:published")).codes,
     )
 
 
 def test_an_update_needs_the_same_size():
-    maps = local_moduli(StitchChart.of_fabric("rib", 4, 4), material("acrylic"))
+    maps = local_moduli(StitchChart.of_fabric("rib", 4, 4), material("acrylic:published"))
     with pytest.raises(InputError, match="5x4"):
         maps.updated(StitchChart.of_fabric("rib", 4, 5), slice(0, 1), slice(0, 1))
 
 
 def test_two_regions_have_their_own_moduli_inside():
-    yarn = material("acrylic")
+    yarn = material("acrylic:published")
     purl = np.zeros((20, 40), dtype=bool)
     purl[:, 20:] = StitchChart.of_fabric("garter", 20, 20).purl
     maps = local_moduli(StitchChart(purl), yarn)
@@ -108,7 +109,7 @@ def test_two_regions_have_their_own_moduli_inside():
 
 
 def test_a_missing_fabric_matters_only_where_it_is_used():
-    needle = material("glove-wool:needle-2.0mm")
+    needle = material("glove-wool:needle-2.0mm:published")
     plain = local_moduli(StitchChart.of_fabric("stockinette", 3, 3), needle)
     assert plain.modulus_course_n_per_mm == pytest.approx(0.793, rel=0.01)
     with pytest.raises(InputError, match="has no rib"):

@@ -17,7 +17,7 @@ from knitcore.mechanics.pressure import MMHG_PER_KPA, limb_pressure, rest_circum
 
 LINEAR = ConstitutiveLaw(0.2, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Without coupling and stiffening: sigma = 0.2 N/mm times the strain."""
-GLOVE = material("glove-wool:glove").law(Fabric.STOCKINETTE)
+GLOVE = material("glove-wool:glove:published").law(Fabric.STOCKINETTE)
 
 
 def test_a_circular_limb_of_known_radius() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -16,6 +18,8 @@ LAWS = (
     ConstitutiveLaw(0.241, 0.060, 0.036, 0.029, 1.17, 0.802, 0.022, 0.022, 0.01),
     ConstitutiveLaw(0.204, 0.930, 0.088, 0.413, 1.111, 2.537, 0.046, 0.010, 0.03),
 )
+
+COUPLED = tuple(replace(law, kappa_xx=0.3, kappa_yy=0.5) for law in LAWS)
 
 
 def mixed_grid(rng: np.random.Generator) -> QuarterGrid:
@@ -148,18 +152,21 @@ def test_the_kernel_equals_scikit_fem(energy: EnergyModel) -> None:
 
 
 @pytest.mark.parametrize(
-    "model",
+    ("model", "laws"),
     [
-        SheetModel(EnergyModel.PUBLISHED),
-        SheetModel(),
-        SheetModel(stiffening_coupling=0.4),
-        SheetModel(tension_field=True),
+        (SheetModel(EnergyModel.PUBLISHED), LAWS),
+        (SheetModel(), LAWS),
+        (SheetModel(), COUPLED),
+        (SheetModel(tension_field=True), LAWS),
+        (SheetModel(tension_field=True), COUPLED),
     ],
-    ids=["published", "full", "coupled", "tension field"],
+    ids=["published", "full", "coupled", "tension field", "coupled tension field"],
 )
-def test_force_and_tangent_are_derivatives_of_the_energy(model: SheetModel) -> None:
+def test_force_and_tangent_are_derivatives_of_the_energy(
+    model: SheetModel, laws: tuple[ConstitutiveLaw, ...]
+) -> None:
     rng = np.random.default_rng(3)
-    sheet = Sheet(mixed_grid(rng), LAWS, model)
+    sheet = Sheet(mixed_grid(rng), laws, model)
     state = disturbed(sheet, rng)
     lin = sheet.linearise(state)
     corner, centre = rng.normal(size=state.corners.shape), rng.normal(size=state.centres.shape)

@@ -15,7 +15,11 @@ from knitcore.swatch.figures import (
 )
 
 TEST = strip_test(
-    StitchChart.of_fabric("garter", rows=5, columns=8), material("acrylic"), "wale", 0.4, steps=2
+    StitchChart.of_fabric("garter", rows=5, columns=8),
+    material("acrylic:published"),
+    "wale",
+    0.4,
+    steps=2,
 )
 
 

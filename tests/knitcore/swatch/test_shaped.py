@@ -19,7 +19,7 @@ from knitcore.materials import material
 from knitcore.swatch import chart_sheet, misfit, relaxed_shape, strip_test
 from knitcore.swatch.files import write_fields
 
-ACRYLIC = material("acrylic")
+ACRYLIC = material("acrylic:published")
 RIB = StitchChart.parse("\n".join(["KKPPKKPP"] * 3 + ["KKKKPPPP"] * 3))
 WAISTED = outline_marks("xxxxxxxx\n.xxxxxx.\n..xxxx..\n..xxxx..\n.xxxxxx.\nxxxxxxxx")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
-from knitcore.materials import FabricRecord, LawUncertainty, Material, load_library, material
-from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.materials import FabricRecord, Laws, LawUncertainty, Material, load_library, material
+from knitcore.materials.uncertainty import Z_SCORE, CurveUncertainty
 from knitcore.swatch import StripTest, chart_sheet, strip_test
 from knitcore.swatch.fields import Fields
 from knitcore.swatch.strip import Clamps
 from knitcore.swatch.uncertainty import StepSpread, StripSpread, model_log_sd
 
-ACRYLIC = material("acrylic")
+ACRYLIC = material("acrylic:published")
 SHEAR_N_PER_MM = 0.02
 """Given, so that it has no part in the intervals."""
 HALVES = StitchChart(
@@ -160,10 +160,27 @@ def test_the_assumed_shear_modulus_counts_and_a_given_one_does_not() -> None:
     assert spread.force_log_sd == 0.0
 
 
+def doubled(spread: LawUncertainty) -> LawUncertainty:
+    """Twice all deviations."""
+    curves = [
+        CurveUncertainty(*(2 * v for v in astuple(spread.curve(direction))))
+        for direction in Direction
+    ]
+    return LawUncertainty(
+        2 * spread.log_modulus_course,
+        2 * spread.log_modulus_wale,
+        2 * spread.poisson_yx,
+        2 * spread.poisson_xy,
+        "twice",
+        *curves,
+        None if spread.log_shear is None else 2 * spread.log_shear,
+    )
+
+
 @settings(max_examples=10, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
-    name=st.sampled_from(list(load_library())),
+    name=st.sampled_from(list(load_library(Laws.PUBLISHED))),
     direction=st.sampled_from(Direction),
     clamps=st.sampled_from(Clamps),
     model=st.sampled_from(["full", "published"]),
@@ -177,18 +194,9 @@ def test_of_any_chart_twice_the_uncertainty_is_twice_the_interval(
     double = replace(
         base,
         fabrics={
-            f: replace(
-                r,
-                uncertainty=LawUncertainty(
-                    *(2 * v for v in (r.uncertainty.log_modulus_course,
-                                      r.uncertainty.log_modulus_wale,
-                                      r.uncertainty.poisson_yx, r.uncertainty.poisson_xy)),
-                    "twice",
-                ),
-            )
-            for f, r in base.fabrics.items()
+            f: replace(r, uncertainty=doubled(r.uncertainty)) for f, r in base.fabrics.items()
         },
-    )  # fmt: skip
+    )
     test = strip_test(
         chart, base, direction, 0.2, steps=2, clamps=clamps, model=model, shear_modulus=0.02
     )

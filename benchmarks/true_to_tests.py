@@ -1,0 +1,114 @@
+"""Simulated against measured stretch tests: force, waist, and how many fall inside the intervals.
+
+    python benchmarks/true_to_tests.py FOLDER [--left-out]
+
+FOLDER holds the study's acrylic tests (``outputData_Acrylic Yarn Garter X.h5`` and the like).
+Prints the eight tests with published and refitted laws. ``--left-out`` fits each pull by the others
+(a minute or two), and prints those that were left out.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.materials import Laws, material
+from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
+from knitcore.measure.uniaxial_files import read_stretch_test
+from knitcore.mechanics.pressure import stress_log_sd
+from knitcore.swatch.strip_fit import MeasuredStrip, fit_strips
+
+STRESSES = (0.05, 0.1, 0.2)
+GARTER_WIDTH_MM = 59.5
+"""The file has the clamp's size in place of acrylic garter's width course-wise."""
+Row = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def strips(folder: Path, fabric: Fabric) -> list[MeasuredStrip]:
+    """The two tests of a fabric."""
+    found = []
+    for direction, axis in zip(Direction, "XY", strict=True):
+        test = read_stretch_test(folder / f"outputData_Acrylic Yarn {fabric.title()} {axis}.h5")
+        if fabric is Fabric.GARTER and direction is Direction.COURSE:
+            test = test.with_width(GARTER_WIDTH_MM)
+        found.append(MeasuredStrip.of(test, direction))
+    return found
+
+
+def compared(law: ConstitutiveLaw, spread: LawUncertainty, strip: MeasuredStrip) -> Row:
+    """Simulated over measured force, waist less the measured one, whether the force is inside."""
+    stress, waist = strip.means
+    known = np.isfinite(stress)
+    at = np.interp(STRESSES, stress[known], strip.strain[known])
+    at = np.minimum(at, 0.95 * law.lock_up_strain(strip.direction))
+    force, narrowing = strip.simulate(law, at)
+    ratio = force / STRESSES
+    curve = spread.curve(strip.direction)
+    sd = np.array([stress_log_sd(law, strip.direction, float(e), curve) for e in at])
+    return (
+        ratio,
+        narrowing - np.interp(at, strip.strain[known], waist[known]),
+        np.abs(np.log(ratio)) <= Z_SCORE * sd,
+    )
+
+
+def told(rows: list[Row]) -> None:
+    """The figures over all tests."""
+    ratio, waist, inside = (np.array(part) for part in zip(*rows, strict=True))
+    logs = np.log(ratio)
+    print("  rms factor ", np.round(np.exp(np.sqrt(np.nanmean(logs**2, axis=0))), 3),
+          " bias ", np.round(np.exp(np.nanmean(logs, axis=0)), 3))  # fmt: skip
+    print(f"  waist rms {math.sqrt(np.nanmean(waist**2)):.3f}; {inside.sum()} of {inside.size} "
+          f"forces inside the 90 % interval ({inside.mean():.0%})")  # fmt: skip
+
+
+def library(folder: Path, laws: Laws) -> None:
+    """The eight tests with the library's laws."""
+    print(f"{laws} laws: force over measured at {STRESSES} N/mm, waist less measured, inside")
+    rows = []
+    for fabric in Fabric:
+        record = material("acrylic", laws).record(fabric)
+        for strip in strips(folder, fabric):
+            row = compared(record.law, record.uncertainty, strip)
+            rows.append(row)
+            print(f"  {fabric:12}{strip.direction:8}", np.round(row[0], 2), np.round(row[1], 3),
+                  row[2].astype(int))  # fmt: skip
+    told(rows)
+
+
+def left_out(folder: Path) -> None:
+    """Every pull predicted by a law fitted to the other pulls."""
+    rows = []
+    for fabric in Fabric:
+        both = strips(folder, fabric)
+        for index in range(max(strip.pulls for strip in both)):
+            kept = [s.without(index) if index < s.pulls else s for s in both]
+            fit = fit_strips(kept)
+            for strip in both:
+                if index < strip.pulls:
+                    alone = replace(
+                        strip,
+                        stress_n_per_mm=strip.stress_n_per_mm[index : index + 1],
+                        waist=strip.waist[index : index + 1],
+                    )
+                    rows.append(compared(fit.law, fit.uncertainty, alone))
+    print(f"{len(rows)} pulls left out one at a time")
+    told(rows)
+
+
+def main() -> None:
+    folder = Path(sys.argv[1])
+    for laws in (Laws.PUBLISHED, Laws.REFITTED):
+        library(folder, laws)
+    if "--left-out" in sys.argv:
+        left_out(folder)
+
+
+if __name__ == "__main__":
+    main()

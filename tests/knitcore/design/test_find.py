@@ -1,0 +1,26 @@
+"""What never ranks first."""
+
+from knitcore.chart import StitchChart
+from knitcore.design.atlas_build import build_atlas
+from knitcore.design.find import find_fabric
+from knitcore.design.targets import Limb, Quantity, Target
+from knitcore.materials import material
+
+REPEATS = [StitchChart.parse(text) for text in ("K", "K\nP", "KP", "KP\nPK", "KKP\nPPK")]
+
+
+def test_a_fabric_whose_figures_contradict_each_other_never_ranks_first() -> None:
+    """Acrylic garter course-wise, as published, is the stiffest: its width was misread."""
+    atlas = build_atlas(material("acrylic:published"), REPEATS)
+    limb = Limb(200.0, 250.0)
+    pressures = {}
+    for quantity in (Quantity.PRESSURE_COURSE, Quantity.PRESSURE_WALE):
+        target = Target(quantity, 1000.0, limb=limb)
+        found = find_fabric([atlas], [target])
+        pressures[quantity] = [c.values[target.label] for c in found.candidates]
+        last = found.candidates[-1]
+        if quantity is Quantity.PRESSURE_COURSE:
+            assert last.repeat == "K/P"
+            assert last.values[target.label] == max(pressures[quantity])
+    wale = pressures[Quantity.PRESSURE_WALE]
+    assert wale == sorted(wale, reverse=True)

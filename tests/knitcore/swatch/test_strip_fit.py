@@ -1,0 +1,126 @@
+"""A law fitted to simulated tests gives back what made them, and the authors' tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from knitcore.errors import CancelledError
+from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.materials import material
+from knitcore.measure.uniaxial import Reduction
+from knitcore.measure.uniaxial_files import read_stretch_test
+from knitcore.swatch.strip_fit import LEVELS, MeasuredStrip, fit_strips, fit_tests
+from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
+
+TRUTH = ConstitutiveLaw(
+    0.15, 0.09, 0.042, 0.042, 1.25, 1.0, 0.015, 0.015, 0.02, kappa_xx=0.1, kappa_yy=0.3
+)
+CLAMPED = {Direction.COURSE: (60.0, 92.0), Direction.WALE: (120.0, 40.0)}
+EVEN = {Direction.COURSE: (60.0, None), Direction.WALE: (120.0, None)}
+
+
+def made_strip(
+    direction: Direction,
+    sizes: dict[Direction, tuple[float, float | None]],
+    pulls: int = 3,
+    noise: float = 0.0,
+) -> MeasuredStrip:
+    """A simulated test of TRUTH, every pull a little stiffer or softer."""
+    strain = np.linspace(0.08, 0.995, LEVELS) * 0.7
+    blank = np.zeros((pulls, LEVELS))
+    strip = MeasuredStrip(direction, *sizes[direction], strain, blank, blank)
+    stress, waist = strip.simulate(TRUTH)
+    scale = 1 + noise * np.linspace(-1, 1, pulls)[:, None]
+    return MeasuredStrip(
+        direction, *sizes[direction], strain, scale * stress, np.repeat(waist[None], pulls, axis=0)
+    )
+
+
+@pytest.mark.parametrize(
+    "sizes", [EVEN, pytest.param(CLAMPED, marks=pytest.mark.slow)], ids=["even", "clamped"]
+)
+def test_a_law_comes_back_from_strips_that_it_made(
+    sizes: dict[Direction, tuple[float, float | None]],
+) -> None:
+    strips = [made_strip(d, sizes) for d in Direction]
+    found = fit_strips(strips)
+    assert found.law.modulus_course == pytest.approx(TRUTH.modulus_course, rel=0.02)
+    assert found.law.modulus_wale == pytest.approx(TRUTH.modulus_wale, rel=0.02)
+    assert found.law.alpha_xx == pytest.approx(TRUTH.alpha_xx, rel=0.03)
+    assert found.law.kappa_yy == pytest.approx(TRUTH.kappa_yy, abs=0.05)
+    for strip, stress in zip(strips, found.stress, strict=True):
+        assert stress == pytest.approx(strip.means[0], rel=0.01)
+
+
+def test_pulls_that_differ_make_the_law_less_sure() -> None:
+    same, apart = (
+        fit_strips([made_strip(d, EVEN, noise=noise) for d in Direction]).uncertainty
+        for noise in (0.0, 0.2)
+    )
+    assert apart.log_modulus_course > same.log_modulus_course + 0.03
+
+
+def test_a_test_without_the_clamps_distance_strains_evenly(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
+    fit = fit_tests(files[0], files[1])
+    assert fit.reduction is Reduction.RECOMMENDED
+    assert fit.law.modulus_course == pytest.approx(LAW.modulus_course, rel=0.03)
+    assert any("length_mm" in note for note in fit.notes)
+
+
+def test_four_tracked_points_are_enough(tmp_path: Path) -> None:
+    """Right and left are found by their place, whatever their order."""
+    import h5py
+
+    files = [write_h5(tmp_path / f"{d}.h5", d) for d in Direction]
+    for path in files:
+        with h5py.File(path, "r+") as file:
+            for video in [name for name in file if name.startswith("video")]:
+                points = file[f"{video}/traj"][()]
+                del file[f"{video}/traj"]
+                file[f"{video}/traj"] = points[[2, 0, 3, 1]]
+    test = read_stretch_test(files[0])
+    assert any("Four points" in note for note in test.notes)
+    assert test.length_mm == pytest.approx(0.9 * 90, rel=0.01)
+    assert fit_tests(files[0], files[1], reduction=Reduction.UNIFORM).law.alpha_xx == (
+        pytest.approx(LAW.alpha_xx, rel=0.02)
+    )
+
+
+def test_a_corrected_width_scales_the_stress(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
+    as_read, wider = (
+        fit_tests(*files, reduction=Reduction.UNIFORM, width_course_mm=width)
+        for width in (None, 140.0)
+    )
+    assert wider.law.stiffness_xxxx == pytest.approx(as_read.law.stiffness_xxxx / 2, rel=1e-6)
+    assert wider.law.stiffness_yyyy == pytest.approx(as_read.law.stiffness_yyyy, rel=1e-6)
+
+
+def test_a_fit_can_be_stopped() -> None:
+    with pytest.raises(CancelledError):
+        fit_strips([made_strip(d, EVEN) for d in Direction], cancelled=lambda: True)
+
+
+# -- the authors' tests --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("fabric", Fabric)
+def test_the_library_reproduces_acrylics_raw_tests(study_data: Path, fabric: Fabric) -> None:
+    """Force within 10 % at .05, .1 and .2 N/mm, waist within .04, course and wale."""
+    law = material("acrylic").law(fabric)
+    for direction, axis in zip(Direction, "XY", strict=True):
+        path = study_data / "uniaxial" / f"outputData_Acrylic Yarn {fabric.title()} {axis}.h5"
+        test = read_stretch_test(path)
+        if fabric is Fabric.GARTER and direction is Direction.COURSE:
+            test = test.with_width(59.5)  # the file repeats the clamp's size for the width
+        strip = MeasuredStrip.of(test, direction)
+        stress, waist = strip.means
+        at = np.interp((0.05, 0.1, 0.2), stress, strip.strain)
+        force, narrowing = strip.simulate(law, at)
+        assert force / (0.05, 0.1, 0.2) == pytest.approx(np.ones(3), abs=0.1)
+        assert narrowing == pytest.approx(np.interp(at, strip.strain, waist), abs=0.04)
