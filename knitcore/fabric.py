@@ -52,11 +52,6 @@ class Fabric(Choice):
         return 2 * self.course_odd + self.wale_odd
 
     @classmethod
-    def from_phase(cls, code: int) -> Fabric:
-        """Inverse of :attr:`phase`."""
-        return PHASES[code]
-
-    @classmethod
     def parse(cls, name: str) -> Self:
         """A fabric by its name, whatever the case.
 

@@ -244,11 +244,6 @@ def _partners(atlas: Atlas) -> NDArray[np.intp]:
     return np.array(small[:_PARTNERS], dtype=np.intp)
 
 
-def _phases(chart: StitchChart) -> list[int]:
-    found: list[int] = np.unique(quarter_phases(chart, periodic=True)).tolist()
-    return found
-
-
 def _sizes(atlas: Atlas, material: Material, direction: Direction) -> Array:
     """Flat size of each repeat's mean stitch along a direction."""
     own = np.array([material.record(fabric).stitch_size_mm(direction) for fabric in PHASES])

@@ -73,24 +73,15 @@ def _shade(colour: str, *, knit: bool) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def read_png(file: Path) -> StitchChart:
+def read_png_piece(file: Path) -> Piece:
     """The chart of a picture: dark pixels are purls, light or transparent ones knits.
+
+    It has an outline and yarns if :func:`write_png` wrote them.
 
     Raises
     ------
     InputError
         If it is not a PNG, or too large.
-    """
-    return read_png_piece(file).chart
-
-
-def read_png_piece(file: Path) -> Piece:
-    """A picture's chart, with outline and yarns if :func:`write_png` wrote them.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_png`.
     """
     try:
         with Image.open(file, formats=["PNG"]) as image:

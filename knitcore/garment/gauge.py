@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from knitcore.errors import InputError
-from knitcore.fabric import Direction, Fabric
+from knitcore.fabric import Fabric
 from knitcore.materials import Material
 
 
@@ -93,11 +93,6 @@ class Gauge:
     def rows_for(self, height_mm: float, *, multiple: int = 1, extra: int = 0) -> int:
         """Rows of a height, rounded likewise."""
         return _rounded(height_mm / self.stitch_wale_mm, multiple, extra)
-
-    def count_for(self, length_mm: float, direction: Direction) -> int:
-        """Stitches along a course, or rows along a wale."""
-        along_course = direction is Direction.COURSE
-        return self.stitches_for(length_mm) if along_course else self.rows_for(length_mm)
 
 
 @dataclass(frozen=True)
