@@ -27,7 +27,8 @@ from app.http.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.http.reference import serve_reference
 from app.http.schema import install_schema
 from app.http.security import Guard
-from app.http.tokens import Login, Tokens
+from app.http.sessions import Sessions
+from app.http.tokens import REMEMBERED_S, Login, Tokens
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.operations.stretch import warm_up
@@ -80,6 +81,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
                 _tidy_store(app.state.database, job_store, chosen.results_max_bytes)
             ),
         ]
+        if chosen.require_login:
+            ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
+            janitors.append(asyncio.create_task(ending))
         yield
         for janitor in janitors:
             janitor.cancel()
@@ -170,7 +174,17 @@ def _open_database(settings: Settings) -> Database:
 
 def _login(database: Database, settings: Settings) -> Login:
     token = settings.token.get_secret_value() if settings.token else None
-    return Login(Tokens(database), token)
+    return Login(Tokens(database), Sessions(database), token)
+
+
+async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:
+    """Who has no token any more has no computations either."""
+    while True:
+        await asyncio.sleep(REMEMBERED_S)
+        with contextlib.suppress(StoreError):
+            for user in await asyncio.to_thread(tokens.without_any, jobs.owners()):
+                log.info("the jobs of %s are ended: no token is open any more", user)
+                await jobs.cancel_all(user)
 
 
 async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int) -> None:
@@ -179,6 +193,7 @@ async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int
         try:
             await asyncio.to_thread(DesignStore(database).forget_deleted)
             await asyncio.to_thread(forget_old_keys, database)
+            await asyncio.to_thread(Sessions(database).tidy)
             await asyncio.to_thread(jobs.tidy, results_max_bytes)
         except StoreError as error:
             log.warning("could not tidy the store: %s", error)

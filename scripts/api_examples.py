@@ -14,7 +14,9 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
+from app.http.identity import LOCAL_USER
 from app.http.schema import EXAMPLES, operations
+from app.http.sessions import Sessions
 from app.main import create_app
 from app.settings import Settings
 from tests.app.job_requests import job_requests
@@ -32,6 +34,8 @@ LAST = [
     "DELETE /api/v1/designs/{design}/shares/{share}",
     "DELETE /api/v1/designs/{design}",
     "POST /api/v1/designs/{design}/recover",
+    "DELETE /api/v1/sessions/{session}",
+    "DELETE /api/v1/session",
 ]
 FILES = {"fit": "fit", "bending": "bending", "compression": "compression"} | {
     kind: kind for kind in ("compare", "calibrate")
@@ -64,6 +68,8 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         files = job_requests(Path(folder))
     place: dict[str, Any] = {"material": "acrylic", "identifier": "acrylic", "number": 1}
+    sessions = Sessions(client.app.state.database)  # type: ignore[attr-defined]
+    place["session"] = sessions.begin("a token's id", LOCAL_USER)
     answers = {}
     for name in in_order(operations(client.app)):  # type: ignore[arg-type]
         method, path = name.split()

@@ -8,6 +8,8 @@ LOCAL_USER = "local"
 """Whoever sits at this machine, while the service asks for no login."""
 
 current_user: ContextVar[str] = ContextVar("current_user", default=LOCAL_USER)
+current_session: ContextVar[str] = ContextVar("current_session", default="")
+"""Id of the browser's session, if it came with one."""
 
 
 async def asking() -> str:

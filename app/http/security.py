@@ -7,7 +7,9 @@ must refuse requests that another site's page makes it send.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import math
+from collections.abc import AsyncIterator
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
@@ -17,14 +19,18 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
-from app.http.identity import current_user
+from app.http.identity import current_session, current_user
 from app.http.problems import Problem, problem_response, unexpected
 from app.http.rate import RateLimit
-from app.http.tokens import SESSION_S, Login
+from app.http.sessions import SESSION_S
+from app.http.sign_in import PATH, sign_in_form, sign_in_page
+from app.http.tokens import REMEMBERED_S, Login
 from app.settings import Settings
 from app.store.database import StoreError
 
 SESSION_COOKIE = "knitcore_session"
+OPENED_BY = "knitcore.opened_by"
+"""Token and session of a request, in its scope."""
 LOGIN_FAILURES = 20
 """Unknown tokens that one address may try before it is told to wait, 10 s each. A right token
 always opens: 256 random bits are not guessed, and a stranger cannot lock others out."""
@@ -90,13 +96,19 @@ class Guard:
             return
         limits: dict[str, str] = {}
         refusal = self._refusal(scope)
-        if refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
+        if refusal is None and self.settings.asks_for_login and _is_sign_in(scope):
+            refusal = await self._signed_in(scope, receive)
+        elif refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
             refusal = await self._login(scope, limits)
         if scope["type"] == "websocket":
             if refusal is not None:
                 await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
-            else:
+                return
+            async with self._while_open(scope) as open_:
                 await self.app(scope, receive, send)
+            if not open_:
+                with contextlib.suppress(RuntimeError):  # it was closed already
+                    await WebSocketClose(code=1008, reason="signed out")(scope, receive, send)
             return
 
         started = False
@@ -107,9 +119,9 @@ class Guard:
                 started = True
                 headers = MutableHeaders(scope=message)
                 view = scope["path"].startswith("/view/")
-                headers["Content-Security-Policy"] = VIEW_POLICY if view else PAGE_POLICY
+                headers.setdefault("Content-Security-Policy", VIEW_POLICY if view else PAGE_POLICY)
                 headers["X-Content-Type-Options"] = "nosniff"
-                headers["Referrer-Policy"] = "no-referrer"
+                headers.setdefault("Referrer-Policy", "no-referrer")
                 headers["Cross-Origin-Opener-Policy"] = "same-origin"
                 headers["Cross-Origin-Resource-Policy"] = "same-origin"
                 headers.setdefault("Cache-Control", "private, no-cache")
@@ -123,7 +135,10 @@ class Guard:
             return
         try:
             limited = _limited(receive, self.settings.max_body_bytes)
-            await self.app(scope, limited, send_with_headers)
+            async with self._while_open(scope) as open_:
+                await self.app(scope, limited, send_with_headers)
+            if not open_ and started:
+                await send({"type": "http.response.body", "body": b""})
         except Exception as error:  # answered here, so that its answer has the headers, too
             if started:
                 raise
@@ -163,7 +178,7 @@ class Guard:
         token, cookie = _bearer(headers), _cookie(headers)
         link = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
         try:
-            identifier, user = await asyncio.to_thread(_who, login, token, link, cookie)
+            identifier, user, session = await asyncio.to_thread(_who, login, token, link, cookie)
         except StoreError as error:
             return problem_response(error.problem)
         if not user:
@@ -181,26 +196,105 @@ class Guard:
         if wait:
             return _too_many("You are asking too often.", wait)
         current_user.set(user)
-        if link and not token and scope["type"] == "http" and scope["method"] == "GET":
-            # the link with the token: keep a session in a cookie, and the token out of the address
-            response = RedirectResponse(_own_path(scope["path"]), 303)
-            response.set_cookie(
-                SESSION_COOKIE,
-                login.session(identifier),
-                max_age=SESSION_S,
-                httponly=True,
-                samesite="strict",
-                secure=scope["scheme"] == "https",
-            )
-            return response
+        current_session.set(session)
+        scope[OPENED_BY] = identifier, session
+        if link and not (token or session) and scope["type"] == "http" and scope["method"] == "GET":
+            return await self._by_link(scope, identifier, user, link)
         return None
 
+    async def _by_link(self, scope: Scope, identifier: str, user: str, link: str) -> Response:
+        """Keep a session in a cookie, and the token out of the address; after a click, if another
+        site led here or another user is signed in."""
+        headers = Headers(scope=scope)
+        cookie, login = _cookie(headers), scope["app"].state.login
+        before = (await asyncio.to_thread(login.by_session, cookie))[1] if cookie else ""
+        led = headers.get("sec-fetch-site", "none") not in ("none", "same-origin")
+        if led or before not in ("", user):
+            return sign_in_page(user, before, link, scope["path"])
+        return await self._begin(scope, identifier, user, scope["path"])
 
-def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str]:
+    async def _signed_in(self, scope: Scope, receive: Receive) -> Response:
+        """Begin the session that somebody clicked for."""
+        token, to = await sign_in_form(scope, receive)
+        login: Login = scope["app"].state.login
+        try:
+            identifier, user = await asyncio.to_thread(login.by_token, token)
+            if user:
+                return await self._begin(scope, identifier, user, to)
+        except StoreError as error:
+            return problem_response(error.problem)
+        if self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
+            return _too_many("Too many unknown tokens came from this address.", 10.0)
+        return _refused("token", "Nobody has this token.", "Ask for a new one.", 403)
+
+    async def _begin(self, scope: Scope, identifier: str, user: str, to: str) -> Response:
+        login: Login = scope["app"].state.login
+        response = RedirectResponse(_own_path(to), 303)
+        response.set_cookie(
+            SESSION_COOKIE,
+            await asyncio.to_thread(login.begin, identifier, user),
+            max_age=SESSION_S,
+            httponly=True,
+            samesite="strict",
+            secure=scope["scheme"] == "https",
+        )
+        return response
+
+    @contextlib.asynccontextmanager
+    async def _while_open(self, scope: Scope) -> AsyncIterator[list[bool]]:
+        """Do something as long as the token or session that began it opens the service.
+
+        What is given is empty once it does not; then what was done was stopped.
+        """
+        open_ = [True]
+        if OPENED_BY not in scope:
+            yield open_
+            return
+        login: Login = scope["app"].state.login
+        task = asyncio.current_task()
+
+        loop, watching = asyncio.get_running_loop(), set[asyncio.Task[None]]()
+
+        def again() -> asyncio.TimerHandle:
+            return loop.call_later(REMEMBERED_S, lambda: watching.add(loop.create_task(watch())))
+
+        timer = again()
+
+        async def watch() -> None:
+            nonlocal timer
+            with contextlib.suppress(StoreError):  # while the database is away nobody is sent away
+                if not await asyncio.to_thread(login.is_open, *scope[OPENED_BY]):
+                    open_.clear()
+                    if task is not None:
+                        task.cancel()
+                    return
+            timer = again()
+
+        try:
+            yield open_
+        except asyncio.CancelledError:
+            if open_:
+                raise
+            if task is not None:
+                task.uncancel()
+        finally:
+            timer.cancel()
+            for other in watching:
+                other.cancel()
+
+
+def _is_sign_in(scope: Scope) -> bool:
+    return scope["type"] == "http" and (scope["method"], scope["path"]) == ("POST", PATH)
+
+
+def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str, str]:
+    """(token's id, user, session) of who asks."""
     if token:  # who names one is not let in by another
-        return login.by_token(token)
-    found = login.by_token(link) if link else ("", "")
-    return found if found[1] or not cookie else login.by_session(cookie)
+        return *login.by_token(token), ""
+    if link and (found := login.by_token(link))[1]:
+        return *found, ""
+    session, user = login.by_session(cookie) if cookie else ("", "")
+    return "", user, session
 
 
 def _place_of(origin: str) -> str | None:

@@ -11,10 +11,11 @@ from typing import Any
 
 from itsdangerous import BadSignature, URLSafeTimedSerializer
 from pydantic import AwareDatetime, BaseModel
-from sqlalchemy import Connection, insert, select, update
+from sqlalchemy import Connection, insert, or_, select, update
 
 from app.designs.store import moment, now
 from app.http.identity import LOCAL_USER
+from app.http.sessions import SESSION_S, Sessions
 from app.store.database import Database
 from app.store.tables import access_tokens, service_keys
 from knitcore.errors import InputError
@@ -23,7 +24,6 @@ USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0
 """How long an answer of the database is trusted: a revoked token works no longer than this."""
 MOST_REMEMBERED = 10_000
-SESSION_S = 30 * 86_400
 ENVIRONMENT = "environment"
 """Stands for the one token that is a setting."""
 
@@ -120,6 +120,16 @@ class Tokens:
             return "", ""
         return row.id, row.user
 
+    def without_any(self, users: set[str]) -> set[str]:
+        """Those of some users who have no open token any more."""
+        open_ = select(access_tokens.c.user).where(
+            access_tokens.c.user.in_(users),
+            access_tokens.c.revoked_at.is_(None),
+            or_(access_tokens.c.expires_at.is_(None), access_tokens.c.expires_at > now()),
+        )
+        with self._database.read() as connection:
+            return users - {LOCAL_USER} - set(connection.execute(open_).scalars())
+
     def session_key(self) -> str:
         """The key that signs sessions, made when it is first needed."""
 
@@ -138,12 +148,13 @@ class Login:
 
     Parameters
     ----------
-    tokens : of users.
+    tokens, sessions : of users.
     environment : the token of the settings, if there is one; it stands for the local user.
     """
 
-    def __init__(self, tokens: Tokens, environment: str | None) -> None:
+    def __init__(self, tokens: Tokens, sessions: Sessions, environment: str | None) -> None:
         self._tokens = tokens
+        self._sessions = sessions
         self._environment = None if environment is None else _hash(environment)
         self._signer = URLSafeTimedSerializer(tokens.session_key(), salt="knitcore session")
         self._remembered: dict[tuple[str, str], tuple[float, tuple[str, str]]] = {}
@@ -156,27 +167,50 @@ class Login:
         return self._ask("hashed", hashed)
 
     def by_session(self, cookie: str) -> tuple[str, str]:
-        """(id, user) of whoever holds this session; empty texts if it is none of ours."""
+        """(session, user) of whoever holds this cookie; empty texts if it is none of ours."""
         try:
-            identifier, proof = self._signer.loads(cookie, max_age=SESSION_S)
+            session = str(self._signer.loads(cookie, max_age=SESSION_S))
         except (BadSignature, ValueError, TypeError):
             return "", ""
-        if identifier == ENVIRONMENT:  # ends when the token in the settings is changed
-            known = self._environment is not None and proof == self._environment[:16]
-            return (ENVIRONMENT, LOCAL_USER) if known else ("", "")
-        return self._ask("identifier", str(identifier))
+        user = self._ask("session", session)[1]
+        return (session, user) if user else ("", "")
 
-    def session(self, identifier: str) -> str:
-        """The cookie of a new session."""
-        proof = (self._environment or "")[:16] if identifier == ENVIRONMENT else ""
-        return str(self._signer.dumps([identifier, proof]))
+    def begin(self, identifier: str, user: str) -> str:
+        """The cookie of a new session, opened with a token of this id."""
+        return str(self._signer.dumps(self._sessions.begin(self._opened_with(identifier), user)))
+
+    def end(self, user: str, session: str) -> bool:
+        """End a session at once; False if the user has none of that id."""
+        self._remembered.pop(("session", session), None)
+        return self._sessions.end(user, session)
+
+    def is_open(self, identifier: str, session: str) -> bool:
+        """Whether the token or the session that began something still opens the service."""
+        if session:
+            return bool(self._ask("session", session)[1])
+        return identifier == ENVIRONMENT or bool(self._ask("identifier", identifier)[1])
+
+    def _opened_with(self, identifier: str) -> str:
+        """What a session keeps of its token; it ends when the one in the settings is changed."""
+        if identifier != ENVIRONMENT:
+            return identifier
+        return f"{ENVIRONMENT} {(self._environment or '')[:16]}"
+
+    def _find(self, by: str, value: str) -> tuple[str, str]:
+        if by != "session":
+            return self._tokens.find(**{by: value})
+        token, user = self._sessions.find(value)
+        if token.startswith(ENVIRONMENT):
+            same = self._environment is not None and token == self._opened_with(ENVIRONMENT)
+            return (token, user) if same else ("", "")
+        return self._tokens.find(identifier=token) if token else ("", "")
 
     def _ask(self, by: str, value: str) -> tuple[str, str]:
         at = time.monotonic()
         known = self._remembered.get((by, value))
         if known is not None and at - known[0] < REMEMBERED_S:
             return known[1]
-        found = self._tokens.find(**{by: value})
+        found = self._find(by, value)
         if len(self._remembered) >= MOST_REMEMBERED:
             self._remembered.clear()
         self._remembered[by, value] = (at, found)

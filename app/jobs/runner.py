@@ -32,6 +32,7 @@ STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
 @dataclass(eq=False)
 class _Run:
     task: asyncio.Task[None]
+    owner: str
     progress: float = 0.0
     begun: bool = False
     cancelled: bool = False
@@ -108,6 +109,15 @@ class JobRunner:
             run.cancelled = True
         return await self.status(owner, job)
 
+    def owners(self) -> set[str]:
+        """Whose jobs wait or run here."""
+        return {run.owner for run in self._runs.values()}
+
+    async def cancel_all(self, owner: str) -> None:
+        """Stop all jobs of an owner."""
+        for job in [job for job, run in self._runs.items() if run.owner == owner]:
+            await self.cancel(owner, job)
+
     def counts(self) -> dict[str, int]:
         """Jobs of this process that wait and that run."""
         waiting = self._compute.turns.waiting(background=True)
@@ -148,7 +158,7 @@ class JobRunner:
 
     def _start(self, job: str, owner: str, kind: str, request: str) -> None:
         task = asyncio.create_task(self._work(job, owner, kind, request), name=f"job {job}")
-        self._runs[job] = _Run(task)
+        self._runs[job] = _Run(task, owner)
         task.add_done_callback(lambda _: self._runs.pop(job, None))
 
     async def _work(self, job: str, owner: str, kind: str, request: str) -> None:

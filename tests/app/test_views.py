@@ -12,6 +12,7 @@ import zstandard
 from fastapi.testclient import TestClient
 
 from app.api import views as views_api
+from app.budgets import BUDGETS
 from app.viewer.colours import diverging, fabric_mix, sequential
 from app.viewer.views import Views
 from tests.app.test_stretch import ASKED, GARTER
@@ -155,7 +156,7 @@ def test_pictures_that_no_browser_sends_hold_nobody_up(
         try:
             for _ in range(count):
                 browsers.submit(client.get, "/api/v1/views/hidden-tab/picture")
-            for _ in range(min(4, count)):
+            for _ in range(BUDGETS.pictures):  # the others are refused
                 assert waiting.acquire(timeout=30)
             jobs = ThreadPoolExecutor(1).submit(client.get, "/api/v1/jobs")
             assert jobs.result(10).status_code == 200

@@ -1,0 +1,45 @@
+"""Who is signed in, and where."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Path, Request, Response
+
+from app.http.identity import asking, current_session
+from app.http.problems import NotFoundError, Problem
+from app.http.security import SESSION_COOKIE
+from app.http.sessions import Sessions, SignedIn
+from app.http.tokens import Login
+
+router = APIRouter(tags=["session"])
+
+Owner = Annotated[str, Depends(asking)]
+SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="Of a session.")]
+
+
+@router.get("/session", summary="Who you are, and where you are signed in")
+def get_session(owner: Owner, request: Request) -> SignedIn:
+    """The user's name, `local` without logins, and the browsers that are signed in."""
+    return Sessions(request.app.state.database).of(owner, current_session.get())
+
+
+@router.delete("/session", status_code=204, summary="Sign out")
+def delete_session(owner: Owner, request: Request, response: Response) -> None:
+    """Ends the session of this browser."""
+    login: Login = request.app.state.login
+    login.end(owner, current_session.get())
+    response.delete_cookie(SESSION_COOKIE, httponly=True, samesite="strict")
+
+
+@router.delete(
+    "/sessions/{session}",
+    status_code=204,
+    summary="End a session",
+    responses={404: {"model": Problem, "description": "It is no session of yours."}},
+)
+def delete_one(session: SessionId, owner: Owner, request: Request) -> None:
+    """Of another browser of yours, for instance one that was lost."""
+    login: Login = request.app.state.login
+    if not login.end(owner, session):
+        raise NotFoundError(f"There is no session {session} of yours.", field="session")

@@ -1,0 +1,77 @@
+"""Sessions of browsers: begun with a token, listed, and ended one by one."""
+
+from __future__ import annotations
+
+import secrets
+
+from pydantic import AwareDatetime, BaseModel, Field
+from sqlalchemy import delete, insert, select
+
+from app.designs.store import moment, now
+from app.store.database import Database
+from app.store.tables import sessions
+
+SESSION_S = 30 * 86_400
+
+
+class SessionSummary(BaseModel):
+    """A browser that is signed in."""
+
+    id: str
+    created_at: AwareDatetime
+    is_this: bool = Field(description="Whether it is the one that asks.")
+
+
+class SignedIn(BaseModel):
+    """Who asks, and where else that user is signed in."""
+
+    user: str = Field(examples=["ada"])
+    sessions: list[SessionSummary] = Field(description="Latest first; scripts have none.")
+
+
+class Sessions:
+    """Sessions in the database."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def begin(self, token: str, user: str) -> str:
+        """A new session of a user, by the id of the token that opened it; returns its id."""
+        session = secrets.token_urlsafe(18)
+        values = {"id": session, "token": token, "user": user, "created_at": now()}
+        self._database.write(lambda c: c.execute(insert(sessions).values(values)))
+        return session
+
+    def find(self, session: str) -> tuple[str, str]:
+        """(token, user) of a session; empty texts if there is none, or it is too old."""
+        found = select(sessions.c.token, sessions.c.user).where(
+            sessions.c.id == session, sessions.c.created_at > now() - SESSION_S
+        )
+        with self._database.read() as connection:
+            row = connection.execute(found).one_or_none()
+        return ("", "") if row is None else (row.token, row.user)
+
+    def of(self, user: str, this: str) -> SignedIn:
+        """All sessions of a user."""
+        found = (
+            select(sessions)
+            .where(sessions.c.user == user, sessions.c.created_at > now() - SESSION_S)
+            .order_by(sessions.c.created_at.desc(), sessions.c.id)
+        )
+        with self._database.read() as connection:
+            rows = connection.execute(found).all()
+        summaries = [
+            SessionSummary(id=r.id, created_at=moment(r.created_at), is_this=r.id == this)
+            for r in rows
+        ]
+        return SignedIn(user=user, sessions=summaries)
+
+    def end(self, user: str, session: str) -> bool:
+        """End a session; False if the user has none of that id."""
+        gone = delete(sessions).where(sessions.c.id == session, sessions.c.user == user)
+        return self._database.write(lambda c: c.execute(gone).rowcount == 1)
+
+    def tidy(self) -> None:
+        """Forget those that are too old."""
+        old = delete(sessions).where(sessions.c.created_at < now() - SESSION_S)
+        self._database.write(lambda c: c.execute(old))
