@@ -33,6 +33,9 @@ const SETTINGS = {
   size: 1,
 };
 
+/** Number of the step before the first: the cloth lies between its clamps, not pulled yet. */
+export const REST = -1;
+
 export class Studio {
   /**
    * @param {ChartDocument} document
@@ -157,6 +160,13 @@ export class Studio {
     return this.stretch.value.direction;
   }
 
+  /** The strain of the step on show: 0 at rest; null without a test. */
+  currentStrain() {
+    const test = this.currentStretch();
+    if (!test) return null;
+    return this.step.value === REST ? 0 : test.strain[this.step.value];
+  }
+
   /**
    * Values of all stitches at the step on show.
    *
@@ -167,13 +177,22 @@ export class Studio {
     return this.#steps(name)?.[this.step.value] ?? null;
   }
 
+  /** Smallest and largest strain of a stitch along the pull in the whole test; rest is among them. */
+  strainRange() {
+    const range = { low: 0, high: 0 };
+    for (const step of this.#steps("strain") ?? []) {
+      for (const value of step) {
+        if (value < range.low) range.low = value;
+        if (value > range.high) range.high = value;
+      }
+    }
+    return range;
+  }
+
   /** Largest size of strain along the pull in the whole test. */
   largestStrain() {
-    let most = 0;
-    for (const step of this.#steps("strain") ?? []) {
-      for (const value of step) most = Math.max(most, Math.abs(value));
-    }
-    return most;
+    const { low, high } = this.strainRange();
+    return Math.max(high, -low);
   }
 
   /** @param {"strain" | "utilisation"} name */

@@ -5,6 +5,7 @@
  */
 
 import { byId } from "../dom.js";
+import { REST } from "../studio.js";
 
 /** @type {Action[]} */
 export const STRETCH = [
@@ -31,7 +32,7 @@ export const STRETCH = [
     group: "Stretch test",
     keys: [","],
     enabled: (studio) => studio.currentStretch() !== null,
-    perform: ({ studio }) => (studio.step.value = Math.max(0, studio.step.value - 1)),
+    perform: ({ studio }) => (studio.step.value = Math.max(REST, studio.step.value - 1)),
   },
   {
     id: "step-on",

@@ -18,6 +18,19 @@ const VIK =
 /** @typedef {{ at(t: number): [number, number, number], css(t: number): string }} ColourMap */
 
 /**
+ * The piece of a map between two places: a legend of what occurs.
+ *
+ * @param {ColourMap} map
+ * @param {number} from
+ * @param {number} to
+ * @returns {ColourMap}
+ */
+export const part = (map, from, to) => ({
+  at: (t) => map.at(from + t * (to - from)),
+  css: (t) => map.css(from + t * (to - from)),
+});
+
+/**
  * @param {string} stops
  * @returns {ColourMap}
  */

@@ -28,7 +28,7 @@
 
 import { along } from "../core/directions.js";
 import { QUARTERS } from "../core/segments.js";
-import { batlow, vik } from "./colormaps.js";
+import { batlow, part, vik } from "./colormaps.js";
 import { pixel } from "./palette.js";
 
 const always = () => true;
@@ -174,12 +174,15 @@ const strain = {
     return { each: (i) => pixel(vik.at(0.5 + (0.5 * values[i]) / most)) };
   },
   legend: (studio) => {
-    const most = 100 * studio.largestStrain();
+    const { low, high } = studio.strainRange();
+    const most = studio.largestStrain() || 1;
+    /** @param {number} value */
+    const place = (value) => 0.5 + (0.5 * value) / most;
     return {
       kind: "scale",
-      map: vik,
-      low: -most,
-      high: most,
+      map: part(vik, place(low), place(high)),
+      low: 100 * low,
+      high: 100 * high,
       unit: "%",
       log: false,
       label: `Stretch ${along(studio.stretchDirection())}`,

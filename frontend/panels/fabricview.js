@@ -18,6 +18,7 @@ import { ViewLink } from "./fabric/link.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
 import { problemText } from "../widgets/problem.js";
+import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
@@ -156,12 +157,9 @@ export function fabricview(host, studio, view) {
   };
 
   const describe = () => {
-    const stretch = studio.currentStretch();
-    const strain = stretch?.strain[studio.step.value];
+    const strain = studio.currentStrain();
     caption.replaceChildren(
-      stretch && strain !== undefined
-        ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
-        : "Relaxed",
+      strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : "Relaxed",
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = source && `Yarn: ${source}`;
@@ -208,7 +206,7 @@ function wanted(studio, view) {
     rectangles: studio.rectangles.value,
     rectangle_groups: seeing.groups.value,
     rectangle_block: seeing.block.value,
-    stretch: stretch ? { id: stretch.id, step: studio.step.value } : null,
+    stretch: stretch && studio.step.value !== REST ? { id: stretch.id, step: studio.step.value } : null,
     focus:
       rows * columns > MOST_DRAWN
         ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }

@@ -130,7 +130,7 @@ export function inspector(host, studio) {
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     // Numbers of another scope would be mistaken for this one's.
-    fill(table, scope === part.kind ? value : null);
+    fill(table, scope === part.kind ? value : null, part.counted.grid);
     source.hidden = !value;
     if (value) {
       const open = source.open;
@@ -209,8 +209,9 @@ export function inspector(host, studio) {
 /**
  * @param {HTMLTableElement} table
  * @param {PredictResult | null} value
+ * @param {{rows: number, columns: number}} size of the cloth, in stitches
  */
-function fill(table, value) {
+function fill(table, value, { rows, columns }) {
   /** @param {string} id @param {number | undefined} number @param {string} [interval] */
   const cell = (id, number, interval) =>
     h(
@@ -260,8 +261,23 @@ function fill(table, value) {
         ),
       ),
       row(
-        "Poisson ratio",
-        "",
+        "Size at rest",
+        "cm",
+        "Width and height of the cloth when nothing pulls at it",
+        cell(
+          "size-course",
+          times(columns / 10, value?.relaxed_course_mm),
+          range(ends(columns / 10, value?.relaxed_course_interval_mm)),
+        ),
+        cell(
+          "size-wale",
+          times(rows / 10, value?.relaxed_wale_mm),
+          range(ends(rows / 10, value?.relaxed_wale_interval_mm)),
+        ),
+      ),
+      row(
+        "Poisson",
+        "ratio",
         "Contraction across when pulled along",
         cell("poisson-yx", value?.poisson_yx, range(value?.poisson_yx_interval)),
         cell("poisson-xy", value?.poisson_xy, range(value?.poisson_xy_interval)),
@@ -269,6 +285,12 @@ function fill(table, value) {
     ),
   );
 }
+
+/** @param {number} count @param {number | undefined} each */
+const times = (count, each) => (each === undefined ? undefined : count * each);
+
+/** @param {number} count @param {[number, number] | null | undefined} each @returns {[number, number] | null} */
+const ends = (count, each) => (each ? [count * each[0], count * each[1]] : null);
 
 /** @param {[number, number] | null | undefined} interval @returns {[number, number] | null} */
 function inverse(interval) {

@@ -3,13 +3,18 @@
  *
  * @import {Studio} from "../studio.js"
  * @import {Stretcher} from "../services/stretcher.js"
- * @import {Direction, Problem} from "../types.js"
+ * @import {Direction, Problem, StretchResult} from "../types.js"
  */
 
 import { along } from "../core/directions.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
+import { firstLock, most } from "../core/striptest.js";
 import { h } from "../dom.js";
+import { REST } from "../studio.js";
 import { icon } from "../icons.js";
+
+/** What the field says in each unit at first. */
+const DEFAULTS = { "%": "30", N: "2" };
 
 /**
  * @param {HTMLElement} host
@@ -50,31 +55,46 @@ export function stretchdrawer(host, studio, stretcher) {
     max: "400",
     step: "1",
     value: "30",
-    "aria-label": "Amount of stretch in percent",
+    "aria-label": "How far or how hard to pull",
     onkeydown: (/** @type {KeyboardEvent} */ { key }) => key === "Enter" && start(),
   });
+  const unit = h(
+    "select",
+    {
+      class: "chip-select",
+      id: "stretch-unit",
+      "aria-label": "Unit of the pull",
+      onchange: () => (amount.value = DEFAULTS[/** @type {"%" | "N"} */ (unit.value)]),
+    },
+    h("option", { value: "%" }, "%"),
+    h("option", { value: "N" }, "N"),
+  );
   const start = () => {
-    const strain = Number(amount.value) / 100;
-    if (!(strain > 0)) {
+    const wanted = Number(amount.value);
+    const toForce = unit.value === "N";
+    if (!(wanted > 0)) {
       studio.tellProblem({
         type: "input",
         status: 422,
-        title: "The amount of stretch cannot be used",
-        detail: `“${amount.value}” is not a percentage above 0.`,
-        remedy: "Enter for example 30.",
+        title: "The pull cannot be used",
+        detail: `“${amount.value}” is not a ${toForce ? "force" : "percentage"} above 0.`,
+        remedy: `Enter for example ${DEFAULTS[toForce ? "N" : "%"]}.`,
       });
       amount.focus();
       return;
     }
     const shear = Number(options.shear.value);
-    void stretcher.run(direction, strain, {
+    const how = {
       clamps: /** @type {"clamped" | "sliding"} */ (options.clamps.value),
       model: /** @type {"full" | "published"} */ (options.model.value),
       shear_modulus_n_per_mm: shear > 0 ? shear : null,
-    });
+    };
+    if (toForce) void stretcher.pullTo(direction, wanted, how);
+    else void stretcher.run(direction, wanted / 100, how);
   };
   /** @param {number} strain */
   const pullBy = (strain) => {
+    unit.value = "%";
     amount.value = String(Math.floor(100 * strain + 1e-9));
     start();
   };
@@ -101,7 +121,7 @@ export function stretchdrawer(host, studio, stretcher) {
     type: "range",
     class: "slider",
     id: "stretch-slider",
-    min: "0",
+    min: String(REST),
     max: "0",
     value: "0",
     "aria-label": "Step of the stretch",
@@ -124,7 +144,7 @@ export function stretchdrawer(host, studio, stretcher) {
         choices.course,
         choices.wale,
       ),
-      h("label", { class: "amount" }, h("span", { class: "muted" }, "by"), amount, h("span", { class: "muted" }, "%")),
+      h("div", { class: "amount" }, amount, unit),
       options.element,
       run,
     ),
@@ -138,6 +158,11 @@ export function stretchdrawer(host, studio, stretcher) {
     const i = studio.step.value;
     slider.value = String(i);
     if (!value) return figures.replaceChildren();
+    if (i === REST) {
+      slider.setAttribute("aria-valuetext", "at rest");
+      figures.replaceChildren(h("div", {}, h("dt", {}, "At rest"), h("dd", {}, "as the clamps find it")));
+      return;
+    }
     slider.setAttribute("aria-valuetext", `stretched by ${percent(value.strain[i])}`);
     const [low = NaN, high = NaN] = [value.force_low_n?.[i], value.force_high_n?.[i]];
     const widths = value.stress_n_per_mm[i] / value.force_n[i];
@@ -182,12 +207,12 @@ export function stretchdrawer(host, studio, stretcher) {
     if (problem) {
       note.append(icon("warning"), refused(problem, pullBy));
     } else if (busy) note.append(waiting() ? "Waiting for its turn …" : "Pulling the cloth between two clamps …");
-    else if (value && stale) note.append("The chart changed since this test. Stretch it again.");
+    else if (value && stale) note.append("The chart has changed since this test.");
     else if (value) {
       const outcome = value.converged
         ? `Simulated strip test in ${value.seconds.toFixed(1)} s; not a certified test.`
         : `Stopped early at ${percent(value.strain[value.strain.length - 1] ?? 0)}.`;
-      note.append([outcome, ...(value.messages ?? [])].join(" "));
+      note.append([locking(value), outcome, ...(value.messages ?? [])].join(" "));
     } else note.append("Pull the chart along its rows or columns and see where it gives.");
     host.classList.toggle("busy", busy);
   };
@@ -207,6 +232,14 @@ export function stretchdrawer(host, studio, stretcher) {
     play.title = stretcher.playing ? "Pause (Shift+J)" : "Play the stretch (Shift+J)";
   });
   stretcher.pause();
+}
+
+/** Where the first stitch locks, in words. @param {StretchResult} test */
+function locking(test) {
+  const lock = firstLock(test);
+  if (lock) return `First stitch locks at ${percent(lock.strain)}, ${figure(lock.force)} N.`;
+  const used = most(test.stitch_fields.utilisation.at(-1) ?? []);
+  return used > 0 ? `No stitch locks: the tightest has used ${percent(used)} of its stretch.` : "";
 }
 
 /** How the ends are held and what is computed; the usual choice is made. */

@@ -92,9 +92,11 @@ export function curvePlot(host, studio) {
     const stretch = shownStretch(studio);
     if (host.hidden || !drawn || !plotly || !stretch) return;
     const { step } = studio;
-    void plotly.restyle(host, { x: [[100 * stretch.strain[step.value]]], y: [[stretch.stress_n_per_mm[step.value]]] }, [
-      FABRICS.length + 3,
-    ]);
+    void plotly.restyle(
+      host,
+      { x: [[100 * (stretch.strain[step.value] ?? 0)]], y: [[stretch.stress_n_per_mm[step.value] ?? 0]] },
+      [FABRICS.length + 3],
+    );
   });
   new ResizeObserver(() => {
     if (drawn && (host.clientWidth !== width || host.clientHeight !== height)) void draw();
@@ -168,16 +170,16 @@ function traces(studio, own) {
   result.push(
     {
       name: stale ? "before the change" : "stretch test",
-      x: stretch?.strain.map((strain) => 100 * strain) ?? [],
-      y: stretch?.stress_n_per_mm ?? [],
+      x: stretch ? [0, ...stretch.strain.map((strain) => 100 * strain)] : [],
+      y: stretch ? [0, ...stretch.stress_n_per_mm] : [],
       mode: "lines",
       line: { color: colour("accent"), width: 3, dash: stale ? "dot" : "solid" },
       hovertemplate: "%{x:.0f} %, %{y:.3g} N/mm<extra>stretch test</extra>",
     },
     {
       name: "step",
-      x: stretch ? [100 * stretch.strain[step]] : [],
-      y: stretch ? [stretch.stress_n_per_mm[step]] : [],
+      x: stretch ? [100 * (stretch.strain[step] ?? 0)] : [],
+      y: stretch ? [stretch.stress_n_per_mm[step] ?? 0] : [],
       mode: "markers",
       showlegend: false,
       hoverinfo: "skip",

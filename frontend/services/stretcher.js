@@ -10,16 +10,26 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
 import { Signal } from "../core/signal.js";
+import { figure, percent } from "../core/format.js";
 import { outlineText } from "../core/snapshot.js";
+import { further, strainAt } from "../core/striptest.js";
 import { runJob } from "./jobs.js";
 
 const STEPS = 20;
 const FRAME_MS = 140;
+/** Tests that may be needed to come to a force, and how near is near enough. */
+const MOST_TRIES = 8;
+const NEAR = 0.005;
+const FIRST_STRAIN = 0.2;
+/** Tests that were this fast are run again by themselves when the chart has changed. */
+const FAST_S = 3;
+const AGAIN_MS = 900;
 
 export class Stretcher {
   /** @type {AbortController | null} */ #running = null;
   /** @type {ReturnType<typeof setInterval> | undefined} */ #timer;
   /** @type {StretchRequest | null} */ #request = null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #soon;
   /** @type {Set<() => void>} */ #played = new Set();
   /** Share of the test that is done; null while it waits for its turn. */
   progress = new Signal(/** @type {number | null} */ (null));
@@ -33,6 +43,10 @@ export class Stretcher {
       if (stretch.value.value && !stretch.value.stale) {
         this.pause();
         stretch.value = { ...stretch.value, stale: true };
+      }
+      clearTimeout(this.#soon);
+      if (stretch.value.stale && (stretch.value.value?.seconds ?? Infinity) < FAST_S) {
+        this.#soon = setTimeout(() => void this.#pullAgain(), AGAIN_MS);
       }
     };
     studio.document.onSettle(outdate);
@@ -53,6 +67,7 @@ export class Stretcher {
    * @param {Direction} direction
    * @param {number} strain
    * @param {StretchOptions} [options]
+   * @returns {Promise<StretchResult | null>} null if it was given up or refused
    */
   async run(direction, strain, options = {}) {
     const { studio } = this;
@@ -73,21 +88,83 @@ export class Stretcher {
           this.progress.value = state === "waiting" ? null : progress;
         },
       });
-      if (controller.signal.aborted) return;
+      if (controller.signal.aborted) return null;
       this.#request = request;
       studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };
       studio.online.value = true;
       studio.step.value = value.strain.length - 1;
       const overlay = OVERLAYS.find(({ id }) => id === "strain");
       if (overlay) studio.overlay.value = overlay;
+      return value;
     } catch (error) {
-      if (isAbort(error) || controller.signal.aborted) return;
+      if (isAbort(error) || controller.signal.aborted) return null;
       if (!(error instanceof ApiError)) throw error;
       studio.stretch.value = { ...studio.stretch.value, busy: false, problem: error.problem };
       if (error.offline) studio.online.value = false;
+      return null;
     } finally {
       if (this.#running === controller) this.#running = null;
     }
+  }
+
+  /**
+   * Pull until the clamps hold a force: the strain is found by a few tests.
+   *
+   * @param {Direction} direction
+   * @param {number} newtons
+   * @param {StretchOptions} [options]
+   */
+  async pullTo(direction, newtons, options = {}) {
+    const { studio } = this;
+    let strain = this.#guess(direction, newtons);
+    let limit = Infinity;
+    for (let tries = 0; tries < MOST_TRIES; tries++) {
+      const test = await this.run(direction, strain, options);
+      if (!test) {
+        const { problem } = studio.stretch.value;
+        if (problem?.field !== "strain" || !problem.most || problem.most >= limit) return;
+        strain = limit = problem.most;
+        continue;
+      }
+      const end = /** @type {number} */ (test.strain.at(-1));
+      const reached = strainAt(test, newtons);
+      if (reached !== null && end - reached < NEAR * end) return;
+      if (reached === null && end >= limit) {
+        studio.tellProblem({
+          type: "input",
+          status: 422,
+          title: "The first stitches lock before that force",
+          detail: `At ${percent(end)} the clamps hold ${figure(test.force_n.at(-1))} N.`,
+          remedy: "Give a smaller force.",
+        });
+        return;
+      }
+      strain = Math.min(limit, reached ?? further(test, newtons));
+    }
+  }
+
+  /** The test on show with the chart as it is now, at the same step. */
+  async #pullAgain() {
+    const { studio } = this;
+    const { stale, busy, value } = studio.stretch.value;
+    if (!stale || busy || !value || !this.#request) return;
+    const { direction, strain, clamps, model, shear_modulus_n_per_mm } = this.#request;
+    const [step, overlay] = [studio.step.value, studio.overlay.value];
+    if (studio.document.painting) this.#soon = setTimeout(() => void this.#pullAgain(), AGAIN_MS);
+    else if (await this.run(direction, strain, { clamps, model, shear_modulus_n_per_mm })) {
+      studio.step.value = step;
+      studio.overlay.value = overlay;
+    }
+  }
+
+  /** A first guess from the modulus: knits stiffen, so it is seldom too small. @param {Direction} direction @param {number} newtons */
+  #guess(direction, newtons) {
+    const { grid } = this.studio.document;
+    const found = this.studio.prediction.value.value;
+    if (!found) return FIRST_STRAIN;
+    const across = direction === "wale" ? grid.columns * found.relaxed_course_mm : grid.rows * found.relaxed_wale_mm;
+    const strain = newtons / across / found[`modulus_${direction}_n_per_mm`];
+    return Math.min(1, Math.max(0.02, strain)) || FIRST_STRAIN;
   }
 
   /**

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
@@ -80,12 +82,22 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", 300)
 
 
-def test_change_after_a_stretch_marks_it_as_old(flat_studio: Page) -> None:
-    flat_studio.fill("#stretch-amount", "10")
+def test_change_after_a_stretch_marks_it_as_old_until_it_is_pulled_again(
+    flat_studio: Page,
+) -> None:
+    flat_studio.select_option("#stretch-unit", "N")
+    flat_studio.fill("#stretch-amount", "0.5")
     flat_studio.click("#stretch-run")
-    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    slider = flat_studio.locator("#stretch-slider")
+    expect(slider).to_be_enabled()
+    expect(flat_studio.locator("#stretch-figures")).to_contain_text("0.5")
+    expect(flat_studio.locator("#stretch-note")).to_contain_text("No stitch locks")
+    flat_studio.evaluate(
+        "window.fetchBefore = window.fetch; window.fetch = () => new Promise(() => {})"
+    )
     drag(flat_studio, 30, 0)
-    expect(flat_studio.locator("#stretch-note")).to_contain_text("changed since")
+    expect(flat_studio.locator("#stretch")).to_have_class(re.compile("busy"))
+    expect(slider).to_be_disabled()
     strain = flat_studio.locator("#overlay-strain")
     expect(strain).to_be_disabled()
     expect(strain).to_have_attribute("aria-checked", "false")
