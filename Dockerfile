@@ -1,10 +1,14 @@
-FROM debian:bookworm-slim AS page
+# Pin what was tested: docker build --build-arg BASE=debian:bookworm-slim@sha256:…
+ARG BASE=debian:bookworm-slim
+FROM ${BASE} AS page
 RUN apt-get update && apt-get install -y --no-install-recommends nodejs npm
 WORKDIR /page
 COPY frontend .
 RUN npm ci --no-audit --no-fund && node build.mjs
 
-FROM debian:bookworm-slim
+FROM ${BASE}
+LABEL org.opencontainers.image.title="Knitcore" org.opencontainers.image.licenses="MIT"
+ENV PIP_NO_CACHE_DIR=1 PYTHONDONTWRITEBYTECODE=1
 RUN apt-get update \
  && apt-get install -y --no-install-recommends python3 python3-venv make \
  && rm -rf /var/lib/apt/lists/* \

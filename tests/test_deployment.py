@@ -81,7 +81,8 @@ def test_the_service_has_no_more_rights_than_it_needs() -> None:
 def test_the_image_runs_as_a_plain_user_from_debian_packages() -> None:
     lines = DOCKERFILE.splitlines()
     bases = [line for line in lines if line.startswith("FROM ")]
-    assert all(line.startswith("FROM debian:") for line in bases)
+    assert "ARG BASE=debian:bookworm-slim" in lines
+    assert all(line.startswith("FROM ${BASE}") for line in bases)
     user = next(i for i, line in enumerate(lines) if line.startswith("USER "))
     assert lines[user] != "USER root"
     assert user < next(i for i, line in enumerate(lines) if line.startswith("RUN make install"))
@@ -92,6 +93,17 @@ def test_the_image_runs_as_a_plain_user_from_debian_packages() -> None:
     for line in re.findall(r"ENV (.*)", DOCKERFILE):
         for name in re.findall(r"KNITCORE_(\w+)=", line):
             assert name.lower() in Settings.model_fields
+
+
+def test_workers_find_own_materials_and_nothing_grows_without_end() -> None:
+    services = COMPOSE["services"]
+    app, worker = services["app"], services["worker"]
+    assert app["environment"]["KNITCORE_DATA_DIR"] == worker["environment"]["KNITCORE_DATA_DIR"]
+    assert app["volumes"] == worker["volumes"]
+    for name in ("app", "scheduler", "worker"):
+        assert services[name]["mem_limit"]
+        assert services[name]["pids_limit"]
+        assert services[name]["init"]
 
 
 def test_secrets_stay_out_of_image_and_repository() -> None:

@@ -14,12 +14,14 @@ from app.cli.common import emit, json_option, user_settings
 @json_option
 def command(file: Path, as_json: bool) -> None:
     """Read the backup FILE into the empty data folder or database of the settings."""
+    from app.results.own_materials import FOLDER
     from app.store.backup import restore
     from app.store.database import Database
 
-    database = Database(user_settings().store_url)
+    settings = user_settings()
+    database = Database(settings.store_url)
     try:
-        report = restore(database, file)
+        report = restore(database, file, settings.folder / FOLDER)
     finally:
         database.close()
     told = ", ".join(f"{count} {name}" for name, count in report.tables.items())

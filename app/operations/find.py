@@ -172,6 +172,8 @@ def _ranked(
 
 
 def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atlas]:
+    for name in names:
+        context.material(name)  # a wrong one is told before the first is computed
     part = 1 / max(len(names), 1)
     return [
         atlas_of(name, extent, context.within(number * part, part))

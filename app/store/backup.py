@@ -16,6 +16,7 @@ from pydantic import BaseModel
 from sqlalchemy import Connection, MetaData, func, insert, select
 from sqlalchemy.exc import SQLAlchemyError
 
+from app.results.own_materials import KINDS
 from app.store.database import Database
 from app.store.schema import migrate, revision
 from app.store.tables import metadata
@@ -26,6 +27,7 @@ VERSION = 1
 LEFT_OUT = frozenset({"results", "idempotency_keys", "service_keys", "sessions"})
 """What can be computed again, is over in a day, or would let a thief sign sessions."""
 CHUNK = 200
+OWN = "own materials"
 LEVEL = 6
 """gzip's usual 9 takes thirty times as long on charts, for a twentieth less."""
 
@@ -37,8 +39,12 @@ class BackupReport(BaseModel):
     tables: dict[str, int]
 
 
-def back_up(database: Database, file: Path) -> BackupReport:
+def back_up(database: Database, file: Path, materials: Path | None = None) -> BackupReport:
     """Write everything that must not be lost to a new file, while the service runs.
+
+    Parameters
+    ----------
+    materials : folder of one's own materials, which go along.
 
     Raises
     ------
@@ -71,6 +77,10 @@ def back_up(database: Database, file: Path) -> BackupReport:
                         out.write(json.dumps({"table": table.name, "row": dict(row._mapping)}))
                         out.write("\n")
                         counts[table.name] += 1
+                for own in _files(materials):
+                    content = own.read_text(encoding="utf-8")
+                    out.write(json.dumps({"material": own.name, "content": content}) + "\n")
+                    counts[OWN] = counts.get(OWN, 0) + 1
                 out.write(json.dumps({"end": counts}) + "\n")
             raw.flush()
             os.fsync(raw.fileno())
@@ -84,8 +94,18 @@ def back_up(database: Database, file: Path) -> BackupReport:
     return BackupReport(file=str(file), tables=counts)
 
 
-def restore(database: Database, file: Path) -> BackupReport:
+def _files(materials: Path | None) -> list[Path]:
+    if materials is None or not materials.is_dir():
+        return []
+    return sorted(f for f in materials.iterdir() if f.suffix.lower() in KINDS and f.is_file())
+
+
+def restore(database: Database, file: Path, materials: Path | None = None) -> BackupReport:
     """Read a backup into an empty database; all of it or nothing.
+
+    Parameters
+    ----------
+    materials : folder for one's own materials; those that are there already stay.
 
     Raises
     ------
@@ -103,6 +123,8 @@ def restore(database: Database, file: Path) -> BackupReport:
     with database.read() as connection:
         reflected.reflect(connection)
 
+    own: dict[str, str] = {}
+
     def action(connection: Connection) -> dict[str, int]:
         for table in reflected.sorted_tables:
             if table.name != "alembic_version":
@@ -113,23 +135,38 @@ def restore(database: Database, file: Path) -> BackupReport:
                         f"the database holds {held} rows in {table.name} already.",
                         "Restore into a new data folder or an empty database.",
                     )
-        return _fill(connection, reflected, lines, file)
+        return _fill(connection, reflected, lines, file, own)
 
     try:
         counts = database.write(action)
     except (LookupError, TypeError, AttributeError, SQLAlchemyError) as error:
         raise InputError("file", f"{file} is damaged.", "Use another backup.") from error
     migrate(database)
+    if materials is not None and own:
+        materials.mkdir(parents=True, exist_ok=True, mode=0o700)
+        for name, content in own.items():
+            place = materials / Path(name).name  # which cannot lead out of the folder
+            if not place.exists():
+                place.write_text(content, encoding="utf-8")
     return BackupReport(file=str(file), tables=counts)
 
 
 def _fill(
-    connection: Connection, tables: MetaData, lines: Iterator[dict[str, Any]], file: Path
+    connection: Connection,
+    tables: MetaData,
+    lines: Iterator[dict[str, Any]],
+    file: Path,
+    own: dict[str, str],
 ) -> dict[str, int]:
+    """Rows into tables, and the files of materials into ``own``."""
     counts: dict[str, int] = {}
     waiting: list[dict[str, Any]] = []
     current = ""
     for line in lines:
+        if "material" in line:
+            own[str(line["material"])] = str(line["content"])
+            counts[OWN] = counts.get(OWN, 0) + 1
+            continue
         if "end" in line or line["table"] != current or len(waiting) == CHUNK:
             if waiting:
                 connection.execute(insert(tables.tables[current]), waiting)

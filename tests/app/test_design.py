@@ -10,7 +10,10 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.operations import find as find_module
+from app.operations.context import Context
 from app.results.atlases import repeats_of
+from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
 
 WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.223, "tolerance": 0.05, "weight": 1.0}
@@ -239,3 +242,17 @@ def test_ragged_maps_are_refused(client: TestClient) -> None:
     refused = client.post("/api/v1/fill", json=request)
     assert refused.status_code == 422
     assert refused.json()["field"] == "modulus_course_n_per_mm"
+
+
+def test_a_wrong_material_is_told_before_the_first_atlas_is_computed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("an atlas was computed")
+
+    monkeypatch.setattr(find_module, "atlas_of", never)
+    request = find_module.FindRequest.model_validate(
+        {"materials": ["acrylic", "nope"], "targets": [WISH]}
+    )
+    with pytest.raises(InputError, match="nope"):
+        find_module.find(request, Context(Path("/nonexistent")))

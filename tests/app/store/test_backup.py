@@ -165,3 +165,27 @@ def test_a_crafted_backup_is_refused_in_words(
         restore(other, crafted)
     assert DesignStore(other).page("ada", limit=9, cursor=None, deleted=False).designs == []
     other.close()
+
+
+def test_own_materials_go_along_and_lead_nowhere_else(filled: Database, tmp_path: Path) -> None:
+    here, there = tmp_path / "here", tmp_path / "there" / "materials"
+    here.mkdir()
+    (here / "wool.yaml").write_text("name: Wool ä")
+    (here / "notes.txt").write_text("no material")
+    file = tmp_path / "with-materials.gz"
+    assert back_up(filled, file, here).tables["own materials"] == 1
+    other = _database(tmp_path / "new")
+    restore(other, file, there)
+    other.close()
+    assert [f.name for f in there.iterdir()] == ["wool.yaml"]
+    assert (there / "wool.yaml").read_text() == "name: Wool ä"
+    with gzip.open(file, "rt") as text:
+        lines = text.read().replace('"wool.yaml"', '"../../escaped.yaml"')
+    crafted = tmp_path / "crafted.gz"
+    with gzip.open(crafted, "wt") as text:
+        text.write(lines)
+    other = _database(tmp_path / "newer")
+    restore(other, crafted, there)
+    other.close()
+    assert not list(tmp_path.glob("escaped*"))
+    assert (there / "escaped.yaml").exists()
