@@ -95,7 +95,11 @@ def slow(client: httpx.Client) -> str:
     head = b"POST /api/v1/predict HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 900\r\n\r\n{"
     address = client.base_url.host, client.base_url.port
     with contextlib.ExitStack() as stack:
-        sockets = [stack.enter_context(socket.create_connection(address)) for _ in range(300)]
+        source = ("127.0.0.2", 0)  # an address of its own, whose connections are counted
+        sockets = [
+            stack.enter_context(socket.create_connection(address, source_address=source))
+            for _ in range(300)
+        ]
         refused = 0
         for one in sockets:
             try:
@@ -123,14 +127,26 @@ def _codes(answers: Iterator[httpx.Response]) -> str:
     return " ".join(str(answer.status_code) for answer in answers)
 
 
-ATTACKS: list[Callable[[httpx.Client], str]] = [predictions, values, frames, slow, large_file]
+def nothing(_: httpx.Client) -> str:
+    time.sleep(5)
+    return "what the machine does by itself"
+
+
+ATTACKS: list[Callable[[httpx.Client], str]] = [
+    nothing,
+    predictions,
+    values,
+    frames,
+    slow,
+    large_file,
+]
 
 
 def main() -> int:
     """Try them one after the other; 1 if one is felt."""
     missed = 0
     with tempfile.TemporaryDirectory() as folder:
-        service = Service(Path(folder), workers="2")
+        service = Service(Path(folder), workers="2", worker_priority="low")
         client = service.start()
         client.timeout = httpx.Timeout(180.0)
         try:
