@@ -20,7 +20,7 @@ from knitcore.yarnlevel.bending import (
     bending,
     bending_length_mm,
 )
-from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax
+from knitcore.yarnlevel.relax import Branch, OnSplines, RelaxedRepeat, relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
 COMPARED_UP_TO = 9
@@ -101,7 +101,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     used = yarn_for(context.material(request.material), repeat, request.loop_length_mm)
     loop = request.loop_length_mm or used.loop_length_mm
 
-    def relaxed(branch: Branch) -> RelaxedRepeat:
+    def relaxed(branch: OnSplines) -> RelaxedRepeat:
         return relax(repeat, used.yarn, loop, branch=branch, cancel=context.cancelled)
 
     mirrored = relaxed(Branch.MIRRORED)

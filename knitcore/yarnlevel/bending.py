@@ -219,7 +219,7 @@ def bending(relaxed: RelaxedRepeat) -> FabricBending:
             f"its repeat has {relaxed.chart.rows * relaxed.chart.columns} stitches.",
             f"Use a repeat of at most {MAX_STITCHES} stitches.",
         )
-    if relaxed.flat or relaxed.grips:
+    if relaxed.flat or relaxed.slides:
         raise InputError("flat", "a repeat that is held flat does not bend.", "Relax it without.")
     cell = _settled(relaxed)
     course, wale = cell.bent(0.0), cell.bent(0.5 * np.pi)

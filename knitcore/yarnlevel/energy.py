@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
-from knitcore.yarnlevel.grip import Grip
 from knitcore.yarnlevel.held import foot_rows, plane_rows
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs
+from knitcore.yarnlevel.slides import SlideConstraint
 from knitcore.yarnlevel.yarn import YarnModel
 
 Array = NDArray[np.float64]
@@ -74,7 +74,7 @@ class CellEnergy:
         of each stitch from foot to foot.
     convention : factors of the terms.
     flat : the middles of all stitches are held in one plane.
-    grips : where the yarn may not slide.
+    slides : where the yarn may not slide.
     """
 
     cell: YarnCell
@@ -82,7 +82,7 @@ class CellEnergy:
     loop_length_mm: Array
     convention: Convention
     flat: bool = False
-    grips: tuple[Grip, ...] = ()
+    slides: tuple[SlideConstraint, ...] = ()
 
     @cached_property
     def mean_loop_mm(self) -> float:
@@ -133,8 +133,8 @@ class CellEnergy:
 
     @property
     def constraints(self) -> int:
-        """Number of prescribed lengths, linear rules and grips."""
-        return len(self.prescribed_mm) + len(self.held) + len(self.grips)
+        """Number of prescribed lengths, linear rules and slides."""
+        return len(self.prescribed_mm) + len(self.held) + len(self.slides)
 
     @cached_property
     def penalty(self) -> float:
@@ -192,10 +192,10 @@ class CellEnergy:
         )
 
     def excess(self, state: Array, curve: Array) -> Array:
-        """What is held over its value: lengths, linear rules, grips, mm."""
+        """What is held over its value: lengths, linear rules, slides, mm."""
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
         lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
-        slid = np.array([grip.value(state) for grip in self.grips])
+        slid = np.array([slide.value(state) for slide in self.slides])
         return np.concatenate([lengths - self.prescribed_mm, self.held @ state, slid])
 
     def value(self, state: Array, curve: Array, pairs: Pairs) -> Terms:
@@ -227,7 +227,7 @@ class CellEnergy:
             slopes = kernels.rod_slopes(*along)
         gradient = kernels.scatter_gradient(force, slopes, layout)
         gradient[-2:] += force[-1, :2]
-        slides = np.array([grip.gradient(state) for grip in self.grips])
+        slides = np.array([slide.gradient(state) for slide in self.slides])
         lengths = np.concatenate(
             [self.length_gradients(curve), self.held, slides.reshape(-1, len(gradient))]
         )
@@ -239,8 +239,8 @@ class CellEnergy:
             curve, state[-2], state[-1], pairs, start, layout, law
         )
         kernels.scatter_local(local, position, position_speed, layout, matrix)
-        for force_of_grip, grip in zip(tension[beside + len(self.held) :], self.grips, strict=True):
-            matrix += force_of_grip * grip.hessian()
+        for pull, slide in zip(tension[beside + len(self.held) :], self.slides, strict=True):
+            matrix += pull * slide.hessian()
         return Slope(gradient, lengths, matrix)
 
     def along_yarn(

@@ -20,25 +20,9 @@ from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.splines import RelaxedRepeat, relax_splines
 from knitcore.yarnlevel.yarn import YarnModel
 
-__all__ = ["Branch", "RelaxedRepeat", "relax"]
+__all__ = ["Branch", "OnSplines", "RelaxedRepeat", "relax"]
 
-
-@overload
-def relax(  # type: ignore[overload-overlap]
-    chart: StitchChart,
-    yarn: YarnModel,
-    loop_length_mm: ArrayLike,
-    *,
-    branch: Literal[Branch.PUBLISHED, "published"],
-    convention: Convention | str = ...,
-    cell_course_mm: float | None = ...,
-    cell_wale_mm: float | None = ...,
-    flat: bool = ...,
-    grid: SplineGrid | None = ...,
-    starts: Sequence[Start] | None = ...,
-    time_limit_s: float | None = ...,
-    cancel: Cancel | None = ...,
-) -> RelaxedCell: ...
+OnSplines = Literal[Branch.MIRRORED, Branch.FREE, "mirrored", "free"]
 
 
 @overload
@@ -47,7 +31,7 @@ def relax(
     yarn: YarnModel,
     loop_length_mm: ArrayLike,
     *,
-    branch: Branch | str = ...,
+    branch: OnSplines = ...,
     convention: Convention | str = ...,
     cell_course_mm: float | None = ...,
     cell_wale_mm: float | None = ...,
@@ -57,6 +41,24 @@ def relax(
     time_limit_s: float | None = ...,
     cancel: Cancel | None = ...,
 ) -> RelaxedRepeat: ...
+
+
+@overload
+def relax(
+    chart: StitchChart,
+    yarn: YarnModel,
+    loop_length_mm: ArrayLike,
+    *,
+    branch: Branch | str,
+    convention: Convention | str = ...,
+    cell_course_mm: float | None = ...,
+    cell_wale_mm: float | None = ...,
+    flat: bool = ...,
+    grid: SplineGrid | None = ...,
+    starts: Sequence[Start] | None = ...,
+    time_limit_s: float | None = ...,
+    cancel: Cancel | None = ...,
+) -> RelaxedCell: ...
 
 
 def relax(

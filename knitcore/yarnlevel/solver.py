@@ -24,7 +24,7 @@ from scipy.linalg import blas, lapack
 from knitcore.errors import CancelledError, UnravelledError
 from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
-from knitcore.yarnlevel.walker import Walker
+from knitcore.yarnlevel.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ class Options:
     ----------
     pair_cap : longest change of the vector between near samples in one step, in radii.
     relief : by how much a step that went as predicted lessens the damping.
-    followers : most steps with an old factor after each new one.
+    chord_steps : most steps with an old factor after each new one.
     tolerance : stop when a Newton step would lower the energy by less than this part of it.
     slack : stop only when the lengths are within this part of a loop length.
     iterations : most Newton steps.
@@ -69,7 +69,7 @@ class Options:
 
     pair_cap: float = 0.3
     relief: float = 6.0
-    followers: int = 3
+    chord_steps: int = 3
     tolerance: float = 1e-7
     slack: float = 1e-7
     iterations: int = 400
@@ -151,7 +151,7 @@ class _Descent:
     ) -> None:  # fmt: skip
         self.energy = energy
         self.options = options
-        self.walker = Walker(energy, state, options.pair_cap)
+        self.trajectory = Trajectory(energy, state, options.pair_cap)
         self.tension = np.zeros(energy.constraints) if tension is None else tension.copy()
         self.free = np.ones(energy.cell.unknowns, bool)
         self.free[held] = False
@@ -163,10 +163,10 @@ class _Descent:
         self.converged = self.stable = False
 
     def step(self) -> bool:
-        """One Newton step and its followers; False where there is none."""
-        walker, energy = self.walker, self.energy
-        here = walker.place
-        slope = walker.slope(self.tension, hessian=True)
+        """One Newton step and the chord steps after it; False where there is none."""
+        trajectory, energy = self.trajectory, self.energy
+        here = trajectory.here
+        slope = trajectory.slope(self.tension, hessian=True)
         remaining = self.goal - here.state[self.held]
         moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
         system = _System(slope, energy.penalty, self.free, self.single)
@@ -178,16 +178,16 @@ class _Descent:
                 self._damp(4.0, _INDEFINITE_DAMPING)
                 continue
             step, change = system.solve(slope, excess, remaining)
-            leg = walker.leg(step)
-            blocked = leg.fraction < _NO_STEP
+            taken = trajectory.certified(step)
+            blocked = taken.fraction < _NO_STEP
             if blocked:
                 self._damp(4.0)
                 continue
             self.evaluations += 2
-            moved = leg.to.state - here.state
+            moved = taken.to.state - here.state
             predicted = system.decrease(slope, moved, change, excess)
             before = energy.merit(here.terms, self.tension + change)
-            actual = before - energy.merit(leg.to.terms, self.tension + change)
+            actual = before - energy.merit(taken.to.terms, self.tension + change)
             ratio = actual / predicted if predicted > 0.0 else -1.0
             rounding = abs(predicted) < 1e-11 * abs(before)
             if rounding:
@@ -204,16 +204,16 @@ class _Descent:
             self._damp(1.0 / self.options.relief)
         elif ratio < 0.2 and not moving:
             self._damp(2.0)
-        walker.go(leg)
+        trajectory.advance(taken)
         self.tension = self.tension + change
         self.steps += 1
         if not moving:
-            self._follow(system, predicted)
-        terms = walker.place.terms
+            self._take_chord_steps(system, predicted)
+        terms = trajectory.here.terms
         # rounding moves the yarn along itself, which lengthens it: no further step does better
         slack = (10.0 if rounding else 1.0) * self.options.slack
         self.converged = bool(
-            leg.fraction == 1.0
+            taken.fraction == 1.0
             and not moving
             and self.damping <= 0.1 * self.first_damping
             and predicted < self.options.tolerance * abs(terms.energy)
@@ -227,41 +227,41 @@ class _Descent:
 
     def _leave_saddle(self, system: _System) -> bool:
         """Go down along the most negative curvature; False where that leads nowhere."""
-        energy, walker = self.energy, self.walker
-        here = walker.place
+        energy, trajectory = self.energy, self.trajectory
+        here = trajectory.here
         self.damping = 2.0 * _STABLE * self.first_damping
         while not system.factorise(self.damping):  # the nearer it is, the faster is the iteration
             self._damp(2.0)
         step = system.softest() * energy.yarn.radius_mm
         before = energy.merit(here.terms, self.tension)
         for _ in range(_NUDGES):
-            leg = walker.leg(step)
+            taken = trajectory.certified(step)
             self.evaluations += 1
-            if leg.fraction > _NO_STEP and energy.merit(leg.to.terms, self.tension) < before:
-                walker.go(leg)
+            if taken.fraction > _NO_STEP and energy.merit(taken.to.terms, self.tension) < before:
+                trajectory.advance(taken)
                 return True
             step = 0.25 * step
         return False
 
-    def _follow(self, system: _System, gain: float) -> None:
+    def _take_chord_steps(self, system: _System, gain: float) -> None:
         """Steps with the factor of the last Hessian, as long as they are worth it."""
-        walker, energy = self.walker, self.energy
+        trajectory, energy = self.trajectory, self.energy
         none = np.zeros(len(self.held))
-        for _ in range(self.options.followers):
-            here = walker.place
+        for _ in range(self.options.chord_steps):
+            here = trajectory.here
             excess = here.terms.excess_mm
-            slope = walker.slope(self.tension, hessian=False)
+            slope = trajectory.slope(self.tension, hessian=False)
             step, change = system.solve(slope, excess, none)
-            leg = walker.leg(step)
+            taken = trajectory.certified(step)
             self.evaluations += 2
             tension = self.tension + change
-            actual = energy.merit(here.terms, tension) - energy.merit(leg.to.terms, tension)
-            moved = leg.to.state - here.state
-            if leg.fraction < _NO_STEP or actual < 0.2 * system.decrease_solved(
-                slope, moved, change, excess, leg.fraction
+            actual = energy.merit(here.terms, tension) - energy.merit(taken.to.terms, tension)
+            moved = taken.to.state - here.state
+            if taken.fraction < _NO_STEP or actual < 0.2 * system.decrease_solved(
+                slope, moved, change, excess, taken.fraction
             ):
                 return
-            walker.go(leg)
+            trajectory.advance(taken)
             self.tension = tension
             if actual < _WORTH * gain:
                 return
@@ -273,12 +273,19 @@ class _Descent:
 
     def minimum(self) -> Minimum:
         """Where it stands."""
-        place = self.walker.place
-        slope = self.walker.slope(self.tension, hessian=False)
+        here = self.trajectory.here
+        slope = self.trajectory.slope(self.tension, hessian=False)
         return Minimum(
-            place.state, self.tension, place.terms, slope.gradient[-2:].copy(),
-            self.walker.min_distance_mm, self.converged, self.stable, self.steps, self.evaluations,
-        )  # fmt: skip
+            state=here.state,
+            tension=self.tension,
+            terms=here.terms,
+            force=slope.gradient[-2:].copy(),
+            min_distance_mm=self.trajectory.min_distance_mm,
+            converged=self.converged,
+            stable=self.stable,
+            steps=self.steps,
+            evaluations=self.evaluations,
+        )
 
 
 @numba.njit(cache=True)

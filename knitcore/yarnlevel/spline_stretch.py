@@ -9,10 +9,10 @@ import numpy as np
 
 from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.grip import grips_at
 from knitcore.yarnlevel.limits import Cancel
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarnlevel.slides import slides_at
 from knitcore.yarnlevel.solver import COURSE, WALE, Options, minimise
 from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
 from knitcore.yarnlevel.topology import Guard
@@ -42,12 +42,12 @@ class SplineStretch:
         cls, zero: RelaxedRepeat, along: Direction, slide_quenching: bool, cancel: Cancel | None
     ) -> SplineStretch:
         """The stretch of a relaxed repeat, its slides held or not."""
-        return cls(gripped(zero) if slide_quenching else zero, along, cancel)
+        return cls(with_slides_held(zero) if slide_quenching else zero, along, cancel)
 
     @property
     def note(self) -> str:
         """How many slides are held."""
-        held = len(self.zero.grips)
+        held = len(self.zero.slides)
         return f"Slide quenching: {held} slides are held." if held else ""
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedRepeat:
@@ -86,14 +86,14 @@ class SplineStretch:
         )
 
 
-def gripped(cell: RelaxedRepeat) -> RelaxedRepeat:
+def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
     """The same state with its yarn kept from sliding where it touches."""
-    energy = replace(cell.energy, grips=())
+    energy = replace(cell.energy, slides=())
     curve = energy.curve(cell.state)
     touch = 2.0 * cell.yarn.radius_mm
     pairs, _ = energy.pairs(curve, cell.state, touch)
     guard = Guard(cell.cell, cell.state, curve, pairs, touch, touch)
     distances, _ = guard.changes(cell.state, curve)
-    grips = grips_at(cell.cell, cell.state, pairs, distances, touch, energy.mean_loop_mm)
-    tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(grips))])
-    return replace(cell, grips=grips, tension_n=tension)
+    slides = slides_at(cell.cell, cell.state, pairs, distances, touch, energy.mean_loop_mm)
+    tension = np.concatenate([cell.tension_n[: energy.constraints], np.zeros(len(slides))])
+    return replace(cell, slides=slides, tension_n=tension)

@@ -16,7 +16,6 @@ from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.grip import Grip
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.limits import Cancel, check_loop, check_size
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
@@ -26,6 +25,7 @@ from knitcore.yarnlevel.search import (
     Search,
     outcome,
 )
+from knitcore.yarnlevel.slides import SlideConstraint
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import centre_lines
@@ -72,13 +72,13 @@ class RelaxedRepeat(RelaxedCell):
     cell : shape space; ``state`` are its unknowns.
     tension_n : tension of every course (or stitch) of the cell, then what holds it flat.
     flat : the middles of all stitches were held in one plane.
-    grips : where the yarn was kept from sliding.
+    slides : where the yarn was kept from sliding.
     """
 
     cell: YarnCell
     tension_n: Array
     flat: bool = False
-    grips: tuple[Grip, ...] = ()
+    slides: tuple[SlideConstraint, ...] = ()
 
     @property
     def control_points(self) -> Array:
@@ -93,7 +93,7 @@ class RelaxedRepeat(RelaxedCell):
     def energy(self) -> CellEnergy:
         """The energy whose minimum this is."""
         return CellEnergy(
-            self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat, self.grips
+            self.cell, self.yarn, self.loop_lengths_mm, self.convention, self.flat, self.slides
         )
 
 
@@ -195,7 +195,7 @@ def relaxed_repeat(
         min_distance_mm=found.min_distance_mm,
         starts=starts,
         flat=energy.flat,
-        grips=energy.grips,
+        slides=energy.slides,
     )
 
 

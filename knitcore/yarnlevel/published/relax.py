@@ -13,15 +13,15 @@ from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_loop, check_size
 from knitcore.yarnlevel.published.certificate import is_clasped
-from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
-from knitcore.yarnlevel.published.starts import first_shapes
-from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
-from knitcore.yarnlevel.published.walk import (
-    Walk,
+from knitcore.yarnlevel.published.continuation import (
+    Continuation,
     free_constraints,
     has_room,
     is_knitted,
 )
+from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
+from knitcore.yarnlevel.published.starts import first_shapes
+from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
 from knitcore.yarnlevel.results import Branch, FloatArray, RelaxedCell, StartReport
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -82,8 +82,8 @@ def relax_published(
     best = lowest(stitch, found)
     evaluations = sum(m.evaluations for m in found)
     if cell_course_mm is not None or cell_wale_mm is not None:
-        walk = Walk(stitch, loop_length_mm)
-        held = walk.go([best.unknowns], cell_course_mm, cell_wale_mm)
+        path = Continuation(stitch, loop_length_mm)
+        held = path.go([best.unknowns], cell_course_mm, cell_wale_mm)
         if held is None:
             raise ConvergenceError(
                 "No equilibrium at this size of the stitch: its yarn locks, or its loops jam, on "

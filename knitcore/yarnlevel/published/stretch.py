@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from knitcore.errors import ConvergenceError
 from knitcore.fabric import Direction
+from knitcore.yarnlevel.published.continuation import Continuation
 from knitcore.yarnlevel.published.relax import relaxed_cell
 from knitcore.yarnlevel.published.slide import SlideQuenching
 from knitcore.yarnlevel.published.stitch import Stitch, pure_fabric
-from knitcore.yarnlevel.published.walk import Walk
 from knitcore.yarnlevel.results import RelaxedCell
 
 
@@ -49,9 +49,9 @@ class PublishedStretch:
         stitch = Stitch(pure_fabric(zero.chart), zero.yarn, zero.convention)
         held = self.quenching.weights
         loop_mm = float(zero.loop_lengths_mm.mean())
-        walk = Walk(stitch, loop_mm, held, held @ stitch.evaluate(zero.state).lengths_mm)
+        path = Continuation(stitch, loop_mm, held, held @ stitch.evaluate(zero.state).lengths_mm)
         sizes = (size_mm, None) if self.along is Direction.COURSE else (None, size_mm)
-        found = walk.go([cell.state for cell in known or [zero]], *sizes)
+        found = path.go([cell.state for cell in known or [zero]], *sizes)
         if found is None:
             raise ConvergenceError("the yarn locks before it gets there.")
         return relaxed_cell(stitch, loop_mm, *found)

@@ -7,12 +7,12 @@ from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
+from knitcore.yarnlevel.published.continuation import free_constraints, is_knitted
 from knitcore.yarnlevel.published.minimise import minimise
 from knitcore.yarnlevel.published.relax import lowest, relax_published
 from knitcore.yarnlevel.published.shape import unknown_names
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.published.walk import free_constraints, is_knitted
 from knitcore.yarnlevel.samples import load_samples, sample
 
 SAMPLES = load_samples()

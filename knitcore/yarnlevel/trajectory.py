@@ -19,7 +19,7 @@ RENEW = 0.4
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class Configuration:
     """A state with its curve and the parts of its energy."""
 
     state: Array
@@ -28,8 +28,8 @@ class Place:
 
 
 @dataclass(frozen=True, eq=False)
-class Leg:
-    """A certified way to another place.
+class CertifiedStep:
+    """A way to another configuration on which no yarn passes through yarn.
 
     Attributes
     ----------
@@ -38,16 +38,16 @@ class Leg:
     approach_mm : most by which pairs of yarn that are not listed get nearer on it.
     """
 
-    to: Place
+    to: Configuration
     fraction: float
     approach_mm: float
 
 
-class Walker:
-    """Place on the way, with its list of near pairs.
+class Trajectory:
+    """A configuration on its way, with its list of near pairs.
 
     The list is kept over several steps: what is not in it was farther than its reach when it was
-    made, and has come nearer by no more than the legs walked since allow.
+    made, and has come nearer by no more than the steps taken since allow.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Walker:
         self._cap = pair_cap * self._radius
         curve = energy.curve(state)
         self._list(curve, state)
-        self._stand(Place(state, curve, energy.value(state, curve, self._pairs)))
+        self._stand(Configuration(state, curve, energy.value(state, curve, self._pairs)))
 
     @property
     def min_distance_mm(self) -> float:
@@ -70,18 +70,18 @@ class Walker:
         return self.guard.min_distance_mm
 
     def slope(self, tension: Array, *, hessian: bool) -> Slope:
-        """Derivatives of the Lagrangian at this place."""
-        here = self.place
+        """Derivatives of the Lagrangian here."""
+        here = self.here
         return self._energy.derivatives(
             here.state, here.curve, self._pairs, self._start, tension, hessian=hessian
         )
 
-    def leg(self, step: Array) -> Leg:
+    def certified(self, step: Array) -> CertifiedStep:
         """As much of a step as is certified."""
-        here = self.place
+        here = self.here
         state = here.state + step
         if state[-2] <= 0.0 or state[-1] <= 0.0:
-            return Leg(here, 0.0, 0.0)
+            return CertifiedStep(here, 0.0, 0.0)
         curve = self._energy.curve(state)
         fraction = self.guard.longest_step(state, curve, self._cap)
         approach = fraction * self.guard.approach_mm(state, curve)
@@ -89,19 +89,19 @@ class Walker:
             state = here.state + fraction * step
             curve = here.curve + fraction * (curve - here.curve)
         terms = self._energy.value(state, curve, self._pairs)
-        return Leg(Place(state, curve, terms), fraction, approach)
+        return CertifiedStep(Configuration(state, curve, terms), fraction, approach)
 
-    def go(self, leg: Leg) -> None:
-        """Walk a leg from here."""
-        self._reach -= leg.approach_mm
+    def advance(self, step: CertifiedStep) -> None:
+        """Take a certified step from here."""
+        self._reach -= step.approach_mm
         if self._reach < (2.0 + RENEW) * self._radius:
-            self._list(leg.to.curve, leg.to.state)
-        self._stand(leg.to)
+            self._list(step.to.curve, step.to.state)
+        self._stand(step.to)
 
-    def _stand(self, place: Place) -> None:
-        self.place = place
+    def _stand(self, at: Configuration) -> None:
+        self.here = at
         self.guard = Guard(
-            self._energy.cell, place.state, place.curve, self._pairs, self._reach,
+            self._energy.cell, at.state, at.curve, self._pairs, self._reach,
             2.0 * self._radius,
         )  # fmt: skip
 

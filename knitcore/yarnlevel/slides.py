@@ -28,7 +28,7 @@ Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
-class Grip:
+class SlideConstraint:
     """One component of the vector between two points of yarn that is held.
 
     Attributes
@@ -56,10 +56,10 @@ class Grip:
         return half + half.T
 
 
-def grips_at(
+def slides_at(
     cell: YarnCell, state: Array, pairs: Pairs, distances: Array, touch_mm: float, loop_mm: float
-) -> tuple[Grip, ...]:
-    """Grips at the crossovers of a state, two to a stitch.
+) -> tuple[SlideConstraint, ...]:
+    """Slides at the crossovers of a state, two to a stitch.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def grips_at(
     loop_mm : loop length.
     """
     near = {tuple(pair[:4]): d for pair, d in zip(pairs.tolist(), distances, strict=True)}
-    grips: list[Grip] = []
+    slides: list[SlideConstraint] = []
     rows: list[Array] = []
     crossovers = 0
     for pair, distance in sorted(zip(pairs.tolist(), distances, strict=True), key=lambda p: p[1]):
@@ -79,13 +79,13 @@ def grips_at(
         crossovers += 1
         apart, first, second = _operators(cell, pair)
         for along in (first / loop_mm, second / loop_mm):
-            grip = Grip(apart, along, 0.0)
-            grip = Grip(apart, along, grip.value(state))
-            row = grip.gradient(state)
+            slide = SlideConstraint(apart, along, 0.0)
+            slide = SlideConstraint(apart, along, slide.value(state))
+            row = slide.gradient(state)
             if is_independent(rows, row):  # symmetry makes some contacts images of others
                 rows.append(row)
-                grips.append(grip)
-    return tuple(grips)
+                slides.append(slide)
+    return tuple(slides)
 
 
 def _is_crossover(cell: YarnCell, pair: list[int]) -> bool:

@@ -7,7 +7,7 @@ from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.samples import sample
-from knitcore.yarnlevel.spline_stretch import gripped
+from knitcore.yarnlevel.spline_stretch import with_slides_held
 from knitcore.yarnlevel.sweep import sweep
 
 
@@ -18,23 +18,23 @@ def seed():
 
 
 def test_a_stitch_has_the_two_slides_of_the_paper(seed):
-    held = gripped(seed)
-    assert len(held.grips) == 2  # two crossovers that mirror each other, along either strand
-    assert [grip.value(seed.state) for grip in held.grips] == pytest.approx([0.0, 0.0])
-    apart = [np.linalg.norm(grip.apart @ seed.state) for grip in held.grips]
+    held = with_slides_held(seed)
+    assert len(held.slides) == 2  # two crossovers that mirror each other, along either strand
+    assert [slide.value(seed.state) for slide in held.slides] == pytest.approx([0.0, 0.0])
+    apart = [np.linalg.norm(slide.apart @ seed.state) for slide in held.slides]
     np.testing.assert_allclose(apart, seed.min_distance_mm, rtol=1e-9)
 
 
 def test_derivatives_of_a_slide_agree_with_differences(seed):
-    grip = gripped(seed).grips[0]
+    slide = with_slides_held(seed).slides[0]
     rng = np.random.default_rng(0)
     for direction in rng.standard_normal((4, len(seed.state))):
         h = 1e-6
         ahead, behind = seed.state + h * direction, seed.state - h * direction
-        slope = (grip.value(ahead) - grip.value(behind)) / (2 * h)
-        assert grip.gradient(seed.state) @ direction == pytest.approx(slope, rel=1e-6)
-        bend = (grip.gradient(ahead) - grip.gradient(behind)) / (2 * h)
-        np.testing.assert_allclose(grip.hessian() @ direction, bend, atol=1e-6)
+        slope = (slide.value(ahead) - slide.value(behind)) / (2 * h)
+        assert slide.gradient(seed.state) @ direction == pytest.approx(slope, rel=1e-6)
+        bend = (slide.gradient(ahead) - slide.gradient(behind)) / (2 * h)
+        np.testing.assert_allclose(slide.hessian() @ direction, bend, atol=1e-6)
 
 
 def test_quenched_slides_are_held_and_stiffen_seed(seed):
@@ -45,6 +45,6 @@ def test_quenched_slides_are_held_and_stiffen_seed(seed):
     assert any("Slide quenching" in note for note in held.notes)
     for cell in held.cells:
         assert cell.converged
-        assert [grip.value(cell.state) for grip in cell.grips] == pytest.approx([0, 0], abs=1e-6)
+        assert [slide.value(cell.state) for slide in cell.slides] == pytest.approx([0, 0], abs=1e-6)
     assert np.all(held.energy_n_mm[1:] > free.energy_n_mm[1:])
     assert held.stress_n_per_mm[1] > 1.05 * free.stress_n_per_mm[1]

@@ -1,4 +1,4 @@
-"""Walk a stitch from one size to another in small steps, always in equilibrium."""
+"""Continuation a stitch from one size to another in small steps, always in equilibrium."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def has_room(stitch: Stitch, minimum: Minimum) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Walk:
+class Continuation:
     """Continuation of one stitch.
 
     Parameters
