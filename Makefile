@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page serve test test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
+.PHONY: help install page wheel serve test test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -36,6 +36,9 @@ frontend/dist/index.html: $(PAGE_SOURCES)
 		|| echo "The page could not be bundled (it needs Node 18 or newer): its sources are served instead."
 
 page: frontend/dist/index.html ## Bundle the page
+
+wheel: page      ## Build dist/knitcore-….whl with the page in it
+	$(PYTHON) -m pip wheel --quiet --no-deps --wheel-dir dist .
 
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 

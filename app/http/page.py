@@ -20,6 +20,7 @@ from app.http.packed import takes_gzip
 
 log = logging.getLogger("knitcore.app")
 
+IN_WHEEL = Path(__file__).resolve().parents[1] / "page"
 SOURCES = Path(__file__).resolve().parents[2] / "frontend"
 PLOTLY_SCRIPT = Path(plotly.__file__).parent / "package_data" / "plotly.min.js"
 SUFFIXES = frozenset({".js", ".css", ".svg", ".map"})
@@ -32,7 +33,7 @@ ONE_DAY = "public, max-age=86400"
 
 def serve_page(app: FastAPI) -> None:
     """Add the page, its files and plotly to a service."""
-    folder = page_folder(SOURCES)
+    folder = IN_WHEEL if IN_WHEEL.is_dir() else page_folder(SOURCES)
     built = folder != SOURCES
 
     @app.get("/", include_in_schema=False)

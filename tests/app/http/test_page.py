@@ -10,7 +10,8 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.http.page import FOR_EVER, PageFiles, page_folder
+from app.http import page as page_module
+from app.http.page import FOR_EVER, PageFiles, page_folder, serve_page
 
 SCRIPT = b"export const stitches = 'KP';\n" * 20
 
@@ -37,6 +38,17 @@ def served(folder: Path) -> TestClient:
 
 def test_a_fresh_bundle_is_served(sources: Path) -> None:
     assert page_folder(sources) == sources / "dist"
+
+
+def test_a_wheel_brings_its_page(sources: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page_module, "IN_WHEEL", sources / "dist")
+    monkeypatch.setattr(page_module, "SOURCES", sources / "not-there")
+    app = FastAPI()
+    serve_page(app)
+    with TestClient(app) as client:
+        assert client.get("/").content == SCRIPT
+        kept = client.get("/static/app-AB12CD.js")
+        assert (kept.content, kept.headers["cache-control"]) == (SCRIPT, FOR_EVER)
 
 
 def test_an_old_bundle_gives_way_to_its_sources(
