@@ -160,6 +160,13 @@ export const api = {
   curve: (body, signal) => call("/curve", { method: "POST", body, signal }),
 
   /**
+   * @param {import("./types.js").CurlRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").CurlResult>}
+   */
+  curl: (body, signal) => call("/curl", { method: "POST", body, signal }),
+
+  /**
    * Run something in the background.
    *
    * @param {string} kind

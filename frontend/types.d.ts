@@ -382,6 +382,8 @@ export interface CurlRequest {
 
 /** The piece as it lies; heights are positive towards the face (the front). */
 export interface CurlResult {
+  /** The shape, for views. */
+  id: string;
   rows: number;
   columns: number;
   /** Extent along the rows of the piece as a whole. */
@@ -403,6 +405,12 @@ export interface CurlResult {
   /** Corners of the stitches, the lowest row first. */
   corners_mm: [number, number, number][][] | null;
   notes: string[];
+}
+
+/** The shape of a piece that was computed before. */
+export interface Curled {
+  /** The id that `curl` returned. */
+  id: string;
 }
 
 /** A measured stress–strain curve. */
@@ -1641,6 +1649,8 @@ export interface SharedViewRequest {
   /** Stitches on a side of a block. */
   rectangle_block?: number;
   stretch?: StretchStep | null;
+  /** Show it as it lies; not while it is stretched. */
+  curl?: Curled | null;
   /** Around it a chart is drawn as yarn that is too large to be drawn whole. */
   focus?: Focus | null;
   /** All steps of the stretch test, not only the one. */
@@ -1947,6 +1957,8 @@ export interface ViewRequest {
   /** Stitches on a side of a block. */
   rectangle_block?: number;
   stretch?: StretchStep | null;
+  /** Show it as it lies; not while it is stretched. */
+  curl?: Curled | null;
   /** Around it a chart is drawn as yarn that is too large to be drawn whole. */
   focus?: Focus | null;
 }

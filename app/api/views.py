@@ -17,6 +17,7 @@ from app.http.identity import current_user
 from app.http.problems import NotFoundError, Problem
 from app.models.base import RequestModel
 from app.operations.context import Context
+from app.operations.curl import CurlView
 from app.operations.perform import Answer
 from app.operations.stretch import StretchView
 from app.viewer.camera import CameraSide
@@ -67,11 +68,11 @@ class CameraRequest(RequestModel):
 async def put_view(design: DesignId, body: ViewRequest, request: Request) -> ViewResult:
     """Draw the design's scene; whoever watches `/view/{design}/` sees it change at once."""
     state = request.app.state
-    stretch, name = _stretch(body, request), private_name(design)
+    found, name = _found(body, request), private_name(design)
     context = state.answers.context()
 
     def draw() -> ViewResult:
-        scene = build_scene(body, stretch, context)
+        scene = build_scene(body, found, context)
         drawn = state.views.open(name).show(scene)
         return ViewResult(stitches=drawn, source=scene.shapes.source, url=f"/view/{design}/")
 
@@ -174,14 +175,14 @@ async def post_solid(body: SharedViewRequest, request: Request) -> Response:
 
 
 async def _shared(
-    make: Callable[[SharedViewRequest, StretchView | None, Context], bytes],
+    make: Callable[[SharedViewRequest, StretchView | CurlView | None, Context], bytes],
     body: SharedViewRequest,
     request: Request,
     media: str,
     ending: str,
 ) -> Response:
     context = request.app.state.answers.context()
-    content = await _in(_drawing, make, body, _stretch(body, request), context)
+    content = await _in(_drawing, make, body, _found(body, request), context)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 
@@ -193,11 +194,12 @@ async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: An
     return await loop.run_in_executor(threads, context.run, function, *args)
 
 
-def _stretch(body: ViewRequest, request: Request) -> StretchView | None:
-    if body.stretch is None:
-        return None
-    answer: Answer | None = request.app.state.recent.get(body.stretch.id)
-    return answer.view if answer and isinstance(answer.view, StretchView) else None
+def _found(body: ViewRequest, request: Request) -> StretchView | CurlView | None:
+    """What a test or a shape that was computed before shows."""
+    wanted = body.stretch or body.curl
+    answer: Answer | None = request.app.state.recent.get(wanted.id) if wanted else None
+    view = answer.view if answer else None
+    return view if isinstance(view, StretchView | CurlView) else None
 
 
 def _view(design: str, request: Request) -> View:

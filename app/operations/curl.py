@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.operations.context import Context
+from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.formats.curled import write_curled_glb, write_curled_npz
 from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece
@@ -34,9 +38,22 @@ class CurlRequest(RequestModel):
     )
 
 
+@dataclass(frozen=True, eq=False)
+class CurlView:
+    """What the 3D view shows: (rows + 1, columns + 1, 3) corners of the stitches, mm."""
+
+    corners_mm: NDArray[np.float32]
+
+    @property
+    def size_bytes(self) -> int:
+        """How much memory it takes."""
+        return self.corners_mm.nbytes
+
+
 class CurlResult(ResultModel):
     """The piece as it lies; heights are positive towards the face (the front)."""
 
+    id: str = Field(description="The shape, for views.")
     rows: int
     columns: int
     width_mm: float = Field(description="Extent along the rows of the piece as a whole.")
@@ -57,14 +74,15 @@ class CurlResult(ResultModel):
     notes: list[str]
 
 
-def curl(request: CurlRequest, context: Context) -> CurlResult:
+def curl(request: CurlRequest, context: Context) -> Viewed:
     """Shape of least energy of a piece with free edges, without friction, set and weight.
 
     Stockinette rolls its sides to the back and its ends to the front, garter, 1x1 rib and seed lie
     flat, wide ribs pleat. Directions are those of nature, sizes of tight rolls and folds are what
     frictionless cloth would do. Pieces of up to 10,000 stitches.
     """
-    return _result(_curled(request, context), request)
+    piece = _curled(request, context)
+    return Viewed(_result(piece, request), CurlView(piece.corners_mm.astype(np.float32)))
 
 
 def _curled(request: CurlRequest, context: Context) -> CurledPiece:
@@ -76,6 +94,7 @@ def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:
     flat = piece.flat_mm[-1, -1] - piece.flat_mm[0, 0]
     return CurlResult.of(
         piece,
+        id=OPERATION.key(request),
         rows=piece.chart.rows,
         columns=piece.chart.columns,
         flat_width_mm=float(flat[0]),

@@ -119,10 +119,11 @@ def _instances(scene: FabricScene, middle_mm: Array, meshes: StitchMeshes) -> di
     centres = places.centres_mm.reshape(-1, 2) - middle_mm
     sizes = places.sizes_mm.reshape(-1, 2) / meshes.sizes_mm[index]
     depth = np.full(len(index), places.depth / meshes.depth)
+    heights = 0.0 * depth if places.heights_mm is None else places.heights_mm.ravel()
     return {
-        "batched_positions": _short(np.column_stack([centres, 0.0 * depth])),
+        "batched_positions": _short(np.column_stack([centres, heights])),
         "batched_scales": _short(np.column_stack([sizes, depth])),
-        "batched_wxyzs": _short(quaternions(places.angles.ravel())),
+        "batched_wxyzs": _short(quaternions(places)),
         "batched_colors": linear(scene.colours.reshape(-1, 3)),
     }
 

@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field
 from app.models.base import RequestModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
 from app.operations.context import Context
+from app.operations.curl import CurlView
 from app.operations.stretch import StretchView
 from app.viewer.fabric import FabricScene
 from app.viewer.stitch_colours import (
@@ -25,7 +26,7 @@ from knitcore.errors import InputError
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import Placement, at_rest, carried
+from knitcore.geometry.placing import Placement, at_rest, carried, lying
 from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
 from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
@@ -46,6 +47,12 @@ class StretchStep(RequestModel):
 
     id: str = Field(max_length=128, description="The id that the stretch test returned.")
     step: int = Field(ge=0)
+
+
+class Curled(RequestModel):
+    """The shape of a piece that was computed before."""
+
+    id: str = Field(max_length=128, description="The id that `curl` returned.")
 
 
 class Focus(RequestModel):
@@ -71,6 +78,7 @@ class ViewRequest(RequestModel):
     rectangle_groups: RectangleGroups = RectangleGroups.STITCH
     rectangle_block: int = Field(4, ge=1, le=400, description="Stitches on a side of a block.")
     stretch: StretchStep | None = None
+    curl: Curled | None = Field(None, description="Show it as it lies; not while it is stretched.")
     focus: Focus | None = Field(
         None, description="Around it a chart is drawn as yarn that is too large to be drawn whole."
     )
@@ -84,18 +92,23 @@ class ViewResult(BaseModel):
     url: str
 
 
-def build_scene(request: ViewRequest, stretch: StretchView | None, context: Context) -> FabricScene:
-    """The scene of a design, relaxed or at one step of its stretch test.
+def build_scene(
+    request: ViewRequest, found: StretchView | CurlView | None, context: Context
+) -> FabricScene:
+    """The scene of a design, flat, as it lies, or at one step of its stretch test.
 
     Raises
     ------
     InputError
-        If the test is not known any more, or belongs to another chart.
+        If the test or the shape is not known any more, or belongs to another chart.
     """
     chart, material = to_chart(request.chart), context.material(request.material)
     drawn = _drawn(request, chart)
-    shapes = stitch_shapes(chart, material)
+    shapes = stitch_shapes(chart, material, folded=request.curl is None)
     placement, room = at_rest(shapes), None
+    stretch = found if isinstance(found, StretchView) else None
+    if request.curl is not None:
+        placement = lying(_corners(request, found, chart))
     step = _checked_step(request, stretch, chart)
     if stretch is not None:
         centres = stretch.positions_mm[step].astype(float)
@@ -120,6 +133,18 @@ def build_scene(request: ViewRequest, stretch: StretchView | None, context: Cont
         focus=(request.focus.row, request.focus.column) if request.focus else None,
         room_mm=room,
     )
+
+
+def _corners(
+    request: ViewRequest, found: StretchView | CurlView | None, chart: StitchChart
+) -> NDArray[np.float64]:
+    if request.stretch is not None:
+        raise InputError("curl", "stretch is given as well.", "Leave one of them out.")
+    if not isinstance(found, CurlView):
+        raise InputError("curl.id", "is not known any more.", "Compute the shape again.")
+    if found.corners_mm.shape[:2] != (chart.rows + 1, chart.columns + 1):
+        raise InputError("curl.id", "belongs to another chart.", "Compute it for this one.")
+    return found.corners_mm.astype(float)
 
 
 def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: StitchChart) -> int:
@@ -156,7 +181,7 @@ def _rectangles(
     placement: Placement,
     drawn: NDArray[np.bool_] | None,
 ) -> NDArray[np.float64] | None:
-    if not request.rectangles:
+    if not request.rectangles or placement.frames is not None:
         return None
     if request.rectangle_groups is RectangleGroups.REGION:
         labels = region_labels(chart, request.regions)

@@ -85,9 +85,7 @@ class FabricScene:
                 index=self.shapes.index[part],
                 lattice=Lattice(lattice.centres_mm[part], lattice.sizes_mm[part]),
             ),
-            placement=Placement(
-                places.centres_mm[part], places.sizes_mm[part], places.angles[part], places.depth
-            ),
+            placement=places.part(part),
             colours=self.colours[part],
             drawn=None if self.drawn is None else self.drawn[part],
         )
@@ -95,6 +93,8 @@ class FabricScene:
     def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
         """The stitch at a place of the scene, (row, column); None outside the fabric."""
         places = self.placement
+        if places.frames is not None:
+            return None  # rays are met in the plane, which the fabric has left
         away = np.abs(places.centres_mm - self.middle_mm - (x_mm, y_mm)) / places.sizes_mm
         distance = away.max(axis=2)
         if self.drawn is not None:

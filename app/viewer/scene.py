@@ -66,7 +66,7 @@ class SceneWriter:
         """Outline some stitches on both sides, or none."""
         with self._lock:
             scene = self._scene
-            if box is None or scene is None:
+            if box is None or scene is None or scene.placement.frames is not None:
                 self._put("mark", None)
                 return
             corners = scene.box_corners_mm(box)

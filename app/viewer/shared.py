@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pydantic import Field
 
 from app.operations.context import Context
+from app.operations.curl import CurlView
 from app.operations.stretch import StretchView
 from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene
@@ -23,20 +24,22 @@ class SharedViewRequest(ViewRequest):
     dark: bool = Field(False, description="Dark background of a page.")
 
 
-def shared_page(request: SharedViewRequest, stretch: StretchView | None, context: Context) -> bytes:
+def shared_page(
+    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
+) -> bytes:
     """A page that needs neither the service nor the network."""
-    return page_html(_scenes(request, stretch, context), dark=request.dark).encode()
+    return page_html(_scenes(request, found, context), dark=request.dark).encode()
 
 
 def shared_recording(
-    request: SharedViewRequest, stretch: StretchView | None, context: Context
+    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
 ) -> bytes:
     """A ``.viser`` recording."""
-    return recording(_scenes(request, stretch, context))
+    return recording(_scenes(request, found, context))
 
 
 def shared_solid(
-    request: SharedViewRequest, stretch: StretchView | None, context: Context
+    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
 ) -> bytes:
     """The yarn as binary glTF.
 
@@ -45,22 +48,22 @@ def shared_solid(
     InputError
         If there are too many stitches for a solid of use.
     """
-    scene = build_scene(request, stretch, context)
+    scene = build_scene(request, found, context)
     _check_size(scene, MOST_SOLID)
     return solid_glb(scene)
 
 
 def _scenes(
-    request: SharedViewRequest, stretch: StretchView | None, context: Context
+    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
 ) -> Iterator[FabricScene]:
-    scene = build_scene(request, stretch, context)
+    scene = build_scene(request, found, context)
     _check_size(scene, MAX_SHARED_STITCHES)
-    if not request.animated or request.stretch is None or stretch is None:
+    if not request.animated or request.stretch is None or not isinstance(found, StretchView):
         yield scene
         return
-    for step in range(len(stretch.positions_mm)):
+    for step in range(len(found.positions_mm)):
         at = StretchStep(id=request.stretch.id, step=step)
-        yield build_scene(request.model_copy(update={"stretch": at}), stretch, context)
+        yield build_scene(request.model_copy(update={"stretch": at}), found, context)
 
 
 def _check_size(scene: FabricScene, most: int) -> None:

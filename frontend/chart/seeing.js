@@ -2,6 +2,7 @@
  * How the fabric and its mechanics are looked at: state of the panels that is no part of the design.
  *
  * @import {Cell} from "../core/raster.js"
+ * @import {CurlResult} from "../types.js"
  *
  * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
  *   has them, or one of its own
@@ -30,6 +31,10 @@ export class Seeing {
     this.pull = new Signal(/** @type {import("../types.js").Direction} */ ("wale"));
     /** Id of a stretch test that the service has forgotten. */
     this.forgotten = new Signal(/** @type {string | null} */ (null));
+    /** Whether the fabric is shown as it lies, curled and folded. */
+    this.lying = new Signal(false);
+    /** Its shape; null while it is being computed. */
+    this.curled = new Signal(/** @type {CurlResult | null} */ (null));
     /** The stitch that was clicked in the 3D view last. */
     this.found = new Signal(/** @type {Cell | null} */ (null));
     this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));

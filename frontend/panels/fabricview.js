@@ -127,6 +127,11 @@ export function fabricview(host, studio, view) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
       const { field } = error.problem;
+      if (field === "curl.id" && studio.seeing.lying.value) {
+        studio.seeing.lying.value = false; // a restarted service has forgotten the shape
+        studio.seeing.lying.value = true;
+        return;
+      }
       const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
       if (id !== null && id !== studio.seeing.forgotten.value) {
         status.replaceChildren(h("span", { class: "spinner" }), "Pulling the cloth once more …");
@@ -157,20 +162,28 @@ export function fabricview(host, studio, view) {
   };
 
   const describe = () => {
-    const strain = studio.currentStrain();
+    const strain = studio.seeing.lying.value ? 0 : studio.currentStrain();
     caption.replaceChildren(
-      strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : "Relaxed",
+      strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : lyingText(studio),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
-    caption.title = source && `Yarn: ${source}`;
+    caption.title = studio.seeing.curled.value?.notes[0] ?? (source && `Yarn: ${source}`);
   };
 
   studio.document.onChange(soon);
-  const { yarnColours, groups, block } = studio.seeing;
+  const { yarnColours, groups, block, lying, curled } = studio.seeing;
   for (const signal of [studio.materialId, studio.overlay, studio.rectangles, studio.stretch, groups, block]) {
     signal.listen(soon);
   }
   yarnColours.listen(now);
+  curled.listen(() => {
+    now();
+    describe();
+  });
+  lying.listen(() => {
+    now();
+    describe();
+  });
   studio.step.listen(now);
   onTheme(soon);
   studio.stretch.watch(describe);
@@ -191,7 +204,7 @@ export function fabricview(host, studio, view) {
  */
 function wanted(studio, view) {
   const { document: chart, seeing } = studio;
-  const stretch = studio.currentStretch();
+  const stretch = pulled(studio);
   const overlay = shownOverlay(studio);
   const colour = seeing.yarnColours.value === "chart" ? overlay.view : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
@@ -207,11 +220,25 @@ function wanted(studio, view) {
     rectangle_groups: seeing.groups.value,
     rectangle_block: seeing.block.value,
     stretch: stretch && studio.step.value !== REST ? { id: stretch.id, step: studio.step.value } : null,
+    curl: seeing.curled.value ? { id: seeing.curled.value.id } : null,
     focus:
       rows * columns > MOST_DRAWN
         ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }
         : null,
   };
+}
+
+/** The stretch test that is shown: none while the fabric is shown as it lies. @param {Studio} studio */
+function pulled(studio) {
+  return studio.seeing.lying.value ? null : studio.currentStretch();
+}
+
+/** How the fabric that nobody pulls is shown. @param {Studio} studio */
+function lyingText(studio) {
+  const { lying, curled } = studio.seeing;
+  if (!lying.value) return "Relaxed, held flat";
+  if (!curled.value) return "As it lies: being computed";
+  return curled.value.converged ? "As it lies, without friction" : "As it lies: a preview, still moving";
 }
 
 /** The theme's colours. @returns {NonNullable<ViewRequest["palette"]>} */

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from knitcore.geometry.placing import Placement, mean_sizes_mm
 from knitcore.geometry.stitches import StitchShapes
@@ -78,8 +79,12 @@ def resampled(lines: Array, points: int) -> Array:
     return between
 
 
-def quaternions(angles: Array) -> Floats:
-    """(..., 4) w, x, y, z of turns about +z."""
+def quaternions(placement: Placement) -> Floats:
+    """(rows * columns, 4) w, x, y, z of the turn of every stitch."""
+    if placement.frames is not None:
+        turns = Rotation.from_matrix(placement.frames.reshape(-1, 3, 3))
+        return turns.as_quat(scalar_first=True).astype(np.float32)
+    angles = placement.angles.ravel()
     half = 0.5 * angles
     zero = np.zeros_like(half)
     return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=-1).astype(np.float32)

@@ -26,12 +26,28 @@ class Placement:
     sizes_mm : (rows, columns, 2) along the course and across it.
     angles : (rows, columns) direction of the course, radians.
     depth : thickness of the fabric over its thickness at rest.
+    heights_mm : (rows, columns) of the centres over the plane; None if all lie in it.
+    frames : (rows, columns, 3, 3) directions of course, wale and face as columns, for stitches that
+        have left the plane; None if the angles say all.
     """
 
     centres_mm: Array
     sizes_mm: Array
     angles: Array
     depth: float
+    heights_mm: Array | None = None
+    frames: Array | None = None
+
+    def part(self, of: tuple[slice, slice]) -> Placement:
+        """Some rows and columns."""
+        return Placement(
+            self.centres_mm[of],
+            self.sizes_mm[of],
+            self.angles[of],
+            self.depth,
+            None if self.heights_mm is None else self.heights_mm[of],
+            None if self.frames is None else self.frames[of],
+        )
 
 
 def at_rest(shapes: StitchShapes) -> Placement:
@@ -60,6 +76,27 @@ def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placemen
     return Placement(centres_mm, sizes, angles, _depth(shapes, sizes))
 
 
+def lying(corners_mm: Array) -> Placement:
+    """The fabric on a curled sheet, every stitch as a whole.
+
+    Parameters
+    ----------
+    corners_mm : (rows + 1, columns + 1, 3) corners of the stitches.
+    """
+    right, left = corners_mm[:, 1:], corners_mm[:, :-1]
+    along = 0.5 * ((right - left)[1:] + (right - left)[:-1])
+    rows = 0.5 * (right + left)
+    up, centres = rows[1:] - rows[:-1], 0.5 * (rows[1:] + rows[:-1])
+    sizes = np.stack([np.linalg.norm(along, axis=-1), np.linalg.norm(up, axis=-1)], axis=-1)
+    course = along / sizes[..., :1]
+    face = np.cross(course, up)
+    face /= np.maximum(np.linalg.norm(face, axis=-1)[..., None], 1e-12)
+    frames = np.stack([course, np.cross(face, course), face], axis=-1)
+    return Placement(
+        centres[..., :2], sizes, np.zeros(sizes.shape[:2]), 1.0, centres[..., 2], frames
+    )
+
+
 def mean_sizes_mm(shapes: StitchShapes, placement: Placement) -> Array:
     """Mean size of the stitches of each shape, (shapes, 2); 1 mm for shapes that do not occur."""
     index, count = shapes.index.ravel(), len(shapes.lines)
@@ -76,6 +113,10 @@ def placed_lines(shapes: StitchShapes, placement: Placement) -> Array:
     """Centre lines of all stitches, (rows, columns, points, 3), mm."""
     lines = shapes.lines[shapes.index]
     flat = lines[..., :2] * placement.sizes_mm[:, :, None]
+    if placement.frames is not None and placement.heights_mm is not None:
+        own = np.concatenate([flat, placement.depth * lines[..., 2:]], axis=-1)
+        centres = np.concatenate([placement.centres_mm, placement.heights_mm[..., None]], axis=-1)
+        return np.asarray(own @ placement.frames.swapaxes(-1, -2) + centres[:, :, None])
     cos, sin = np.cos(placement.angles)[..., None], np.sin(placement.angles)[..., None]
     x, y = flat[..., 0], flat[..., 1]
     turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)

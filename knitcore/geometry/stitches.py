@@ -81,8 +81,13 @@ class StitchShapes:
     source: str
 
 
-def stitch_shapes(chart: StitchChart, material: Material) -> StitchShapes:
+def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True) -> StitchShapes:
     """The shapes of a chart's stitches in a material.
+
+    Parameters
+    ----------
+    folded : repeats that were relaxed may bring their folds along; not where the sheet that the
+        stitches lie on has them.
 
     Raises
     ------
@@ -92,7 +97,7 @@ def stitch_shapes(chart: StitchChart, material: Material) -> StitchShapes:
     fabrics = fabric_lines(material)
     shares = np.bincount(quarter_phases(chart).ravel(), minlength=len(PHASES))
     radius = FULLNESS * 0.5 * float(shares @ fabrics.strand_mm / shares.sum())
-    stored = _stored_repeat(chart, material)
+    stored = _stored_repeat(chart, material) if folded else None
     if stored is not None:
         return _of_stored(chart, material, stored, radius)
     lines, index = _of_quarters(chart, fabrics)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 
@@ -12,6 +13,12 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.operations.context import Context
+from app.operations.curl import CurlRequest, curl
+from app.viewer.design_view import ViewRequest, build_scene
+from app.viewer.share import solid_glb
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
 
 STRIP = {"fabric": "stockinette", "columns": 12, "rows": 3}
 FIELDS = {
@@ -69,3 +76,27 @@ def test_a_piece_too_large_is_refused(client: TestClient) -> None:
     answer = client.post("/api/v1/curl", json={"chart": chart, "material": "acrylic"})
     assert answer.status_code == 422
     assert answer.json()["field"] == "chart"
+
+
+def test_a_view_shows_the_shape(tmp_path: Path) -> None:
+    context = Context(tmp_path)
+    request = CurlRequest(chart=StitchChart.parse("K").tile(3, 12).text, material="acrylic")
+    found = curl(request, context)
+    asked = {"chart": request.chart, "material": "acrylic", "curl": {"id": found.result.id}}
+    scene = build_scene(ViewRequest.model_validate(asked), found.view, context)
+    assert scene.placement.heights_mm is not None
+    assert np.ptp(scene.placement.heights_mm) > 2.0
+    mesh = trimesh.load_mesh(io.BytesIO(solid_glb(scene)), file_type="glb")
+    assert 1000.0 * mesh.extents[2] > np.ptp(scene.placement.heights_mm)
+
+
+@pytest.mark.parametrize(
+    ("more", "field"), [({}, "curl.id"), ({"stretch": {"id": "x", "step": 0}}, "curl")]
+)
+def test_a_view_refuses_a_shape_that_it_cannot_show(
+    tmp_path: Path, more: dict[str, object], field: str
+) -> None:
+    asked = {"chart": "KK", "material": "acrylic", "curl": {"id": "gone"}} | more
+    with pytest.raises(InputError) as told:
+        build_scene(ViewRequest.model_validate(asked), None, Context(tmp_path))
+    assert told.value.field == field

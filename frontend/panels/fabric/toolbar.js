@@ -35,6 +35,19 @@ export function toolbar(studio, look, wish) {
   const sides = SIDES.map(({ side, label, hint }) =>
     h("button", { class: "segment", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
   );
+  const lies = [
+    { id: "flat", lying: false, label: "Flat", hint: "The fabric held flat" },
+    { id: "lying", lying: true, label: "As it lies", hint: "Curled and folded, as it lies on its own" },
+  ].map(({ id, lying, label, hint }) => {
+    const press = () => (studio.seeing.lying.value = lying);
+    const segment = h(
+      "button",
+      { class: "segment", role: "radio", id: `fabric-${id}`, title: hint, onclick: press },
+      label,
+    );
+    studio.seeing.lying.watch((now) => segment.setAttribute("aria-checked", String(now === lying)));
+    return segment;
+  });
   const { root, setItems, button } = menu({
     id: "fabric-colours",
     label: "Colours of the yarn",
@@ -56,6 +69,7 @@ export function toolbar(studio, look, wish) {
     "div",
     { class: "fabric-tools", role: "toolbar", "aria-label": "The fabric in 3D" },
     h("div", { class: "segmented", role: "group", "aria-label": "Side" }, ...sides),
+    h("div", { class: "segmented", role: "radiogroup", "aria-label": "Shape" }, ...lies),
     root,
     shareMenu(studio, wish),
   );
