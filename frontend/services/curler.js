@@ -7,6 +7,7 @@
 
 import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
+import { REST } from "../studio.js";
 
 const DELAY_MS = 500;
 /** CPU time after which a preview is shown. */
@@ -35,7 +36,9 @@ export function startCurler(studio) {
     });
   };
   lying.listen(ask);
-  studio.step.listen(() => (lying.value = false)); // it is pulled
+  studio.step.listen((step) => {
+    if (step !== REST) lying.value = false; // it is pulled
+  });
   studio.document.onChange(() => lying.value && ask());
   studio.materialId.listen(() => lying.value && ask());
 }
