@@ -29,6 +29,7 @@ export class Stretcher {
   /** @type {AbortController | null} */ #running = null;
   /** @type {ReturnType<typeof setInterval> | undefined} */ #timer;
   /** @type {StretchRequest | null} */ #request = null;
+  /** Of which design the last test was. */ #design = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #soon;
   /** @type {Set<() => void>} */ #played = new Set();
   /** Share of the test that is done; null while it waits for its turn. */
@@ -90,6 +91,7 @@ export class Stretcher {
       });
       if (controller.signal.aborted) return null;
       this.#request = request;
+      this.#design = studio.designId;
       studio.stretch.value = { value, direction, busy: false, stale: false, problem: null };
       studio.online.value = true;
       studio.step.value = value.strain.length - 1;
@@ -147,7 +149,7 @@ export class Stretcher {
   async #pullAgain() {
     const { studio } = this;
     const { stale, busy, value } = studio.stretch.value;
-    if (!stale || busy || !value || !this.#request) return;
+    if (!stale || busy || !value || !this.#request || this.#design !== studio.designId) return;
     const { direction, strain, clamps, model, shear_modulus_n_per_mm } = this.#request;
     const [step, overlay] = [studio.step.value, studio.overlay.value];
     if (studio.document.painting) this.#soon = setTimeout(() => void this.#pullAgain(), AGAIN_MS);

@@ -69,7 +69,7 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     chart = Chart(page)
     readout = page.locator("#readout")
     page.mouse.move(*chart.at(5, 6))
-    expect(readout).to_have_text(re.compile(rf"strain {NUMBER} % \({INTERVAL}\)"))
+    expect(readout).to_have_text(re.compile(rf"stretch {NUMBER} % \({INTERVAL}\)"))
     page.click("#overlay-utilisation")
     page.mouse.move(*chart.at(6, 6))
     expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of lock-up"))
