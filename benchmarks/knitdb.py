@@ -21,10 +21,10 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import spearmanr
 
-from knitcore.answer.densities import Densities, densities
-from knitcore.answer.learned import LearnedModel, packaged_model
-from knitcore.chart import StitchChart
-from knitcore.materials import Material, material
+from knitcore import StitchChart, material, predict
+from knitcore.answer.densities import densities
+from knitcore.answer.learned import packaged_model
+from knitcore.answer.mixture import Mixture
 from knitcore.materials.uncertainty import Z_SCORE
 
 STOCKINETTE = "Stockinette"
@@ -40,20 +40,26 @@ def main() -> None:
     of, model = material(arguments.material), packaged_model()
     first = next(i for i, name in enumerate(names) if name.endswith(STOCKINETTE))
     true = np.log(measured / measured[first])
-    ratio, spread, mixture = predicted(model, charts, of, first)
+    answers = [predict(chart, of) for chart in charts]
+    ratio = np.log([(a.relaxed_course_mm, a.relaxed_wale_mm) for a in answers])
+    ratio -= ratio[first]
+    spread = np.array([(a.course.relaxed_log_sd, a.wale.relaxed_log_sd) for a in answers])
     for row in zip(names, np.exp(true), np.exp(ratio), np.exp(Z_SCORE * spread), strict=True):
         print(f"{row[0]:28}", *(np.round(part, 2) for part in row[1:]))
     print("swatch, measured width and height over stockinette's, predicted, interval factor")
-    for name, logs in (("learned", ratio), ("mixture, no folds", mixture), ("null", 0 * true)):
+    made_of = [densities(chart) for chart in charts]
+    mixture = np.log([Mixture.of(found.shares, of).size_mm for found in made_of])
+    mixture -= mixture[first]
+    for name, logs in (("predicted", ratio), ("mixture, no folds", mixture), ("null", 0 * true)):
         print(f"{name:18} rms {factor(logs - true)}  rank {ranks(logs, true)}")
-    inside = np.abs(ratio - true) <= Z_SCORE * np.hypot(spread, spread[first])
     others = np.arange(len(names)) != first
-    print(
-        f"cover {inside[others].mean():.2f} of {2 * len(names) - 2} in 90 % intervals of the ratio"
-    )
+    inside = np.abs(ratio - true)[others] <= Z_SCORE * spread[others]
+    print(f"cover {inside.mean():.2f} of {inside.size} in the 90 % intervals")
 
     def missed(most: float) -> np.ndarray:
-        return predicted(replace(model, most_folded=most), charts, of, first)[0] - true
+        fitted_to = replace(model, most_folded=most)
+        sizes = np.log([fitted_to.answer(found, of).size_mm for found in made_of])
+        return sizes - sizes[first] - true
 
     best, left_out = fitted(missed, len(names))
     print(
@@ -61,8 +67,8 @@ def main() -> None:
     )
 
 
-def read(folder: Path) -> tuple[list[str], np.ndarray, list[Densities]]:
-    """Names, (swatches, 2) relaxed sizes in mm, and the charts' densities."""
+def read(folder: Path) -> tuple[list[str], np.ndarray, list[StitchChart]]:
+    """Names, (swatches, 2) relaxed sizes in mm, and charts."""
     with (folder / "measured.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     names = [row["name"] for row in rows]
@@ -70,18 +76,7 @@ def read(folder: Path) -> tuple[list[str], np.ndarray, list[Densities]]:
         [[float(row[f"relaxed_{side}_mm"]) for side in ("width", "height")] for row in rows]
     )
     texts = [(folder / "charts" / f"{name}.txt").read_text(encoding="utf-8") for name in names]
-    return names, sizes, [densities(StitchChart.parse(text)) for text in texts]
-
-
-def predicted(
-    model: LearnedModel, charts: list[Densities], of: Material, first: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(swatches, 2) logarithms of sizes over stockinette's, their deviations, and the mixture's."""
-    answers = [model.answer(chart, of) for chart in charts]
-    sizes = np.log([answer.size_mm for answer in answers])
-    mixtures = np.log([answer.mixture.size_mm for answer in answers])
-    spread = np.array([answer.size_log_sd for answer in answers])
-    return sizes - sizes[first], spread, mixtures - mixtures[first]
+    return names, sizes, [StitchChart.parse(text) for text in texts]
 
 
 def fitted(missed, count: int) -> tuple[float, str]:

@@ -154,10 +154,45 @@ def wide_rib() -> str:
     return page(width, strain)
 
 
+def continuity() -> str:
+    """Strain of charts that change little by little, in acrylic at 0.05 N/mm."""
+    acrylic, sides = material("acrylic"), np.array([2, 3, 4, 6, 8, 12, 16])
+    purls = Axes(
+        "one purl in so many knits",
+        "stitches",
+        "strain",
+        (4, 16, 64, 256),
+        (0.05, 0.1, 0.2, 0.5, 1),
+        log=True,
+    )
+    ribs = Axes("n × n rib and n-row welts", "n", "strain", (1, 4, 8, 12), (0, 0.5, 1, 1.5))
+    for direction, colour in (
+        (Direction.COURSE, COLOURS["rib"]),
+        (Direction.WALE, COLOURS["seed"]),
+    ):
+        strains = []
+        for side in sides:
+            purl = np.zeros((side, side), dtype=bool)
+            purl[0, 0] = True
+            strains.append(predict(StitchChart(purl), acrylic).along(direction).strain(0.05))
+        purls.line(sides**2, strains, colour, f"{direction}-wise")
+        runs = np.arange(1, 13)
+        texts = ["K" * n + "P" * n for n in runs]
+        if direction is Direction.WALE:
+            texts = ["/".join(text) for text in texts]
+        found = [
+            predict(StitchChart.parse(t), acrylic).along(direction).strain(0.05) for t in texts
+        ]
+        name = "ribs, course-wise" if direction is Direction.COURSE else "welts, wale-wise"
+        ribs.line(runs, found, colour, name)
+    return page(purls, ribs)
+
+
 FIGURES = {
     "laws.svg": laws,
     "reduced-symmetry.svg": reduced_symmetry,
     "wide-rib.svg": wide_rib,
+    "continuity.svg": continuity,
 }
 
 

@@ -34,12 +34,19 @@ _LAGS = ((0, 2), (0, 3), (0, 4), (2, 0), (3, 0), (4, 0), (1, 2), (2, 1), (2, 2))
 """Rows up and columns right. Those of (0, 1), (1, 0) and (1, 1) follow from the shares."""
 _PAIRS = ((1, 0), (2, 0), (0, 2))
 """Lags from one pair of neighbours in a row to another."""
-PRODUCTS_OF_FOUR = slice(11 + len(_LAGS), 11 + len(_LAGS) + len(_PAIRS))
-"""Where those stand among the features: after 3 shares, 8 shares of sides, and the lags."""
 _SMOOTHED_OVER = (1.5, 4.0)
 """Standard deviations, in stitches, of the weights that smooth s."""
 _BEDS = (0.3, 0.9)
 """q: a plate's folds reach about 1 / q stitches."""
+FEATURES = {
+    "shares": 3,
+    "sides": 8,
+    "products of two": len(_LAGS),
+    "products of four": len(_PAIRS),
+    "plates": 6 * len(_BEDS),
+    "smoothed": 3 * len(_SMOOTHED_OVER),
+}
+"""How many features there are of each kind, in their order."""
 _NO_CHANGE = 1e-12
 _FEW_CROSSINGS = 0.1
 """Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""

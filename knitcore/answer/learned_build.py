@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve, cholesky
 from scipy.optimize import minimize
 
-from knitcore.answer.densities import PRODUCTS_OF_FOUR, Densities, densities
+from knitcore.answer.densities import FEATURES, Densities, densities
 from knitcore.answer.kernel import KernelModel, KernelSettings, Samples, noisy_covariance
 from knitcore.answer.learned import STRESS_GRID, follows
 from knitcore.answer.mixture import Mixture, yarn_numbers
@@ -45,8 +45,16 @@ _TUNED = [2, 3, 4, 8, 9, 10]
 _FOLDING_COVERAGE = 0.94
 """Errors of folding have long tails, and strains inherit them several times over; with this part of
 the sizes inside, their strains' intervals cover 90 %."""
-_FOUR_COUNT = 3.0
-"""So much more than others count products of four stitches: less is missed of charts left out."""
+_WEIGHTS = {
+    "shares": 4.0,
+    "sides": 1.0,
+    "products of two": 0.2,
+    "products of four": 5.0,
+    "plates": 3.0,
+    "smoothed": 0.7,
+}
+"""What kinds of features count in units of their spread: of largest marginal likelihood, rounded,
+and about alike for both regressions."""
 _START = KernelSettings(1.0, 0.1, 0.5, 2.0, 2.0, 0.05)
 _BOUNDS = ((-8, 5), (-8, 3), (-8, 5), (-1.5, 5), (-1.5, 5), (-6, 1))
 """Of the logarithms of the settings."""
@@ -205,7 +213,7 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
     """Everything that the model is made of."""
     features = np.array([row.features for row in found])
     scale = features.std(axis=0)
-    scale[PRODUCTS_OF_FOUR] /= _FOUR_COUNT
+    scale /= np.repeat([_WEIGHTS[kind] for kind in FEATURES], list(FEATURES.values()))
     charts = np.array([row.chart.key for row in found])
     samples = Samples(
         features / scale,

@@ -1,9 +1,9 @@
 """Large charts: patches of stitches, each with its own answer, that pull on each other.
 
-A repeat of at most :data:`SIDE` stitches a side is one patch. A larger chart is cut into patches of
-about that size. Each is a pure fabric, or a mixed chart of its own, with what it says of the whole
-chart's densities moved so that the patches' mean is the chart's: cutting a texture across its
-repeat then changes nothing on the whole.
+A repeat of at most :data:`SIDE` stitches a side, a rib or a welt is one patch. A larger chart is
+cut into patches of about that size. Each is a pure fabric, or a mixed chart of its own, with what
+it says of the whole chart's densities moved so that the patches' mean is the chart's: cutting a
+texture across its repeat then changes nothing on the whole.
 
 Together they are lines along the pull: in a line all patches carry the same force per row (wale),
 and their stretched sizes add up; all lines are strained alike, and their forces add up.
@@ -170,7 +170,7 @@ def patches_of(chart: StitchChart, material: Material, gauge: RelaxedSize | None
         answer = measured(fabric, material)
         return _one(chart, answer if gauge is None else answer.with_size(gauge))
     repeat = chart.repeat_cut()
-    if max(repeat.rows, repeat.columns) <= SIDE:
+    if max(repeat.rows, repeat.columns) <= SIDE or min(repeat.rows, repeat.columns) == 1:
         return _one(chart, mixed(repeat, densities(repeat), material, gauge))
     rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
     parts = [
