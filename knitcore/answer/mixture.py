@@ -94,12 +94,21 @@ class Mixture:
         return np.asarray(np.sum(self._strains(direction, stress_n_per_mm), axis=0))
 
     def log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
-        """Standard deviation of the log strain from the uncertainty of the pure fabrics' laws."""
+        """Standard deviation of the log strain from the uncertainty of the pure fabrics' laws.
+
+        That is one of a law's whole scale of stress, so it moves strains less where they lock.
+        """
         strains = np.array(self._strains(direction, stress_n_per_mm))
         total = strains.sum(axis=0)
-        deviations = [record.uncertainty.log_modulus(direction) for _, record in self.parts]
+        deviations = np.array(
+            [
+                record.uncertainty.log_modulus(direction)
+                * _law_slopes(record.law, direction, np.asarray(stress_n_per_mm, dtype=float))
+                for _, record in self.parts
+            ]
+        )
         shares = np.divide(strains, total, out=np.zeros_like(strains), where=total > 0)
-        return np.sqrt(np.tensordot(np.square(deviations), shares**2, axes=1))
+        return np.asarray(np.sqrt(np.sum((deviations * shares) ** 2, axis=0)))
 
     def _strains(self, direction: Direction, stress_n_per_mm: ArrayLike) -> list[Array]:
         return [
@@ -116,6 +125,13 @@ def _law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Ar
     at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
     found = np.exp(np.interp(at, np.log(_STRESSES), _log_strains(law, direction)))
     return np.asarray(found * np.minimum(stress_n_per_mm / _STRESSES[0], 1.0))
+
+
+def _law_slopes(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
+    """d ln strain / d ln stress of a law: 1 at first, less where it stiffens."""
+    logs = np.log(_STRESSES)
+    slopes = np.gradient(_log_strains(law, direction), logs)
+    return np.asarray(np.interp(np.log(np.maximum(stress_n_per_mm, _STRESSES[0])), logs, slopes))
 
 
 @lru_cache(maxsize=128)

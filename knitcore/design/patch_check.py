@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.quarter_laws import flat_laws
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import Material
@@ -59,6 +60,7 @@ def finite_size(
             stitch=stitch,
             cancelled=cancelled,
             clamps="sliding",
+            laws=flat_laws(chart, material),
         )
         fields = test.fields()
         area = _stitch_areas(fields).ravel()

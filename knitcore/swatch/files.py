@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from knitcore.errors import InputError
+from knitcore.fabric import PHASES
 from knitcore.swatch.results import StripTest, SwatchTest
 
 SUFFIXES = (".npz", ".vtu")
@@ -92,5 +93,5 @@ def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
             "energy_density_n_per_mm": fields.energy_density.ravel()[used],
             "utilisation": fields.utilisation.ravel()[used],
         },
-        cell_data={"phase": [grid.law_of_cell.ravel()[cloth].astype(np.int32)]},
+        cell_data={"phase": [(grid.law_of_cell.ravel()[cloth] % len(PHASES)).astype(np.int32)]},
     ).write(path, file_format="vtu")

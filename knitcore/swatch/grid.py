@@ -35,7 +35,7 @@ class QuarterGrid:
     row_lines : float array (rows + 1,), mm
         y of the horizontal lines, increasing.
     law_of_cell : uint8 array (rows, columns)
-        Which law a cell follows; for a chart, its phase code.
+        Which law a cell follows; for a chart, its phase code plus four times its patch.
     natural_width, natural_height : float arrays (rows, columns), mm
         Size of the cell's own fabric at rest. By default the size between the lines.
     cloth : bool array (rows, columns)
@@ -100,6 +100,7 @@ class QuarterGrid:
         cls,
         chart: StitchChart,
         stitch_size_mm: Mapping[Fabric, tuple[float, float]],
+        scale: Array | None = None,
         *,
         stitch: NDArray[np.bool_] | None = None,
         width_mm: float | None = None,
@@ -109,7 +110,8 @@ class QuarterGrid:
 
         Where fabrics of different gauge meet, a column is as wide and a row as high as its
         quarters are on average; what each quarter would like to measure stays in
-        ``natural_width`` and ``natural_height``. ``stitch`` (rows, columns) leaves out what has no
+        ``natural_width`` and ``natural_height``. ``scale`` (rows, columns, 2) multiplies the width
+        and height of each stitch. ``stitch`` (rows, columns) leaves out what has no
         stitch. With ``width_mm`` or ``length_mm`` all sizes are scaled so that the cloth measures
         that from edge to edge.
         """
@@ -130,7 +132,11 @@ class QuarterGrid:
                 )
             check_size_mm(*stitch_size_mm[fabric])
             sizes[code] = stitch_size_mm[fabric]
-        natural_width, natural_height = (sizes[phases, axis] / 2 for axis in (0, 1))
+        factors = np.ones((*chart.purl.shape, 2)) if scale is None else scale
+        factors = factors.repeat(2, axis=0).repeat(2, axis=1)
+        natural_width, natural_height = (
+            sizes[phases, axis] / 2 * factors[..., axis] for axis in (0, 1)
+        )
         widths = _means(natural_width, cloth, axis=0)
         heights = _means(natural_height, cloth, axis=1)
         if width_mm is not None:

@@ -48,13 +48,14 @@ def misfit(grid: QuarterGrid) -> Misfit:
     course = np.diff(grid.column_lines) / grid.natural_width - 1
     wale = np.diff(grid.row_lines)[:, None] / grid.natural_height - 1
     course[~grid.cloth] = wale[~grid.cloth] = 0.0
-    codes = np.where(grid.cloth, grid.law_of_cell, len(PHASES))
+    phases = grid.law_of_cell % len(PHASES)
+    codes = np.where(grid.cloth, phases, len(PHASES))
     return Misfit(
         course,
         wale,
         {
             PHASES[code]: (float(course[codes == code].mean()), float(wale[codes == code].mean()))
-            for code in np.unique(grid.law_of_cell[grid.cloth])
+            for code in np.unique(phases[grid.cloth])
         },
     )
 

@@ -125,7 +125,7 @@ class SwatchTest:
             x_mm=float(grid.column_lines[column : column + 2].mean()),
             y_mm=float(grid.row_lines[row : row + 2].mean()),
             direction=Direction.COURSE if axis == 0 else Direction.WALE,
-            fabric=PHASES[grid.law_of_cell[row, column]].value,
+            fabric=PHASES[grid.law_of_cell[row, column] % len(PHASES)].value,
         )
 
     @property

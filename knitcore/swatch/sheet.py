@@ -92,6 +92,8 @@ class Sheet:
     grid : the mesh.
     laws : laws by code (``grid.law_of_cell``); codes that do not occur may repeat any law.
     model : the energy model and its assumptions.
+    stress_log_sd : (2, stresses) how unsure the laws of a chart's cells are beside their materials,
+        as :class:`knitcore.answer.quarter_laws.QuarterLaws` has it; None where they are not.
 
     Examples
     --------
@@ -102,12 +104,17 @@ class Sheet:
     """
 
     def __init__(
-        self, grid: QuarterGrid, laws: Sequence[ConstitutiveLaw], model: SheetModel
+        self,
+        grid: QuarterGrid,
+        laws: Sequence[ConstitutiveLaw],
+        model: SheetModel,
+        stress_log_sd: Array | None = None,
     ) -> None:
         if int(grid.law_of_cell.max()) >= len(laws):
             raise InputError("laws", "a cell has no law.", "Give a law for every code of the grid.")
         self.grid = grid
         self.model = model
+        self.stress_log_sd = stress_log_sd
         self.laws = tuple(model.prepare(law) for law in laws)
         self.parameters = model.parameters(laws)
         self._law_of_cell = grid.law_of_cell.ravel()
@@ -117,11 +124,11 @@ class Sheet:
 
     def with_grid(self, grid: QuarterGrid) -> Sheet:
         """A sheet of the same laws and model on another grid."""
-        return Sheet(grid, self.laws, self.model)
+        return Sheet(grid, self.laws, self.model, self.stress_log_sd)
 
     def with_model(self, model: SheetModel) -> Sheet:
         """The same grid and laws (symmetric already) under another model."""
-        return Sheet(self.grid, self.laws, model)
+        return Sheet(self.grid, self.laws, model, self.stress_log_sd)
 
     @property
     def at_rest(self) -> Sheet:

@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.quarter_laws import QuarterLaws, quarter_laws
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.material import Material
-from knitcore.swatch.grid import QuarterGrid
+from knitcore.swatch.grid import QuarterGrid, check_cloth
 from knitcore.swatch.misfit import draw_in as draw_in_path
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.swatch.results import StripTest
@@ -50,6 +51,7 @@ def strip_test(
     clamps: Clamps | str = Clamps.CLAMPED,
     draw_in: bool = False,
     stitch: NDArray[np.bool_] | None = None,
+    laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
     progress: Progress | None = None,
@@ -72,6 +74,8 @@ def strip_test(
         pushed together wrinkles: by default the model then has its tension field on.
     stitch : bool (rows, columns), where a shaped piece has stitches, row 0 at the bottom; the
         clamps hold those of its outermost rows or columns. All of the rectangle by default.
+    laws : of the quarter cells; by default those with which the cloth does what
+        :func:`knitcore.answer.choose.choose` says.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
     progress : called with (steps done, steps in all).
     cancelled : asked now and then; True stops the test.
@@ -105,6 +109,7 @@ def strip_test(
         shear_modulus,
         draw_in,
         stitch=stitch,
+        laws=laws,
         width_mm=width_mm,
         length_mm=length_mm,
     )
@@ -126,10 +131,15 @@ def chart_sheet(
     draw_in: bool = False,
     *,
     stitch: NDArray[np.bool_] | None = None,
+    laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
 ) -> Sheet:
-    """The sheet that a chart of a material is; ``stitch`` as for :func:`strip_test`."""
+    """The sheet that a chart of a material is; ``stitch`` as for :func:`strip_test`.
+
+    Its cells' laws and sizes are such that a large cloth of it does what
+    :func:`knitcore.answer.choose.choose` says.
+    """
     chosen = sheet_model(model, shear_modulus)
     if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
         chosen = replace(chosen, tension_field=True)
@@ -137,13 +147,60 @@ def chart_sheet(
         fabric: (record.stitch_course_mm, record.stitch_wale_mm)
         for fabric, record in material.fabrics.items()
     }
-    grid = QuarterGrid.of_chart(chart, sizes, stitch=stitch, width_mm=width_mm, length_mm=length_mm)
+    local = laws or _local_laws(chart, material, stitch)
+    grid = QuarterGrid.of_chart(
+        chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm
+    )
     if not draw_in:
         grid = grid.at_rest_as_laid_out
-    used = {PHASES[code] for code in np.unique(grid.law_of_cell)}
-    some = next(iter(used))
-    return Sheet(
-        grid, [material.law(fabric if fabric in used else some) for fabric in PHASES], chosen
+    patch = local.patch.repeat(2, axis=0).repeat(2, axis=1)
+    codes = (len(PHASES) * patch + grid.law_of_cell).astype(np.uint8)
+    return Sheet(replace(grid, law_of_cell=codes), local.laws, chosen, local.log_sd)
+
+
+def _local_laws(
+    chart: StitchChart, material: Material, stitch: NDArray[np.bool_] | None
+) -> QuarterLaws:
+    """Laws of a piece; a shaped one counts as the rectangle around it, filled with its pattern."""
+    if stitch is None or np.all(stitch):
+        return quarter_laws(chart, material)
+    inside = np.asarray(stitch, dtype=bool)
+    check_cloth(inside, chart.rows, chart.columns)
+    rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
+    here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    found = quarter_laws(_continued(chart.purl[here], inside[here]), material)
+    patch, scale = np.zeros(inside.shape, dtype=np.intp), np.ones((*inside.shape, 2))
+    patch[here], scale[here] = found.patch, found.scale
+    return replace(found, patch=patch, scale=scale)
+
+
+def _continued(purl: NDArray[np.bool_], stitch: NDArray[np.bool_]) -> StitchChart:
+    """A shaped piece with its repeat where it has no stitch; without one, with its rows mirrored
+    about their first and last stitch.
+    """
+    rows, columns = _period(purl, stitch), _period(purl.T, stitch.T)
+    row, column = np.arange(len(stitch))[:, None], np.arange(stitch.shape[1])[None, :]
+    place = (row % rows) * columns + column % columns
+    known = np.bincount(place[stitch], minlength=rows * columns) > 0
+    repeat = np.bincount(place[stitch], purl[stitch], minlength=rows * columns) > 0
+    first = stitch.argmax(axis=1)[:, None]
+    last = stitch.shape[1] - 1 - stitch[:, ::-1].argmax(axis=1)[:, None]
+    mirrored = np.where(column < first, 2 * first - column, column)
+    mirrored = np.where(column > last, 2 * last - column, mirrored).clip(first, last)
+    filled = np.where(known[place], repeat[place], purl[row, mirrored])
+    return StitchChart(np.where(stitch, purl, filled))
+
+
+def _period(purl: NDArray[np.bool_], stitch: NDArray[np.bool_]) -> int:
+    """Smallest number of rows after which the stitches repeat, all of them if they do not."""
+    n = len(purl)
+    return next(
+        (
+            p
+            for p in range(1, n // 2 + 1)
+            if not np.any((purl[p:] != purl[:-p]) & stitch[p:] & stitch[:-p])
+        ),
+        n,
     )
 
 

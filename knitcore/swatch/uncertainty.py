@@ -14,8 +14,8 @@ parameters add up. The parameters are
   strain is uncertain;
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
-- the composite's own error, where fabrics are mixed: one of
-  the whole scale for the force, one of each fabric apart for strains.
+- the model's own error, where fabrics are mixed: for the force that of the chart's answer
+  (:mod:`knitcore.answer.quarter_laws`), for strains one of each fabric apart.
 
 The lock-up (1 / alpha) is uncertain by itself too, and its utilisation with it.
 """
@@ -30,6 +30,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.quarter_laws import SPREAD_AT
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.gridsolver.dissection import GridFactor
@@ -165,13 +166,21 @@ class StripSpread:
         used = utilisation(sheet, cell_strains(sheet, state))
         direct = np.where(used[0] >= used[1], used[0] * locks[..., 0], used[1] * locks[..., 1])
         variances[2] += corner_means(grid, direct) ** 2
-        force_log_sd = math.hypot(math.sqrt(force_variance), self._model_sd)
+        force_log_sd = math.hypot(math.sqrt(force_variance), self._force_model_sd(step))
         return StepSpread(
             log_interval(float(test.force_n[step]), force_log_sd),
             force_log_sd,
             math.sqrt(waist_variance),
             *np.sqrt(variances),
         )
+
+    def _force_model_sd(self, step: int) -> float:
+        """The model's own error of the log force: by the chart's answer, at the step's stress."""
+        spread = self.test.sheet.stress_log_sd
+        if spread is None:
+            return self._model_sd
+        stress = float(self.test.stress_n_per_mm[step])
+        return float(np.interp(stress, SPREAD_AT, spread[self.test.direction.axis]))
 
     def _utilisation_slope(self, step: int) -> Array:
         """d utilisation / d (strain course-wise, wale-wise) of every cell, (2, rows, columns)."""
@@ -190,7 +199,7 @@ class StripSpread:
 def model_log_sd(sheet: Sheet) -> float:
     """The composite's own error in a sheet, by its share of stitches with mixed quarters."""
     grid = sheet.grid
-    codes, there = grid.law_of_cell, grid.cloth[::2, ::2]
+    codes, there = grid.law_of_cell % len(PHASES), grid.cloth[::2, ::2]
     quarters = np.stack([codes[i::2, j::2][there] for i in (0, 1) for j in (0, 1)])
     pure = float(np.mean(np.ptp(quarters, axis=0) == 0))
     if len(np.unique(codes[grid.cloth])) == 1:
@@ -203,7 +212,7 @@ def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
     codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth])
     found = np.zeros((len(sheet.laws), 2))
     for code in codes:
-        spread = material.record(PHASES[code]).uncertainty
+        spread = material.record(PHASES[code % len(PHASES)]).uncertainty
         found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
     return found
 
@@ -212,7 +221,10 @@ def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Para
     found = []
     codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
     for code in codes:
-        law, spread = material.law(PHASES[code]), material.record(PHASES[code]).uncertainty
+        law, spread = (
+            material.law(PHASES[code % len(PHASES)]),
+            material.record(PHASES[code % len(PHASES)]).uncertainty,
+        )
         for direction in Direction:
             curve = spread.curve(direction)
             step = _varied(sheet, [code], partial(_stress_scaled, direction))
@@ -228,7 +240,7 @@ def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Para
         code
         for code in codes
         if sheet.model.shear_modulus is None
-        and material.record(PHASES[code]).uncertainty.log_shear is None
+        and material.record(PHASES[code % len(PHASES)]).uncertainty.log_shear is None
         and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
     ]
     if assumed:

@@ -15,7 +15,7 @@ from app.cli.main import main
 from app.operations.context import Context
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
-from knitcore import Direction, Fabric, StitchChart, curve, predict
+from knitcore import Direction, Fabric, StitchChart, curve, predict, strip_test
 from knitcore.design.atlas import STRESS_N_PER_MM
 from knitcore.design.atlas_build import build_atlas
 from knitcore.formats import report
@@ -107,6 +107,23 @@ def test_command_line_rest_and_report_give_the_same(
         size = along.relaxed_interval_mm
         assert f"{along.relaxed_mm:.3g}  ({size.low:.3g} to {size.high:.3g})" in labels
     assert any(str(answer.provenance) in label for label in labels)
+
+
+@pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
+@pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KP/KK", "KKPP/KKPP/PPKK/PPKK", "KP/PK"])
+@pytest.mark.parametrize("direction", Direction)
+def test_a_long_free_strip_stretches_as_its_curve_says(
+    yarn: str, text: str, direction: Direction
+) -> None:
+    """Ends that slide; within 10 % of the strain at each stress."""
+    chart = StitchChart.parse(text).resized(12, 32)
+    along = predict(chart, material(yarn)).along(direction)
+    strains = along.strain([0.05, 0.1, 0.2])
+    test = strip_test(chart, material(yarn), direction, strains.tolist(), clamps="sliding")
+    np.testing.assert_allclose(along.strain(test.stress_n_per_mm), strains, rtol=0.1)
+    across = predict(chart, material(yarn)).along(direction.other)
+    area = 12 * 32 * along.relaxed_mm * across.relaxed_mm
+    assert test.length_mm * test.width_mm == pytest.approx(area, rel=0.03)
 
 
 def _operation(chart: StitchChart, yarn: str) -> Any:

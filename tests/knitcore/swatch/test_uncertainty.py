@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import astuple, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from knitcore.answer.quarter_laws import flat_laws
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -56,6 +58,14 @@ def scaled(record: FabricRecord, course: float, wale: float) -> FabricRecord:
             beta_yy=law.beta_yy * wale,
         ),
     )
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _laws_as_they_are() -> Iterator[None]:
+    """Cells with the pure fabrics' own laws, so that a changed law is a changed cell."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("knitcore.swatch.strip.quarter_laws", flat_laws)
+        yield
 
 
 def with_poisson(record: FabricRecord, factor: float) -> FabricRecord:

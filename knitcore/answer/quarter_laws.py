@@ -1,0 +1,219 @@
+"""Laws for the quarter cells of a piece, such that the cloth does what its answer says.
+
+The quarter grid with the pure fabrics' own laws and sizes is the flat composite, without folds. So
+each patch of a mixed chart (:mod:`knitcore.answer.patches`) gets laws of its own. At every stress
+the strain of a phase is half the patch's own and half the phase's part in the flat composite,
+
+    strain_p = answer (1 + strain_p of the pure fabric / strain of the flat composite) / 2,
+
+and laws are fitted to that. Phases in series then add up to the answer, and the quarters that
+stretch most in the flat composite still do, by half as much: neighbours within a patch hold each
+other (and cells that differ as much as the pure fabrics would be crushed beside each other). Stitch
+sizes are scaled to the relaxed size. Poisson's ratios are the answer's, or less where one energy
+for both directions needs it. A patch of one pure fabric keeps its own law.
+
+The flat composite counts as lines of cells along the pull: in a line the phases are in series at
+one force, and all lines are strained alike.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from knitcore.answer.answer import Answer
+from knitcore.answer.patches import patches_of
+from knitcore.chart import StitchChart
+from knitcore.fabric import PHASES, Direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.law.stiffening import stiffening
+from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.materials import FabricRecord, Material
+from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.phases import pure_fabric, quarter_phases
+
+Array = NDArray[np.float64]
+
+STRESSES: Array = np.geomspace(0.003, 0.5, 24)
+"""Stresses (N/mm) at which laws are fitted."""
+SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
+"""Stresses (N/mm) at which the model's own error is kept."""
+_FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
+_MOST_POISSON = 0.9
+"""Of the product of both Poisson ratios, so that the law is stable."""
+
+
+@dataclass(frozen=True, eq=False)
+class QuarterLaws:
+    """Laws and sizes of a chart's quarter cells.
+
+    Attributes
+    ----------
+    laws : four for each patch, in the order of the phase codes; that of a phase which is not in
+        the patch is one of the others.
+    patch : (rows, columns) number of each stitch's patch.
+    scale : (rows, columns, 2) width and height of the stitches over those of their phases.
+    log_sd : (2, stresses) standard deviation of the logarithm of stress course-wise and wale-wise,
+        at :data:`SPREAD_AT`: the model's own error, not that of the pure fabrics' laws.
+    """
+
+    laws: tuple[ConstitutiveLaw, ...]
+    patch: NDArray[np.intp]
+    scale: Array
+    log_sd: Array
+
+
+def quarter_laws(chart: StitchChart, material: Material) -> QuarterLaws:
+    """Laws of a piece.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    patches = patches_of(chart, material)
+    phases = quarter_phases(chart)
+    laws: list[ConstitutiveLaw] = []
+    number = np.zeros(chart.purl.shape, dtype=np.intp)
+    scale = np.ones((*chart.purl.shape, 2))
+    spread = np.zeros((2, len(SPREAD_AT)))
+    for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
+        for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
+            here = slice(below, above), slice(left, right)
+            cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
+            number[here] = len(laws) // len(PHASES)
+            if pure_fabric(chart.region(*here)) is not None:
+                laws += _own_laws(cells, material)
+                continue
+            laws += _fitted_laws(cells, answer, material)
+            share = (above - below) * (right - left) / chart.purl.size
+            for direction in Direction:
+                sizes = [_size(record, direction) for record in _records(cells, material)]
+                flat = float(_shares(cells) @ sizes)
+                scale[(*here, direction.axis)] = answer.along(direction).relaxed_mm / flat
+                spread[direction.axis] += share * _own_log_sd(cells, answer, material, direction)
+    return QuarterLaws(tuple(laws), number, scale, spread)
+
+
+def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
+    """The pure fabrics' own laws and sizes: the flat composite, without folds.
+
+    Raises
+    ------
+    InputError
+        If the chart needs a pure fabric that the material lacks.
+    """
+    laws = tuple(_own_laws(quarter_phases(chart), material))
+    shape = chart.purl.shape
+    none = np.zeros((2, len(SPREAD_AT)))
+    return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
+
+
+def _records(cells: NDArray[np.uint8], material: Material) -> list[FabricRecord]:
+    """Of the four phases; one that does not occur counts as one that does."""
+    present = np.unique(cells)
+    return [material.record(PHASES[k if k in present else present[0]]) for k in range(4)]
+
+
+def _shares(cells: NDArray[np.uint8]) -> Array:
+    return np.bincount(cells.ravel(), minlength=4) / cells.size
+
+
+def _size(record: FabricRecord, direction: Direction) -> float:
+    return record.stitch_size_mm(direction)
+
+
+def _own_laws(cells: NDArray[np.uint8], material: Material) -> list[ConstitutiveLaw]:
+    return [record.law for record in _records(cells, material)]
+
+
+def _own_log_sd(
+    cells: NDArray[np.uint8], answer: Answer, material: Material, direction: Direction
+) -> Array:
+    """What is left of the answer's interval of the stress without the laws' own uncertainty."""
+    along = answer.along(direction)
+    low, high = along.stress_interval(along.strain(SPREAD_AT))
+    whole = np.log(high / low) / (2 * Z_SCORE)
+    records = _records(cells, material)
+    laws = _shares(cells) * [r.uncertainty.log_modulus(direction) for r in records]
+    return np.sqrt(np.maximum(whole**2 - float(laws @ laws), 0.0))
+
+
+def _fitted_laws(
+    cells: NDArray[np.uint8], answer: Answer, material: Material
+) -> list[ConstitutiveLaw]:
+    records = _records(cells, material)
+    fits = []
+    for direction in Direction:
+        strains = answer.along(direction).strain(STRESSES)
+        parts = 1 / _flat_strains(cells, records, direction)
+        fits.append(
+            [
+                _fitted(
+                    strains * (1 + parts * free_strains_at_stress(r.law, direction, STRESSES)) / 2
+                )
+                for r in records
+            ]
+        )
+    most_yx, most_xy = (max(answer.along(d).poisson, 0.0) for d in Direction)
+    found = []
+    for record, (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y) in zip(
+        records, *fits, strict=True
+    ):
+        # One coupling for both, as an energy needs; neither contraction is more than the answer's.
+        nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
+        nu_yx = nu_xy * modulus_x / modulus_y
+        held = 1 - min(nu_yx * nu_xy, _MOST_POISSON)
+        found.append(
+            ConstitutiveLaw(
+                stiffness_xxxx=modulus_x / held,
+                stiffness_yyyy=modulus_y / held,
+                stiffness_xxyy=nu_xy * modulus_x / held,
+                stiffness_yyxx=nu_yx * modulus_y / held,
+                alpha_xx=alpha_x,
+                alpha_yy=alpha_y,
+                beta_xx=beta_x,
+                beta_yy=beta_y,
+                shear_modulus=record.law.shear_modulus,
+            )
+        )
+    return found
+
+
+def _flat_strains(
+    cells: NDArray[np.uint8], records: list[FabricRecord], direction: Direction
+) -> Array:
+    """Strains of the flat composite at :data:`STRESSES`."""
+    lines = cells if direction is Direction.COURSE else cells.T
+    along, across = (np.array([_size(r, d) for r in records]) for d in (direction, direction.other))
+    counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
+    kinds, same = np.unique(counts, axis=0, return_inverse=True)
+    lengths = kinds * along
+    strains = np.stack([free_strains_at_stress(r.law, direction, _FINE) for r in records])
+    of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
+    width = np.bincount(same.ravel()) * (kinds @ across)
+    common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
+    stress = width @ np.array([np.interp(common, line, _FINE) for line in of_line]) / width.sum()
+    found: Array = np.interp(STRESSES, stress, common)
+    return found
+
+
+def _fitted(strains: Array) -> tuple[float, float, float]:
+    """Young's modulus (N/mm), alpha and beta (N/mm) of a law with strains at :data:`STRESSES`.
+
+    For each alpha, modulus and beta, not below 0, follow by least squares of the relative stress.
+    """
+    best = math.inf, 0.0, 0.0, 0.0
+    for locked in (*np.linspace(0.3, 0.9, 25), *np.linspace(0.905, 0.995, 19)):
+        alpha = float(locked / strains[-1])
+        _, slope, _ = stiffening(alpha * strains)
+        design = np.stack([strains, slope], axis=1) / STRESSES[:, None]
+        (modulus, beta), off = nnls(design, np.ones(len(STRESSES)))
+        if modulus > 0 and off < best[0]:
+            best = off, float(modulus), alpha, float(beta)
+    return best[1:]
