@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -58,31 +58,58 @@ def compared(law: ConstitutiveLaw, spread: LawUncertainty, strip: MeasuredStrip)
     )
 
 
-def told(rows: list[Row]) -> None:
-    """The figures over all tests."""
-    ratio, waist, inside = (np.array(part) for part in zip(*rows, strict=True))
-    logs = np.log(ratio)
-    print("  rms factor ", np.round(np.exp(np.sqrt(np.nanmean(logs**2, axis=0))), 3),
-          " bias ", np.round(np.exp(np.nanmean(logs, axis=0)), 3))  # fmt: skip
-    print(f"  waist rms {math.sqrt(np.nanmean(waist**2)):.3f}; {inside.sum()} of {inside.size} "
-          f"forces inside the 90 % interval ({inside.mean():.0%})")  # fmt: skip
+@dataclass(frozen=True)
+class Summary:
+    """Figures over many tests.
+
+    Attributes
+    ----------
+    rms_factor, bias : of simulated over measured force at each stress.
+    waist_rms : of the difference in strain.
+    inside, forces : how many forces are in the 90 % interval, of how many.
+    """
+
+    rms_factor: tuple[float, ...]
+    bias: tuple[float, ...]
+    waist_rms: float
+    inside: int
+    forces: int
+
+    @classmethod
+    def of(cls, rows: list[Row]) -> Summary:
+        """From the rows of single tests."""
+        ratio, waist, inside = (np.array(part) for part in zip(*rows, strict=True))
+        logs = np.log(ratio)
+        return cls(
+            tuple(np.exp(np.sqrt(np.nanmean(logs**2, axis=0))).tolist()),
+            tuple(np.exp(np.nanmean(logs, axis=0)).tolist()),
+            math.sqrt(np.nanmean(waist**2)),
+            int(inside.sum()),
+            inside.size,
+        )
+
+    def __str__(self) -> str:
+        factors, bias = (
+            " / ".join(f"{v:.3f}" for v in values) for values in (self.rms_factor, self.bias)
+        )
+        return (
+            f"rms factor {factors}, bias {bias} at {' / '.join(map(str, STRESSES))} N/mm; waist "
+            f"rms {self.waist_rms:.3f}; {self.inside} of {self.forces} forces inside the 90 % "
+            f"interval ({self.inside / self.forces:.0%})"
+        )
 
 
-def library(folder: Path, laws: Laws) -> None:
+def of_library(folder: Path, laws: Laws) -> dict[tuple[Fabric, Direction], Row]:
     """The eight tests with the library's laws."""
-    print(f"{laws} laws: force over measured at {STRESSES} N/mm, waist less measured, inside")
-    rows = []
-    for fabric in Fabric:
-        record = material("acrylic", laws).record(fabric)
-        for strip in strips(folder, fabric):
-            row = compared(record.law, record.uncertainty, strip)
-            rows.append(row)
-            print(f"  {fabric:12}{strip.direction:8}", np.round(row[0], 2), np.round(row[1], 3),
-                  row[2].astype(int))  # fmt: skip
-    told(rows)
+    return {
+        (fabric, strip.direction): compared(record.law, record.uncertainty, strip)
+        for fabric in Fabric
+        for record in [material("acrylic", laws).record(fabric)]
+        for strip in strips(folder, fabric)
+    }
 
 
-def left_out(folder: Path) -> None:
+def left_out(folder: Path) -> list[Row]:
     """Every pull predicted by a law fitted to the other pulls."""
     rows = []
     for fabric in Fabric:
@@ -98,16 +125,20 @@ def left_out(folder: Path) -> None:
                         waist=strip.waist[index : index + 1],
                     )
                     rows.append(compared(fit.law, fit.uncertainty, alone))
-    print(f"{len(rows)} pulls left out one at a time")
-    told(rows)
+    return rows
 
 
 def main() -> None:
     folder = Path(sys.argv[1])
     for laws in (Laws.PUBLISHED, Laws.REFITTED):
-        library(folder, laws)
+        print(f"{laws} laws: force over measured at {STRESSES} N/mm, waist less measured, inside")
+        rows = of_library(folder, laws)
+        for (fabric, direction), row in rows.items():
+            found = np.round(row[0], 2), np.round(row[1], 3), row[2].astype(int)
+            print(f"  {fabric:12}{direction:8}", *found)
+        print(" ", Summary.of(list(rows.values())))
     if "--left-out" in sys.argv:
-        left_out(folder)
+        print("pulls left out one at a time:", Summary.of(left_out(folder)))
 
 
 if __name__ == "__main__":
