@@ -156,7 +156,7 @@ export function stretchdrawer(host, studio, stretcher) {
   const showStep = () => {
     const { value } = studio.stretch.value;
     const i = studio.step.value;
-    slider.value = String(i);
+    slider.value = String(value ? i : REST);
     if (!value) return figures.replaceChildren();
     if (i === REST) {
       slider.setAttribute("aria-valuetext", "at rest");

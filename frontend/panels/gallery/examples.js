@@ -41,7 +41,7 @@ export const EXAMPLES = [
     note: "Odd segments along the columns: stretches lengthwise.",
     chart: tiled("P/K", 24, 30),
   },
-  { id: "rib", name: "1×1 rib", note: "Odd segments along the course: stretches across.", chart: tiled("KP", 24, 30) },
+  { id: "rib", name: "1×1 rib", note: "Odd segments along the rows: stretches across.", chart: tiled("KP", 24, 30) },
   { id: "seed", name: "Seed", note: "Odd segments both ways: soft both ways.", chart: tiled("KP/PK", 24, 30) },
   {
     id: "rib-2-2",
