@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -47,7 +48,7 @@ class Answers:
         ------
         ServiceError, KnitcoreError
         """
-        key = operation.key(request)
+        key = await asyncio.to_thread(operation.key, request)  # an upload has megabytes
         known: Answer | None = self._recent.get(key)
         if known is not None:
             return known

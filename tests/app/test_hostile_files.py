@@ -166,5 +166,5 @@ def test_a_long_name_is_shortened(name: str) -> None:
 
 @pytest.mark.parametrize("content", ["%%%%", "S1A-S1A_", "S1BL UEs=", "S1A", "K\nA=="])
 def test_damaged_base64_is_refused(content: str) -> None:
-    with pytest.raises(ValidationError, match="no base64"):
+    with pytest.raises(ValidationError, match="not base64"):
         UploadedFile(name="a.txt", content=content)
