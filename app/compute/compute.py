@@ -42,9 +42,9 @@ class Compute:
 
     def __init__(self, places: Sequence[Place], timeout_s: float) -> None:
         self._timeout_s = timeout_s
-        self._places = list(places)
+        self.places = list(places)
         self.turns = Turns(
-            self._places,
+            self.places,
             most_background=max(1, len(places) - 1),
             most_waiting=4 * len(places),
             most_waiting_each=BUDGETS.jobs,
@@ -142,7 +142,7 @@ class Compute:
 
     def close(self) -> None:
         """Let go of all places."""
-        for place in self._places:
+        for place in self.places:
             place.close()
 
 

@@ -52,7 +52,7 @@ class JobRunner:
         self.store = store
         self._answers = answers
         self._compute = answers.compute
-        self._timeout_s = timeout_s
+        self.timeout_s = timeout_s
         self._runs: dict[str, _Run] = {}
         self._stopping = False
         self._heart: asyncio.Task[None] | None = None
@@ -184,7 +184,7 @@ class JobRunner:
                 wanted,
                 owner=owner,
                 background=True,
-                timeout_s=self._timeout_s,
+                timeout_s=self.timeout_s,
                 told=told,
             )
             key = content_key(kind, request)

@@ -51,7 +51,7 @@ class JobStore:
 
     def __init__(self, database: Database, process: str) -> None:
         self._database = database
-        self._process = process
+        self.process = process
 
     def add(
         self,
@@ -72,7 +72,7 @@ class JobStore:
         values = {
             "id": job or secrets.token_urlsafe(16),
             "owner": owner,
-            "process": self._process,
+            "process": self.process,
             "kind": kind,
             "request": request,
             "key": key,
@@ -152,7 +152,7 @@ class JobStore:
 
     def adopt(self) -> list[tuple[str, str]]:
         """After a start: interrupt what ran when the service went; (id, owner) of what waits."""
-        return self._take(jobs.c.process == self._process)
+        return self._take(jobs.c.process == self.process)
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
         """The same for jobs that no process has looked after for a while."""
@@ -172,7 +172,7 @@ class JobStore:
             waiting = connection.execute(
                 update(jobs)
                 .where(which, jobs.c.state == JobState.WAITING.value)
-                .values(process=self._process, seen_at=now())
+                .values(process=self.process, seen_at=now())
                 .returning(jobs.c.id, jobs.c.owner, jobs.c.created_at)
             )
             rows = sorted(waiting, key=lambda row: row.created_at)
@@ -192,7 +192,7 @@ class JobStore:
                 update(jobs)
                 .where(
                     jobs.c.id == bindparam("job"),
-                    jobs.c.process == self._process,
+                    jobs.c.process == self.process,
                     jobs.c.state.in_(OPEN),
                 )
                 .values(progress=bindparam("share"), seen_at=now())

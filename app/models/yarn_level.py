@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -126,3 +127,25 @@ def relaxed_cell(
         flat=request.flat,
         cancel=context.cancelled,
     )
+
+
+Request = TypeVar("Request", bound=YarnLevelRequest)
+Kept = TypeVar("Kept", bound=ResultModel)
+
+
+def kept_or_made(
+    kind: type[Kept],
+    request: Request,
+    context: Context,
+    make: Callable[[Request, StitchChart, ChartYarn, Context], Kept],
+) -> Kept:
+    """The result of a request that was computed before, or a new one; it says which."""
+    repeat = request.repeat()
+    used = request.yarn(repeat, context)
+    result, known = context.kept.get_or_make(
+        kind,
+        request.inputs(repeat, used),
+        lambda: make(request, repeat, used, context),
+        fresh=request.fresh,
+    )
+    return result.model_copy(update={"known": known})

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from app.cli.options import loop_lengths
 from app.models.base import Known, ResultModel
-from app.models.yarn_level import YarnLevelRequest, YarnResult, relaxed_cell
+from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
@@ -72,15 +72,7 @@ def relax(request: RelaxRequest, context: Context) -> RelaxResult:
 
     A relaxation that was run before is not computed again.
     """
-    repeat = request.repeat()
-    used = request.yarn(repeat, context)
-    result, known = context.kept.get_or_make(
-        RelaxResult,
-        request.inputs(repeat, used),
-        lambda: _relaxed(request, repeat, used, context),
-        fresh=request.fresh,
-    )
-    return result.model_copy(update={"known": known})
+    return kept_or_made(RelaxResult, request, context, _relaxed)
 
 
 def _relaxed(

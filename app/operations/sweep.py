@@ -6,7 +6,7 @@ from pydantic import Field
 
 from app.cli.options import loop_lengths
 from app.models.base import Floats, ResultModel
-from app.models.yarn_level import YarnLevelRequest, YarnResult, relaxed_cell
+from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
@@ -87,15 +87,7 @@ def sweep(request: SweepRequest, context: Context) -> SweepResult:
 
     The law also needs the stretch across. A stretch that was run before is not computed again.
     """
-    repeat = request.repeat()
-    used = request.yarn(repeat, context)
-    result, known = context.kept.get_or_make(
-        SweepResult,
-        request.inputs(repeat, used),
-        lambda: _result(request, repeat, used, context),
-        fresh=request.fresh,
-    )
-    return result.model_copy(update={"known": known})
+    return kept_or_made(SweepResult, request, context, _result)
 
 
 def _result(

@@ -330,5 +330,5 @@ def test_settings_reach_the_jobs(tmp_path: Path) -> None:
     settings = Settings(workers=1, data_dir=tmp_path, background_timeout_s=7, process_name="two")
     app = create_app(settings)
     with TestClient(app, base_url="http://127.0.0.1"):
-        assert app.state.jobs._timeout_s == 7
-        assert app.state.jobs.store._process == "two"
+        assert app.state.jobs.timeout_s == 7
+        assert app.state.jobs.store.process == "two"

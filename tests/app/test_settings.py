@@ -43,7 +43,7 @@ def test_no_token_in_what_is_logged() -> None:
 def test_a_scheduler_takes_the_work_away_from_this_machine(tmp_path: Path) -> None:
     app = create_app(Settings(scheduler="tcp://127.0.0.1:9", workers=3, data_dir=tmp_path))
     with TestClient(app, base_url="http://127.0.0.1") as client:  # it need not be there yet
-        places = app.state.compute._places
+        places = app.state.compute.places
         assert [type(place) for place in places] == [ClusterPlace] * 3
         assert client.get("/healthz").status_code == 200
         assert client.get("/readyz").status_code == 503
