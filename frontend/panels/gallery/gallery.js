@@ -58,7 +58,7 @@ export function create(studio, { keeper, open }) {
       { class: "card" },
       h(
         "button",
-        { class: "card-open whole", id: `gallery-${id}`, onclick: perform, "aria-label": `${name}. ${note}` },
+        { class: "card-open whole", id: `gallery-${id}`, onclick: perform },
         h("span", { class: "card-picture" }, picture),
         h("span", { class: "card-name" }, name),
         h("span", { class: "card-facts muted" }, note),
