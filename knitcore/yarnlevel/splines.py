@@ -40,8 +40,8 @@ COARSE = SplineGrid(controls=16, per_span=3)
 ROUGH = SplineGrid(controls=10, per_span=5)
 """Large cells find their shape on this grid (energy within 2e-3) before they are refined."""
 ROUGH_FROM = 12
-_EXPLORED, _ROUGHLY = 1e-5, 1e-4
-"""Tolerances of a shape that will be refined, and of its lengths: of a small and a large cell."""
+_EXPLORED = 1e-5
+"""Tolerance of a shape that will be refined, and of its lengths."""
 FINE_UP_TO = 2
 """Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
 SEVERAL_UP_TO = 9
@@ -143,8 +143,7 @@ def relax_splines(
     options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
-    nearly = _ROUGHLY if explored == ROUGH else _EXPLORED
-    enough = options if explored == grid else replace(options, tolerance=nearly, slack=_EXPLORED)
+    enough = options if explored == grid else replace(options, tolerance=_EXPLORED, slack=_EXPLORED)
     search = Search(energy, enough, cancel)
     if shakes:
         small = mirrored_cell(repeat, explored)
