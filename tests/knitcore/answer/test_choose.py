@@ -126,7 +126,7 @@ def test_intervals_and_bounds_hold_the_value(grid, identifier):
         strain, (low, high) = along.strain(loads), along.strain_interval(loads)
         assert strain[0] == low[0] == high[0] == 0
         assert np.all((low[1:] < strain[1:]) & (strain[1:] < high[1:]))
-        np.testing.assert_allclose(along.stress(strain), loads, rtol=2e-3)
+        np.testing.assert_allclose(along.stress(strain), loads, rtol=5e-3)
         softest, stiffest = along.stress_interval(strain)
         assert np.all((softest[1:] < loads[1:]) & (loads[1:] < stiffest[1:]))
 
