@@ -126,6 +126,7 @@ def test_the_full_model_says_from_where_on_its_law_is_only_continued(client: Tes
     """Stockinette beside rib locks first; pulled on, the force is thousands of newtons."""
     chart = "\n".join(["KP" * 8 + "K" * 16] * 16 + ["K" * 16 + "KP" * 8] * 16)
     body = ASKED | {"chart": chart, "direction": "course", "strain": 1.2, "steps": 12}
+    body["laws"] = "published"
     answer = client.post("/api/v1/stretch", json=body).json()
     assert answer["converged"]
     (message,) = answer["messages"]
