@@ -145,7 +145,7 @@ def _by_newton(
         )
         low, high = np.where(excess < 0, strain, low), np.where(excess < 0, high, strain)
         step = strain - excess / slope
-        step = np.where((step > low) & (step < high), step, (low + high) / 2)
+        step = np.where((step >= low) & (step <= high), step, (low + high) / 2)
         if np.all(np.abs(step - strain) <= 1e-13 * (1 + strain)):
             return np.asarray(step)
         strain = step
@@ -191,7 +191,7 @@ def _free_strains(
         pair = (axial, across) if direction is Direction.COURSE else (across, axial)
         step = law.stress(*pair)[axis] / law.tangent(*pair)[..., axis, axis]
         across = across - step
-        if np.all(np.abs(step) <= 1e-15 * (1 + np.abs(across))):
+        if np.all(np.abs(step) <= 1e-14 * (1 + np.abs(across))):
             break
     return across
 
