@@ -24,9 +24,9 @@ from knitcore.swatch.measured import load_field  # noqa: E402
 
 HEAD = """# Evidence
 
-How far to trust which number. `python scripts/evidence.py FOLDER` makes this page from the public
-data of the study (raw stretch tests, displacement pictures, compression tests) and from the library
-as it is. No figure here is typed in by hand.
+How far to trust each number. `python scripts/evidence.py FOLDER` makes this page from the public
+data of Singal et al. (raw stretch tests, displacement pictures, compression tests) and from the
+library as it is. No figure here is typed in by hand.
 """
 
 
