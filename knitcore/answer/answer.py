@@ -1,4 +1,4 @@
-"""An answer: what a chart of a material does along both directions, how surely, and why."""
+"""The answer for a chart of a material: response in both directions, intervals, source, notes."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Source(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """What the cloth does when it is pulled along one direction, the other free.
+    """Response to a pull along one direction, with the other direction free.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class Along:
         return self.stiff.strain(stress), self.soft.strain(stress)
 
     def stress(self, strain: ArrayLike) -> Array:
-        """Stresses (N/mm) at strains of at least 0; at most 10 N/mm, which lock every cloth."""
+        """Stresses (N/mm) at strains of at least 0; at most 10 N/mm, which lock any fabric."""
         return stress_at_strain(self.response, _not_negative("strain", strain))
 
     def stress_interval(self, strain: ArrayLike) -> tuple[Array, Array]:
@@ -103,16 +103,16 @@ class Along:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What a chart of a material does; intervals cover 90 %.
+    """Response of a chart of a material in both directions; intervals are 90 % intervals.
 
     Attributes
     ----------
     course, wale : pulled along the rows, and along the columns.
     shear_modulus_n_per_mm : an assumption of the laws unless they were calibrated.
-    provenance : the best source that answers.
-    method : how, in words.
+    provenance : the source; for a chart in patches the least certain of theirs.
+    method : how the answer was found, in words.
     relaxed_source : where the relaxed size comes from.
-    notes : what a user should know.
+    notes : remarks for the user, in sentences.
     """
 
     course: Along
@@ -136,7 +136,7 @@ class Answer:
         relaxed_source: str,
         notes: tuple[str, ...],
     ) -> Answer:
-        """Of a sheet with one constitutive law.
+        """Answer for a sheet with one constitutive law.
 
         ``log_sd`` is that of the whole scale of stress, course-wise and wale-wise: the lock-up
         strain, which tests fix best, stays where it is.

@@ -2,12 +2,12 @@
 
 1. A chart that is one pure fabric has that fabric's own law and gauge (*measured*; *estimated* or
    *swept* if the record is).
-2. Any other chart mixes the pure fabrics, corrected by what yarn-level simulations of mixed charts
-   taught (*learned*). It comes near to every repeat that was simulated, and is continuous in the
-   shares of a chart's stitches, so one stitch more or less changes little.
+2. Any other chart is a mixture of the pure fabrics with a correction learned from yarn-level
+   simulations of mixed charts (*learned*). It comes near to every simulated repeat and is
+   continuous in the shares of a chart's stitches, so one stitch more or less changes little.
 3. A chart too large for one repeat is answered patch by patch (:mod:`knitcore.answer.patches`).
-4. A known gauge replaces the relaxed size, and makes the learned stretch surer (*learned with known
-   size*).
+4. A known gauge replaces the relaxed size and narrows the intervals of the learned stretch
+   (*learned with known size*).
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from knitcore.materials import Material
 
 
 def choose(chart: StitchChart, material: Material, gauge: RelaxedSize | None = None) -> Answer:
-    """What a chart of a material does.
+    """Answer for a chart of a material.
 
     Parameters
     ----------
     chart : a repeat, or a swatch that may cut its last repeat off.
     material : one yarn on one setting.
-    gauge : relaxed size of the chart's mean stitch, where it was measured.
+    gauge : measured relaxed size of the chart's mean stitch, if known.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class ChartCurve:
     strain : from the relaxed size.
     strain_low, strain_high : 90 % interval of the strain at each stress.
     stress_low, stress_high : the same of the stress (N/mm) at each strain; at most 10 N/mm.
-    provenance : where it comes from.
+    provenance : source of the curve.
     """
 
     stress_n_per_mm: Array

@@ -1,8 +1,8 @@
-"""Densities of a chart: what its mixture of stitches is like, as means over the stitches.
+"""Densities of a chart: descriptors of its mixture of stitches, as means over the stitches.
 
-Each density is the mean of something that a stitch has with its neighbourhood. So densities do not
-change when a chart is shifted, mirrored, turned over, seen with K and P swapped, or tiled, and one
-stitch in n changes them by about 1/n. With the signs s = +1 (K) and -1 (P) they are
+Each density is the mean of a property of a stitch and its neighbourhood. So densities do not change
+when a chart is shifted, mirrored, turned over, tiled, or has K and P swapped, and one stitch in n
+changes them by about 1/n. With the signs s = +1 (K) and -1 (P) they are
 
 - the shares of stitches with 0, 1 or 2 odd segments course-wise and as many wale-wise,
 - products of s at two stitches some lag apart, and of four: in a square, in the corners of one two
@@ -12,8 +12,8 @@ stitch in n changes them by about 1/n. With the signs s = +1 (K) and -1 (P) they
   way, a purl the other, oppositely along course and wale, so that ribs and welts fold. In Fourier
   space the plate's deflection is k_x² s / (k⁴ + q⁴) course-wise and k_y² s / (k⁴ + q⁴) wale-wise.
 
-From each, the values of the pure fabrics are taken off, weighted by their shares: a density is 0 in
-a pure fabric, and small where large areas of pure fabrics meet.
+The values of the pure fabrics, weighted by their shares, are subtracted from each: a density is 0
+in a pure fabric, and small where large areas of pure fabrics meet.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ FEATURES = {
     "plates": 6 * len(_BEDS),
     "smoothed": 3 * len(_SMOOTHED_OVER),
 }
-"""How many features there are of each kind, in their order."""
+"""Number of features of each kind, in their order."""
 _NO_CHANGE = 1e-12
 _FEW_CROSSINGS = 0.1
 """Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""
@@ -54,16 +54,16 @@ _FEW_CROSSINGS = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Densities:
-    """What charts are made of; leading axes (…) are those of the charts.
+    """Composition of charts; leading axes (…) are those of the charts.
 
     Attributes
     ----------
     shares : (…, 4) shares of the pure fabrics among the quarter cells, by phase code.
     excess : (…, densities) less those of the pure fabrics, weighted by the shares.
-    straight : (…, 2) how straight fold lines run on, from 0 to 1. First along columns, which folds
+    straight : (…, 2) straightness of the fold lines, from 0 to 1. First along columns, which folds
         the width: 1 in a rib, 0 in a welt and in stockinette; then along rows: 1 in a welt.
-    ways : (…, 3) parts, adding up to 1, in which it is a rib, a welt, and neither, by where odd
-        segments are: along the course, along the wale, and at one stitch along both.
+    ways : (…, 3) parts, adding up to 1, in which the chart is a rib, a welt, and neither, by its
+        odd segments: along the course, along the wale, and at one stitch along both.
     """
 
     shares: Array

@@ -1,8 +1,8 @@
-"""Kernel regression with its variance: what charts that were computed say of one that was not.
+"""Gaussian-process regression from computed charts to new ones, with its variance.
 
-The covariance of two charts is that of a linear function of their densities, which depends on the
-yarn a little, plus that of a smooth one (squared exponential); so far from every known chart the
-mean goes back to the linear function, and the variance grows by itself. See Rasmussen and Williams,
+The covariance of two charts is that of a linear function of their densities, which depends slightly
+on the yarn, plus that of a smooth function (squared exponential). Far from every known chart the
+mean therefore returns to the linear function and the variance grows. See Rasmussen and Williams,
 *Gaussian Processes for Machine Learning* (2006), chapters 2 and 4.
 """
 
@@ -24,7 +24,7 @@ class KernelSettings:
     ----------
     linear, linear_by_yarn : variance of the linear part, and how much of it follows the yarn.
     smooth, length, yarn_length : variance of the smooth part, and its lengths in both spaces.
-    noise : variance of what no density explains.
+    noise : variance that no density explains.
     """
 
     linear: float

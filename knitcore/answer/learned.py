@@ -1,18 +1,18 @@
-"""What a mixed chart will do, learned from the yarn level: milliseconds for any chart.
+"""Response of a mixed chart, learned from yarn-level simulations: milliseconds for any chart.
 
-The pure fabrics mixed by their shares (:mod:`knitcore.answer.mixture`) are corrected in two steps,
-each a kernel regression on the chart's densities and the yarn's dimensionless numbers:
+The mixture of the pure fabrics by their shares (:mod:`knitcore.answer.mixture`) is corrected in two
+steps, each a kernel regression on the chart's densities and the yarn's dimensionless numbers:
 
 1. *Folding*: logarithms of relaxed width and height over those of the mixture.
 2. *Unfolding*: logarithms of the strain over that of the mixture, at six stresses and in both
-   directions, for a given folding. Cloth that is narrower at rest has more to give: nearly its
-   stretched size is kept, so that d ln strain / d ln size is ``slope * (1 + e) / (e + 0.15)``, with
-   slopes about -0.9.
+   directions, for a given folding. A fabric that is narrower at rest stretches further to nearly
+   the same stretched size, so that d ln strain / d ln size is ``slope * (1 + e) / (e + 0.15)``,
+   with slopes about -0.9.
 
-A known size (a gauge, or a relaxation on the yarn level) takes the place of the first step. Stress
-is compared in units of B / L³. :mod:`knitcore.answer.learned_build` fits both, calibrates their
-intervals on charts left out, and says by how much those are missed. Knitted cloth folds less than
-the yarn level: see :data:`MOST_FOLDED`.
+A known size (a gauge, or a relaxation on the yarn level) replaces the first step. Stress is
+compared in units of B / L³. :mod:`knitcore.answer.learned_build` fits both regressions, calibrates
+their intervals on charts left out, and reports the errors for those. Real fabric folds less than
+the yarn level predicts: see :data:`MOST_FOLDED`.
 """
 
 from __future__ import annotations
@@ -37,22 +37,22 @@ STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
 """Stresses over B / L³ at which strains are learned: about .01 to .3 N/mm."""
 
 MOST_FOLDED = 0.87
-"""Knitted cloth folds less than the yarn level, which knows no friction and no set. In logarithms a
-fold f becomes f / (1 + |f| / MOST_FOLDED), times the square of how straight the fold lines run on:
-folds that cross each other stay shut. This one number was fitted to the 29 swatches of KnitDB, and
+"""Knitted fabric folds less than the yarn level predicts, which has no friction and no set. In
+logarithms a fold f becomes f / (1 + |f| / MOST_FOLDED), times the squared straightness of the fold
+lines: folds that cross hinder each other. The number was fitted to the 29 swatches of KnitDB, and
 the power was chosen there from 1, 2 and 3 (benchmarks/knitdb.py)."""
 
 SHOWN_LOG_SD = 0.055
-"""What is left there: standard deviation of the logarithm of a swatch's width or height."""
+"""Residual of that fit: standard deviation of the logarithm of a swatch's width or height."""
 
 
 _TOE = 0.15
-"""Strain below which cloth does not yet unfold by as much as it was folded."""
+"""Strain below which a fabric has not yet unfolded by as much as it was folded."""
 
 
 @dataclass(frozen=True)
 class KnownSize:
-    """A relaxed size that need not be learned.
+    """A known relaxed size, used instead of the learned one.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class LearnedAnswer:
     Attributes
     ----------
     size_mm, size_log_sd : (2,) width and height of the mean stitch at rest.
-    mixture : what was corrected.
+    mixture : the mixture of pure fabrics that was corrected.
     log_ratio, log_ratio_sd : (2, stresses) ln of strain over that of the mixture, by direction.
     poisson, poisson_sd : (2,) nu_yx and nu_xy: mean slopes up to 0.3 N/mm.
     """
@@ -114,13 +114,13 @@ class LearnedAnswer:
 def learned(
     chart: StitchChart, material: Material, known: KnownSize | None = None
 ) -> LearnedAnswer:
-    """Size and response of a chart that is repeated for ever.
+    """Size and response of a chart that repeats indefinitely.
 
     Parameters
     ----------
     chart : the repeat.
     material : one yarn on one setting, with the pure fabrics that the chart is made of.
-    known : its relaxed size, where that is known.
+    known : its relaxed size, if known.
 
     Raises
     ------
@@ -147,10 +147,10 @@ class LearnedModel:
     feature_scale, number_centre, number_scale : units of the samples.
     folding, unfolding : the regressions; of ``unfolding`` the outputs are 12 strains and 2 Poisson
         ratios.
-    slopes : (14, 2) by output: how it follows ln width and ln height.
+    slopes : (14, 2) for each output: derivatives by ln width and ln height.
     folding_scale, unfolding_scale : (3, 2), (3, 14) standard deviation over the root of the
-        regression's variance, such that 90 % of what was left out lies in a 90 % interval: of ribs,
-        of welts, and of others. A chart between them has their mean.
+        regression's variance, such that 90 % of the left-out values lie in their 90 % intervals:
+        for ribs, welts and others. A chart between these kinds has their mean.
     most_folded : see :data:`MOST_FOLDED`.
     """
 
@@ -198,7 +198,7 @@ class LearnedModel:
 
         Parameters
         ----------
-        simulated : on the yarn level, which folds more than knitted cloth.
+        simulated : for yarn-level fabric, which folds more than knitted fabric.
         """
         fold, variance = self.folding(samples)
         deviation = found.ways @ self.folding_scale * np.sqrt(variance)[:, None]

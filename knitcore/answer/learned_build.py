@@ -97,8 +97,8 @@ _PURE = {StitchChart.of_fabric(fabric, 2, 2).canonical(): fabric for fabric in P
 def simulated_materials() -> dict[str, Material]:
     """Yarns of the store and of the training library as materials, by name.
 
-    Their pure fabrics have the yarn level's sizes and laws: what a mixed chart of the same yarn is
-    compared with.
+    Their pure fabrics have the yarn level's sizes and laws, with which mixed charts of the same
+    yarn are compared.
     """
     records: dict[str, dict[Fabric, FabricRecord]] = {}
     for name in MATERIALS:
@@ -195,7 +195,7 @@ def _row(
     outputs = np.append(ratio.ravel(), np.array(poisson) - mixture.poisson)
     if (
         len(mixture.parts) == 1
-    ):  # a pure fabric is its own mixture; what is left is its law's misfit
+    ):  # a pure fabric is its own mixture; the residual is its law's misfit
         fold, outputs = np.zeros_like(fold), np.zeros_like(outputs)
     return Row(
         chart.canonical(),
@@ -298,7 +298,7 @@ def _slopes(samples: Samples, fold: Array, ratio: Array, follow: Array) -> Array
 def _left_out(
     settings: KernelSettings, samples: Samples, targets: Array, folds: NDArray[np.int64]
 ) -> tuple[Array, Array]:
-    """What a model without the row's chart misses, and its variance."""
+    """Errors of models fitted without the row's chart, and their variances."""
     missed, variance = np.zeros_like(targets), np.zeros(len(targets))
     for fold in range(_FOLDS):
         out = folds == fold
@@ -309,7 +309,7 @@ def _left_out(
 
 
 def _scale(missed: Array, variance: Array, kinds: NDArray[np.str_], coverage: float) -> Array:
-    """(3, outputs) scales that let so much of what was left out lie in a 90 % interval, by kind."""
+    """(3, outputs) scales by kind for which 90 % intervals cover that part of left-out values."""
     standard = np.abs(missed) / np.sqrt(variance)[:, None]
     return np.array([np.quantile(standard[kinds == k], coverage, axis=0) / Z_SCORE for k in _KINDS])
 

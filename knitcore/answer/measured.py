@@ -13,14 +13,14 @@ CURL = (
 )
 
 GAUGE_LOG_SD = 0.08
-"""Standard deviation of the logarithm of a pure fabric's size: one aspect ratio stands for all
+"""Standard deviation of the logarithm of a pure fabric's size: one aspect ratio is used for all
 yarns, and those of two yarns differ by up to 17 % (``materials/data/aspect.csv``)."""
 
 _SOURCES = {Origin.SIMULATED: Source.SWEPT, Origin.ESTIMATED: Source.ESTIMATED}
 
 
 def measured(fabric: Fabric, material: Material) -> Answer:
-    """What a pure fabric does, by the record of the material.
+    """Answer for a pure fabric, from the record of the material.
 
     Raises
     ------

@@ -22,8 +22,8 @@ from knitcore.materials.uncertainty import Z_SCORE
 Array = NDArray[np.float64]
 
 LEARNED = (
-    "Learned from yarn-level simulations, which have no friction or set: the first stretch and the "
-    "draw-in are the least sure. Your own gauge makes both surer."
+    "Learned from yarn-level simulations, which have no friction or set: the initial stretch and "
+    "the draw-in are the least certain. Your own gauge makes both more certain."
 )
 _LOOP_SPREAD = 1.15
 
@@ -54,13 +54,13 @@ class LearnedResponse:
 def mixed(
     repeat: StitchChart, found: Densities, material: Material, gauge: RelaxedSize | None
 ) -> Answer:
-    """What a repeat of more than one pure fabric does.
+    """Answer for a repeat of more than one pure fabric.
 
     Parameters
     ----------
     repeat : the repeat.
     found : its densities.
-    gauge : its relaxed size, where it was measured.
+    gauge : its measured relaxed size, if known.
 
     Raises
     ------
@@ -77,8 +77,8 @@ def mixed(
         wale,
         sum(share * record.law.shear_modulus for share, record in parts),
         Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE,
-        f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, corrected by what "
-        "yarn-level simulations of mixed charts taught",
+        f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, with a "
+        "correction learned from yarn-level simulations of mixed charts",
         "learned" if gauge is None else GAUGE,
         (LEARNED, *_notes(learned.mixture, material)),
     )

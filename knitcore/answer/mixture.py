@@ -1,7 +1,7 @@
-"""The pure fabrics of a material, mixed by their shares in a chart without knowing where they are.
+"""The pure fabrics of a material, mixed by their shares in a chart, wherever they are.
 
 Strain at equal stress (the Reuss bound), size and Poisson's ratio are means over the quarter cells.
-This is what :mod:`knitcore.answer.learned` corrects.
+:mod:`knitcore.answer.learned` corrects this mixture.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 USUAL_STRESS_N_PER_MM = 2e-5
 """B / L³ of a yarn that is not known well enough: about the middle of the library."""
 _NOTHING = 1e-9
-"""A share that is rounding."""
+"""Shares below this are rounding errors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +38,8 @@ class Mixture:
     ----------
     parts : (share, record) of each fabric that is present.
     numbers : ln r/L, ln core/L, ln k r⁴L/B and contact exponent of the yarn, means of the parts;
-        None where the material does not say enough of its yarn.
-    bending_stress_n_per_mm : B / L³, by which stresses of yarns compare.
+        None where the material does not describe its yarn well enough.
+    bending_stress_n_per_mm : B / L³, the unit in which stresses of different yarns compare.
     """
 
     parts: tuple[tuple[float, FabricRecord], ...]
@@ -96,7 +96,7 @@ class Mixture:
     def log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Standard deviation of the log strain from the uncertainty of the pure fabrics' laws.
 
-        That is one of a law's whole scale of stress, so it moves strains less where they lock.
+        That uncertainty is one of a law's scale of stress, so it changes strains less near lock-up.
         """
         strains = np.array(self._strains(direction, stress_n_per_mm))
         total = strains.sum(axis=0)

@@ -1,11 +1,11 @@
-"""Relaxed sizes that know their surroundings: textures side by side in one piece.
+"""Relaxed sizes of stitches by their surroundings: textures side by side in one piece.
 
-What a stitch wants to be like depends on the texture around it. The piece is looked at through
-windows that overlap by half; each window is a chart of its own, whose learned folding
-(:mod:`knitcore.answer.learned`) says how wide and high its stitches are, and between their middles
-sizes change linearly. So a ribbed hem is narrow, the stockinette above it wide, and they meet
-gradually. The edges of a piece are edges: the chart goes on beyond them as its mirror image, not as
-its other side.
+The relaxed size of a stitch depends on the texture around it. The piece is divided into windows
+that overlap by half. Each is a chart of its own, whose learned folding
+(:mod:`knitcore.answer.learned`) gives the width and height of its stitches; between the centres of
+windows, sizes vary linearly. So a ribbed hem is narrow, the stockinette above it wide, and one
+passes gradually into the other. Beyond the edges of the piece, the chart is continued as its mirror
+image, not as its repeat.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """Large charts: patches of stitches, each with its own answer, that pull on each other.
 
 A repeat of at most :data:`SIDE` stitches a side, a rib or a welt is one patch. A larger chart is
-cut into patches of about that size. Each is a pure fabric, or a mixed chart of its own, with what
-it says of the whole chart's densities moved so that the patches' mean is the chart's: cutting a
-texture across its repeat then changes nothing on the whole.
+cut into patches of about that size. Each is a pure fabric or a mixed chart of its own. The
+densities of mixed patches are shifted so that their mean is the whole chart's: a cut across a
+repeat then does not change the result for the whole.
 
-Together they are lines along the pull: in a line all patches carry the same force per row (wale),
-and their stretched sizes add up; all lines are strained alike, and their forces add up.
+Patches form lines along the pull: in a line all patches carry the same force per row (wale), and
+their stretched sizes add up; all lines are strained alike, and their forces add up.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Patches:
         share = np.outer(np.diff(self.rows), np.diff(self.columns)).ravel().astype(float)
         share /= share.sum()
         course, wale = (self._along(flat, share, direction) for direction in Direction)
-        # the least sure source, and what all have to say
+        # the least certain source, and the notes of all
         source = next((a for a in flat if a.provenance.startswith("learned")), first)
         return replace(
             source,
@@ -70,7 +70,7 @@ class Patches:
             wale=wale,
             shear_modulus_n_per_mm=float(share @ [a.shear_modulus_n_per_mm for a in flat]),
             method=f"{len(self.answers[0])} x {len(self.answers)} patches, in series along the "
-            "pull and side by side across it; mixed ones by what yarn-level simulations taught",
+            "pull and side by side across it; mixed ones learned from yarn-level simulations",
             notes=tuple(dict.fromkeys(note for answer in flat for note in answer.notes)),
         )
 
@@ -158,7 +158,7 @@ def patches_of(chart: StitchChart, material: Material, gauge: RelaxedSize | None
     Parameters
     ----------
     chart : a repeat or a whole piece, as for :func:`knitcore.answer.choose.choose`.
-    gauge : relaxed size of the whole chart's mean stitch, where it was measured.
+    gauge : measured relaxed size of the whole chart's mean stitch, if known.
 
     Raises
     ------

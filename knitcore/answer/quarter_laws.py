@@ -1,4 +1,4 @@
-"""Laws for the quarter cells of a piece, such that the cloth does what its answer says.
+"""Laws for the quarter cells of a piece, such that the piece as a whole agrees with its answer.
 
 The quarter grid with the pure fabrics' own laws and sizes is the flat composite, without folds. So
 each patch of a mixed chart (:mod:`knitcore.answer.patches`) gets laws of its own. At every stress
@@ -7,12 +7,12 @@ the strain of a phase is half the patch's own and half the phase's part in the f
     strain_p = answer (1 + strain_p of the pure fabric / strain of the flat composite) / 2,
 
 and laws are fitted to that. Phases in series then add up to the answer, and the quarters that
-stretch most in the flat composite still do, by half as much: neighbours within a patch hold each
-other (and cells that differ as much as the pure fabrics would be crushed beside each other). Stitch
-sizes are scaled to the relaxed size. Poisson's ratios are the answer's, or less where one energy
-for both directions needs it. A patch of one pure fabric keeps its own law.
+stretch most in the flat composite still do, by half as much: neighbours within a patch restrain
+each other (and neighbouring cells that differed as much as the pure fabrics would be crushed).
+Stitch sizes are scaled to the relaxed size. Poisson's ratios are the answer's, or less where one
+energy for both directions requires it. A patch of one pure fabric keeps its own law.
 
-The flat composite counts as lines of cells along the pull: in a line the phases are in series at
+The flat composite is taken as lines of cells along the pull: in a line the phases are in series at
 one force, and all lines are strained alike.
 """
 
@@ -54,8 +54,8 @@ class QuarterLaws:
 
     Attributes
     ----------
-    laws : four for each patch, in the order of the phase codes; that of a phase which is not in
-        the patch is one of the others.
+    laws : four for each patch, in the order of the phase codes; a phase that is not in the patch
+        has the law of another one.
     patch : (rows, columns) number of each stitch's patch.
     scale : (rows, columns, 2) width and height of the stitches over those of their phases.
     log_sd : (2, stresses) standard deviation of the logarithm of stress course-wise and wale-wise,
@@ -135,7 +135,7 @@ def _own_laws(cells: NDArray[np.uint8], material: Material) -> list[Constitutive
 def _own_log_sd(
     cells: NDArray[np.uint8], answer: Answer, material: Material, direction: Direction
 ) -> Array:
-    """What is left of the answer's interval of the stress without the laws' own uncertainty."""
+    """Part of the answer's stress interval that does not come from the laws' own uncertainty."""
     along = answer.along(direction)
     low, high = along.stress_interval(along.strain(SPREAD_AT))
     whole = np.log(high / low) / (2 * Z_SCORE)

@@ -1,4 +1,4 @@
-"""A relaxed size that somebody measured."""
+"""A measured relaxed size."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ class RelaxedSize:
         for name in ("course_mm", "wale_mm"):
             value = getattr(self, name)
             if not (np.isfinite(value) and 0 < value < 500):
-                raise InputError(name, f"{value} mm is no stitch size.", "Give mm per stitch.")
+                raise InputError(
+                    name, f"{value} mm is not a stitch size.", "Give mm per stitch, above 0."
+                )
 
     @classmethod
     def from_gauge(cls, stitches_per_10_cm: float, rows_per_10_cm: float) -> RelaxedSize:
@@ -49,7 +51,7 @@ class RelaxedSize:
             ("rows_per_10_cm", rows_per_10_cm),
         ):
             if not (np.isfinite(value) and value > 0):
-                raise InputError(name, f"{value} is no gauge.", "Count over 10 cm.")
+                raise InputError(name, f"{value} is not a gauge.", "Count over 10 cm.")
         return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm)
 
     def extent_mm(self, direction: Direction) -> float:

@@ -1,10 +1,10 @@
-"""Repeats that were relaxed and stretched on the yarn level, as a measured material has them.
+"""Repeats that were relaxed and stretched on the yarn level, scaled to a measured material.
 
-The yarn level has no friction and an idealised yarn: its moduli of the pure fabrics miss the
-measured ones by up to a factor of two. Set beside measured fabrics, a repeat's law from there would
-then compare the models, not the stitches. So each constant is multiplied by what the pure fabrics
-of the same yarn-level model need to meet the measurement: the geometric mean over the repeat's
-phases, weighted by their shares. A pure fabric gets its measured moduli back.
+The yarn level has no friction and an idealised yarn: its moduli of the pure fabrics differ from the
+measured ones by up to a factor of two. Comparing a repeat's yarn-level law with measured fabrics
+would then compare the models, not the stitches. So each constant is multiplied by the factor that
+takes the pure fabrics of the same yarn-level model to their measurements: the geometric mean over
+the repeat's phases, weighted by their shares. A pure fabric gets its measured moduli back.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def swept_answer(
     repeat: StitchChart,
     material: Material,
 ) -> Answer:
-    """The answer of a sweep of this very repeat.
+    """Answer from a sweep of this repeat itself.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def law_in_material(
     repeat: StitchChart,
     material: Material,
 ) -> ConstitutiveLaw:
-    """The law of a repeat as the measured material would have it.
+    """The law of a repeat, scaled to the measured material.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Fitting what a stretch test alone cannot see: shear modulus and coupling, from a field.
+"""Fitting shear modulus and coupling, which a stretch test does not determine, to a field.
 
 Unknowns are the shear modulus, a factor on both couplings C_xxyy and C_yyxx, and kappa, the
 transverse coupling of the stiffening. A force curve of the pulled direction, if given, adds the
@@ -126,11 +126,11 @@ def calibrate(
 
     Parameters
     ----------
-    field : the measurement; leave pictures out (:meth:`MeasuredField.only`) to test the fit on.
+    field : the measurement; leave pictures out (:meth:`MeasuredField.only`) to validate the fit.
     law : the law to start from, from tests or tables.
     direction : in which field and forces were measured.
     forces : force curve in the same direction.
-    cancelled : asked between simulated tests.
+    cancelled : called between simulated tests; True stops the fit.
 
     Raises
     ------

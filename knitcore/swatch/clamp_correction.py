@@ -1,10 +1,10 @@
-"""Published laws taken back to the tests that they came from, clamp to clamp.
+"""Published laws converted back to the tests that they came from, clamp to clamp.
 
-A published law gives stress over the strain between the middle of the cloth and the lower clamp,
-which is ``r`` times the strain from clamp to clamp, and Poisson ratios by straight lines that
-overstate the waist. :class:`ClampCorrection` measures both on raw tests, and :func:`carried_strip`
-makes of a published law the test as its clamps would have seen it, so that
-:func:`knitcore.swatch.strip_fit.fit_strips` can fit it again.
+A published law gives stress over the strain between the middle of the sample and the lower clamp,
+which is ``r`` times the strain from clamp to clamp, and Poisson ratios from straight lines, which
+overstate the waist. :class:`ClampCorrection` measures both effects on raw tests.
+:func:`carried_strip` converts a published law to the test as measured between the clamps, which
+:func:`knitcore.swatch.strip_fit.fit_strips` can fit again.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ LARGEST_STRESS_N_PER_MM = 0.25
 """About where the authors' tests end (30 N)."""
 LOCK_UP_SHARE = 0.95
 WAIST_NOISE = 0.06
-"""Error of a waist that published Poisson ratios give: they are lines, and of samples whose size is
-not known."""
+"""Error of a waist computed from published Poisson ratios: these are slopes of straight lines, for
+samples of unknown size."""
 
 
 @dataclass(frozen=True)
 class ClampCorrection:
-    """What a raw test says about its published reduction.
+    """Ratios between a raw test and its published reduction.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ def carried_strip(
     size_mm: tuple[float, float],
     correction: ClampCorrection,
 ) -> MeasuredStrip:
-    """The test behind a published law as its clamps would have seen it.
+    """The test behind a published law, as measured between the clamps.
 
     Parameters
     ----------

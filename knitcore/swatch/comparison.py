@@ -1,4 +1,4 @@
-"""How far a law is from a measured displacement field."""
+"""Difference between a law and a measured displacement field."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LARGEST_STEP = 0.05
 
 
 class Edges(StrEnum):
-    """What is imposed at the clamped edges: their measured motion, or its mean (rigid clamps)."""
+    """Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps)."""
 
     MEASURED = "measured"
     RIGID = "rigid"
@@ -70,7 +70,7 @@ def compare(
     field : the measurement.
     law : law of the homogeneous fabric.
     direction : in which it was pulled.
-    edges : what the clamped edges do.
+    edges : motion of the clamped edges.
     model : energy model (``full`` by default).
     """
     sheet = field_sheet(field, law, direction, model or SheetModel())

@@ -95,7 +95,7 @@ def stress_strain_figure(
     measured_strain: ArrayLike | None = None,
     measured_stress_n_per_mm: ArrayLike | None = None,
 ) -> Any:
-    """The curve of a strip test, with a measured one beside it if given."""
+    """The curve of a strip test, with a measured one for comparison if given."""
     import plotly.graph_objects as go
 
     figure = go.Figure(

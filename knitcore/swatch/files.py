@@ -19,12 +19,12 @@ def write_fields(test: SwatchTest, path: Path | str) -> None:
     Raises
     ------
     InputError
-        If the suffix is another one, or there is no step to write.
+        If the suffix is neither of these, or there is no step to write.
     """
     target = Path(path)
     suffix = target.suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError("out", f"{target.name} is of no known kind.", "Use .npz or .vtu.")
+        raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz or .vtu.")
     if suffix == ".npz":
         write_npz(test, target)
     else:
@@ -57,7 +57,7 @@ def write_npz(test: SwatchTest, path: Path) -> None:
 def write_vtu(test: SwatchTest, path: Path, step: int = -1) -> None:
     """One step on the rest shape, quarter cells as quadrilaterals; warp by ``displacement_mm``.
 
-    What is no cloth is left out.
+    Cells without fabric are left out.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class QuarterGrid:
     natural_width, natural_height : float arrays (rows, columns), mm
         Size of the cell's own fabric at rest. By default the size between the lines.
     cloth : bool array (rows, columns)
-        Which cells there are; by default all. The others carry nothing, whatever their law.
+        Which cells hold fabric; by default all. The others carry no load, whatever their law.
 
     Raises
     ------
@@ -109,11 +109,10 @@ class QuarterGrid:
         """The grid of a chart, each phase with its fabric's stitch size (width, height).
 
         Where fabrics of different gauge meet, a column is as wide and a row as high as its
-        quarters are on average; what each quarter would like to measure stays in
-        ``natural_width`` and ``natural_height``. ``scale`` (rows, columns, 2) multiplies the width
-        and height of each stitch. ``stitch`` (rows, columns) leaves out what has no
-        stitch. With ``width_mm`` or ``length_mm`` all sizes are scaled so that the cloth measures
-        that from edge to edge.
+        quarters are on average; the natural size of each quarter stays in ``natural_width`` and
+        ``natural_height``. ``scale`` (rows, columns, 2) multiplies the width and height of each
+        stitch. ``stitch`` (rows, columns) is False where there is no stitch. With ``width_mm`` or
+        ``length_mm`` all sizes are scaled so that the fabric measures that from edge to edge.
         """
         check_cells(2 * chart.rows, 2 * chart.columns)
         inside = np.ones_like(chart.purl) if stitch is None else np.asarray(stitch, dtype=bool)
@@ -188,7 +187,7 @@ class QuarterGrid:
 
     @property
     def has_misfit(self) -> bool:
-        """Whether a cell would like another size than it is laid out with."""
+        """Whether any cell's natural size differs from its laid-out size."""
         laid = self.at_rest_as_laid_out
         return not (
             np.allclose(laid.natural_width, self.natural_width, rtol=1e-12)
@@ -298,12 +297,12 @@ def check_cells(rows: int, columns: int) -> None:
 
 
 def check_cloth(cloth: NDArray[np.bool_], rows: int, columns: int) -> None:
-    """Refuse what is no cloth in one piece; pieces that touch at a corner are not joined.
+    """Refuse fabric that is not in one piece; pieces that touch at a corner are not joined.
 
     Raises
     ------
     InputError
-        Saying into how many pieces it falls.
+        Naming the number of pieces.
     """
     if cloth.shape != (rows, columns):
         raise InputError(
@@ -319,7 +318,7 @@ def check_cloth(cloth: NDArray[np.bool_], rows: int, columns: int) -> None:
     if pieces > 1:
         raise InputError(
             "outline",
-            f"the fabric is in {pieces} pieces, which pull on nothing together.",
+            f"the fabric is in {pieces} pieces that are not connected.",
             "Join them by a stitch, or stretch one piece at a time.",
         )
 
@@ -334,7 +333,7 @@ def check_size_mm(width_mm: float, length_mm: float) -> None:
     """
     for name, value in (("width_mm", width_mm), ("length_mm", length_mm)):
         if not (np.isfinite(value) and value > 0):
-            raise InputError(name, f"{value} mm is no size.", "Give a number above 0 mm.")
+            raise InputError(name, f"{value} mm is not a size.", "Give a number above 0 mm.")
 
 
 def _means(sizes: Array, cloth: NDArray[np.bool_], axis: int) -> Array:

@@ -1,4 +1,4 @@
-"""The intervals of a strip test at every step, of the whole and of each stitch."""
+"""The intervals of a strip test at every step, for the whole swatch and for each stitch."""
 
 from __future__ import annotations
 

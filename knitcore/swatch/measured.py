@@ -78,7 +78,7 @@ class MeasuredField:
             raise InputError(
                 "frames",
                 f"the file has no stretched picture {_listed(numbers - known)}.",
-                f"Use {_listed(known)}; a picture without motion is what those are compared with.",
+                f"Use {_listed(known)}; a picture without motion is the reference for these.",
             )
         kept = tuple(frame for frame in self.frames if frame.number in numbers)
         return MeasuredField(self.width, self.length, kept)
@@ -104,7 +104,7 @@ def load_field(path: Path | str) -> MeasuredField:
     Raises
     ------
     InputError
-        If the file is no such field or has no stretched picture.
+        If the file is not such a field or has no stretched picture.
     """
     try:
         with np.load(path) as archive:
@@ -192,7 +192,7 @@ def _rest_region(
     if len(least.now) < 100:
         moved = [s for s in samples if len(s.now) >= 100]
         if not moved:
-            raise InputError("field", "has hardly any point.", "Give a denser field.")
+            raise InputError("field", "has too few points.", "Give a denser field.")
         least = moved[0]
     rest = least.rest
     low, high = rest.min(axis=0), rest.max(axis=0)

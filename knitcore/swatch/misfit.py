@@ -1,4 +1,4 @@
-"""Regions of different gauge in one cloth: their misfit, and the shape they relax to."""
+"""Regions of different gauge in one fabric: their misfit, and the shape they relax to."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Misfit:
     Attributes
     ----------
     course, wale : (rows, columns) laid-out size over natural size - 1, of each quarter cell; 0
-        where there is no cloth.
+        where there is no fabric.
     by_fabric : mean (course, wale) of each fabric in the chart.
     """
 
@@ -44,7 +44,7 @@ class Misfit:
 
 
 def misfit(grid: QuarterGrid) -> Misfit:
-    """How far the cells of a grid are from their natural sizes."""
+    """Misfit between the cells of a grid and their natural sizes."""
     course = np.diff(grid.column_lines) / grid.natural_width - 1
     wale = np.diff(grid.row_lines)[:, None] / grid.natural_height - 1
     course[~grid.cloth] = wale[~grid.cloth] = 0.0
@@ -69,7 +69,7 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
     Parameters
     ----------
     sheet : with natural sizes, as ``chart_sheet(..., draw_in=True)`` makes it.
-    cancelled : asked now and then.
+    cancelled : called now and then; True stops the relaxation.
 
     Returns
     -------

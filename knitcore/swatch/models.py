@@ -1,8 +1,8 @@
 """Energy models of the sheet, by name.
 
 ``published``
-    What the paper's demonstration solved (Note 9): linearised strain and the stiffening energy
-    truncated at quartic order. It never locks and it is not objective.
+    The model of the paper's demonstration (Note 9): linearised strain and the stiffening energy
+    truncated at quartic order. It never locks and is not objective.
 ``full``
     Fibre strains ``e_x = |F X| - 1`` and ``e_y = |F Y| - 1`` along the courses and wales and the
     change ``gamma`` of the angle between them, as an extensometer and a protractor would read
@@ -38,8 +38,8 @@ class EnergyModel(StrEnum):
 class Coupling(StrEnum):
     """How C_xxyy and C_yyxx become the one coupling that an energy needs.
 
-    ``geometric`` keeps both Young's moduli and nu_xy nu_yx; ``arithmetic`` is the paper's text
-    and ``script`` (C_xxyy alone) what the authors' script used.
+    ``geometric`` keeps both Young's moduli and nu_xy nu_yx; ``arithmetic`` follows the paper's text
+    and ``script`` (C_xxyy alone) the authors' script.
     """
 
     GEOMETRIC = "geometric"
@@ -49,13 +49,13 @@ class Coupling(StrEnum):
 
 @dataclass(frozen=True)
 class SheetModel:
-    """An energy model and its assumptions, all visible.
+    """An energy model and its assumptions.
 
     Parameters
     ----------
     energy : which energy.
     coupling : symmetrisation rule; by default the model's own: ``geometric`` for ``full``,
-        ``script`` for ``published``, because that is what the published figures show.
+        ``script`` for ``published``, because the published figures were made with it.
     shear_modulus : N/mm, replaces the laws' assumed shear modulus if given.
     tension_field : bool
         Let the sheet wrinkle instead of carrying compression along a course or wale (``full``).
@@ -76,7 +76,9 @@ class SheetModel:
             np.isfinite(self.shear_modulus) and self.shear_modulus > 0
         ):
             raise InputError(
-                "shear_modulus", f"{self.shear_modulus} N/mm is no stiffness.", "Give above 0 N/mm."
+                "shear_modulus",
+                f"{self.shear_modulus} N/mm is not a stiffness.",
+                "Give above 0 N/mm.",
             )
         if self.energy is EnergyModel.PUBLISHED and self.tension_field:
             raise InputError(

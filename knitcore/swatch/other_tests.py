@@ -55,7 +55,9 @@ def pull_with_force(
     """
     levels = np.asarray(forces_n, dtype=float)
     if levels.ndim != 1 or levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:
-        raise InputError("force_n", f"{forces_n} are no pulling forces.", "Give numbers above 0.")
+        raise InputError(
+            "force_n", f"{forces_n} are not all pulling forces.", "Give numbers above 0."
+        )
     if np.any(np.diff(levels) <= 0):
         raise InputError("force_n", "the forces do not increase.", "Give increasing forces.")
     begin = time.perf_counter()
@@ -126,7 +128,7 @@ def biaxial_test(
     progress: Progress | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> BiaxialTest:
-    """Pull all four edges apart; each edge stays straight and slides along itself.
+    """Pull all four edges outwards; each edge stays straight and slides along itself.
 
     Raises
     ------
@@ -136,7 +138,9 @@ def biaxial_test(
     last = {Direction.COURSE: strain_course, Direction.WALE: strain_wale}
     for direction, strain in last.items():
         if not (np.isfinite(strain) and strain >= 0):
-            raise InputError(f"strain_{direction}", f"{strain} is no stretch.", "Give 0 or more.")
+            raise InputError(
+                f"strain_{direction}", f"{strain} is not a stretch.", "Give 0 or more."
+            )
         check_lock_up(sheet, direction, strain)
     if max(last.values()) == 0:
         raise InputError("strain_course", "both strains are 0.", "Give one above 0.")

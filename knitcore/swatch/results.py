@@ -1,4 +1,4 @@
-"""What a test of a swatch gives back."""
+"""Results of tests of a swatch."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class SwatchTest:
 
     def is_past_the_law(self, step: int = -1) -> bool:
         """Whether some triangle of a quarter cell is past 98 % of its lock-up, where ``full`` only
-        continues its law: force and strains are no fabric's then.
+        extrapolates its law: force and strains are then not physical.
         """
         used = triangle_utilisation(self.sheet, cell_strains(self.sheet, self.states[step]))
         return bool(used.max() > EXTENSION_START + 1e-6)
@@ -154,7 +154,7 @@ class StripTest(SwatchTest):
     stress_n_per_mm : force per initial width.
     waist_strain : change of width half-way between the clamps, over the initial width there.
     width_mm, length_mm : initial size across and along the pull; of a shaped piece its mean width.
-    requested_strain : what was asked for.
+    requested_strain : the last strain that was asked for.
     """
 
     direction: Direction
@@ -169,7 +169,7 @@ class StripTest(SwatchTest):
 
 @dataclass(frozen=True, eq=False)
 class BiaxialTest(SwatchTest):
-    """All four edges pulled apart, free to slide along themselves.
+    """A biaxial test: all four edges pulled outwards, free to slide along themselves.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Running a path of load steps: progress, cancellation, and what is left when it stops short."""
+"""Running a path of load steps: progress, cancellation, and partial results if it stops early."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """Equilibria found, why there are no more, and the time it took."""
+    """Equilibria found, the reason if the path stopped early, and the time taken."""
 
     found: tuple[Equilibrium, ...]
     problem: str | None

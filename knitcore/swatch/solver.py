@@ -4,8 +4,8 @@ One load step: predict (polynomial extrapolation of the last equilibria; along t
 there are too few), then Newton steps with an energy line search. The linear systems are solved by
 conjugate gradients on the true tangent, preconditioned by the last factorised one, so that a
 factorisation serves several Newton steps. A state is accepted only where its forces balance and
-its tangent is positive definite. A step that fails is halved; what cannot be halved any more is
-reported, with the part of the path that was reached.
+its tangent is positive definite. A step that fails is halved; once it cannot be halved further, the
+failure is reported with the part of the path that was reached.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Tolerance:
     Attributes
     ----------
     relative : residual force over the force at the prescribed nodes (Euclidean norms).
-    absolute_n : N, floor below which a residual is none.
+    absolute_n : N, floor below which a residual counts as 0.
     """
 
     relative: float = 1e-7
@@ -81,7 +81,7 @@ class PathSolver:
         Unknowns that are prescribed. They must at least take away the rigid motions. Corners
         without cloth are prescribed in any case.
     tolerance : when a state counts as balanced.
-    cancelled : asked between linear solves; True stops with :class:`CancelledError`.
+    cancelled : called between linear solves; True stops with :class:`CancelledError`.
     factor : makes the factorisation for a grid's columns, rows and prescribed unknowns.
     """
 
@@ -117,7 +117,7 @@ class PathSolver:
         Raises
         ------
         StepError
-            When a step fails even after halving; what was yielded before stays valid.
+            When a step fails even after halving; states yielded before that stay valid.
         CancelledError
             When the caller asked to stop.
         """
@@ -173,7 +173,7 @@ class PathSolver:
             before = self.factorisations
             step = self._solve(lin, -force, max(0.3 * limit / residual, FORCING))
             iterations += 1
-            if first:  # whether the last step's tangent was of use tells about the next step
+            if first:  # if the last step's tangent was useful, the next one's probably is
                 self._refresh_early |= self.factorisations > before
                 first = False
             state, lin = self._line_search(state, lin, step)
@@ -195,7 +195,7 @@ class PathSolver:
         return Equilibrium(state, lin.energy, np.where(self.fixed, lin.corner_force, 0), iterations)
 
     def _is_close(self, lin: Linearisation) -> bool:
-        """Whether an extrapolated state is so near to balance that no other need be tried."""
+        """Whether an extrapolated state is near enough to balance to start from it."""
         free, limit = self._residual(lin)
         return free * self.tolerance.relative <= CLOSE * limit
 
@@ -275,13 +275,13 @@ class PathSolver:
         self._factor_is_current = True
 
     def _try_factorise(self, lin: Linearisation) -> None:
-        """Factorise a tangent on the way, where it may be indefinite; if so, that of the sheet at
-        rest, which is positive definite as far as numbers can tell.
+        """Factorise a tangent during the iteration; where it is indefinite, that of the sheet at
+        rest instead, which is positive definite up to rounding.
 
         Raises
         ------
         StepError
-            If the cells' proportions or stiffnesses are too extreme to tell even that.
+            If the cells' proportions or stiffnesses are too extreme even for that.
         """
         try:
             self._factorise(lin)

@@ -70,15 +70,15 @@ def strip_test(
     shear_modulus : N/mm, replaces the laws' assumed one.
     clamps : gripped or sliding ends.
     draw_in : let each fabric keep its own gauge as rest size instead of the mean grid's, so that
-        regions of different gauge pull on each other (the ends stay at the grid's size). What is
-        pushed together wrinkles: by default the model then has its tension field on.
+        regions of different gauge pull on each other (the ends stay at the grid's size). Compressed
+        regions wrinkle: by default the model then has its tension field on.
     stitch : bool (rows, columns), where a shaped piece has stitches, row 0 at the bottom; the
         clamps hold those of its outermost rows or columns. All of the rectangle by default.
-    laws : of the quarter cells; by default those with which the cloth does what
-        :func:`knitcore.answer.choose.choose` says.
+    laws : of the quarter cells; by default those with which the swatch agrees with
+        :func:`knitcore.answer.choose.choose`.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
     progress : called with (steps done, steps in all).
-    cancelled : asked now and then; True stops the test.
+    cancelled : called now and then; True stops the test.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def strip_test(
     ------
     InputError
         For strains at or beyond the lock-up, sizes, steps or meshes that cannot be used, or a
-        shaped piece that falls apart.
+        shaped piece that is not connected.
     CancelledError
         If ``cancelled`` returned True.
 
@@ -135,10 +135,10 @@ def chart_sheet(
     width_mm: float | None = None,
     length_mm: float | None = None,
 ) -> Sheet:
-    """The sheet that a chart of a material is; ``stitch`` as for :func:`strip_test`.
+    """The sheet of a chart of a material; ``stitch`` as for :func:`strip_test`.
 
-    Its cells' laws and sizes are such that a large cloth of it does what
-    :func:`knitcore.answer.choose.choose` says.
+    Its cells' laws and sizes are such that a large swatch agrees with
+    :func:`knitcore.answer.choose.choose`.
     """
     chosen = sheet_model(model, shear_modulus)
     if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
@@ -211,7 +211,7 @@ def sheet_model(
     if isinstance(model, SheetModel):
         if shear_modulus is not None:
             raise InputError(
-                "shear_modulus", "is given twice.", "Give it in the model or apart, not both."
+                "shear_modulus", "is given twice.", "Give it in the model or on its own, not both."
             )
         return model
     try:
@@ -294,7 +294,7 @@ def load_levels(strain: float | Sequence[float], steps: int) -> Array:
     values = np.asarray(strain, dtype=float)
     levels = values * (np.arange(1, steps + 1) / steps) if values.ndim == 0 else values
     if levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:
-        raise InputError("strain", f"{strain} is no stretch.", "Give a number above 0.")
+        raise InputError("strain", f"{strain} is not a stretch.", "Give a number above 0.")
     if np.any(np.diff(levels) <= 0):
         raise InputError("strain", "the strains do not increase.", "Give increasing strains.")
     return levels

@@ -1,4 +1,4 @@
-"""A law from stretch tests that are simulated, fitted to force and waist together.
+"""A law fitted to force and waist of stretch tests together, by simulating the tests.
 
 A strip held by its clamps strains unevenly, and how much depends on its size. So the unknowns -
 C_xxxx, C_yyyy, one coupling, alpha, beta and kappa of both directions, and the shear modulus - are
@@ -11,8 +11,7 @@ so that the strip strains evenly.
 Uncertainty, each to first order about the fit:
 
 - between pulls, by the jackknife;
-- what the law cannot follow, by the scatter about the fit, a few neighbouring points counting as
-  one;
+- misfit of the law, by the scatter about the fit, a few neighbouring points counting as one;
 - reading errors of width and length (:data:`LOG_WIDTH_READING`, :data:`LOG_LENGTH_READING`).
 """
 
@@ -51,20 +50,20 @@ BINS = 80
 CELLS = 10
 """Cells across the shorter side of the strip."""
 ROUGH_CELLS = 6
-"""The same where the best of several starts is looked for."""
+"""The same while the best of several starts is sought."""
 MOST_CELLS = 60
 ROUGH_STEPS = 8
 MOST_STEPS = 40
 KAPPA_STARTS = ((0.4, 0.02), (0.05, 0.4))
-"""Starts of kappa_xx and kappa_yy beside their prior: the sum of squares has several valleys."""
+"""Starts of kappa_xx and kappa_yy besides their prior: the sum of squares has several minima."""
 FORCE_NOISE = 0.04
 """Relative error of a force that a fit may leave, above about ``QUIET_STRESS``."""
 QUIET_STRESS_N_PER_MM = 0.03
 WAIST_NOISE = 0.015
 """Error of a measured waist strain that a fit may leave."""
 LOG_SHEAR_PRIOR = (math.log(0.02), 0.4)
-"""Mean and standard deviation of ln(C_xyxy / (N/mm)): what a displacement field of acrylic garter
-asks for, give or take a factor of 1.5."""
+"""Mean and standard deviation of ln(C_xyxy / (N/mm)): from a displacement field of acrylic garter,
+give or take a factor of 1.5."""
 KAPPA_PRIOR = (0.2, 0.5)
 """Mean and standard deviation."""
 COUPLING_PRIOR = (0.3, 1.0)
@@ -202,7 +201,7 @@ class StripFit:
     ----------
     law : with kappa and shear modulus.
     covariance : (10, 10) of the unknowns, all sources.
-    uncertainty : what it means for moduli and curves.
+    uncertainty : of moduli and curves.
     errors : standard errors by the law's field names, ratios and moduli.
     stress, waist : simulated, per test, at the tests' strains.
     evaluations : simulated pairs of tests.
@@ -274,7 +273,7 @@ def fit_simulated(
         if strip.length_mm is None:
             notes.append(
                 f"{test.source} does not say how far apart the clamps are (length_mm), so the"
-                " cloth is taken to narrow evenly."
+                " fabric is taken to narrow evenly."
             )
         if strip.pulls == 1:
             notes.append(f"{test.source} has one pull: the spread between pulls is missing.")
@@ -369,7 +368,7 @@ class _Problem:
 
     @property
     def starts(self) -> tuple[Array, ...]:
-        """From each direction by itself, straining evenly, and several couplings."""
+        """From each direction separately, straining evenly, and several couplings."""
         logs = []
         for strip in self.strips:
             stress, waist = strip.means

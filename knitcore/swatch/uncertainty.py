@@ -1,8 +1,9 @@
-"""How sure a strip test is: intervals of force, strain and lock-up utilisation.
+"""Uncertainty of a strip test: intervals of force, strain and lock-up utilisation.
 
-The clamps prescribe the stretch, so a factor on the stiffness of all cloth changes the force and no
-strain. Strains change where one fabric is stiffer than expected *beside another one*, or along its
-courses but not its wales. To first order (delta method) a parameter p of the laws moves nodes by
+The clamps prescribe the stretch, so a common factor on the stiffness changes the force but no
+strain. Strains change where one fabric is stiffer *relative to its neighbours* than expected, or
+along its courses but not its wales. To first order (delta method) a parameter p of the laws moves
+nodes by
 
     du/dp = -K⁻¹ dR/dp
 
@@ -15,9 +16,9 @@ parameters add up. The parameters are
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
 - the model's own error, where fabrics are mixed: for the force that of the chart's answer
-  (:mod:`knitcore.answer.quarter_laws`), for strains one of each fabric apart.
+  (:mod:`knitcore.answer.quarter_laws`), for strains one for each fabric separately.
 
-The lock-up (1 / alpha) is uncertain by itself too, and its utilisation with it.
+The lock-up (1 / alpha) is itself uncertain, and its utilisation with it.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ class StepSpread:
 
 @dataclass(frozen=True, eq=False)
 class _Parameter:
-    """Something that the laws are not sure of.
+    """An uncertain parameter of the laws.
 
     Attributes
     ----------
@@ -98,7 +99,7 @@ class StripSpread:
     Parameters
     ----------
     test : the test.
-    material : whose uncertainty it is.
+    material : with the uncertainty of its laws.
     clamps : as in the test.
 
     Raises
