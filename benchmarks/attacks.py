@@ -1,7 +1,7 @@
-"""Attacks of one ordinary user on a service of loopback, and how the others feel them.
+"""Attacks by one ordinary user on a service on loopback, and their effect on other users.
 
-A probe asks ``/healthz`` all the while; the longest wait during each attack stands beside what it
-may be, and the most memory that the service process took. All is bounded in count and time.
+A probe requests ``/healthz`` throughout. For each attack the longest wait is printed with its
+limit, and the peak memory of the service process. All is bounded in count and time.
 
     python benchmarks/attacks.py
 """
@@ -32,7 +32,7 @@ SIDE = 1000
 
 
 class Probe:
-    """Asks one small question after the other, and keeps how long each took."""
+    """Sends one small request after the other, and records how long each takes."""
 
     def __init__(self, url: str) -> None:
         self._url = url
@@ -129,7 +129,7 @@ def _codes(answers: Iterator[httpx.Response]) -> str:
 
 def nothing(_: httpx.Client) -> str:
     time.sleep(5)
-    return "what the machine does by itself"
+    return "no attack, for comparison"
 
 
 ATTACKS: list[Callable[[httpx.Client], str]] = [
@@ -143,7 +143,7 @@ ATTACKS: list[Callable[[httpx.Client], str]] = [
 
 
 def main() -> int:
-    """Try them one after the other; 1 if one is felt."""
+    """Try them one after the other; 1 if one exceeds its limit."""
     missed = 0
     with tempfile.TemporaryDirectory() as folder:
         service = Service(Path(folder), workers="2", worker_priority="low")

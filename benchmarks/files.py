@@ -1,8 +1,8 @@
-"""Files and garments: how long they take, and whether what is written is read back.
+"""Files and garments: CPU time, and whether written files are read back the same.
 
     python benchmarks/files.py [--large]
 
-Prints CPU seconds beside each target. ``--large`` also knits 200 x 200 stitches on the virtual
+Prints CPU seconds with each target. ``--large`` also knits 200 x 200 stitches on the virtual
 machine, which takes minutes.
 """
 
@@ -38,7 +38,7 @@ READ_BACK = (
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:
-    """What a function gives, and the CPU seconds that it took."""
+    """The result of a function, and the CPU seconds that it took."""
     start = time.process_time()
     return work(), time.process_time() - start
 
@@ -54,7 +54,7 @@ def there_and_back(chart: StitchChart, kind: ExportKind) -> bool:
 def small_glove() -> tuple[int, int, float, dict[str, float]]:
     """A glove of about 60 x 80 stitches: columns, rows, seconds to plan and predict, and to export.
 
-    The gauge is coarser than the study's, so that an adult's hand takes no more stitches.
+    The gauge is coarser than the paper's, so that an adult's hand takes no more stitches.
     """
     own = GaugeSet.of_material(WOOL)[Fabric.STOCKINETTE]
     coarse = Gauge(own.stitch_course_mm * 1.33, own.stitch_wale_mm * 1.85)

@@ -1,4 +1,4 @@
-"""How well wishes are met: the numbers of docs/inverse-design.md.
+"""Accuracy of inverse design: the numbers of docs/inverse-design.md.
 
 ``python benchmarks/inverse_design.py ATLAS.npz [--wishes 200]`` with the full atlas of acrylic.
 """
@@ -28,7 +28,7 @@ SIDE = 40
 
 
 def hidden_rectangles(seed: int, least: int) -> StitchChart:
-    """Rectangles of the four fabrics on each other."""
+    """Overlapping rectangles of the four fabrics."""
     rng = np.random.default_rng(seed)
     fabric = np.full((SIDE, SIDE), rng.integers(4))
     for _ in range(6):
@@ -39,7 +39,7 @@ def hidden_rectangles(seed: int, least: int) -> StitchChart:
 
 
 def hidden_blots(seed: int) -> StitchChart:
-    """Discs and slanted halves of the four fabrics on each other."""
+    """Overlapping discs and slanted halves of the four fabrics."""
     rng = np.random.default_rng(seed)
     row, column = np.indices((SIDE, SIDE))
     fabric = np.full((SIDE, SIDE), rng.integers(4))

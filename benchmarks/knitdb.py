@@ -1,14 +1,15 @@
 """Relaxed sizes against knitted swatches: ``python -m benchmarks.knitdb FOLDER``.
 
 FOLDER holds ``measured.csv`` (name, relaxed_width_mm, relaxed_height_mm) and ``charts/NAME.txt``
-(top row first), as decoded from KnitDB (Hofmann et al., KnitPick, UIST 2019). Compared are ratios
-to the stockinette of the same yarn, measured and predicted, so that neither yarn nor gauge is
-fitted; the yarn is none of the library's: the pure fabrics of ``--material`` stand in for its own.
+(top row first), as decoded from KnitDB (Hofmann et al., KnitPick, UIST 2019). The comparison is of
+ratios to the stockinette of the same yarn, measured and predicted, so that neither yarn nor gauge
+is fitted. The yarn is not in the library: the pure fabrics of ``--material`` are used instead.
 
-Printed are the rms factor by which widths and heights are missed, Spearman's rank correlation, and
-the share inside the 90 % intervals, beside the null model (all charts are like stockinette) and the
-mixture of pure fabrics without folds. One number of the model, how far folds are shown, was fitted
-to 29 of these swatches: its own optimum here and the leave-one-out figure are printed too.
+It prints the rms factor by which widths and heights are missed, Spearman's rank correlation, and
+the share inside the 90 % intervals, compared with the null model (all charts are like stockinette)
+and the mixture of pure fabrics without folds. One number of the model, the most that real fabric
+folds, was fitted to 29 of these swatches: its optimum here and the leave-one-out figure are printed
+too.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--material", default="lace-acrylic", help="whose pure fabrics stand in")
+    parser.add_argument("--material", default="lace-acrylic", help="whose pure fabrics are used")
     arguments = parser.parse_args()
     names, measured, charts = read(arguments.folder)
     of, model = material(arguments.material), packaged_model()

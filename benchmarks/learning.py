@@ -1,10 +1,10 @@
-"""How the learned answer gets better with charts and yarns: ``python -m benchmarks.learning``.
+"""Learning curve of the learned answer over charts and yarns: ``python -m benchmarks.learning``.
 
-From the packaged samples some charts are drawn to learn from; judged are all mixed charts that were
-not (learning curve). Then each yarn in turn is left out. Settings and slopes stay those of the
-packaged model. Printed are median and 90 % quantile of the factor by which width, height, and the
-strains at 2000 B/L³ (about 0.05 N/mm) along course and wale are missed; for the strains without
-and with the relaxed size known.
+The model learns from some of the packaged samples' charts, drawn at random, and is tested on all
+other mixed charts (learning curve). Then each yarn in turn is left out. Settings and slopes stay
+those of the packaged model. It prints the median and 90 % quantile of the factor by which width,
+height, and the strains at 2000 B/L³ (about 0.05 N/mm) along course and wale are missed; for the
+strains without and with the relaxed size known.
 """
 
 from __future__ import annotations

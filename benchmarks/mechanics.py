@@ -1,4 +1,4 @@
-"""Computed against published for all rows of the tables, and CPU times of the mechanics."""
+"""Computed against published values for all rows of the tables, and CPU times of the mechanics."""
 
 from __future__ import annotations
 

@@ -3,13 +3,13 @@
 The file is a list of charts relaxed and swept on the yarn level: ``chart`` (rows from the top
 separated by ``/``), ``yarn`` (acrylic, cotton or a yarn of the training library), ``size`` (mm of
 the mean stitch, course and wale), ``stress_n_per_mm`` and ``strain`` by direction. A chart that the
-packaged model has learned from is judged by the model without it. Materials are the yarn level's
-own pure fabrics, so that only the mixing is judged.
+packaged model has learned from is predicted by the model without it. Materials are the yarn level's
+own pure fabrics, so that only the mixing is tested.
 
-Printed by class are the median and the 90 % quantile of the factor by which sizes and strains are
-missed, and the share inside the 90 % interval: learned; with a gauge (3 % off at random); with the
-relaxed size known; and the null model, by which a chart is like the mean of its class among the
-charts that were learned from.
+For each class it prints the median and the 90 % quantile of the factor by which sizes and strains
+are missed, and the share inside the 90 % interval: learned; with a gauge (3 % off at random); with
+the relaxed size known; and for the null model, in which a chart is like the mean of its class among
+the charts that were learned from.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from knitcore.materials.uncertainty import Z_SCORE
 
 GAUGE_LOG_SD = 0.03
 RELAXED_LOG_SD = 0.003
-"""Starts of a relaxation end within it."""
+"""Spread of the ends of a relaxation's starts."""
 
 
 def main() -> None:
@@ -63,7 +63,7 @@ def main() -> None:
                     *like_the_mean(answer, chart, learned_from),
                 )
             tell(missed, kind_of(chart), name, entry, *of_answer(answer, entry))
-    print(f"{len(entries)} charts, {seen} of them judged by a model without them")
+    print(f"{len(entries)} charts, {seen} of them predicted by a model without them")
     for (kind, quantity, name), pairs in sorted(missed.items()):
         off, spread = np.array(pairs).T
         inside = np.mean(np.abs(off) <= Z_SCORE * spread)

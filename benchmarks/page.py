@@ -1,9 +1,9 @@
-"""The page as people meet it: first paint, strokes, and the weight of its scripts.
+"""The page as users experience it: first paint, strokes, and the size of its scripts.
 
-Headless Chromium without a GPU, against a service of its own on this machine. A time from an event
-to its paint is the browser's own (Event Timing, in steps of 8 ms, shorter ones count as 8). Strokes
-are timed twice: as Chromium puts a page together by itself where there is no GPU, only what has
-changed and WebGL in software; and made to draw every frame whole through a GPU in software.
+Headless Chromium without a GPU, against its own service on this machine. The time from an event to
+its paint is the browser's (Event Timing, in steps of 8 ms, shorter ones count as 8). Strokes are
+timed twice: with Chromium's default compositing without a GPU (changed regions only, WebGL in
+software), and forced to draw every frame whole through a software GPU.
 
     make bench                             (RUNS=5 STROKES=20)
 """
@@ -56,14 +56,14 @@ def p95(values: list[float]) -> float:
 
 
 def weight() -> None:
-    """Build the page and tell what its own scripts weigh."""
+    """Build the page and report the size of its scripts."""
     subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     sizes = json.loads((ROOT / "frontend/dist/sizes.json").read_text())
     total, initial = sizes["total"], sizes["initial"]
     told("scripts of the first visit", initial["bytes"] / 1000, "kB", 200)
-    told("… packed, as they travel", initial["gzip_bytes"] / 1000, "kB", 200)
+    told("… compressed, as transferred", initial["gzip_bytes"] / 1000, "kB", 200)
     told(
-        "with every panel that loads when it is opened, packed",
+        "with every panel that loads when it is opened, compressed",
         total["gzip_bytes"] / 1000,
         "kB",
         200,
@@ -82,7 +82,7 @@ def first_paint(browser: Browser, url: str) -> None:
         visits.append(page.evaluate(PAINTED))
         context.close()
     told("first paint of a cold visit, median", median(visits, "first"), "ms", 1500)
-    told("chart there to be painted on, median", median(visits, "studio"), "ms", 1500)
+    told("chart ready to paint on, median", median(visits, "studio"), "ms", 1500)
 
 
 def median(visits: list[dict[str, float]], what: str) -> float:
@@ -163,7 +163,7 @@ def main() -> None:
             first_paint(browser, service.url)
             painting(browser, service.url)
             browser.close()
-            print(f"made to draw whole frames ({FORCED})")
+            print(f"forced to draw whole frames ({FORCED})")
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*own, FORCED])
             painting(browser, service.url)
             browser.close()

@@ -159,7 +159,7 @@ def authors_curve() -> list[str]:
 
 
 def remarks(outcomes: list[Outcome]) -> list[str]:
-    """Jumps, quenching variants and what the midpoint derivative changes."""
+    """Jumps, quenching variants and the effect of the midpoint derivative."""
     lines = []
     for o in outcomes:
         for sweep in (o.course, o.wale):

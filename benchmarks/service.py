@@ -1,11 +1,11 @@
-"""Fifty people paint at once, then look: a bounded load on loopback, from a second process.
+"""Fifty users paint at once, then open views: a bounded load on loopback, from a second process.
 
-Each of them has a design of 100 x 100 stitches, and five times a second paints a stroke of ten
-stitches: it is durable when it is acknowledged, and the answer holds the map of what changed.
-Stretch tests run beside them in every other slice of the time, so that whatever else the machine
-does meets both alike. Then 20 designs' views are opened and dropped ten times. Every figure is
-printed with its target; the exit code is 1 if one is missed. Beside each slice stands how long the
-disk alone takes to keep 4 kB: the pauses of a shared disk are in every stroke's time.
+Each user has a design of 100 x 100 stitches and paints a stroke of ten stitches five times a
+second: it is durable when it is acknowledged, and the answer holds the map of the changed stitches.
+Stretch tests run at the same time in every other slice, so that other load on the machine affects
+slices with and without them alike. Then 20 designs' views are opened and dropped ten times. Every
+figure is printed with its target; the exit code is 1 if one is missed. Each slice is printed with
+the time the disk alone takes to keep 4 kB: the pauses of a shared disk are in every stroke's time.
 
     make bench-service                     (SECONDS=600 for ten minutes of painting,
                                             FOLDER=/dev/shm to leave the disk out)
@@ -41,14 +41,14 @@ FOLDER = os.environ.get("FOLDER")
 SLICE_S = 15.0
 PROBE_S = 0.1
 WARM_UP_S, WARM_UP_TESTS, WARM_UP_SLICES = 10.0, 7, 12
-"""So many stretch tests fill what the service keeps of them in memory (`app/results/recent.py`)."""
+"""Stretch tests that fill the service's memory of recent results (`app/results/recent.py`)."""
 VIEWS, ROUNDS = 20, int(os.environ.get("ROUNDS", "10"))
 JOBS = "/api/v1/jobs"
 
 
 @dataclass
 class Figures:
-    """What was measured, beside what must be reached."""
+    """Measured figures with their targets."""
 
     missed: list[str] = field(default_factory=list)
 
@@ -62,7 +62,7 @@ class Figures:
 
 @dataclass
 class Painter:
-    """Somebody who paints, and what they saw."""
+    """A user who paints, with the answers received."""
 
     design: str
     rng: random.Random
@@ -115,7 +115,7 @@ def held(pid: int) -> tuple[int, int]:
 
 
 async def disk_pauses(until: float) -> list[float]:
-    """How long the disk takes to keep 4 kB, ms, asked a few times a second."""
+    """Times the disk takes to keep 4 kB, ms, measured a few times a second."""
 
     def keep(file: IO[bytes]) -> float:
         file.seek(0)
@@ -135,7 +135,7 @@ async def disk_pauses(until: float) -> list[float]:
 async def paint_all(
     client: httpx.AsyncClient, painters: list[Painter], name: str, seconds: float, pid: int
 ) -> list[float]:
-    """Everybody paints for a while; returns how long each stroke took, ms."""
+    """All users paint for a while; returns how long each stroke took, ms."""
     for painter in painters:
         painter.waits_s.clear()
     cpu, own, start = cpu_s(pid), time.process_time(), time.perf_counter()
@@ -195,7 +195,7 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
     body = {"name": "bench", "material": "acrylic", "chart": "\n".join(["K" * SIDE] * SIDE)}
     made = [await client.post("/api/v1/designs", json=body) for _ in range(USERS)]
     painters = [Painter(m.json()["id"], random.Random(n)) for n, m in enumerate(made)]
-    alone, beside, ended = f"{USERS} users", "beside a stretch test", []
+    alone, beside, ended = f"{USERS} users", "with a stretch test", []
     async with stretching(client) as known:
         for _ in range(WARM_UP_SLICES):
             await paint_all(client, painters, "warm-up", WARM_UP_S, pid)
@@ -215,7 +215,7 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
         print("in all", percentiles(name, ms))
     p95 = {name: float(np.percentile(ms, 95)) for name, ms in waits.items()}
     figures.told(f"p95 of {USERS} users' strokes", p95[alone], "ms", 250)
-    figures.told("p95 beside a stretch test", p95[beside], "ms", 250)
+    figures.told("p95 with a stretch test", p95[beside], "ms", 250)
     figures.told("… compared with p95 alone", 100 * (p95[beside] / p95[alone] - 1), "%", 50)
     figures.told("strokes that were refused", sum(p.errors for p in painters), "", 0)
     figures.told("designs with a lost edit", lost, "", 0)
@@ -251,7 +251,7 @@ async def look(client: httpx.AsyncClient, service: Service, number: int) -> None
 
 
 async def looking(client: httpx.AsyncClient, service: Service, figures: Figures) -> None:
-    for number in (-1, 0):  # what is loaded for the first views stays
+    for number in (-1, 0):  # modules loaded for the first views stay loaded
         await look(client, service, number)
     threads, handles = held(service.pid)
     memory = resident_mb(service.pid)
@@ -266,7 +266,7 @@ async def looking(client: httpx.AsyncClient, service: Service, figures: Figures)
             flush=True,
         )
     what = f"{VIEWS} views opened and dropped {ROUNDS} times"
-    left = np.min(rounds[-3:], axis=0)  # a pool that has a thread more at one moment is no leak
+    left = np.min(rounds[-3:], axis=0)  # a pool with one more thread at one moment is not a leak
     figures.told(f"threads more after {what}", left[0] - threads, "", 0)
     figures.told(f"handles more after {what}", left[1] - handles, "", 0)
     grown = 100 * (resident_mb(service.pid) / memory - 1)

@@ -1,10 +1,10 @@
 """Learned answers against the yarn level, for every repeat of the packaged store.
 
-Each repeat is predicted by a model that never saw it, nor its image in the other yarn, in a
-material whose pure fabrics are those of the store; so only what was learned of mixed charts is
-tested. Printed are median, 90 % quantile and worst of the factor by which relaxed size and strain
-miss the repeat's own relaxation and sweep, and the share inside 90 % intervals, with and without
-the repeat's own relaxed size. Two minutes of CPU time.
+Each repeat is predicted by a model fitted without it in either yarn, in a material whose pure
+fabrics are those of the store, so that only the learned correction is tested. It prints the median,
+90 % quantile and worst of the factor by which relaxed size and strain miss the repeat's relaxation
+and sweep, and the share inside 90 % intervals, with and without the repeat's relaxed size known.
+Two minutes of CPU time.
 """
 
 from __future__ import annotations

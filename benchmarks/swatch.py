@@ -1,4 +1,4 @@
-"""Swatch solver: CPU time beside FEniCS (where installed), and charts of four mixed fabrics.
+"""Swatch solver: CPU time against FEniCS (where installed), and charts of four mixed fabrics.
 
     python benchmarks/swatch.py [--large] [--without-fenics]
 
@@ -42,7 +42,7 @@ def published(cells: int) -> tuple[float, float]:
 
 
 def fenics(meshes: list[int]) -> dict[int, tuple[float, float]]:
-    """The same by FEniCS, if some Python here has it."""
+    """The same by FEniCS, if a Python on this machine has it."""
     python = shutil.which("python3", path="/usr/bin:/usr/local/bin")
     if (
         python is None

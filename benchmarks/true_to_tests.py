@@ -1,10 +1,10 @@
-"""Simulated against measured stretch tests: force, waist, and how many fall inside the intervals.
+"""Simulated against measured stretch tests: force, waist, and coverage of the intervals.
 
     python benchmarks/true_to_tests.py FOLDER [--left-out]
 
-FOLDER holds the study's acrylic tests (``outputData_Acrylic Yarn Garter X.h5`` and the like).
+FOLDER holds the authors' acrylic tests (``outputData_Acrylic Yarn Garter X.h5`` and the like).
 Prints the eight tests with published and refitted laws. ``--left-out`` fits each pull by the others
-(a minute or two), and prints those that were left out.
+(a minute or two), and prints the figures for the pulls left out.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The 3D view: time from a request to messages that are sent, and bytes of a stretch.
+"""The 3D view: time from a request to the messages sent, and bytes of a stretch.
 
     .venv/bin/python benchmarks/view.py
 
@@ -85,7 +85,7 @@ def stretch_bytes() -> tuple[int, float]:
 
 def main() -> None:
     """Print the figures."""
-    with contextlib.redirect_stdout(io.StringIO()):  # viser greets and says good-bye
+    with contextlib.redirect_stdout(io.StringIO()):  # viser prints a message on start and stop
         build_scene(ViewRequest(chart="KP\nPK", material="acrylic"), None, HERE)
         scenes = {n: median(first_scene_s(n, n) for _ in range(RUNS)) for n in (32, 100, 200)}
         total, seconds = stretch_bytes()

@@ -1,4 +1,4 @@
-"""What the yarn level must reach, and what it takes: CPU seconds, energies, the authors' figures.
+"""Yarn-level figures with their targets: CPU seconds, energies, the authors' figures.
 
     python benchmarks/yarnlevel.py [--sides 2 4 8] [--skip-published]
 
@@ -44,7 +44,7 @@ AUTHORS_COURSE_MM, AUTHORS_SPLINE_N_MM = 2.80, 0.3957
 
 
 def told(value: float, limit: float, unit: str = "s") -> str:
-    """A value, its limit and whether it is kept."""
+    """A value, its limit and whether it is within it."""
     return f"{value:.4g} {unit} (limit {limit:g}: {'kept' if value <= limit else 'MISSED'})"
 
 

@@ -2,7 +2,7 @@
 
 One convention for all, chosen before the comparison: energy ``published``; bending modulus,
 contact law and loop length as measured; the radius half the diameter measured in that fabric; the
-core radius of Supplementary Table 7 (nobody measured it); branch ``mirrored``, no slide quenching;
+core radius of Supplementary Table 7 (not measured); branch ``mirrored``, no slide quenching;
 the law fitted over the range of stress of the experiment in that fabric and direction (medians of
 the pulls in the published acrylic records; cotton's are not public and take the same).
 """

@@ -1,8 +1,8 @@
-"""Random starts and charts: nothing unravelled may come back as a result.
+"""Random starts and charts: no unravelled shape may be returned as a result.
 
 Each trial draws a chart, a yarn, a loop length, a branch and rough starts and relaxes it; every
-tenth also takes a few steps of a stretch. What comes back must be finite, with the right length of
-yarn, its cores apart and its clasps as knitted. Errors of the product's own kinds are fine; others
+tenth also takes a few steps of a stretch. The result must be finite, with the right length of yarn,
+no overlapping cores and clasps as knitted. Errors of Knitcore's own classes are allowed; others
 are crashes.
 
     python benchmarks/yarnlevel_stress.py --trials 1000 --minutes 30
@@ -33,7 +33,7 @@ _LARGEST = 3
 
 
 def trial(seed: int) -> str:
-    """What became of one random relaxation: its kind, or what is wrong with it."""
+    """Outcome of one random relaxation: its kind, or the fault in it."""
     rng = np.random.default_rng(seed)
     radius = float(10.0 ** rng.uniform(-1.0, 0.7))
     length = radius * float(rng.uniform(9.0, 40.0))
@@ -65,7 +65,7 @@ def trial(seed: int) -> str:
         return outcome
     except KnitcoreError as error:
         return type(error).__name__
-    except Exception as error:  # a crash is what is looked for
+    except Exception as error:  # the trials look for crashes
         return f"WRONG: crash, {error!r}"
 
 

@@ -1,4 +1,4 @@
-"""Ask the service everything once and keep the answers as examples of the API (`make examples`).
+"""Call every operation of the service once and keep the answers as API examples (`make examples`).
 
 The requests are in ``app/examples/requests.json``; files that requests hold are those of the tests,
 because real ones are too long for an example.
@@ -41,10 +41,10 @@ FILES = {"fit": "fit", "bending": "bending", "compression": "compression"} | {
     kind: kind for kind in ("compare", "calibrate")
 }
 ENDLESS = ("/events", "/picture")
-"""Streams, and what needs a browser that watches."""
+"""Streams, and operations that need a browser watching."""
 MOST_ITEMS, MOST_CHARACTERS = 2, 160
 TUPLE = 4
-"""A list as short as this may have to have its length."""
+"""Lists up to this length are kept whole: their length may matter."""
 
 
 def short(value: Any) -> Any:
@@ -57,7 +57,7 @@ def short(value: Any) -> Any:
 
 
 def in_order(found: list[str]) -> list[str]:
-    """Operations so that each finds what it needs."""
+    """Operations in an order in which each finds the resources it needs."""
     between = [name for name in found if name not in (*FIRST, *LAST)]
     return [*FIRST, *between, *LAST]
 

@@ -1,8 +1,8 @@
-"""Write docs/evidence.md: every claim of accuracy, made from the comparisons themselves.
+"""Write docs/evidence.md: every claim of accuracy, computed from the comparisons.
 
     python scripts/evidence.py FOLDER
 
-FOLDER is the study's public data (``uniaxial``, ``dic``, ``compression``). Takes some minutes.
+FOLDER is the paper's public data (``uniaxial``, ``dic``, ``compression``). Takes some minutes.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def field(folder: Path) -> list[str]:
 
 
 def compression(folder: Path) -> list[str]:
-    """Compression constants beside the paper's."""
+    """Compression constants compared with the paper's."""
     tests = read_compression(folder / "compressionTests.xls")
     means = {m.yarn: m for m in average_compression([fit_compression(t) for t in tests])}
     lines = [

@@ -1,8 +1,7 @@
 """Write the page's types from the service's models (``make types``): ``frontend/types.d.ts``.
 
-Requests are as the service takes them, with fields that may be left out; all else is as it answers,
-with every field there (but for problems, which the page makes, too). A test compares the file with
-the models.
+Request types have optional fields; the types of answers have every field (except problems, which
+the page also makes). A test compares the file with the models.
 """
 
 from __future__ import annotations
@@ -79,7 +78,7 @@ def page_types() -> str:
 def _shapes(
     models: Sequence[type[BaseModel]], mode: Literal["validation", "serialization"]
 ) -> dict[str, dict[str, Any]]:
-    """JSON schemas of models and of what they hold, by name."""
+    """JSON schemas of models and of the models in their fields, by name."""
     _, schema = models_json_schema([(model, mode) for model in models])
     found: dict[str, dict[str, Any]] = schema["$defs"]
     return found

@@ -2,10 +2,10 @@
 
     python scripts/refit_laws.py --tests FOLDER [--check]
 
-FOLDER holds ``outputData_Acrylic Yarn Garter X.h5`` and the like, from the data of the study
+FOLDER holds ``outputData_Acrylic Yarn Garter X.h5`` and the like, from the paper's data
 (https://github.com/sabetta/stitch-by-stitch, MIT). Writes ``knitcore/materials/data/refitted.csv``;
-``--check`` compares with it instead. Prints what the correction is, and how far laws that were
-carried over without their own raw tests miss them.
+``--check`` compares with it instead. Prints the correction, and the errors of laws corrected
+without their own raw tests.
 """
 
 from __future__ import annotations
@@ -145,9 +145,9 @@ def left_out(
     own: dict[Fabric, StripFit],
     log_strain: float,
 ) -> float:
-    """How far a fabric carried over by the other fabrics' correction misses its own raw tests.
+    """Error against its own raw tests of a fabric corrected by the other fabrics' correction.
 
-    Returns the standard deviation of the logarithm of stress that the strain's scale leaves over.
+    Returns the standard deviation of the logarithm of stress not explained by the strain's scale.
     """
     print("left out one fabric at a time: force over measured, waist minus measured")
     errors, explained = [], []
@@ -177,7 +177,7 @@ def left_out(
     squares = np.nanmean(np.square(errors))
     rest = max(float(squares - np.nanmean(np.square(explained))), 0.0)
     print(
-        f"  rms factor {math.exp(math.sqrt(squares)):.2f}, beside the strain's scale "
+        f"  rms factor {math.exp(math.sqrt(squares)):.2f}, besides the strain's scale "
         f"{math.exp(math.sqrt(rest)):.2f}"
     )
     return math.sqrt(rest)

@@ -1,4 +1,4 @@
-"""Make the pictures of docs/images again: the page and each of its panels, light and dark.
+"""Take the screenshots in docs/images: the page and each of its panels, light and dark.
 
 Needs Chromium and Node. Names of pictures as arguments make only these.
 """
@@ -27,7 +27,7 @@ MOST_BYTES = 200_000
 SCREEN = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 LOOPS_PX = 5000
-"""Coloured pixels of a cloth that is drawn."""
+"""Coloured pixels of a drawn fabric."""
 
 Scene = Callable[[Page], str | None]
 """Brings the page into a state and names the part to picture; all of it if None."""
@@ -196,7 +196,7 @@ def glove(page: Page) -> str | None:
 
 ATLAS = ".inverse-plot[data-count]:not([data-count='0'])"
 WHOLE: dict[str, Scene] = {"page": page, "glove": glove, "fabric": fabric}
-"""Pictures with the cloth in 3D, each of a visit of its own."""
+"""Pictures with the fabric in 3D, each from its own visit."""
 
 PARTS: dict[str, Scene] = {
     "stretch": stretch,
@@ -221,7 +221,7 @@ PARTS: dict[str, Scene] = {
     "repeats": repeats,
     "offline": offline,
 }
-"""Pictures of one visit, without the cloth in 3D, which takes most of the time."""
+"""Pictures from one visit, without the fabric in 3D, which takes most of the time."""
 
 
 def visit(browser: Browser, url: str, theme: Literal["light", "dark"], *, flat: bool) -> Page:
@@ -245,7 +245,7 @@ def picture(page: Page, scene: Scene, name: str) -> None:
 
 
 def leave(page: Page) -> None:
-    """Close what a scene has opened."""
+    """Close the dialogs and panels that a scene has opened."""
     page.keyboard.press("Escape")
     page.wait_for_function("() => !document.querySelector('dialog[open]')")
     page.evaluate(

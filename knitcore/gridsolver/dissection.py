@@ -4,12 +4,12 @@ The tangent of a swatch couples the two unknowns of a corner with those of its e
 a rectangular grid. Halving the grid again and again (nested dissection) gives the elimination
 order with the least fill, and because the grid is known beforehand no ordering has to be searched.
 Each box of the tree owns a dense front: the unknowns that only it holds (eliminated here) and
-those on its border with other boxes (handed on to the parent as a Schur complement). The dense
-work is LAPACK's. General sparse solvers were measured beside it; see ``docs/swatch.md``.
+those on its border with other boxes (passed to the parent as a Schur complement). LAPACK does the
+dense work. For a comparison with general sparse solvers see ``docs/swatch.md``.
 
 The factor serves as a preconditioner of conjugate gradients in double precision, so single
 precision is enough for it: half the memory and half the time. Only where single precision cannot
-tell whether the matrix is positive definite is it factorised again in double precision.
+decide whether the matrix is positive definite is it factorised again in double precision.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class _Half:
 
 @dataclass(frozen=True)
 class _Shape:
-    """What boxes of one shape have in common. Index arrays count unknowns (2 per corner) from the
+    """Data shared by boxes of one shape. Index arrays count unknowns (2 per corner) from the
     lower left corner of the box.
     """
 
@@ -122,7 +122,7 @@ class GridFactor:
             else:
                 return
         self._eliminate(cell_matrices, np.dtype(np.float64))
-        self._single = False  # single precision could not tell here, nor will it further on
+        self._single = False  # single precision was not enough here, nor will it be later
 
     def solve(self, right_hand_side: Array) -> Array:
         """Solution (2 * corners,) to the factor's precision; 0 at the fixed unknowns."""

@@ -1,7 +1,7 @@
 """Compiled elimination and substitution on the tree of a dissected grid.
 
-The dense work is LAPACK's, called without Python in between: a tree has thousands of small fronts,
-and no lock keeps two threads from working on two of its branches.
+LAPACK does the dense work and is called without Python in between: a tree has thousands of small
+fronts, and two threads can work on two of its branches without the interpreter lock.
 
 Matrices are views [column, row] of Fortran's order; only lower triangles are kept.
 """

@@ -1,4 +1,4 @@
-"""What a solver asks of a factorisation on the grid, and the plain one that others are held to."""
+"""The interface of factorisations on the grid, and the reference one, with SuperLU."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@
 and likewise for y. x is the course direction, y the wale direction. Stress is force per width.
 
 A law fitted to simulated tests also couples the stiffening of each direction to the strain across:
-its argument is ``alpha_xx (e_xx + kappa_xx e_yy)``, so cloth that narrows frees yarn along the
+its argument is ``alpha_xx (e_xx + kappa_xx e_yy)``, so a fabric that narrows frees yarn along the
 pull, and stiffening pulls the width in. The energy stays convex for any kappa. The paper's laws
 have ``kappa = 0``.
 """
@@ -31,7 +31,7 @@ DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01
 
 
 class Symmetrisation(StrEnum):
-    """How the two measured coupling constants become one (an energy needs C_xxyy = C_yyxx).
+    """Rule that makes one of the two measured couplings (an energy needs C_xxyy = C_yyxx).
 
     ``geometric`` keeps both Young's moduli and the product of the Poisson ratios exactly;
     ``arithmetic`` is the paper's text (Note 9); ``none`` keeps the measured asymmetry.
@@ -43,7 +43,7 @@ class Symmetrisation(StrEnum):
 
 
 class Transverse(StrEnum):
-    """What happens across the pull in a uniaxial test: free to contract, or held at its width."""
+    """Condition across the pull in a uniaxial test: free to contract, or held at its width."""
 
     FREE = "free"
     FIXED = "fixed"
@@ -139,7 +139,7 @@ class ConstitutiveLaw:
     def lock_up_strain(self, direction: Direction) -> float:
         """Strain at which the stress diverges at a held width, 1 / alpha (infinite if alpha is 0).
 
-        Where kappa is above 0, cloth that is free to narrow locks a little later.
+        Where kappa is above 0, a fabric that is free to narrow locks a little later.
         """
         alpha = self.alpha_xx if direction is Direction.COURSE else self.alpha_yy
         return 1.0 / alpha if alpha > 0 else math.inf

@@ -1,6 +1,6 @@
-"""How a sheet stretches under stress along one direction while the other is free.
+"""Stretch of a sheet under stress along one direction while the other is free.
 
-Wherever the strains come from, a response has a modulus and gives the strain at a stress.
+Every response, whatever its source, has a modulus and gives the strain at a stress.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Response(Protocol):
 
     @property
     def modulus_n_per_mm(self) -> float:
-        """Young's modulus at no stress."""
+        """Young's modulus at zero stress."""
         ...
 
     def strain(self, stress: ArrayLike) -> Array:
@@ -69,11 +69,11 @@ _STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, 10.0, 600)])
 
 
 def stress_at_strain(response: Response, strain: ArrayLike) -> Array:
-    """Stresses (N/mm) at strains of at least 0; 10 N/mm where that stretches it less far."""
+    """Stresses (N/mm) at strains of at least 0; 10 N/mm where that is not enough."""
     reached = np.maximum.accumulate(response.strain(_STRESSES))
     grid, first = np.unique(reached, return_index=True)
     wanted = np.asarray(strain, dtype=float)
-    # in logarithms, so that the first slope and the lock-up are met alike
+    # in logarithms, so that the initial slope and the lock-up are equally accurate
     logs = np.interp(
         np.log(np.maximum(wanted, grid[1])), np.log(grid[1:]), np.log(_STRESSES[first][1:])
     )

@@ -8,10 +8,10 @@ Two forms by name:
 ``full``
     The law as the paper states it (Note 7), ``w = s**3 / (1 - s)``, for ``0 <= s <= 0.98``. Slack
     yarn does not stiffen, so ``w = 0`` for ``s < 0``; continued to compression the printed term
-    loses convexity in half of the paper's rows. Beyond 0.98 (1 is the lock-up) the energy goes on
+    loses convexity in half of the paper's rows. Beyond 0.98 (1 is the lock-up) the energy continues
     as its osculating quadratic, twice continuously differentiable, so that a solver may overshoot.
 ``published``
-    What the paper's finite-element demonstration solved (Note 9): the energy truncated at quartic
+    The form of the paper's finite-element demonstration (Note 9): the energy truncated at quartic
     order in the strain, ``w = s**3 + s**4``, in tension and compression. It never locks.
 """
 
@@ -28,7 +28,7 @@ EXTENSION_START = 0.98
 
 
 class StiffeningForm(StrEnum):
-    """Which form of the stiffening term is meant."""
+    """Form of the stiffening term."""
 
     FULL = "full"
     PUBLISHED = "published"

@@ -100,7 +100,7 @@ def strain_at_stress(
 def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
     """Axial strains of the full law at many stresses (N/mm, at least 0), transversely free.
 
-    The same as :func:`strain_at_stress`, all at once.
+    The vectorised form of :func:`strain_at_stress`.
 
     Raises
     ------

@@ -1,12 +1,12 @@
-"""A law that agrees with all figures printed for it, and the check that figures agree at all.
+"""Laws that agree with all figures printed for them, and the check that figures agree.
 
 The paper prints the stiffnesses C, the Young's moduli Y and the Poisson ratios to three decimals.
-They hang together (Note 7): nu_yx = C_yyxx / C_yyyy, nu_xy = C_xxyy / C_xxxx and
-Y = (1 - nu_xy nu_yx) C. Where C is small its rounding is coarse: acrylic rib prints C_xxxx = 0.011
-and Y_x = 0.010, 3 % apart from what the printed ratios give. The law takes the ratios as
-printed, C = Y / (1 - nu_xy nu_yx) as far as the printed C's rounding allows, and the couplings
-nu C. So every Young's modulus stays within 1 % of its printed value, and every stiffness on
-the diagonal rounds to the printed one.
+They are related (Note 7): nu_yx = C_yyxx / C_yyyy, nu_xy = C_xxyy / C_xxxx and
+Y = (1 - nu_xy nu_yx) C. Where C is small its rounding is coarse: for acrylic rib C_xxxx = 0.011 and
+Y_x = 0.010 are printed, 3 % off the printed ratios. The law takes the ratios as printed,
+C = Y / (1 - nu_xy nu_yx) as far as the printed C's rounding allows, and the couplings nu C. So
+every Young's modulus stays within 1 % of its printed value, and every stiffness on the diagonal
+rounds to the printed one.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def check_stated_constants(
     poisson_yx: float | None = None,
     poisson_xy: float | None = None,
 ) -> None:
-    """Refuse a law whose linear constants differ from those stated beside it.
+    """Refuse a law whose linear constants differ from those stated with it.
 
     Raises
     ------

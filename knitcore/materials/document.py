@@ -1,4 +1,4 @@
-"""The model of a material file: what it may hold, and when it is refused."""
+"""The model of a material file: its fields, and the checks on them."""
 
 from __future__ import annotations
 
@@ -227,7 +227,7 @@ class FabricDocument(_Model):
 
 
 class YarnDocument(_Model):
-    """A yarn by itself; everything is optional."""
+    """The yarn of a material; every field is optional."""
 
     fibre: str = ""
     product: str = ""

@@ -19,13 +19,13 @@ class Figure:
     Attributes
     ----------
     table : number of the supplementary table.
-    material, variant, fabric, direction : what it belongs to; empty where it does not apply. The
+    material, variant, fabric, direction : that it is for; empty where it does not apply. The
         empty variant is the experiment.
     quantity, unit : ``C_xxxx``, ``Y_x``, ``nu_yx``, ``loop_length`` … and its unit in the table.
     printed : the figure as printed, as text, so that its rounding is known.
     corrected : the value to use.
     standard_deviation : the printed ±, if there is one.
-    reason : why the corrected value (or unit) differs from the print; empty if nothing does.
+    reason : why the corrected value (or unit) differs from the print; empty if it does not.
     """
 
     table: int
@@ -48,7 +48,7 @@ class Figure:
 
 
 class FigureTable:
-    """The packaged figures, looked up by what they describe."""
+    """The packaged figures, looked up by material, fabric, direction and quantity."""
 
     def __init__(self, figures: tuple[Figure, ...]) -> None:
         self._figures = figures

@@ -1,4 +1,4 @@
-"""Users' own materials: JSON or YAML files, checked by one model.
+"""Material files of users: JSON or YAML, checked by one model.
 
 ::
 
@@ -67,7 +67,7 @@ def load_material_file(path: str | Path) -> Material:
     Raises
     ------
     InputError
-        If the file is missing, too large, not JSON or YAML, or describes no sound material.
+        If the file is missing, too large, not JSON or YAML, or does not describe a valid material.
     """
     file = Path(path)
     if not file.is_file():
@@ -86,7 +86,9 @@ def load_material_file(path: str | Path) -> Material:
         ) from error
     if not isinstance(data, dict):
         raise InputError(
-            "material", f"{file} holds no material.", "Begin with identifier, name and fabrics."
+            "material",
+            f"{file} does not hold a material.",
+            "Begin with identifier, name and fabrics.",
         )
     if "fabrics" not in data and ("law" in data or "alpha_xx" in data or "laws" in data):
         raise InputError(

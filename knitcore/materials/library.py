@@ -35,8 +35,8 @@ _DEFAULT_POISSON_SD = 0.02
 def load_library(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
     """The eight yarns of the paper by identifier, as measured on their default setting.
 
-    Loading checks that each row's figures hang together and that its stiffness is positive
-    definite. Their variants are in :func:`load_variants`. With published laws an identifier ends in
+    Loading checks that each row's figures are consistent and that its stiffness is positive
+    definite. Variants are in :func:`load_variants`. With published laws an identifier ends in
     ``:published``; the keys are the same.
 
     Raises
@@ -59,8 +59,8 @@ def load_variants(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
 
     ``acrylic:simulation`` and ``cotton:simulation`` are the paper's stitch simulations.
     ``glove-wool:needle-2.0mm`` is the stockinette knitted on 2.0 mm needles (starred in tables 6,
-    19 and 20), alone; ``glove-wool:glove`` has it beside the other fabrics on 2.75 mm needles, as
-    the paper's glove was knitted (its Methods). Plain ``glove-wool`` is on 2.75 mm needles
+    19 and 20), alone; ``glove-wool:glove`` combines it with the other fabrics on 2.75 mm needles,
+    as the paper's glove was knitted (its Methods). Plain ``glove-wool`` is on 2.75 mm needles
     throughout, so that its four fabrics can be compared.
     """
     library = {row["identifier"]: _measured(row) for row in read_packaged("yarns.csv")}
@@ -101,13 +101,13 @@ def load_variants(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
 def material(identifier: str, laws: Laws | str | None = None) -> Material:
     """A material of the library, or one of its variants.
 
-    This is where the choice of laws is made. By default they are the refitted ones; the paper's own
-    are had by ``laws="published"``, or by an identifier that ends in ``:published``.
+    The laws are the refitted ones by default; ``laws="published"``, or an identifier that ends in
+    ``:published``, selects the paper's.
 
     Raises
     ------
     InputError
-        If there is none of that name.
+        If there is no material of that name.
 
     Examples
     --------
@@ -189,7 +189,7 @@ def _record(identifier: str, fabric: Fabric, variant: str = "") -> FabricRecord:
         figure = figures.find(identifier, quantity, variant=of, fabric=fabric)
         return None if figure is None else figure.corrected
 
-    # Simulations stand for the measured sample, so they share its dimensions.
+    # Simulations represent the measured sample, so they share its dimensions.
     sample = "" if variant == SIMULATION else variant
     printed = {
         name: figures.get(identifier, name, variant=variant, fabric=fabric)

@@ -1,4 +1,4 @@
-"""What a material is: one yarn on one machine setting, with a law for each pure fabric."""
+"""Materials: one yarn on one machine setting, with a law for each pure fabric."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _frozen(mapping: Mapping[object, object]) -> MappingProxyType[object, object
     return MappingProxyType(mapping)
 
 
-# Python cannot pickle read-only mappings by itself, and materials travel to worker processes.
+# Python cannot pickle read-only mappings, and materials are sent to worker processes.
 copyreg.pickle(MappingProxyType, lambda proxy: (_frozen, (dict(proxy),)))
 
 
@@ -50,7 +50,7 @@ class Laws(Choice):
 
 @dataclass(frozen=True)
 class Yarn:
-    """A yarn by itself.
+    """The yarn of a material, before it is knitted.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class FabricRecord:
     ----------
     fabric : which of the four.
     law : the constants to compute with.
-    law_source : where they come from, in words; empty where ``origin`` says all.
+    law_source : where they come from, in words; empty where ``origin`` says enough.
     inconsistent : directions in which the paper's own figures contradict each other.
     printed : the paper's figures behind it, by quantity; empty for other materials.
     loop_length_mm : yarn per stitch (None if unknown).
@@ -131,7 +131,7 @@ class Material:
     name : for people.
     yarn : the yarn.
     fabrics : the pure fabrics that are known, up to four.
-    note : what a user should know before relying on it.
+    note : a caution for the user.
     """
 
     identifier: str
@@ -169,7 +169,7 @@ class Material:
 
     @property
     def sample(self) -> str:
-        """The identifier without the choice of laws: what was knitted."""
+        """The identifier without the choice of laws."""
         return self.identifier.removesuffix(f":{Laws.PUBLISHED}")
 
     @property

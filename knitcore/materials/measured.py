@@ -9,7 +9,7 @@ import numpy as np
 from knitcore.errors import InputError
 
 MOST_POINTS = 100
-"""Points of a kept curve: more than a plot shows, and little beside the rest of a file."""
+"""Points of a kept curve: more than a plot shows, and few compared with the rest of a file."""
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 """Laws of the paper's yarns refitted clamp to clamp, as packaged data (``data/refitted.csv``).
 
-The paper takes strain between the middle of the cloth and the lower clamp; from clamp to clamp it
+The paper takes strain between the middle of the sample and the lower clamp; from clamp to clamp it
 is smaller. Acrylic's four fabrics are refitted from the authors' raw tests. For the other yarns
-the difference that acrylic shows is carried over. ``scripts/refit_laws.py`` writes the file and
-``docs/fit-a-law.md`` tells how far it can be trusted.
+the difference found for acrylic is applied. ``scripts/refit_laws.py`` writes the file;
+``docs/fit-a-law.md`` says how far it can be trusted.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def refitted(record: FabricRecord) -> FabricRecord:
         record,
         law=ConstitutiveLaw(**{name: float(row[name]) for name in CONSTANTS}),
         law_source=row["source"],
-        inconsistent=frozenset(),  # figures of the print, which this law does not rest on
+        inconsistent=frozenset(),  # the printed figures, on which this law does not rest
         uncertainty=LawUncertainty(
             **deviations, source=row["source"], curve_course=course, curve_wale=wale
         ),

@@ -20,12 +20,12 @@ Z_SCORE = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
 """Half width of such an interval in standard deviations."""
 
 MODEL_POISSON_SD = 0.05
-"""Standard deviation of a Poisson ratio that a model gives."""
+"""Standard deviation of a Poisson ratio from a model."""
 
 YARN_LEVEL_LOG_SD = 0.37
-"""Standard deviation of the logarithm of a yarn-level modulus. The yarn level misses the measured
-pure fabrics by a factor of 2.1 (rms); scaling a law by what the pure fabrics need takes away what
-its phases have in common, and half of the rest, in logarithms, is kept."""
+"""Standard deviation of the logarithm of a yarn-level modulus. Yarn-level moduli of the pure
+fabrics are off by a factor of 2.1 (rms). Scaling a law to the measured pure fabrics removes the
+error that its phases have in common; half of the rest, in logarithms, is kept."""
 
 
 @dataclass(frozen=True)

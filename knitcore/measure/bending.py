@@ -1,8 +1,8 @@
 """Bending modulus of a yarn from photos of it hanging from a horizontal clamp.
 
 The heavy elastica (:mod:`knitcore.measure.elastica`) is fitted to the traced centreline over the
-half of the yarn next to the clamp: farther down the yarn hangs straight and shows its own set
-rather than its stiffness. The clamp's exact place may move, because a photo is cropped near it.
+half of the yarn next to the clamp: farther down the yarn hangs straight and shows its set rather
+than its stiffness. The exact place of the clamp is fitted too, because a photo is cropped near it.
 B comes out proportional to the linear density.
 """
 
@@ -28,13 +28,13 @@ FITTED_SHARE = 0.5
 LOG_LOADS = np.linspace(np.log(0.1), np.log(3e5), 60)
 """Starts of the search for the load."""
 WORST_RMS_SHARE = 0.02
-"""A distance of more of the length means that the line is not that of hanging yarn."""
+"""If the distance is a larger share of the length, the line is not that of hanging yarn."""
 DENSITY_RANGE_G_PER_M = (0.005, 20.0)
 
 
 @dataclass(frozen=True, eq=False)
 class BendingPhoto:
-    """What one photo gave.
+    """Result from one photo.
 
     Attributes
     ----------
@@ -68,8 +68,8 @@ class BendingResult:
     bending_modulus_n_mm2 : mean, N·mm².
     standard_deviation : of one photo, N·mm² (None for a single photo).
     standard_error : of the mean, N·mm² (None for a single photo).
-    photos : what each gave.
-    notes : what to know about the photos.
+    photos : the result from each.
+    notes : remarks about the photos.
     """
 
     bending_modulus_n_mm2: float
@@ -98,15 +98,15 @@ def measure_bending(
     Raises
     ------
     InputError
-        If a photo shows no hanging yarn, or no scale follows from what is given.
+        If a photo does not show a hanging yarn, or its scale is unknown.
     """
     if not paths:
-        raise InputError("images", "none is given.", "Give at least one photo.")
+        raise InputError("images", "there are none.", "Give at least one photo.")
     low, high = DENSITY_RANGE_G_PER_M
     if not (np.isfinite(linear_density_g_per_m) and low <= linear_density_g_per_m <= high):
         raise InputError(
             "linear_density_g_per_m",
-            f"{linear_density_g_per_m:g} g/m is no yarn.",
+            f"{linear_density_g_per_m:g} g/m is not a yarn's.",
             f"Give {low:g} to {high:g} g/m; tex divided by 1000 is g/m.",
         )
     lengths = _lengths(length_mm, len(paths))
@@ -168,7 +168,7 @@ def _lengths(length_mm: float | Sequence[float] | None, count: int) -> list[floa
         if not (np.isfinite(value) and 5 <= value <= 5000):
             raise InputError(
                 "length_mm",
-                f"{value:g} mm is no hanging length.",
+                f"{value:g} mm is not a hanging length.",
                 "Give 5 to 5000 mm (not cm or m).",
             )
     return list(given)

@@ -29,9 +29,9 @@ WORKING_PIXELS = 1400
 MINIMUM_CONTRAST = 0.12
 """Of full scale, between the yarn and its background."""
 MINIMUM_SLENDERNESS = 6.0
-"""Length over width below which a bright spot is no yarn."""
+"""Length over width below which a bright spot is not a yarn."""
 MAXIMUM_UNEVENNESS = 0.25
-"""Standard deviation over mean of the width along a yarn (0.05 to 0.13 in the study's photos)."""
+"""Standard deviation over mean of the width along a yarn (0.05 to 0.13 in the paper's photos)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ def load_grey(path: Path) -> Array:
     Raises
     ------
     InputError
-        If the file is no image, or larger than what a camera makes.
+        If the file is not an image, or is larger than any camera's.
     """
     path = Path(path)
     if not path.is_file():
@@ -224,7 +224,7 @@ def _farthest(graph: csr_array, start: int) -> tuple[int, NDArray[np.int32]]:
 
 
 def _ribbon_axis(mask: Mask, name: str) -> tuple[Array, float]:
-    """The axis of a ribbon from end to end, and its width; refuses what is no ribbon.
+    """The axis of a ribbon from end to end, and its width; refuses other shapes.
 
     Beyond the photo's border the yarn is continued straight out, so that its axis is as good at the
     border as elsewhere. A skeleton forks at a free end: there it is replaced by a straight piece.

@@ -31,7 +31,7 @@ MINIMUM_READINGS = 15
 
 @dataclass(frozen=True, eq=False)
 class CompressionSample:
-    """What one test gave.
+    """Result of one test.
 
     Attributes
     ----------

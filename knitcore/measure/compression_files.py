@@ -54,7 +54,7 @@ def read_compression(path: Path) -> list[CompressionTest]:
     Raises
     ------
     InputError
-        If the file is missing, is not what it claims to be, or holds something else.
+        If the file is missing, is not of the type of its suffix, or holds other data.
     """
     path = Path(path)
     if not path.is_file():

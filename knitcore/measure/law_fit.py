@@ -4,7 +4,7 @@ For a given alpha the law is linear in C and beta,
 
     sigma = C (e + nu e_across) + S g(alpha e) / g(alpha e85),   g(s) = 1 / (1 - s)**2 - 1 - 2 s,
 
-so the two are solved exactly with bounds (non-negative least squares) and only alpha is searched:
+so these two are solved exactly with bounds (non-negative least squares) and only alpha is searched:
 from many starts on a grid, then by bounded minimisation. S, the stiffening stress at
 e85 = 0.85 of the largest strain, replaces beta: alpha and beta are correlated by -0.99 in real
 tests, alpha and S much less.

@@ -13,7 +13,7 @@ POINTS = 60
 def median_curve(test: StretchTest) -> MeasuredCurve:
     """Median stress of the pulls at equal steps of strain.
 
-    Each pull is averaged over steps of strain first, which takes the camera's noise out.
+    Each pull is first averaged over steps of strain, which removes the camera's noise.
     The curve goes as far as at least half of the pulls do.
 
     Raises

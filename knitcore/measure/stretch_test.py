@@ -1,4 +1,4 @@
-"""Uniaxial stretch tests as arrays: the records that the readers give and the fit takes."""
+"""Uniaxial stretch tests as arrays: returned by the readers, taken by the fit."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from knitcore.fabric import Direction
 Array = NDArray[np.float64]
 
 MINIMUM_POINTS = 20
-"""Fewer points cannot tell a straight part from a stiffening one."""
+"""With fewer points a linear part cannot be distinguished from a stiffening one."""
 PERCENT_STRAIN = 6.0
 """A strain above this (600 %) is more than any knit reaches before it locks: it is in percent."""
 SPIKE_SHARE = 0.1
@@ -52,11 +52,11 @@ class StretchTest:
     Attributes
     ----------
     source : file name, for messages.
-    description : what the file says about the sample ("" when nothing).
+    description : of the sample, from the file ("" if there is none).
     runs : at least one.
     width_mm : clamped width at rest, per run.
     length_mm : distance of the clamps at rest; None where the file does not say.
-    notes : what was left out and why, in sentences.
+    notes : readings left out and why, in sentences.
     """
 
     source: str
@@ -100,10 +100,10 @@ class StretchTest:
         Raises
         ------
         InputError
-            If it is no width.
+            If it is not a positive width.
         """
         if not (np.isfinite(width_mm) and width_mm > 0):
-            raise InputError("width_mm", f"{width_mm} mm is no width.", "Give it in mm.")
+            raise InputError("width_mm", f"{width_mm} mm is not a width.", "Give it in mm.")
         runs = tuple(
             replace(run, stress=run.stress * (old / width_mm))
             for run, old in zip(self.runs, self.width_mm, strict=True)
@@ -121,7 +121,7 @@ def misread_forces(force: Array) -> NDArray[np.bool_]:
 
 
 def until_unloaded(run: StretchRun) -> StretchRun:
-    """A pull up to its largest stress, if it is let go or tears afterwards."""
+    """A pull up to its largest stress, if it is unloaded or tears afterwards."""
     peak = int(np.argmax(run.stress))
     lowest = float(run.stress[peak:].min(initial=np.inf))
     if peak < MINIMUM_POINTS or lowest > (1 - FALL_SHARE) * run.stress[peak]:
@@ -131,7 +131,7 @@ def until_unloaded(run: StretchRun) -> StretchRun:
 
 
 def check_run(run: StretchRun, *, first_row: int = 1) -> None:
-    """Refuse a run that no fit could make sense of.
+    """Refuse a run that cannot be fitted.
 
     Parameters
     ----------

@@ -3,14 +3,14 @@
 Reductions by name:
 
 ``published``
-    What reproduces the paper's tables: strain from the fabric's centre to the lower clamp, referred
-    to the first frame of the first pull; Poisson ratios by straight lines with an intercept through
-    all points; plain least squares over all points in the range of strain that every complete pull
-    covers, with the strain across taken from the straight line.
+    As it reproduces the paper's tables: strain from the fabric's centre to the lower clamp,
+    referred to the first frame of the first pull; Poisson ratios by straight lines with an
+    intercept through all points; plain least squares over all points in the range of strain that
+    every complete pull covers, with the strain across taken from the straight line.
 ``uniform``
     Strain from clamp to clamp; Poisson ratios through the origin; every pull counts the same, and
-    within a pull every strain interval, whatever the number of frames. The cloth is taken to
-    strain evenly, as if nothing held it at the clamps.
+    within a pull every strain interval, whatever the number of frames. The fabric is taken to
+    strain evenly, as if the clamps did not restrain it.
 ``recommended``
     The test is simulated between its clamps, and force and waist are fitted together:
     :mod:`knitcore.swatch.strip_fit`.
@@ -65,7 +65,7 @@ class Reduction(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Residuals:
-    """Points of one test beside the law's stress, for plots; arrays of one length.
+    """Points of one test with the law's stress, for plots; arrays of one length.
 
     Attributes
     ----------
@@ -95,8 +95,8 @@ class LawFit:
     residuals : data for plots, per direction.
     curves : median curve of the pulls per direction, to be kept with the law.
     runs : number of pulls used per direction.
-    error_method : what the standard errors come from.
-    notes : what was left out, which constants the tests do not determine.
+    error_method : how the standard errors were found.
+    notes : readings left out, and constants that the tests do not determine.
     uncertainty : of moduli and whole curves (recommended reduction).
     waist_rms : simulated minus measured strain of the waist, per direction (recommended reduction).
     """

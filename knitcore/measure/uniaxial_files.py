@@ -1,4 +1,4 @@
-"""Read stretch tests: the HDF5 layout of the study's authors, and a simple CSV.
+"""Read stretch tests: the HDF5 layout of the paper's authors, and a simple CSV.
 
 HDF5: one group ``videoN`` per pull with ``forces`` (n,) in N, ``traj`` (7, 2, n) in pixels (right,
 left, bottom, top, centre, clamp bottom, clamp top; the pull is vertical in the image) and
@@ -44,7 +44,7 @@ MAXIMUM_FORCE_N = 1e6
 MAXIMUM_FRAMES = 2_000_000
 MAXIMUM_VIDEOS = 100
 WIDER_THAN_CLAMPED = 1.2
-"""Tracked points farther apart than this share of the clamped width tell of a misread width."""
+"""Tracked points farther apart than this share of the clamped width mean a misread width."""
 _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
 
 
@@ -78,7 +78,7 @@ def read_stretch_test(
     Raises
     ------
     InputError
-        If the file is missing, is not what it claims to be, or holds no usable run.
+        If the file is missing, is not of the given format, or has no usable run.
     """
     path = Path(path)
     if not path.is_file():
@@ -284,7 +284,7 @@ def _numbers(name: str, file: h5py.File, key: str) -> Array:
         raise InputError(f"{name}, {key}", "is a link.", "Store the numbers in the file itself.")
     data = file[key]
     if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "iuf" or data.external:
-        raise InputError(f"{name}, {key}", "is no dataset of numbers.", "Store plain numbers.")
+        raise InputError(f"{name}, {key}", "is not a dataset of numbers.", "Store plain numbers.")
     if data.size > 14 * MAXIMUM_FRAMES:
         raise InputError(
             f"{name}, {key}", f"holds {data.size} numbers.", f"Up to {MAXIMUM_FRAMES} frames."

@@ -1,1 +1,1 @@
-"""From laws and segments to moduli, composites and pressure."""
+"""Moduli of segments, stitches and composites, and pressure, from laws."""

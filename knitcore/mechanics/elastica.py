@@ -37,7 +37,7 @@ class Parity(StrEnum):
 
 
 class EnergyForm(StrEnum):
-    """Which energy is meant: with q from the transcendental equation, or expanded to q⁴."""
+    """Form of the energy: with q from the transcendental equation, or expanded to q⁴."""
 
     EXACT = "exact"
     QUARTIC = "quartic"
@@ -159,7 +159,7 @@ def segment_force(
     length_mm: float,
     bending_modulus_n_mm2: float,
 ) -> float:
-    """Force that holds the ends apart, dE / d lambda in N (negative: they push apart)."""
+    """Force on the ends along the line between them, dE / d lambda in N (negative: they repel)."""
     excess = length_mm / separation_mm - 1
     tension = tension_parameter(parity, slope, excess)
     energy = segment_energy(parity, slope, separation_mm, length_mm, bending_modulus_n_mm2)

@@ -122,14 +122,14 @@ def homogenise(
     periodic: bool = True,
     most_cells: int = MOST_CELLS,
 ) -> EffectiveSheet:
-    """Effective linear constants of a chart repeated for ever.
+    """Effective linear constants of a chart that repeats indefinitely.
 
     Parameters
     ----------
     chart : one repeat.
     material : laws and relaxed sizes of the phases.
-    periodic : whether stitches at the edge see their neighbours across it. A chart that is no
-        repeat (a patchwork) keeps the phases it has alone; the deformation is periodic anyhow.
+    periodic : whether stitches at the edge have neighbours across it. A chart that is not a repeat
+        (a patchwork) keeps the phases it has alone; the deformation is periodic in any case.
     most_cells : grids with more quarter cells are coarsened by lamination first: exact for layers
         and inside large patches, in random charts up to 7 % off (one level) to 28 % (three).
 

@@ -1,9 +1,9 @@
-"""Local moduli: what each stitch of a chart adds to the stiffness of its surroundings.
+"""Local moduli: the contribution of each stitch of a chart to the stiffness of its surroundings.
 
-A stitch is known by its surroundings code alone (16 kinds, :mod:`knitcore.phases`), so its moduli
-are looked up in a table of 16 rows per material. The rule, after the reduced-symmetry model: along
-the pull the two quarters of a half stitch are in series, weighted by their relaxed extent along
-it; across the pull the two halves are in parallel, weighted by their relaxed extent across. A
+The moduli of a stitch depend only on its surroundings code (16 kinds, :mod:`knitcore.phases`), so
+they are looked up in a table of 16 rows per material. The rule, after the reduced-symmetry model:
+along the pull the two quarters of a half stitch are in series, weighted by their relaxed extent
+along it; across the pull the two halves are in parallel, weighted by their relaxed extent across. A
 stitch whose quarters are all of one phase has that pure fabric's modulus exactly, and any other
 one lies between the moduli of its phases.
 """
@@ -213,7 +213,7 @@ def local_moduli(chart: StitchChart, material: Material, *, periodic: bool = Fal
 
 
 def _windows(touched: slice, size: int) -> tuple[slice, slice]:
-    """The stitches whose codes can change, and those that decide them."""
+    """The stitches whose codes can change, and those that determine them."""
     start, stop, _ = touched.indices(size)
     changed = slice(max(start - 1, 0), min(stop + 1, size))
     # Two more on each side: an edge stitch borrows the segment of its other side, so a window

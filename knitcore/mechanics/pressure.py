@@ -29,7 +29,7 @@ MMHG_PER_KPA = 760.0 / 101.325
 NEAR_LOCK_UP = 0.8
 """Share of the lock-up strain above which small errors of size change the pressure much."""
 TESTED_SHARE = 0.7
-"""Share of the lock-up strain that stretch tests typically reach (0.6 to 0.8 in the study's)."""
+"""Share of the lock-up strain that stretch tests typically reach (0.6 to 0.8 in the paper's)."""
 MAXIMUM_CIRCUMFERENCE_MM = 5000.0
 
 
@@ -130,9 +130,9 @@ def limb_pressure(
 def rest_circumference(
     law: ConstitutiveLaw, direction: Direction, worn_mm: float, mmhg: float
 ) -> Interval:
-    """Rest circumference (mm) of a tube that presses a limb by a target, from loose to tight.
+    """Rest circumference (mm) of a tube for a target pressure on a limb, as an interval.
 
-    ``high`` presses by the target if the tube is axially fixed, ``low`` if it is axially free.
+    ``high`` gives the target if the tube is axially fixed, ``low`` if it is axially free.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def rest_circumference(
         upper = lock_up * (1 - 1e-9) if math.isfinite(lock_up) else 1.0
         while not math.isfinite(lock_up) and _tension(law, direction, upper, transverse) < tension:
             upper *= 2
-        # Cloth free to narrow may carry less than that even at the lock-up of cloth held.
+        # Free to narrow, a fabric may carry less than that even at the lock-up of a held one.
         reached = _tension(law, direction, upper, transverse) >= tension
         strain = (
             brentq(
@@ -178,8 +178,7 @@ def stress_log_sd(
 ) -> float:
     """Standard deviation of the logarithm of the stress at a strain.
 
-    The scale of strain counts as many times as the stress grows faster than the strain,
-    d ln(stress) / d ln(strain).
+    The uncertainty of the scale of strain is multiplied by d ln(stress) / d ln(strain).
     """
     if strain <= 0 or curve.log_strain == 0:
         return curve.log_stress
@@ -212,7 +211,7 @@ def _warnings(
     if strain > NEAR_LOCK_UP * lock_up:
         found.append(
             f"The strain {strain:.2f} is {strain / lock_up:.0%} of the lock-up {lock_up:.2f}: the"
-            " pressure rises steeply here, and a slightly larger limb is pressed far more."
+            " pressure rises steeply here, and a slightly larger limb is pressed much harder."
         )
     limit = TESTED_SHARE * lock_up if tested_strain is None else tested_strain
     if strain > limit:

@@ -5,7 +5,7 @@ along itself,
 
     Y_even = 180 B / (v² L lambda²) = 180 B / (v² lambda³ (1 - delta)),   delta = 1 - L / lambda,
 
-an odd one rotates into the plane of the cloth,
+an odd one rotates into the plane of the fabric,
 
     Y_odd = 12 B / (L lambda² sin² phi) (1 + v cot phi)
           = 12 B / (lambda³ (1 - delta)) (1 + v cot phi),   delta = 1 - L sin² phi / lambda.
@@ -16,10 +16,10 @@ A stitch has two segments in series course-wise and two pairs side by side wale-
     course, unlike stitches   1 / (1 / Y_even + 1 / Y_odd), about Y_odd
     wale, like or unlike      2 Y_even, 2 Y_odd
 
-All eight published even values come out of this. The paper's text has a factor 1 wale-wise and
-delta_odd = 1 - L sin phi / lambda; its published values contradict the first, its own formula for
-Y_odd the second. No formula reproduces its eight odd values: ours are given next to them (within a
-factor of 1.6).
+These formulas reproduce all eight published even values. The paper's text has a factor 1 wale-wise
+and delta_odd = 1 - L sin phi / lambda; its published values contradict the first, its own formula
+for Y_odd the second. No formula reproduces its eight odd values: the results are within a factor of
+1.6 of them.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ class SegmentGeometry:
     parity : even or odd.
     separation_mm : lambda, distance of its ends.
     length_mm : L, yarn between them.
-    slope : v, the tangent's component out of the plane of the cloth at the first end. So tables 15
-        and 16 list it; the derivation means the component across the line between the ends, which
+    slope : v, the tangent's component out of the plane of the fabric at the first end, as listed in
+        tables 15 and 16; the derivation means the component across the line between the ends, which
         is the same for an even segment only.
-    angle_rad : phi, tilt of that line out of the plane of the cloth; None for an even segment.
+    angle_rad : phi, tilt of that line out of the plane of the fabric; None for an even segment.
 
     Raises
     ------
@@ -89,14 +89,14 @@ class SegmentGeometry:
 
         Parameters
         ----------
-        curve_mm : (points, 2) along the pull and out of the plane of the cloth, from one entangled
+        curve_mm : (points, 2) along the pull and out of the plane of the fabric, from one entangled
             region to the next, or (points, 3) with the coordinate across the pull as the third. The
             length is that of all coordinates; everything else is of the first two, as in the paper.
 
         Raises
         ------
         InputError
-            If there are fewer than 5 points or they describe no segment.
+            If there are fewer than 5 points or they do not describe a segment.
         """
         curve = np.asarray(curve_mm, dtype=float)
         if curve.ndim != 2 or curve.shape[1] not in (2, 3) or len(curve) < _FEWEST_POINTS:
@@ -110,7 +110,9 @@ class SegmentGeometry:
         chord = points[-1] - points[0]
         separation = float(np.linalg.norm(chord))
         if not (np.isfinite(length) and 0 < separation < length):
-            raise InputError("curve_mm", "describes no segment.", "Give a curved centre line.")
+            raise InputError(
+                "curve_mm", "does not describe a segment.", "Give a curved centre line."
+            )
         slope = abs(float(_end_tangent(points)[1]))
         if parity is Parity.EVEN:
             return cls(parity, separation, length, slope)

@@ -47,7 +47,7 @@ def bends_of(material: Material) -> Mapping[Fabric, Bend]:
     Raises
     ------
     InputError
-        If the material lacks what the yarn level needs to know.
+        If the material lacks data that the yarn level needs.
     ConvergenceError
         If a fabric does not relax.
     """
@@ -91,7 +91,7 @@ def write_table(path: Path) -> None:
 def _bend(fabric: Fabric, yarn: YarnModel, loop_length_mm: float) -> Bend:
     repeat = StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()
     found = bending(relax(repeat, yarn, loop_length_mm))
-    curls = fabric is Fabric.STOCKINETTE  # the others are as their backs are
+    curls = fabric is Fabric.STOCKINETTE  # the others look the same from the back
     return Bend(
         curvature_course_per_mm=found.course.curvature_per_mm if curls else 0.0,
         curvature_wale_per_mm=found.wale.curvature_per_mm if curls else 0.0,

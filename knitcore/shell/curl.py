@@ -20,34 +20,34 @@ MAX_STITCHES = 10_000
 """Largest piece that is calculated."""
 TIME_LIMIT_S = 120.0
 STRIP = 4.0
-"""Width of the edge whose curl is told, in thicknesses."""
+"""Width of the edge strip whose curl is reported, in thicknesses."""
 _SHAKEN_MM = 1e-3
-"""The flat sheet is shaken by so much, or one that wants to buckle would stay flat."""
+"""Perturbation of the flat sheet, without which an unstable one would stay flat."""
 NOTE = (
-    "Without friction, set and weight: edges roll and folds close as far as they can, which real "
-    "cloth does in part. Take the direction of curls and folds, and which fabrics lie flat, rather "
-    "than the millimetres."
+    "Without friction, set and weight: edges roll and folds close as far as they can; real fabric "
+    "does so only in part. Rely on the direction of curls and folds, and on which fabrics lie "
+    "flat, rather than on the millimetres."
 )
 
 
 @dataclass(frozen=True, eq=False)
 class CurledPiece:
-    """A piece as it lies, on the average as the flat one is: x along the rows, z towards the face.
+    """A piece at rest, on average aligned with the flat one: x along the rows, z towards the face.
 
     Parameters
     ----------
-    chart : what was knitted.
+    chart : the piece.
     corners_mm : (rows + 1, columns + 1, 3), corners of the stitches, the lowest row first.
     flat_mm : (rows + 1, columns + 1, 3), the same in the flat sheet.
-    thickness_mm : of the cloth.
+    thickness_mm : of the fabric.
     width_mm, height_mm, depth_mm : extent of the corners.
     curl_course_mm : how far the sides stand out, positive towards the face (the front): greatest
-        height of the outer strip, four thicknesses wide, over the plane of the cloth at its inner
+        height of the outer strip, four thicknesses wide, over the plane of the fabric at its inner
         end, mean over the middle rows.
     curl_wale_mm : the same of top and bottom.
     energy_n_mm : of the piece.
     converged : whether every corner is in equilibrium; where it is not, the shape is a preview.
-    residual : largest force on a corner, in units of what turns two stitches by a radian.
+    residual : largest force on a corner, over the force that turns two stitches by a radian.
     seconds : CPU time.
     """
 
@@ -74,18 +74,18 @@ def curl(
     time_limit_s: float = TIME_LIMIT_S,
     cancel: Callable[[], bool] | None = None,
 ) -> CurledPiece:
-    """The shape of a piece with free edges, on its own.
+    """The shape at rest of a piece with free edges.
 
     Parameters
     ----------
     chart : the whole piece, from the face side.
     time_limit_s : CPU time after which the shape is given as it is, unconverged.
-    cancel : asked before every step.
+    cancel : called before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If the piece is too large, or the material lacks what is needed.
+        If the piece is too large, or the material lacks data that the yarn level needs.
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError

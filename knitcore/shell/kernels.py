@@ -10,8 +10,8 @@ Unknowns are the corners of the stitches, ``x`` (n, 3) in mm. Four parts, each a
 - **Hinges** (bending): the line between two stitches, from p to q. It turns by the angle θ from
   the plane through it and the middle of the far side of one stitch to that of the other; θ > 0 puts
   the face outside. The energy is K (θ − θ₀)² / 2, and beyond the angle θ_c at which the inner
-  surface of the cloth is closed WALL K (|θ| − θ_c)² / 2 more. A twisted stitch may lose its width b
-  at a hinge, where no angle is defined: K ln²(b² / b₀²) / 2 below b₀, half its size, keeps it.
+  surface of the fabric is closed WALL K (|θ| − θ_c)² / 2 more. A twisted stitch may lose its width
+  b at a hinge, where no angle is defined: K ln²(b² / b₀²) / 2 below b₀, half its size, keeps it.
 - **Twists**: T |x₀₀ − x₁₀ − x₀₁ + x₁₁|² / 2 of a stitch.
 - **Touches**: two points of the sheet, each the mean of four corners (a corner four times, or the
   corners of a stitch), nearer than the thickness t: k (t − d)² / 2.
@@ -269,7 +269,7 @@ def placed(x: Array, points: Ints) -> Array:
 
 @numba.njit(cache=True)
 def near_pairs(at: Array, home: Array, reach: float, apart: float) -> Ints:
-    """Pairs of points nearer than ``reach`` that are farther than ``apart`` in the sheet itself.
+    """Pairs of points nearer than ``reach`` that are more than ``apart`` away within the sheet.
 
     A list of boxes of side ``reach`` over the points, sorted by box. ``home`` (k, 2): their places
     in the flat sheet, mm.

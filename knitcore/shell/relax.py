@@ -40,7 +40,7 @@ _LEAST_STEP = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """Where a descent ended.
+    """End of a descent.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def settle(
     held : (corners,) those that do not move.
     load_n : (corners, 3) forces that act on the corners, such as their weight.
     time_limit_s : CPU time after which it ends unconverged.
-    cancel : asked before every step.
+    cancel : called before every step; True stops with CancelledError.
 
     Raises
     ------

@@ -1,15 +1,15 @@
 """A piece of knitting as a sheet of stitches in space.
 
-Every stitch is a quadrilateral between four corners. What it resists with comes from its quarters,
-each of which is one of the four pure fabrics (:mod:`knitcore.phases`): sizes at rest and stiffness
-of the membrane from the material, bending rigidity and free curvature from the yarn level. Two
+Every stitch is a quadrilateral between four corners. Its properties come from its quarters, each of
+which is one of the four pure fabrics (:mod:`knitcore.phases`): sizes at rest and stiffness of the
+membrane from the material, bending rigidity and free curvature from the yarn level. Two
 neighbours of one kind with even segments all around turn as stockinette does, knits with the face
-outside and purls with the back; where segments are odd (garter, rib, seed) the curvature of a
-stitch is undone by the next, and the line between them stays flat. A chart of one pure fabric is
-that fabric; folds over two stitches and more come out as shapes.
+outside and purls with the back; where segments are odd (garter, rib, seed) the next stitch cancels
+the curvature, and the line between them stays flat. A chart of one pure fabric is that fabric;
+folds over two or more stitches are part of the computed shape.
 
-Cloth cannot turn tighter than its thickness t allows: at 2 arctan(l / t) between stitches of size l
-its inner surface is closed.
+Fabric cannot fold tighter than its thickness t allows: at 2 arctan(l / t) between stitches of size
+l its inner surface is closed.
 """
 
 from __future__ import annotations

@@ -43,8 +43,8 @@ class Tangent:
 
         Parameters
         ----------
-        convex : leave out what makes it indefinite: the curvature of angles and of distances under
-            compression.
+        convex : leave out the terms that may make it indefinite: the curvature of angles and of
+            distances under compression.
         shift : added to the diagonal, N/mm.
         """
         sheet = self._sheet
@@ -82,7 +82,7 @@ class Tangent:
 def _convex(
     q1: float, q2: float, g: float, parameters: Array, slope: Array, curvature: Array
 ) -> None:
-    """Leave of a quarter's stress what pulls, and of its stiffness what is positive definite."""
+    """Keep the tensile part of a quarter's stress and the positive part of its stiffness."""
     _, _, c11, c22, c12, shear = parameters
     slope[0], slope[1], slope[2] = max(slope[0], 0.0), max(slope[1], 0.0), 0.0
     curvature[:] = 0.0

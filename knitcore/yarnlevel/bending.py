@@ -18,12 +18,12 @@ held lengths c), r = (∂²L/∂x∂κ, ∂c/∂κ) and K the matrix of the rela
 
 with A the area of the cell: the moment per width, N, that holds the fabric flat, and the change of
 that moment with the curvature, the bending rigidity, N·mm (ε is the strain across per curvature:
-the width that a moment refers to changes). What is prescribed in the bent direction is the angle of
-a stitch, so the size of a stitch along it is free; the other size is free in a strip or a tube, and
-held inside a wide sheet.
+the width that a moment refers to changes). In the bent direction the angle of a stitch is
+prescribed, so its size along it is free; the other size is free in a strip or a tube, and held
+inside a wide sheet.
 Shear is the same with a skewed cell: the next course is moved sideways.
 
-There is no friction in this; fabric that has not been shaken out is stiffer.
+Friction is not modelled; fabric that has not been shaken out is stiffer.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ Array = NDArray[np.float64]
 _STEP = 1e-3
 """Curvature times loop length of the central differences."""
 _SKEW_STEP = 1e-5
-"""Skew of the central differences: hard cores leave the yarn little room for straight motion."""
+"""Skew of the central differences: hard cores leave the yarn little room to move straight."""
 _REACH = 1.05
 """Pairs are listed to this many diameters, so that none is missed in the bent cell."""
 GRID = SplineGrid(controls=24, per_span=5)
@@ -59,7 +59,7 @@ GRID = SplineGrid(controls=24, per_span=5)
 MAX_STITCHES = 36
 """Largest repeat; the unknowns fill a dense matrix."""
 _STEPS = 20
-"""Most Newton steps from the relaxed state to the bottom of its valley."""
+"""Most Newton steps from the relaxed state to its minimum."""
 _STRIDE = 0.5
 """Longest of these steps, in radii: a longer one leads elsewhere."""
 _SETTLED = 1e-7
@@ -91,12 +91,12 @@ class Curl(Choice):
 
 @dataclass(frozen=True)
 class BendingResponse:
-    """How a fabric answers to bending in one direction.
+    """Response of a fabric to bending in one direction.
 
     Parameters
     ----------
     moment_n : derivative of the energy per area by the curvature at the flat state, N (N·mm per
-        mm of width). Negative: left alone, the fabric curves with its face outside.
+        mm of width). Negative: left free, the fabric curves with its face outside.
     rigidity_n_mm : bending rigidity with the size across free, N·mm.
     held_n_mm : the same with the size across held.
     strain_along_mm, strain_across_mm : strain of the surface of mean height per curvature, with the
@@ -111,7 +111,7 @@ class BendingResponse:
 
     @property
     def curvature_per_mm(self) -> float:
-        """Curvature at which the linear moment is gone, 1/mm; positive has the face outside."""
+        """Curvature at which the linear moment vanishes, 1/mm; positive has the face outside."""
         return -self.moment_n / self.rigidity_n_mm
 
 
@@ -122,12 +122,12 @@ class FabricBending:
     Parameters
     ----------
     course, wale : bent along the rows, and along the columns.
-    oblique : bent at 45° to both; None where the state is no minimum.
+    oblique : bent at 45° to both; None where the state is not a minimum.
     shear_modulus_n_per_mm : resistance to moving the courses sideways, both sizes free, N/mm; None
-        where the state is no minimum.
+        where the state is not a minimum.
     thickness_mm : extent of the yarn across the fabric.
     minimum : whether the state is a minimum without the symmetries that were imposed on it. Bending
-        along rows and columns keeps these symmetries, and is told of the state as it is.
+        along rows and columns keeps these symmetries, and is reported even where it is not.
     """
 
     course: BendingResponse
@@ -149,13 +149,13 @@ class FabricBending:
 
     @property
     def curl(self) -> str:
-        """What the free edges do, in words."""
+        """Curling of the free edges, in words."""
         edges = (("the sides roll", self.curl_course), ("top and bottom roll", self.curl_wale))
         rolling = [f"{edge} to the {where}" for edge, where in edges if where is not Curl.FLAT]
         return ", ".join(rolling) or "lies flat"
 
     def _curl(self, response: BendingResponse) -> Curl:
-        """Cloth rolls up where its curvature would bring its surfaces together: κ t / 2 ~ 1."""
+        """Fabric rolls up where its curvature would bring its surfaces together: κ t / 2 ~ 1."""
         tightness = 0.5 * self.thickness_mm * response.curvature_per_mm
         if abs(tightness) < ROLLS_FROM:
             return Curl.FLAT
@@ -163,10 +163,10 @@ class FabricBending:
 
     @property
     def twist_n_mm(self) -> float | None:
-        """What bending at 45° adds to the mean of the two rigidities: D₁ + 2 D₆₆, N·mm.
+        """Combined coupling and twist rigidity D₁ + 2 D₆₆, N·mm.
 
         From D(45°) = (D_x + D_y) / 4 + (D₁ + 2 D₆₆) / 2 with D₁ between the two curvatures and
-        D₆₆ of the twist; a cylinder does not tell them apart.
+        D₆₆ of the twist; bending into a cylinder does not separate the two.
         """
         if self.oblique is None:
             return None
@@ -175,7 +175,7 @@ class FabricBending:
 
 
 def scroll_radius_mm(length_mm: float, thickness_mm: float) -> float:
-    """Outer radius of a strip of cloth that is rolled up as tight as it can be: π R² = length · t.
+    """Outer radius of a strip of fabric rolled up as tightly as possible: π R² = length · t.
 
     Examples
     --------
@@ -210,7 +210,7 @@ def bending(relaxed: RelaxedRepeat) -> FabricBending:
     InputError
         If the repeat was held, or is too large.
     ConvergenceError
-        If the repeat does not stay where it is without its symmetries, or folds by itself: a
+        If the repeat is not in equilibrium without its symmetries, or folds spontaneously: a
         rigidity along rows or columns is not positive.
     """
     if relaxed.chart.rows * relaxed.chart.columns > MAX_STITCHES:
@@ -220,13 +220,15 @@ def bending(relaxed: RelaxedRepeat) -> FabricBending:
             f"Use a repeat of at most {MAX_STITCHES} stitches.",
         )
     if relaxed.flat or relaxed.slides:
-        raise InputError("flat", "a repeat that is held flat does not bend.", "Relax it without.")
+        raise InputError(
+            "flat", "a repeat that is held flat cannot be bent.", "Relax it without `flat`."
+        )
     cell = _settled(relaxed)
     course, wale = cell.bent(0.0), cell.bent(0.5 * np.pi)
     if min(course.rigidity_n_mm, course.held_n_mm, wale.rigidity_n_mm, wale.held_n_mm) <= 0.0:
         raise ConvergenceError(
-            "The relaxed repeat folds by itself: a bending rigidity is not positive. Relax it in "
-            "the free branch."
+            "The relaxed repeat folds spontaneously: a bending rigidity is not positive. Relax it "
+            "in the free branch."
         )
     minimum = cell.is_minimum()
     extent = np.ptp(cell.curve[:, 0, 2]) + 2.0 * relaxed.yarn.radius_mm
@@ -241,7 +243,7 @@ def bending(relaxed: RelaxedRepeat) -> FabricBending:
 
 
 def _settled(relaxed: RelaxedRepeat) -> _Cell:
-    """The whole repeat without symmetries, at the bottom of its valley and at mean height zero."""
+    """The whole repeat without symmetries, at its minimum and at mean height zero."""
     cell = plain_cell(relaxed.chart, relaxed.cell.grid)
     state = tiled_state(relaxed.cell, relaxed.state, cell)
     heights = cell.dof[..., 2]
@@ -270,15 +272,15 @@ def _settled(relaxed: RelaxedRepeat) -> _Cell:
             break
         state, tension = state + step, tension + change
     raise ConvergenceError(
-        "Without its symmetries the relaxed repeat moves elsewhere. Relax it in the free branch."
+        "Without its symmetries the relaxed repeat changes shape. Relax it in the free branch."
     )
 
 
 class _Cell:
     """A cell at a state, with the factors of its linear response.
 
-    Beside the lengths the rules hold what costs no energy: where the cell lies, and where each
-    yarn has its beginning.
+    Besides the lengths the rules hold the motions that cost no energy: of the cell as a whole, and
+    of each yarn along itself.
     """
 
     def __init__(self, energy: CellEnergy, state: Array, tension: Array) -> None:
@@ -321,7 +323,7 @@ class _Cell:
         """Bending with the direction ``angle`` from the course, rad."""
         course, wale = float(self.state[_COURSE]), float(self.state[_WALE])
         cos, sin = np.cos(angle), np.sin(angle)
-        stitch = np.hypot(cos * course, sin * wale)  # its angle κ · stitch is what is prescribed
+        stitch = np.hypot(cos * course, sin * wale)  # the angle κ · stitch is prescribed
         first, second, by_state, by_length = self._differences(
             lambda q: _Deformation(angle, curvature_per_mm=q), _STEP / self.energy.mean_loop_mm
         )
@@ -373,7 +375,7 @@ class _Cell:
     def _stiffness(
         self, second: float, by_state: Array, by_length: Array, held: int | None
     ) -> tuple[float, Array]:
-        """Second derivative of the relaxed energy, and what the unknowns do."""
+        """Second derivative of the relaxed energy, and the change of the unknowns."""
         off = np.zeros(len(self._rows))
         off[: len(by_length)] = by_length
         step, force = self._solve(by_state, off, held)

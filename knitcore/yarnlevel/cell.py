@@ -1,4 +1,4 @@
-"""The periodic cell of yarn that stands for a chart, with the symmetries imposed on it.
+"""The periodic cell of yarn that represents a chart, with the symmetries imposed on it.
 
 A repeat of K and P is one curve per course. Three symmetries make it smaller:
 
@@ -35,7 +35,7 @@ class YarnCell:
     purl : bool (rows, wales), the stitches of the cell, bottom row first.
     mirror_course, mirror_wale : the next cell that way has K and P swapped and z reflected.
     axis : place of the imposed wale axis in half stitches (1 = middle of the first stitch), None
-        where there is none.
+        if there is none.
     grid : resolution of the curves.
     """
 
@@ -77,7 +77,7 @@ class YarnCell:
         return (np.arange(samples) + 0.5) / self.grid.samples
 
     def purl_at(self, row: int, wale: int) -> bool:
-        """Kind of any stitch of the endless fabric."""
+        """Kind of any stitch of the infinite fabric."""
         swaps = self.mirror_course * (wale // self.wales) + self.mirror_wale * (row // self.rows)
         return bool(self.purl[row % self.rows, wale % self.wales]) ^ bool(swaps % 2)
 
@@ -123,7 +123,7 @@ class YarnCell:
 
     @cached_property
     def layout(self) -> Layout:
-        """How the unknowns make the curves, as the kernels take it."""
+        """Map from the unknowns to the curves, in the kernels' form."""
         return Layout(
             self.rows, self.wales, self.mirror[0], self.place, self.grid.basis, self.dof,
             self.sign, self.unknowns,

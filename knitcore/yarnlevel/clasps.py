@@ -1,7 +1,7 @@
 """How the yarn of a repeat is knotted: a number that no motion of the yarn can change.
 
-The fabric repeats in the plane, so its yarn is a link in a thick torus. Seen from above it is a
-diagram of crossings; every stretch of yarn from one passage below another to the next is an arc.
+The fabric repeats in the plane, so its yarn is a link in a thickened torus. Seen from above it is a
+diagram of crossings; every piece of yarn from one passage below another to the next is an arc.
 A crossing relates three arcs,
 
     t^s u_in + (1 - t^s) x^a y^b o - u_out = 0,

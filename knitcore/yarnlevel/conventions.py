@@ -1,4 +1,4 @@
-"""Which factors stand before the terms of the yarn's energy: three readings, by name.
+"""Factors of the terms in the yarn's energy: three conventions, by name.
 
 The energy of one stitch is, with ordered pairs of contact points and ``V`` of
 :mod:`knitcore.yarnlevel.potential`,
@@ -6,9 +6,9 @@ The energy of one stitch is, with ordered pairs of contact points and ``V`` of
     bending_factor * B ∮ κ² ds  +  regularisation_factor * C ∮ |∂_ss t|² ds
     +  ordered_pair_factor * Σ_(i,j) V(R_ij) w_i w_j
 
-The paper's text halves everything; the authors' public code halves nothing; the published energies
-and moduli follow from the mixture called ``published`` here (all eight energies of Supplementary
-Table 8 within 2 %), so it is the default, and the published core radii belong to it.
+In the paper's text every factor is halved, in the authors' public code none is. The published
+energies and moduli follow from the mixture called ``published`` here (all eight energies of
+Supplementary Table 8 within 2 %), so it is the default, and the published core radii belong to it.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ class Convention(Choice):
 
     @property
     def ordered_pair_factor(self) -> float:
-        """Factor of the contact sum when every pair is met twice, as (i, j) and as (j, i)."""
+        """Factor of the contact sum over ordered pairs, each counted as (i, j) and as (j, i)."""
         return 0.5 if self is Convention.PAPER else 1.0
 
     @property
     def unordered_pair_factor(self) -> float:
-        """Factor of the contact sum when every pair is met once."""
+        """Factor of the contact sum over unordered pairs."""
         return 2.0 * self.ordered_pair_factor
 
     @property

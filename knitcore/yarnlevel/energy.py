@@ -26,8 +26,8 @@ PENALTY_PER_BENDING = 3e4
 """Stiffness of the augmented length constraint in units of B / L³."""
 
 REGULARISATION_PER_BENDING = 4e-4
-"""Most that C may be, in units of B L²: the constant C of the paper belongs to worsted yarn, and
-would be stiffer than the bending of a lace yarn. None of the paper's samples reaches the limit."""
+"""Largest C, in units of B L²: the paper's constant C is for worsted yarn, and would be stiffer
+than the bending of a lace yarn. None of the paper's samples reaches the limit."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Terms:
     contact: float
     gauge: float
     excess_mm: Array
-    """Lengths beyond the prescribed ones, and what else is held over its value."""
+    """Excess of the lengths, and of other constrained quantities, over their prescribed values."""
 
     @property
     def energy(self) -> float:
@@ -53,7 +53,7 @@ class Slope:
     Attributes
     ----------
     gradient : (unknowns,) of the Lagrangian.
-    lengths : (constraints, unknowns), of the prescribed lengths and of what else is held.
+    lengths : (constraints, unknowns), of the prescribed lengths and the other constraints.
     hessian : (unknowns, unknowns) of the Lagrangian; None where it was not wanted.
     """
 
@@ -186,13 +186,13 @@ class CellEnergy:
 
     @cached_property
     def _speeds(self) -> Array:
-        """What |d1| should be at each sample: the length of its stitch."""
+        """Target of |d1| at each sample: the length of its stitch."""
         return np.repeat(
             self.loop_length_mm.ravel(), len(self.stretch_of) // self.loop_length_mm.size
         )
 
     def excess(self, state: Array, curve: Array) -> Array:
-        """What is held over its value: lengths, linear rules, slides, mm."""
+        """Constrained quantities less their values: lengths, linear rules, slides, mm."""
         speed = np.sqrt(np.einsum("im,im->i", curve[:, 1], curve[:, 1]))
         lengths = np.bincount(self.stretch_of, speed) / self.cell.grid.samples
         slid = np.array([slide.value(state) for slide in self.slides])
@@ -207,7 +207,7 @@ class CellEnergy:
         return Terms(rod, contact, gauge, self.excess(state, curve))
 
     def merit(self, terms: Terms, tension: Array) -> float:
-        """Augmented Lagrangian with the given tensions (multipliers of what is held), N."""
+        """Augmented Lagrangian, N·mm, with the given tensions (multipliers of constraints), N."""
         excess = terms.excess_mm
         return float(
             terms.energy + terms.gauge + tension @ excess + 0.5 * self.penalty * excess @ excess
@@ -246,7 +246,7 @@ class CellEnergy:
     def along_yarn(
         self, curve: Array, tension: Array, by_speed: Array
     ) -> tuple[float, float, Array]:
-        """What the yarn has by itself: rod and gauge energy, and slopes (n, 3, 3) by d1, d2, d3.
+        """Rod and gauge energy, without contact, and their slopes (n, 3, 3) by d1, d2, d3.
 
         The slopes include the tensions and ``by_speed``, the slope of the contact by |d1|.
         """

@@ -1,4 +1,4 @@
-"""From the first shape to a relaxed one: the yarn grows stiff from the inside.
+"""From the first shape to a relaxed one: the yarn's hard core grows from the inside.
 
 The first shape brings strands nearer than two hard cores. Its yarn begins with the thickest core
 that fits, at a fixed size of the cell and with a stiffened shell, so that the strands push each
@@ -37,11 +37,11 @@ _START_HEIGHT = 0.8
 
 @dataclass(frozen=True)
 class Start:
-    """One way to begin.
+    """One starting shape.
 
     Parameters
     ----------
-    name : how a report calls it.
+    name : its name in reports.
     course, wale : size of the first cell relative to the usual one.
     noise : random displacement of the control points, in radii.
     seed : of that noise.
@@ -109,7 +109,7 @@ def grow(
     if short and (core < yarn.core_radius_mm or found.min_distance_mm <= 2.0 * core):
         raise ConvergenceError(
             f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
-            f"only {core:.3g} mm found room. Give a longer loop or a thinner core."
+            f"only {core:.3g} mm fits. Give a longer loop or a thinner core."
         )
     found = minimise(energy, state, tension=tension, options=options, cancel=cancel)
     return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)

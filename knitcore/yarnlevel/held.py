@@ -1,7 +1,7 @@
-"""What a cell may hold besides the lengths of its yarn: linear rules for the unknowns.
+"""Linear constraints on a cell's unknowns, besides the lengths of its yarn.
 
-- The foot of every stitch: where stitches have lengths of their own, the yarn between two of them
-  is what lies between the lowest points of their feet, so these points are kept at whole t.
+- The foot of every stitch: where each stitch has its own length, its yarn is measured between the
+  lowest points of the feet before and after it, so these points are kept at whole t.
 - The plane: a fabric laid flat has the middle of every stitch at the same height.
 
 Rules that symmetry already keeps are left out.
@@ -57,7 +57,7 @@ def plane_rows(cell: YarnCell) -> Array:
 
 
 def independent(rows: Array) -> Array:
-    """Rows that span the same space without a spare one."""
+    """Linearly independent rows that span the same space."""
     kept: list[Array] = []
     for row in rows:
         if is_independent(kept, row):
@@ -66,7 +66,7 @@ def independent(rows: Array) -> Array:
 
 
 def is_independent(rows: list[Array], row: Array) -> bool:
-    """Whether a row is no combination of others."""
+    """Whether a row is linearly independent of the others."""
     size = float(np.linalg.norm(row))
     if size < _SMALL:
         return False

@@ -11,7 +11,7 @@ from knitcore.yarnlevel.results import FloatArray
 _JUMP = 4.0
 """A step whose shape changes this much more than the steps around it is a jump."""
 _JUMP_FLOOR = 0.004
-"""And by at least this much, root mean square over the stitch, in loop lengths."""
+"""The change is also at least this much, root mean square over the stitch, in loop lengths."""
 
 
 def find_jumps(centre_lines: list[FloatArray], loop_length_mm: float) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""What a relaxation or a stretch may be asked."""
+"""Checks of the input of a relaxation or a stretch."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def check_cancelled(cancel: Cancel | None) -> None:
 
 
 def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
-    """Refuse a loop that the yarn cannot make.
+    """Refuse a loop length that the yarn cannot have.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
         Naming a usable bound.
     """
     if not (math.isfinite(loop_length_mm) and loop_length_mm > 0):
-        raise InputError("loop_length_mm", f"{loop_length_mm} is no length.", "Give it in mm.")
+        raise InputError("loop_length_mm", f"{loop_length_mm} is not a length.", "Give it in mm.")
     least = max(MIN_LENGTH_PER_RADIUS * yarn.radius_mm, MIN_LENGTH_PER_CORE * yarn.core_radius_mm)
     if loop_length_mm < least:
         raise InputError(
@@ -68,20 +68,20 @@ def check_size(name: str, size_mm: float | None, loop_length_mm: float) -> None:
 
 
 def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | None) -> None:
-    """Refuse a stretch without length, points or end (an infinite stress ends none).
+    """Refuse a stretch whose strain, points or largest stress cannot be used (inf: no limit).
 
     Raises
     ------
     InputError
-        Naming what cannot be used.
+        Naming the value that cannot be used.
     """
     if not (math.isfinite(max_strain) and max_strain > 0.0):
-        raise InputError("max_strain", f"{max_strain} is no stretch.", "Give a strain above 0.")
+        raise InputError("max_strain", f"{max_strain} is not a stretch.", "Give a strain above 0.")
     if not 2 <= points <= MAX_POINTS:
         raise InputError("points", f"{points} cannot be used.", f"Give 2 to {MAX_POINTS}.")
     if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
         raise InputError(
             "max_stress_n_per_mm",
-            f"{max_stress_n_per_mm} N/mm ends no stretch.",
+            f"{max_stress_n_per_mm} N/mm is not a limit.",
             "Give a stress above 0.",
         )

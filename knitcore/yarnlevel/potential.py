@@ -62,7 +62,7 @@ def potential_curvature(distance: float, k: float, p: float, radius: float, core
 def potential_and_derivatives(
     distance: float, k: float, p: float, radius: float, core: float
 ) -> tuple[float, float, float]:
-    """V(R), V'(R) and V''(R) at the price of one of them."""
+    """V(R), V'(R) and V''(R) at the cost of one of them."""
     shell = 2.0 * (radius - core)
     zeta = (distance - 2.0 * core) / shell
     if zeta >= 1.0:

@@ -80,7 +80,7 @@ def relax(
 
     Parameters
     ----------
-    chart : the repeat (or any number of it).
+    chart : the repeat (or any number of repeats).
     yarn : the yarn.
     loop_length_mm : mm of yarn per stitch: one number, one for every course of the repeat (bottom
         first), or (rows, columns), one for every stitch, from the lowest point of the yarn before
@@ -90,17 +90,17 @@ def relax(
         description: a stitch of a pure fabric with one loop length.
     convention : factors of the energy.
     cell_course_mm, cell_wale_mm : size of a stitch to hold, mm; None leaves it free of force.
-    flat : hold the middles of all stitches in one plane, as a fabric laid flat; folds are kept out.
+    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
     grid : resolution; by default finer for small cells.
     starts : by default two, and four in the free branch (fewer for large cells).
     time_limit_s : refuse a cell that will probably take more CPU time.
-    cancel : asked before every step; True stops with CancelledError.
+    cancel : called before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
         If the loop is too short or too long for the yarn, a size is out of reach, the cell is too
-        large, the branch cannot do what is asked, or a name is not known.
+        large, the branch does not support an option, or a name is not known.
     ConvergenceError
         If no start relaxed.
     UnravelledError
@@ -116,7 +116,7 @@ def relax(
     if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:
         raise InputError(
             "branch",
-            "the published branch has one loop length, its own curves and starts, and no plane.",
+            "the published branch takes one loop length, and no grid, starts or plane.",
             "Use mirrored or free.",
         )
     return relax_published(

@@ -1,4 +1,4 @@
-"""What a relaxation and a stretch of the yarn level return, whichever branch made it."""
+"""Results of relaxations and stretches at the yarn level, the same for every branch."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Branch(Choice):
-    """Which shapes of the yarn are admitted."""
+    """Shapes of the yarn that are admitted."""
 
     PUBLISHED = "published"
     MIRRORED = "mirrored"
@@ -26,7 +26,7 @@ class Branch(Choice):
 
 @dataclass(frozen=True)
 class StartReport:
-    """What became of one start.
+    """Outcome of one start.
 
     Attributes
     ----------
@@ -67,9 +67,9 @@ class RelaxedCell:
     min_distance_mm : smallest distance of centre lines that may touch.
     centre_lines : centre lines, mm, shape (courses, points, 3), bottom course first: each runs
         once across the repeat.
-    state : unknowns of the branch, from which it can go on.
-    notes : what a user should know about this result.
-    starts : all starts and what became of them.
+    state : unknowns of the branch, from which it can be continued.
+    notes : remarks for the user, in sentences.
+    starts : all starts and their outcomes.
     """
 
     branch: Branch
@@ -109,7 +109,7 @@ class Sweep:
     cells : the cells, by increasing stretch.
     stress_n_per_mm : nominal stress at each cell: ∂E/∂l over the transverse size at zero force.
     jumps : indices i where the lowest state changes shape abruptly between cell i - 1 and cell i.
-    notes : what a user should know about this result.
+    notes : remarks for the user, in sentences.
     """
 
     direction: Direction
@@ -146,9 +146,9 @@ class Sweep:
 
     @property
     def contact_overtakes_at_strain(self) -> float | None:
-        """Strain at which contact first holds half of the energy (linear between points).
+        """Strain at which contact first makes up half of the energy (linear between points).
 
-        0 if it does so from the start, None if bending leads throughout (paper, Fig. S7).
+        0 if it does from the start, None if bending dominates throughout (paper, Fig. S7).
         """
         above = np.flatnonzero(self.contact_share >= 0.5)
         if not len(above):

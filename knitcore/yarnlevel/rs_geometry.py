@@ -3,10 +3,10 @@
 A stitch of a pure fabric touches its neighbours in four entangled regions, one in each quarter of
 its yarn. Course-wise a connecting segment reaches along the foot from the middle of one region to
 the middle of the next, wale-wise along a leg from the outer edge of one to the outer edge of the
-other: so measured on the paper's own Bezier curves, whose strands A and B are these regions, the
-separations, lengths and slopes of its tables 15 and 16 come out (docs/reduced-symmetry.md). A
-spline has no ready-made regions; here one is centred where the contact energy has its mean and is
-as long as a uniform region of the same spread would be.
+other. Measured in this way on the paper's own Bezier curves, whose strands A and B are these
+regions, the separations, lengths and slopes agree with its tables 15 and 16
+(docs/reduced-symmetry.md). A spline has no predefined regions; here a region is centred at the mean
+of the contact energy and is as long as a uniform region of the same spread would be.
 """
 
 from __future__ import annotations
@@ -63,11 +63,11 @@ def segment_geometry(relaxed: RelaxedRepeat) -> Mapping[Direction, SegmentGeomet
 def published_segment_geometry(
     fabric: Fabric, yarn: YarnModel, cell: RelaxedCell
 ) -> Mapping[Direction, SegmentGeometry]:
-    """The same on the paper's Bezier curves (branch ``published``), as the paper must have done.
+    """The same on the paper's Bezier curves (branch ``published``).
 
     Parameters
     ----------
-    fabric, yarn : what was relaxed.
+    fabric, yarn : of the relaxed stitch.
     cell : by :func:`knitcore.yarnlevel.published.relax.relax_published`.
     """
     stitch = Stitch(fabric, yarn, cell.convention)

@@ -1,4 +1,4 @@
-"""The eight samples of the paper's simulations: what its tables print and what was really run."""
+"""The eight samples of the paper's simulations, with figures as printed and as really used."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Parameter:
     printed, printed_unit : as in the table.
     used : the value to compute with, in the unit that ``name`` states.
     configured : the value in the authors' public configuration file where there is one (acrylic).
-    reason : why ``used`` is not simply ``printed``; empty if it is.
+    reason : why ``used`` differs from ``printed``; empty if it does not.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Several starts on one cell, and what became of each."""
+"""Several starts on one cell, and the outcome of each."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def overlong(energy: CellEnergy, found: Minimum) -> bool:
 
 
 def outcome(energy: CellEnergy, found: Minimum) -> str:
-    """``relaxed``, ``not converged``, or why a state is none of the fabric."""
+    """``relaxed``, ``not converged``, or why the state is not one of the fabric."""
     if not np.all(np.isfinite(found.state)) or not np.isfinite(found.terms.energy):
         return "not finite"
     if overlong(energy, found):
@@ -59,7 +59,7 @@ def outcome(energy: CellEnergy, found: Minimum) -> str:
 
 
 class Search:
-    """Runs starts on one cell and remembers what became of them."""
+    """Runs starts on one cell and records their outcomes."""
 
     def __init__(self, energy: CellEnergy, options: Options, cancel: Cancel | None) -> None:
         self.energy = energy
@@ -79,7 +79,7 @@ class Search:
     def continue_from(
         self, smaller: CellEnergy, starts: Sequence[Start], seeds: Sequence[int]
     ) -> None:
-        """Go on from the lowest state of a more symmetric cell, laid out and shaken a little."""
+        """Continue from the lowest state of a more symmetric cell, randomly perturbed."""
         mirrored: list[Minimum] = []
 
         def run(seed: int) -> Minimum:
@@ -141,14 +141,14 @@ class Search:
         Raises
         ------
         ConvergenceError
-            If it is no state of the fabric there.
+            If it is not a state of the fabric there.
         """
         best = self.best()
         state = refined_state(self.energy.cell, best.state, energy.cell)
         tension = None if energy.held.size else best.tension
         found = self._minimised(energy, state, tension, options)
         if outcome(energy, found) not in (RELAXED, UNSETTLED):
-            # between the old samples the yarn may lie in its core: push it out first
+            # between the old samples the cores may overlap: push them apart first
             apart = self._minimised(
                 replace(energy, yarn=stiffened(energy.yarn)), state, tension, STAGE
             )
@@ -166,7 +166,7 @@ class Search:
         return found
 
     def notes(self, best: Minimum) -> tuple[str, ...]:
-        """What the user should know: higher minima, and how far the mirrored state is off."""
+        """Notes for the user: higher minima, and how much the mirrored state differs."""
         notes = []
         energies = [m.terms.energy for m in self.found]
         others = sum(e > min(energies) * (1.0 + SAME_ENERGY) for e in energies)

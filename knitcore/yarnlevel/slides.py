@@ -1,8 +1,8 @@
-"""Yarn that may not slide where it touches: slide quenching on splines.
+"""Slide quenching on splines: yarn that may not slide where it touches.
 
-The paper holds the yarn between the middles of neighbouring crossovers at its length at rest. On a
-spline the middle of a crossover is where the strands of two courses are nearest to each other; it
-stays at the same points of the yarn when these points stay the nearest, that is when the vector d
+The paper keeps the length of yarn between the middles of neighbouring crossovers as it is at rest.
+On a spline the middle of a crossover is where the strands of two courses are nearest to each other.
+It stays at the same points of the yarn if these points stay the nearest, that is if the vector d
 between them keeps its components along both strands,
 
     c = d · γ'_i / L,   and the same with γ'_j.

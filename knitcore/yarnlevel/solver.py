@@ -1,14 +1,15 @@
 """Damped Newton iterations on the energy of a cell, every step certified.
 
-The Hessian is exact and small (48 unknowns a stitch, half of it with a wale axis). Where the
-energy is not convex the factor is taken of H + mu I until it exists (Levenberg-Marquardt). The
-length of each course is a constraint: a step and the change of the tensions follow from one system
-(Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the merit that must
-fall. The valley that inextensible yarn makes is narrow and curved, so a step along it leaves it;
-steps with the factor of the last Hessian lead back into it at a fraction of the price.
+The Hessian is exact and small (48 unknowns a stitch, half of that with a wale axis). Where the
+energy is not convex, H + mu I is factorised with increasing mu until a factor exists
+(Levenberg-Marquardt). The length of each course is a constraint: a step and the change of the
+tensions follow from one system (Newton on the Lagrangian), and the augmented Lagrangian with these
+tensions is the merit function, which must fall. Inextensible yarn makes its valley narrow and
+curved, so that a step along it leaves it; steps with the factor of the last Hessian lead back into
+it at a fraction of the cost.
 
-Where it converges the Hessian tells a minimum from a saddle, as which a state keeps a symmetry that
-the first shape had; a saddle is left along its direction of most negative curvature.
+On convergence the Hessian distinguishes a minimum from a saddle, where a state can be trapped by a
+symmetry of the first shape; a saddle is left along its direction of most negative curvature.
 """
 
 from __future__ import annotations
@@ -55,12 +56,12 @@ _NUDGES = 6
 
 @dataclass(frozen=True)
 class Options:
-    """How the minimisation goes about it.
+    """Settings of the minimisation.
 
     Parameters
     ----------
     pair_cap : longest change of the vector between near samples in one step, in radii.
-    relief : by how much a step that went as predicted lessens the damping.
+    relief : factor on the damping after a step that went as predicted.
     chord_steps : most steps with an old factor after each new one.
     tolerance : stop when a Newton step would lower the energy by less than this part of it.
     slack : stop only when the lengths are within this part of a loop length.
@@ -77,17 +78,17 @@ class Options:
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """Where a minimisation ended.
+    """End of a minimisation.
 
     Attributes
     ----------
     state : unknowns.
-    tension : (constraints,) tension of each course or stitch, then forces of what else is held, N.
+    tension : (constraints,) tension of each course or stitch, then forces of other constraints, N.
     terms : parts of the energy.
     force : (2,) dE/d(size of a stitch), N, course-wise and wale-wise, for the whole cell.
     min_distance_mm : smallest distance of centre lines.
     converged : whether the tolerance was reached.
-    stable : whether it is a minimum among the shapes of its cell, and no saddle.
+    stable : whether it is a minimum among the shapes of its cell, not a saddle.
     steps, evaluations : Newton steps taken, energies evaluated.
     """
 
@@ -112,7 +113,7 @@ def minimise(
     options: Options | None = None,
     cancel: Callable[[], bool] | None = None,
 ) -> Minimum:
-    """Lowest energy that is reached from a state without yarn crossing yarn.
+    """Minimise the energy from a state, without yarn passing through yarn.
 
     Parameters
     ----------
@@ -121,7 +122,7 @@ def minimise(
     tension : (constraints,) tensions to begin with, N.
     fixed : COURSE and/or WALE: cell sizes that are prescribed.
     target : (2,) sizes of a stitch to move the fixed ones to, mm; by default where they are.
-    cancel : asked before every step.
+    cancel : called before every step; True stops with CancelledError.
 
     Raises
     ------
@@ -226,7 +227,7 @@ class _Descent:
         return True
 
     def _leave_saddle(self, system: _System) -> bool:
-        """Go down along the most negative curvature; False where that leads nowhere."""
+        """Descend along the most negative curvature; False if that does not lower the energy."""
         energy, trajectory = self.energy, self.trajectory
         here = trajectory.here
         self.damping = 2.0 * _STABLE * self.first_damping
@@ -244,7 +245,7 @@ class _Descent:
         return False
 
     def _take_chord_steps(self, system: _System, gain: float) -> None:
-        """Steps with the factor of the last Hessian, as long as they are worth it."""
+        """Steps with the factor of the last Hessian, as long as they pay off."""
         trajectory, energy = self.trajectory, self.energy
         none = np.zeros(len(self.held))
         for _ in range(self.options.chord_steps):
@@ -272,7 +273,7 @@ class _Descent:
         self.damping = max(factor * self.damping, least * self.first_damping)
 
     def minimum(self) -> Minimum:
-        """Where it stands."""
+        """The current result."""
         here = self.trajectory.here
         slope = self.trajectory.slope(self.tension, hessian=False)
         return Minimum(
@@ -354,7 +355,7 @@ class _System:
         return step
 
     def solve(self, slope: Slope, excess: Array, remaining: Array) -> tuple[Array, Array]:
-        """Step that takes the lengths to what they should be, and the change of the tensions."""
+        """Step to the prescribed lengths, and the change of the tensions."""
         lengths = slope.lengths[:, self._free]
         missing = excess + slope.lengths[:, self._held] @ remaining
         gradient = slope.gradient[self._free] + (self._penalty * excess) @ lengths

@@ -28,9 +28,9 @@ class SplineStretch:
 
     Parameters
     ----------
-    zero : the relaxed repeat, with what keeps its yarn from sliding.
+    zero : the relaxed repeat, with its slide constraints.
     along : the direction.
-    cancel : asked before every step of the solver.
+    cancel : called before every step of the solver.
     """
 
     zero: RelaxedRepeat
@@ -46,7 +46,7 @@ class SplineStretch:
 
     @property
     def note(self) -> str:
-        """How many slides are held."""
+        """Number of slides that are held."""
         held = len(self.zero.slides)
         return f"Slide quenching: {held} slides are held." if held else ""
 

@@ -70,7 +70,7 @@ class RelaxedRepeat(RelaxedCell):
     Attributes
     ----------
     cell : shape space; ``state`` are its unknowns.
-    tension_n : tension of every course (or stitch) of the cell, then what holds it flat.
+    tension_n : tension of every course (or stitch) of the cell, then the forces that hold it flat.
     flat : the middles of all stitches were held in one plane.
     slides : where the yarn was kept from sliding.
     """
@@ -135,7 +135,7 @@ def relax_splines(
     shakes = _SHAKES[: 2 if draft.stitches <= SEVERAL_UP_TO else 1]
     shakes = shakes if branch is Branch.FREE and uniform else ()
     if not chosen and not shakes:
-        raise InputError("starts", "there is none.", "Give at least one, or leave them out.")
+        raise InputError("starts", "is empty.", "Give at least one start, or leave it out.")
     _check_cell(draft, len(chosen) + len(shakes), time_limit_s)
     if lengths.ndim == 1:
         lengths = np.resize(lengths, draft.rows)
@@ -216,7 +216,7 @@ def _check_cell(cell: YarnCell, starts: int, time_limit_s: float | None) -> None
     if time_limit_s is None:
         return
     if not time_limit_s > 0.0:
-        raise InputError("time_limit_s", f"{time_limit_s} is no time.", "Give seconds above 0.")
+        raise InputError("time_limit_s", f"{time_limit_s} is not a time.", "Give seconds above 0.")
     seconds = starts * SECONDS_PER_START * cell.stitches**1.5
     if seconds > time_limit_s:
         most = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
@@ -232,7 +232,7 @@ def _held_at(
     energy: CellEnergy, found: Minimum, sizes: tuple[float | None, float | None],
     options: Options, cancel: Cancel | None,
 ) -> Minimum:  # fmt: skip
-    """Walk from the force-free state to prescribed sizes."""
+    """Go from the force-free state to prescribed sizes in steps."""
     places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
     goal = np.array([0.0 if size is None else size for size in sizes])
     begin = found.state[-2:].copy()
@@ -293,7 +293,7 @@ def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[Stitch
 
 @cache
 def _compile() -> None:
-    """Compile (or load) the kernels once, so that the time of a solve is the solve's."""
+    """Compile (or load) the kernels once, so that later solves are timed without it."""
     yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1)
     cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(8, 4))
     found = grow(

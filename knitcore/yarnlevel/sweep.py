@@ -2,9 +2,9 @@
 
 At every size of the stretched direction the other one is free of force. The force is the partial
 derivative of the energy with respect to the size at the minimum, so no energies are differenced.
-Each point is met twice, on the way out and on the way back; the lower one is kept. Where
-that changes from one way to the other, or where the shape changes abruptly while the force falls or
-the energy changes by other than the work done, the sweep has jumped.
+Each point is computed twice, on the way out and on the way back, and the lower state is kept. The
+sweep has jumped where the kept state changes from one way to the other, or where the shape changes
+abruptly while the force falls or the change of energy differs from the work done.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ _LOWER = 1e-6
 
 
 class Stretch(Protocol):
-    """How the states of a branch follow each other along a direction."""
+    """Stretching of a branch's states along a direction."""
 
     @property
     def note(self) -> str:
-        """What holds the yarn besides its lengths; empty where nothing does."""
+        """Note on what holds the yarn besides its lengths; empty if nothing does."""
         ...
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
@@ -50,7 +50,7 @@ class Stretch(Protocol):
         Raises
         ------
         ConvergenceError, UnravelledError
-            If the yarn locks or comes undone before it gets there.
+            If the yarn locks or unravels before it gets there.
         """
         ...
 
@@ -78,7 +78,7 @@ def sweep(
     back : also go back from the end and keep the lower state of each strain.
     slide_quenching : keep the yarn from sliding where it touches at rest; by default only in the
         published branch, and there as the paper did, for seed along the course.
-    cancel : asked before every point; True stops with CancelledError.
+    cancel : called before every point; True stops with CancelledError.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def _check_rest(zero: RelaxedCell) -> None:
 
 
 def _abrupt(cells: list[RelaxedCell], along: Direction) -> set[int]:
-    """Steps whose shape changes far more than around them, and whose force says so too.
+    """Steps whose shape changes far more than around them, confirmed by force or work.
 
     Where two states cross in energy the work balances, but the force falls; where a stretch is
     coarse the work is missed, but the shape changes steadily.

@@ -47,8 +47,8 @@ def refined_state(cell: YarnCell, state: Array, finer: YarnCell) -> Array:
 def centre_lines(cell: YarnCell, state: Array, rows: int, wales: int) -> Array:
     """(rows, wales * S, 3): samples of the centre lines, mm, bottom course first.
 
-    Each course runs from left to right over ``wales`` stitches; the fabric goes on with the next
-    repeat at ``wales`` stitches further.
+    Each course runs from left to right over ``wales`` stitches; the next repeat follows ``wales``
+    stitches further.
     """
     points = tiled_controls(cell, state, rows, wales)
     whole_swaps = cell.mirror_course and (wales // cell.wales) % 2 == 1

@@ -1,4 +1,4 @@
-"""Yarn must not pass through yarn: how far a step may go.
+"""Length of a step for which yarn cannot pass through yarn.
 
 Between two states every point moves along a straight line. Consecutive samples of a course are at
 most a spacing h apart at either end of the step, hence also in between. Where two stretches of
@@ -77,7 +77,7 @@ class Guard:
         strain = float(np.abs(new / old - 1.0).max())
         moved = curve[:, 0] - self.curve[:, 0]
         moved = moved - moved.mean(axis=0) * np.array([1.0, 1.0, 0.0])
-        # what is left beside the affine change of the cell: the same in every image
+        # the rest of the affine change of the cell: the same in every image
         drift = (new - old) / old
         moved[:, 0] -= drift[0] * (self.curve[:, 0, 0] - self.curve[:, 0, 0].mean())
         moved[:, 1] -= drift[1] * (self.curve[:, 0, 1] - self.curve[:, 0, 1].mean())

@@ -1,4 +1,4 @@
-"""A state on its way through the shapes of a cell: it moves along certified steps only."""
+"""Motion of a state through the shapes of a cell, along certified steps only."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Configuration:
 
 @dataclass(frozen=True, eq=False)
 class CertifiedStep:
-    """A way to another configuration on which no yarn passes through yarn.
+    """A straight path to another configuration on which no yarn passes through yarn.
 
     Attributes
     ----------
-    to : where it ends.
+    to : its end.
     fraction : of the wanted step.
     approach_mm : most by which pairs of yarn that are not listed get nearer on it.
     """
@@ -46,8 +46,8 @@ class CertifiedStep:
 class Trajectory:
     """A configuration on its way, with its list of near pairs.
 
-    The list is kept over several steps: what is not in it was farther than its reach when it was
-    made, and has come nearer by no more than the steps taken since allow.
+    The list is kept over several steps: pairs not in it were farther apart than its reach when it
+    was made, and have approached by no more than the steps taken since allow.
 
     Parameters
     ----------

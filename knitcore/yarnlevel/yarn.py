@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from knitcore.errors import InputError
 
 _LIMITS = {
-    # Wide enough for sewing thread and for rope; what lies outside is a slip in the unit.
+    # Wide enough for sewing thread and for rope; values outside have the wrong unit.
     "bending_modulus_n_mm2": (1e-6, 1e3),
     "contact_stiffness_n_per_mm3": (1e-8, 1e3),
     "contact_exponent": (1.0, 20.0),
@@ -26,7 +26,7 @@ class YarnModel:
     contact_stiffness_n_per_mm3 : compression stiffness k, N/mm³ (the paper's table prints
         mN mm⁻², which its own force law does not allow).
     contact_exponent : exponent p > 1 of the compression law.
-    radius_mm : outer radius r, mm: two centre lines farther apart than 2r do not touch.
+    radius_mm : outer radius r, mm: two centre lines more than 2r apart do not touch.
     core_radius_mm : core radius, mm, ``0 <= core < r``: two centre lines come no closer than twice
         this.
 

@@ -1,8 +1,8 @@
 """Make the packaged store of relaxed stitches: ``python -m knitcore.yarnlibrary.build``.
 
 Relaxes and stretches the repeats of :mod:`knitcore.yarnlibrary.catalogue` for each yarn and writes
-``data/stitches.json`` (sizes, energies, laws) and ``data/stitches.npz`` (control points). What is
-finished is kept in a folder, so a build that was stopped goes on where it was.
+``data/stitches.json`` (sizes, energies, laws) and ``data/stitches.npz`` (control points). Finished
+repeats are kept in a folder, so an interrupted build can be resumed.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ def _entry(document: Document, task: RepeatTask, provenance: str, name: str) -> 
 
 
 def _jumps(document: Document, direction: Direction, task: RepeatTask) -> int:
-    """How often the shape changes abruptly below the fitted stress."""
+    """Number of abrupt changes of shape below the fitted stress."""
     curve = document["curves"].get(str(direction))
     if curve is None:
         return 0

@@ -1,4 +1,4 @@
-"""Which repeats the packaged store holds."""
+"""The repeats in the packaged store."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Everything the yarn level says of one repeat: its rest, both stretches, and the law fitted.
+"""All yarn-level results for one repeat: the relaxed state, both stretches, and the fitted law.
 
-One call is one task of a batch (:mod:`knitcore.batch`): it takes what can be pickled and gives what
-JSON can hold, so that it runs the same in this process, in another, or on a cluster.
+One call is one task of a batch (:mod:`knitcore.batch`): its input can be pickled and its result is
+JSON, so that it runs the same in this process, in another, or on a cluster.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class RepeatTask:
     Parameters
     ----------
     chart : rows from the top, separated by ``/``.
-    yarn, loop_length_mm : what it is knitted of.
+    yarn, loop_length_mm : the yarn, and mm of it per stitch.
     branch : which shapes are admitted.
     convention : factors of the energy.
     max_stress_n_per_mm : the law is fitted from 0 to this.
@@ -70,7 +70,7 @@ def characterise_repeat(task: RepeatTask) -> Document:
     same inputs would fail again. Otherwise sizes (mm), energy (N·mm) and shares of a mean stitch,
     ``curves`` by direction, ``law`` with ``law_range`` (or None, and ``law_failure``), and
     ``controls``, the control points of the repeat without the drift (mm; None in the published
-    branch, whose curves are no splines).
+    branch, whose curves are not splines).
     """
     chart = StitchChart.parse(task.chart)
     try:
@@ -147,7 +147,7 @@ def _curve(stretch: Sweep) -> Document:
 
 
 def _round(value: float) -> float:
-    """To seven significant digits: beyond them the solver's tolerance speaks."""
+    """To seven significant digits, the accuracy of the solver's tolerance."""
     return float(f"{value:.7g}")
 
 

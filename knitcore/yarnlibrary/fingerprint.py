@@ -1,7 +1,7 @@
-"""Names of results, made of everything that decides them: inputs, code and data.
+"""Keys of results, made from everything that determines them: inputs, code and data.
 
-Code decides by what it does: modules are walked along their imports, and comments, docstrings and
-layout do not count. Data files count where a module names them.
+Modules are followed along their imports; comments, docstrings and layout do not count. Data files
+count where a module names them.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 """Folder of the packages."""
 SOLVERS = ("knitcore.yarnlibrary.characterise",)
-"""What relaxes, stretches and fits a law reaches everything else that does."""
+"""The module that relaxes, stretches and fits a law; it imports all others that do."""
 _FILE_NAME = re.compile(r"[\w-]+\.\w+")
 
 
 @cache
 def code_version(*modules: str) -> str:
-    """Digest of the code of modules, of what they import from their packages, and of their data.
+    """Digest of the code of modules, of their imports from these packages, and of their data.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def code_version(*modules: str) -> str:
 
 
 def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) -> str:
-    """A name made of what decides a result: JSON-able inputs, and the modules that compute it.
+    """The key of a result, from its inputs (JSON) and the modules that compute it.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def _named_data(module: str, tree: ast.Module) -> Iterator[Path]:
 
 
 def _without_docstrings(tree: ast.Module) -> ast.Module:
-    """The same tree, in place, without strings that stand as statements."""
+    """The same tree, in place, without strings used as statements."""
     for node in ast.walk(tree):
         body = getattr(node, "body", None)
         if isinstance(body, list):

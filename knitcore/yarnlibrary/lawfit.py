@@ -1,7 +1,7 @@
 """The constitutive law of a pair of simulated stretches (the paper's Note 7).
 
 Poisson ratios are the slopes of straight lines through transverse over axial strain. They tie the
-couplings to the two stiffnesses, so the joint least squares of both stretches falls apart into one
+couplings to the two stiffnesses, so the joint least squares of both stretches separates into one
 problem a direction, solved by non-negative least squares in stiffness and beta over a scan of alpha
 (:mod:`knitcore.measure.law_fit`). The result depends on the range of stress: knits stiffen.
 """
@@ -30,8 +30,8 @@ class SimulatedLaw:
     Parameters
     ----------
     law : the eight constants.
-    max_stress_n_per_mm : the range of stress that was fitted starts at 0 and ends here: where it
-        was asked to, or where the first of the stretches ends.
+    max_stress_n_per_mm : upper end of the fitted range of stress, which starts at 0: as requested,
+        or where the first of the stretches ends.
     largest_strain_course, largest_strain_wale : largest strains fitted.
     rms_course_n_per_mm, rms_wale_n_per_mm : residuals, root mean square.
     """
@@ -56,7 +56,7 @@ def fit_law(
     ----------
     course, wale : the stretches.
     max_stress_n_per_mm : points above this stress are left out.
-    shear_modulus_n_per_mm : no stretch measures it, so it is taken as given.
+    shear_modulus_n_per_mm : assumed, as no stretch measures it.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def _fit(
     found = fit_direction(along, across, stress, np.ones_like(stress), coupling)
     floor = LINEAR_FLOOR * float(stress.max()) / found.largest_strain
     if found.stiffness <= floor * (1.0 + 1e-6):
-        # at its bound it says nothing of the fabric, and the modulus made of it would be nonsense
+        # at its bound it is not a property of the fabric, nor would the modulus from it be
         raise InputError(
             "max_stress_n_per_mm",
             f"up to {stress.max():.3g} N/mm the {direction} stretch stiffens faster than the law "

@@ -32,7 +32,7 @@ _DATA = "knitcore.yarnlibrary"
 
 @dataclass(frozen=True)
 class FreeStitch:
-    """What the ``free`` branch makes of a repeat: size (mm) and energy (N·mm) of a stitch, law."""
+    """A repeat in the ``free`` branch: size (mm) and energy (N·mm) of a stitch, law."""
 
     cell_course_mm: float
     cell_wale_mm: float
@@ -49,14 +49,14 @@ class StoredStitch:
     ----------
     chart : the repeat that was asked for.
     material : ``acrylic`` or ``cotton``.
-    yarn, loop_length_mm, yarn_provenance : what it was relaxed with.
+    yarn, loop_length_mm, yarn_provenance : of the relaxation.
     branch, convention : of the relaxation.
     cell_course_mm, cell_wale_mm : size of one stitch, mm.
     energy_n_mm, bending_share, contact_share : per stitch.
     converged : whether the solver reached its tolerance.
     law : fitted to stretches in both directions up to ``law_max_stress_n_per_mm``; None where none
         could be fitted, for the reason in ``law_failure``.
-    law_jumps : abrupt changes of shape within what was fitted, course-wise and wale-wise.
+    law_jumps : abrupt changes of shape within the fitted range, course-wise and wale-wise.
     controls : (rows, columns * N, 3) control points over the repeat without the drift, mm.
     free : the repeat without imposed symmetry, for repeats of a known name.
     """

@@ -1,10 +1,10 @@
 """Charts and yarns from which the behaviour of mixed charts is learned.
 
-The packaged store (:mod:`knitcore.yarnlibrary.store`) holds every repeat of up to 8 stitches. What
-those cannot show are textures side by side, single purls far apart, long diagonals and wide blocks:
-:func:`training_charts` lists such repeats of up to 25 stitches in a cell, in an order whose every
-beginning is a fair sample of all kinds. :data:`YARN_POINTS` are yarns that span the dimensionless
-numbers of the library's materials.
+The packaged store (:mod:`knitcore.yarnlibrary.store`) holds every repeat of up to 8 stitches. These
+are too small for textures side by side, isolated purls, long diagonals and wide blocks:
+:func:`training_charts` lists such repeats of up to 25 stitches in a cell, in an order such that any
+first part of the list is a fair sample of all kinds. :data:`YARN_POINTS` are yarns that span the
+dimensionless numbers of the library's materials.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class YarnPoint:
 
     Parameters
     ----------
-    name : how results call it.
+    name : its name in results.
     yarn : the yarn.
     loop_length_mm : mm of yarn per stitch.
     """
@@ -145,7 +145,7 @@ def _panels() -> Iterator[StitchChart]:
 
 
 def _baskets() -> Iterator[StitchChart]:
-    """Blocks of knits and purls, like a board for draughts."""
+    """Blocks of knits and purls, as on a chessboard."""
     blocks = [(3, 3), (2, 4), (4, 2), (4, 4), (3, 2), (2, 3), (1, 4), (4, 1), (3, 4), (4, 3)]
     for rows, columns in [*blocks, (1, 5), (5, 1), (2, 5), (5, 2), (3, 5), (5, 3), (1, 6), (6, 1)]:
         block = np.zeros((rows, columns), dtype=bool)
@@ -202,7 +202,7 @@ def _figures() -> Iterator[StitchChart]:
 
 
 def _random() -> Iterator[StitchChart]:
-    """Stitches drawn by lot, from sparse to even shares."""
+    """Random stitches, from few purls to equal shares."""
     draw = np.random.default_rng(16)
     shapes = [(4, 4), (4, 3), (3, 4), (2, 6), (3, 5), (5, 3), (6, 2), (2, 7), (4, 5)]
     for turn in range(60):

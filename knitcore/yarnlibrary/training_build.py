@@ -1,7 +1,7 @@
 """Relax and stretch the training charts: ``python -m knitcore.yarnlibrary.training_build``.
 
-Every finished task is kept in a folder, so a build that was stopped goes on where it was.
-``--pack`` writes what is finished into ``data/training.json``, however much that is.
+Every finished task is kept in a folder, so an interrupted build can be resumed. ``--pack`` writes
+the tasks finished so far into ``data/training.json``.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class TrainingTask:
 
     @property
     def key(self) -> str:
-        """A name that says everything that decides the result."""
+        """A key made from everything that determines the result."""
         name = self.repeat.chart.replace("/", "-")
         return f"{self.yarn_name.replace(' ', '_')}.{name}.{content_key(asdict(self))}"
 
@@ -75,7 +75,7 @@ def characterise(task: TrainingTask) -> Document:
 
 
 def tasks() -> dict[str, TrainingTask]:
-    """All tasks by key, the most telling first."""
+    """All tasks by key, the most informative first."""
     return {task.key: task for task in _ordered()}
 
 
@@ -161,7 +161,7 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, default=Path("build/training"))
     parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
     parser.add_argument("--workers", type=int, help="processes, all cores if left out")
-    parser.add_argument("--pack", action="store_true", help="only pack what is finished")
+    parser.add_argument("--pack", action="store_true", help="only pack finished tasks")
     arguments = parser.parse_args()
     if arguments.pack:
         count = pack(arguments.keep, Path(__file__).parent / "data" / "training.json")

@@ -55,7 +55,7 @@ class TrainingEntry:
 
     Attributes
     ----------
-    chart, yarn_name, yarn, loop_length_mm, branch : what was relaxed.
+    chart, yarn_name, yarn, loop_length_mm, branch : of the relaxation.
     cell_mm : (course, wale) of the mean stitch; None where it failed for the reason in `failure`.
     curves : by direction; empty where it was only relaxed, or the stretch failed.
     law : fitted to the curves, None where there is none.

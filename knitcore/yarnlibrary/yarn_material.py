@@ -1,4 +1,4 @@
-"""A characterised yarn as a material that everything else accepts."""
+"""A characterised yarn as a material, usable like any other."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def material_of(table: YarnTable, setting: str | None = None) -> Material:
     Raises
     ------
     InputError
-        If there is no such setting, or no fabric has a law at it.
+        If there is no such setting, or no fabric has a law at this setting.
     """
     plan = table.plan
     names = [entry.name for entry in plan.settings]

@@ -1,9 +1,9 @@
 """Characterise a yarn: its pure fabrics, relaxed and stretched, at several stitch settings.
 
-A plan names the fabrics and how much yarn goes into a stitch of each; every pair of them is a task
-of one batch (:mod:`knitcore.batch`), over one yarn or many. The rows that come back are the table
-of the yarn; read along the settings they are the table of manufacturing tension (paper,
-Supplementary Fig. 9: a machine that pulls harder puts less yarn into a stitch).
+A plan names the fabrics and the loop lengths of each; every pair of fabric and loop length is a
+task of one batch (:mod:`knitcore.batch`), for one yarn or many. The rows returned are the table of
+the yarn; read along the settings they are the table of manufacturing tension (paper, Supplementary
+Fig. 9: a machine that pulls harder puts less yarn into a stitch).
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ class StitchSetting:
 
 @dataclass(frozen=True)
 class YarnPlan:
-    """What to compute of a yarn.
+    """The fabrics and settings to compute for a yarn.
 
     Attributes
     ----------
-    identifier, name : of the material that comes out.
+    identifier, name : of the resulting material.
     yarns : the yarn in each fabric.
     settings : at least one; ``reference`` is the index of the one that the material is made at.
     provenance : where the yarn's numbers come from, and whether they were ``estimated``.
@@ -183,8 +183,8 @@ class YarnRow:
 
     Attributes
     ----------
-    fabric, setting, loop_length_mm, yarn : what was knitted.
-    document : what :func:`characterise_repeat` found.
+    fabric, setting, loop_length_mm, yarn : of the fabric.
+    document : the result of :func:`characterise_repeat`.
     """
 
     fabric: Fabric
@@ -252,7 +252,7 @@ class YarnTable:
 
     Attributes
     ----------
-    plan : what was computed.
+    plan : the plan that was computed.
     rows : every fabric at every setting, setting by setting.
     """
 
@@ -320,7 +320,7 @@ def characterise_yarns(
 
 def _distinct(fabrics: Sequence[Fabric]) -> list[Fabric]:
     if not fabrics:
-        raise InputError("fabrics", "there is none.", "Name at least one pure fabric.")
+        raise InputError("fabrics", "is empty.", "Name at least one pure fabric.")
     return list(dict.fromkeys(fabrics))
 
 

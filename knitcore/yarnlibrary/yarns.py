@@ -118,7 +118,7 @@ def _estimate(
         )
     side = math.sqrt(record.stitch_course_mm * record.stitch_wale_mm)
     models = [s for s in load_samples() if s.fabric is fabric]
-    # loose fabrics have much yarn on much area: both lengths tell of the radius, neither alone
+    # a loose fabric has a longer loop and a larger area: both are needed to find the radius
     by_loop = _geometric_mean([s.yarn.radius_mm / s.loop_length_mm for s in models]) * loop
     by_area = _geometric_mean([s.yarn.radius_mm / _side(s) for s in models]) * side
     radius = math.sqrt(by_loop * by_area)

@@ -1,4 +1,4 @@
-"""What the kernels take: arrays and numbers under their names."""
+"""Arguments of the kernels: arrays and numbers under their names."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Pairs = NDArray[np.int32]
 
 
 class Layout(NamedTuple):
-    """How the unknowns of a cell make its curves.
+    """The map from the unknowns of a cell to its curves.
 
     Unknowns are the control points (through an index map that ties symmetric ones together and
     carries their signs) and the size of a stitch, course-wise and wale-wise (the last two).
@@ -27,7 +27,7 @@ class Layout(NamedTuple):
     basis : (4, per_span, 6) weights of the six control points around a sample, by derivative.
     dof : (rows, controls, 3) unknown behind each control coordinate.
     sign : (rows, controls, 3) its sign there; 0 where symmetry makes the coordinate zero.
-    unknowns : how many there are.
+    unknowns : their number.
     """
 
     rows: int
@@ -57,7 +57,7 @@ class ContactLaw(NamedTuple):
 
 
 class RodLaw(NamedTuple):
-    """What a sample has by itself.
+    """Terms of the energy that depend on one sample only.
 
     Attributes
     ----------

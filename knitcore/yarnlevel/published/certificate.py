@@ -1,8 +1,8 @@
 """Certified paths of a stitch: no yarn passes through yarn between two shapes.
 
-The optimiser moves in its unknowns; between two of its iterates the yarn is thought to move in
-straight lines, and the argument of :mod:`knitcore.yarnlevel.topology` is applied to them. Where the
-way is too long for that it is halved in the unknowns.
+The optimiser moves in its unknowns; between two of its iterates the yarn is taken to move along
+straight lines, to which the argument of :mod:`knitcore.yarnlevel.topology` applies. A path too long
+for that is halved in the unknowns.
 """
 
 from __future__ import annotations

@@ -22,12 +22,12 @@ FloatArray = npt.NDArray[np.float64]
 
 POINTS_A_CURVE = 10
 EXCLUSION = 2.1
-"""Arclength, in radii, within which the yarn does not feel itself."""
+"""Arclength, in radii, within which a yarn has no contact with itself."""
 WALE_IMAGES = 3
 
 
 def course_images(fabric: Fabric) -> int:
-    """How many neighbours along the course are looked at, each way (authors' code)."""
+    """Number of neighbours along the course considered each way (authors' code)."""
     return 2 if fabric is Fabric.RIB else 1
 
 
@@ -104,7 +104,7 @@ def contact_energy(
     gradient: FloatArray,
     cell_gradient: FloatArray,
 ) -> tuple[float, float]:
-    """Contact energy, N·mm, and the smallest distance (mm) of two points that feel each other.
+    """Contact energy, N·mm, and the smallest distance (mm) of two points that interact.
 
     ``factor`` is that of an ordered pair. Adds the derivatives to ``gradient`` (curves, 6, 3) and
     ``cell_gradient`` (2,), the latter at fixed control points.

@@ -1,4 +1,4 @@
-"""Continuation a stitch from one size to another in small steps, always in equilibrium."""
+"""Continuation of a stitch from one size to another in small steps, always in equilibrium."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def free_constraints(
 
 
 def is_knitted(stitch: Stitch, minimum: Minimum) -> bool:
-    """Whether the yarn is knotted as it should be, got there without passing through yarn, and no
-    core is pressed into another."""
+    """Whether the yarn is knotted as it should be, has not passed through yarn, and no core
+    overlaps another."""
     return minimum.certified and has_room(stitch, minimum) and is_clasped(stitch, minimum.unknowns)
 
 

@@ -52,13 +52,13 @@ _TYPICAL = {1.0: 0.1, 0.0: 1.0, -1.0: 10.0}
 _TYPICAL_SPEED = 0.4
 """And of the speeds alpha at the ends of curves: they hardly move the yarn, in flat valleys."""
 _REACH = 0.3
-"""How far a round of the optimiser goes, in those sizes."""
+"""Largest change in one round of the optimiser, in those sizes."""
 _ROUNDS, _NEAR_ROUNDS = 8, 6
 
 
 @dataclass(frozen=True, eq=False)
 class Constraints:
-    """What a minimisation holds fixed besides the loop length.
+    """Constraints of a minimisation besides the loop length.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Constraints:
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """Where a minimisation ended.
+    """End of a minimisation.
 
     Parameters
     ----------
@@ -129,10 +129,10 @@ def minimise(
 
     Parameters
     ----------
-    stitch : what to minimise.
+    stitch : the stitch.
     start : unknowns (mm, radians, 1/mm), shape (stitch.size,).
     loop_length_mm : length of yarn in the stitch, mm.
-    constraints : what else is held.
+    constraints : besides the loop length.
     tolerance : of the energy, in units of 60 B over the loop length.
     max_iterations : of the optimiser, for each of its rounds.
     near : the start is an equilibrium of a neighbouring state, so give up early.

@@ -51,8 +51,8 @@ def relax_published(
     loop_length_mm : length of yarn in the stitch, mm.
     cell_course_mm, cell_wale_mm : sizes of the stitch to hold, mm; None leaves one free of force.
     convention : factors of the energy.
-    starts : how many starts to try; the lowest result is kept.
-    cancel : asked before every start; True stops with CancelledError.
+    starts : number of starts; the lowest result is kept.
+    cancel : called before every start; True stops with CancelledError.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def relaxed_cell(
 
 
 def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:
-    """What became of a start."""
+    """Outcome of a start."""
     if not minimum.converged:
         outcome = "not converged"
     elif not (minimum.certified and is_clasped(stitch, minimum.unknowns)):

@@ -1,7 +1,8 @@
 """Slide quenching: yarn that may not slide through its contacts (paper, Simulation method).
 
-The paper holds the yarn between the middles of neighbouring crossovers at its length at rest, for
-seed stretched along the course only. The equations and the authors' code hold different stretches.
+The paper keeps the length of yarn between the middles of neighbouring crossovers as it is at rest,
+for seed stretched along the course only. Its equations and the authors' code hold different pieces
+of yarn.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from knitcore.yarnlevel.results import FloatArray
 
 
 class SlideQuenching(StrEnum):
-    """Which stretches of yarn keep their length."""
+    """Pieces of yarn that keep their length."""
 
     NONE = "none"
     PAPER = "paper"

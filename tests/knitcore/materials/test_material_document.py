@@ -167,7 +167,7 @@ def test_unknown_fabrics_and_missing_laws_are_refused(document):
         ("broken.json", b"{", "cannot be read"),
         ("broken.yaml", b"a: [", "cannot be read"),
         ("binary.yaml", b"\xff\xfe\x00", "cannot be read"),
-        ("list.json", b"[1, 2]", "holds no material"),
+        ("list.json", b"[1, 2]", "does not hold a material"),
         ("large.yaml", b"#" * 1_000_001, "over 1 MB"),
     ],
 )
