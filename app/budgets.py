@@ -1,4 +1,4 @@
-"""What one user may hold and keep, in one table; what all may is in the settings."""
+"""Limits of one user, in one table; limits of the whole service are in the settings."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Budgets:
     Attributes
     ----------
     views : 3D views kept open; the longest unwatched one makes room for the next.
-    watchers : browsers that look at views.
+    watchers : browsers that show views.
     streams : event streams followed, of jobs and of views.
     pictures : pictures of views that are being taken.
     jobs : jobs that wait in the background.
@@ -42,14 +42,14 @@ BUDGETS = Budgets()
 
 
 class OverBudgetError(ServiceError):
-    """A user holds as much as one may."""
+    """A limit of the user is reached."""
 
     status, type, title = 429, "too many", "You have as many as one user may"
     default_remedy = "Close one you do not need."
 
 
 class InUse:
-    """Counts what users hold for the length of a request."""
+    """Counts what users hold while requests last."""
 
     def __init__(self, budgets: Budgets = BUDGETS) -> None:
         self._budgets = budgets

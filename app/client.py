@@ -1,6 +1,6 @@
 """A typed client of the REST API, for scripts and notebooks.
 
-It lives beside the service and not in ``knitcore``, which knows no network. Every operation is a
+It is part of the service and not of ``knitcore``, which has no network code. Every operation is a
 method by its name, made from :mod:`app.operations.registry`; it takes the fields of the request
 (files as paths) and returns the result's model.
 
@@ -59,7 +59,7 @@ from app.operations.registry import Operation, operations
 
 ATTEMPTS = 4
 LONGEST_WAIT_S = 60.0
-"""A service that asks for more patience than this is not asked again."""
+"""Longest wait that is accepted before a request is repeated."""
 
 Model = TypeVar("Model", bound=BaseModel)
 Request = TypeVar("Request", bound=BaseModel)
@@ -71,7 +71,7 @@ class ProblemError(Exception):
 
     Attributes
     ----------
-    problem : what it said.
+    problem : the service's answer.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -83,14 +83,14 @@ class Client:
     """The service at an address.
 
     A request whose answer is lost is sent again, as is one that the service asks to repeat later
-    (``Retry-After``); what makes something carries a key, so that it is made once.
+    (``Retry-After``); requests that create something carry a key, so that it is created once.
 
     Parameters
     ----------
     address : where it is, such as ``http://127.0.0.1:8737``.
     token : of the user, where the service asks for one.
     timeout_s : longest wait for an answer.
-    transport : instead of the network.
+    transport : replaces the network, for tests.
     """
 
     def __init__(
@@ -119,7 +119,7 @@ class Client:
         self.close()
 
     def close(self) -> None:
-        """Let go of the connections."""
+        """Close the connections."""
         self._http.close()
 
     # operations
@@ -132,7 +132,7 @@ class Client:
         return lambda **fields: self.ask(operation, _request(operation, fields))
 
     def ask(self, operation: Operation[Request, Result], request: Request) -> Result:
-        """What an operation says to a request."""
+        """The answer of an operation to a request."""
         fields = _sent(request)
         if operation.method == "GET":
             return self._get(operation.result, operation.address.format(**fields))
@@ -202,7 +202,7 @@ class Client:
         return self._get(Shares, f"/designs/{design}/shares")
 
     def share(self, design: str, mode: ShareMode = ShareMode.READ) -> NewShare:
-        """A link for reading, or for copying; its token is told this once."""
+        """A link for reading, or for copying; its token is shown only here."""
         return self._post(NewShare, f"/designs/{design}/shares", {"mode": mode})
 
     def unshare(self, design: str, share: str) -> None:
@@ -210,11 +210,11 @@ class Client:
         self._send("DELETE", f"/designs/{design}/shares/{share}")
 
     def shared(self, token: str) -> SharedDesign:
-        """What a link shows."""
+        """The design that a link shows."""
         return self._get(SharedDesign, f"/shared/{token}")
 
     def copy(self, token: str) -> Design:
-        """A design of one's own of what a link shows."""
+        """Copy the design that a link shows."""
         return self._make(Design, f"/shared/{token}/copy")
 
     # jobs
@@ -244,7 +244,7 @@ class Client:
                     yield JobStatus.model_validate_json(line.removeprefix("data: "))
 
     def result(self, job: str) -> Any:
-        """What a job gave: the result's model of its operation."""
+        """The result of a job, as the model of its operation."""
         operation = operations()[self.job(job).kind]
         return self._get(operation.result, f"/jobs/{job}/result")
 
@@ -290,7 +290,7 @@ class Client:
             try:
                 answer = send()
             except httpx.TransportError:
-                if attempt == ATTEMPTS:  # until then again: it takes effect once, or is refused
+                if attempt == ATTEMPTS:  # repeat until then: the key lets it take effect only once
                     raise
                 continue
             if not answer.is_error:
@@ -321,6 +321,6 @@ def _problem(answer: httpx.Response) -> ProblemError:
     try:
         return ProblemError(Problem.model_validate_json(answer.content))
     except ValueError:
-        told = f"The answer {answer.status_code} does not come from this service."
-        problem = Problem(type="http", title="No answer", status=answer.status_code, detail=told)
+        detail = f"The answer {answer.status_code} does not come from this service."
+        problem = Problem(type="http", title="No answer", status=answer.status_code, detail=detail)
         return ProblemError(problem)

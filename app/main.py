@@ -1,4 +1,4 @@
-"""The application: everything put together."""
+"""The application, put together from its parts."""
 
 from __future__ import annotations
 
@@ -178,7 +178,7 @@ def _login(database: Database, settings: Settings) -> Login:
 
 
 async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:
-    """Who has no token any more has no computations either."""
+    """End the jobs of users who no longer have an open token."""
     while True:
         await asyncio.sleep(REMEMBERED_S)
         with contextlib.suppress(StoreError):
@@ -188,7 +188,7 @@ async def _end_jobs_of_the_revoked(tokens: Tokens, jobs: JobRunner) -> None:
 
 
 async def _tidy_store(database: Database, jobs: JobStore, results_max_bytes: int) -> None:
-    """Remove for good what nobody can ask for any more."""
+    """Delete what can no longer be requested."""
     while True:
         try:
             await asyncio.to_thread(DesignStore(database).forget_deleted)

@@ -52,8 +52,8 @@ class Settings(BaseSettings):
     )
     trusted_proxies: tuple[IPvAnyNetwork, ...] = Field(
         (),
-        description="Addresses or networks of proxies that say for whom they ask "
-        "(X-Forwarded-For, X-Forwarded-Proto); nobody is believed without.",
+        description="Addresses or networks of proxies whose headers about the client are believed "
+        "(X-Forwarded-For, X-Forwarded-Proto).",
     )
     connections_per_address: int = Field(
         256, ge=8, description="Open connections of one address; a trusted proxy may have more."
@@ -93,21 +93,23 @@ class Settings(BaseSettings):
     )
     worker_priority: Literal["idle", "low"] = Field(
         "idle",
-        description="Computations take what nothing else wants (idle, Linux only), or a tenth of a "
-        "core that others want (low).",
+        description="Computations use only idle time (idle, Linux only), or about a tenth of a "
+        "busy core (low).",
     )
     results_max_bytes: int = Field(
-        1_000_000_000, ge=0, description="Most room for results of jobs, as they are stored."
+        1_000_000_000, ge=0, description="Most disk space for stored results of jobs."
     )
     process_name: str = Field(
         "main",
         min_length=1,
         max_length=80,
-        description="Name of this process, if several share a database; it finds its jobs by it.",
+        description="Name of this process, if several share a database; jobs are stored under it.",
     )
     max_body_bytes: int = Field(32_000_000, gt=0, description="Largest request body.")
     max_viewers: int = Field(64, ge=1, description="3D views kept open at once.")
-    viewer_idle_s: float = Field(300.0, gt=0, description="A view nobody watches closes after.")
+    viewer_idle_s: float = Field(
+        300.0, gt=0, description="Seconds after which an unwatched view closes."
+    )
 
     @classmethod
     def settings_customise_sources(
@@ -123,7 +125,7 @@ class Settings(BaseSettings):
         Raises
         ------
         InputError
-            If the file that KNITCORE_CONFIG names is not there, or is no TOML.
+            If the file that KNITCORE_CONFIG names does not exist, or is not TOML.
         """
         named = os.environ.get("KNITCORE_CONFIG")
         if named is None:
@@ -136,7 +138,9 @@ class Settings(BaseSettings):
             readable = False
         if not readable:
             raise InputError(
-                "KNITCORE_CONFIG", f"{file} is no TOML file.", "Name a file with lines: port = 8737"
+                "KNITCORE_CONFIG",
+                f"{file} is not a TOML file.",
+                "Name a file with lines: port = 8737",
             )
         return init_settings, env_settings, source
 
@@ -179,14 +183,14 @@ class Settings(BaseSettings):
         Raises
         ------
         InputError
-            If the folder cannot be made, or the URL is of no database that is supported.
+            If the folder cannot be made, or the URL's database is not supported.
         """
         if self.database_url is not None:
             url = self.database_url.get_secret_value()
             if not url.startswith(("postgresql+psycopg://", "sqlite:///")):
                 raise InputError(
                     "database_url",
-                    "is of no database that is supported.",
+                    "names a database that is not supported.",
                     "Use postgresql+psycopg://user:password@host/name, or leave it out.",
                 )
             return url
@@ -207,7 +211,7 @@ class Settings(BaseSettings):
         Raises
         ------
         InputError
-            If a variable of the environment is no setting, or the service would listen beyond
+            If a variable of the environment is not a setting, or the service would listen beyond
             loopback without a token.
         """
         _check_names(os.environ)
@@ -231,6 +235,6 @@ def _check_names(environment: Iterable[str]) -> None:
             near = get_close_matches(name.upper(), known, 1)
             raise InputError(
                 name,
-                "is no setting.",
+                "is not a setting.",
                 f"Did you mean {near[0]}?" if near else "Leave it out; docs/serving.md has all.",
             )

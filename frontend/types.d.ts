@@ -1407,7 +1407,7 @@ export interface Problem {
   type: string;
   title: string;
   status: number;
-  /** What is wrong, for people. */
+  /** What is wrong, in words. */
   detail: string;
   /** The input that is to blame. */
   field?: string | null;

@@ -1,7 +1,7 @@
 """Commands made of operations: an option for every field of the request.
 
 A chart becomes the argument CHART with ``--size``, a file an argument or an option that names it, a
-group of fields (such as a gauge) an option for each of them. What does not go by these rules says
+group of fields (such as a gauge) an option for each of them. Exceptions to these rules are in
 the operation's :class:`~app.operations.registry.Command`.
 """
 
@@ -54,17 +54,17 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
 
 
 def _declared(function: Callable[..., Any] | None) -> list[click.Parameter]:
-    """The options that ``click.option`` put on a function, in the order of its lines."""
+    """The options that ``click.option`` added to a function, in the order of its lines."""
     return list(reversed(getattr(function, "__click_params__", [])))
 
 
 def _parameters(function: Callable[..., Any] | None) -> list[str]:
-    """Names of the options of a function of its own."""
+    """Names of a function's own options."""
     return [str(option.name) for option in _declared(function)]
 
 
 class _Options:
-    """The options of a request's fields, and the request that they ask."""
+    """The options of a request's fields, and the request made from them."""
 
     def __init__(self, request: type[BaseModel], described: Command) -> None:
         self._model = request
@@ -93,7 +93,7 @@ class _Options:
         Raises
         ------
         InputError
-            Naming the option that it does not take.
+            Naming the option that is wrong.
         """
         asked = self._chart(given) if "chart" in self._fields else {}
         for name in self._fields:
@@ -116,7 +116,7 @@ class _Options:
             raise InputError(name, f"{first['msg']}.", "See --help for what it takes.") from None
 
     def _chart(self, given: dict[str, Any]) -> dict[str, Any]:
-        """The chart, and what of the request its file holds as well."""
+        """The chart, and other fields of the request that its file holds."""
         chart, size = given["chart"], given["size"]
         fields = self._model.model_fields
         if "regions" in fields and size is None and Path(chart).suffix:
@@ -179,7 +179,7 @@ class _Options:
 
 
 def _value(value: Any) -> Any:
-    """As the request takes it: files where they are, and nothing for an option not given."""
+    """The value as the request takes it: files as paths; options not given are left out."""
     if isinstance(value, Path):
         return UploadedFile.at(value)
     if isinstance(value, tuple):
@@ -188,7 +188,7 @@ def _value(value: Any) -> Any:
 
 
 def _kinds(field: FieldInfo) -> list[Any]:
-    """What a value may be, without None."""
+    """The type of a value, without None."""
     of = field.annotation
     parts = get_args(of) if get_origin(of) in (Union, UnionType) else (of,)
     bare = [get_args(part)[0] if get_origin(part) is Annotated else part for part in parts]

@@ -25,7 +25,7 @@ material_option = click.option(
 
 
 def resolve_chart(chart: str, size: str | None) -> StitchChart:
-    """The chart that CHART and --size mean: a file, or a pure fabric of a size.
+    """The chart that CHART and --size name: a file, or a pure fabric of a size.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from knitcore.errors import InputError
 @click.command("doctor")
 @json_option
 def command(as_json: bool) -> None:
-    """Look for what would keep the service from working; exit code 1 if there is anything."""
+    """Check everything the service needs; exit code 1 if a check fails."""
     from app.doctor import Check, Checks, examine
 
     try:

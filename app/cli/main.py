@@ -14,9 +14,9 @@ from app.operations.registry import commands, operation_of_command
 from knitcore.errors import KnitcoreError
 
 GROUPS = {"measure": "Measure a yarn: its bending modulus and its compressibility."}
-"""Commands with commands of their own, which are operations."""
+"""Groups of commands, which are operations."""
 NO_COMMANDS = {"main", "common", "commands", "options"}
-"""Modules of this package that hold none."""
+"""Modules of this package that hold no command."""
 
 
 class Failure(click.ClickException):
@@ -55,7 +55,7 @@ class Operations(click.Group):
 
 
 class Commands(Operations):
-    """All commands: operations, and what runs the service, of which each has a module here."""
+    """All commands: operations, and those that run the service, each a module of this package."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all commands."""
@@ -89,7 +89,7 @@ class Commands(Operations):
 
 
 def _not_installed(name: str, error: ModuleNotFoundError) -> click.Command:
-    """Stands for a command that needs more than the light library brings."""
+    """Takes the place of a command whose packages are not installed."""
     remedy = _remedy(error)
 
     def refuse() -> None:

@@ -1,4 +1,4 @@
-"""Options of commands besides the fields of their requests."""
+"""Options of commands that are not fields of their requests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 class OutFile(click.Path):
-    """A file to write; refused before anything is computed where it cannot be written."""
+    """A file to write; if it cannot be written, it is refused before anything is computed."""
 
     def __init__(self, *suffixes: str) -> None:
         super().__init__(path_type=Path)
@@ -27,7 +27,7 @@ class OutFile(click.Path):
         field = str(param.name) if param else "out"
         if self.suffixes and path.suffix.lower() not in self.suffixes:
             known = " or ".join(self.suffixes)
-            raise InputError(field, f"{path.name} is of no known kind.", f"Use {known}.")
+            raise InputError(field, f"{path.name} has no known file type.", f"Use {known}.")
         check_writable(path, field)
         return path
 

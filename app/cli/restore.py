@@ -24,5 +24,5 @@ def command(file: Path, as_json: bool) -> None:
         report = restore(database, file, settings.folder / FOLDER)
     finally:
         database.close()
-    told = ", ".join(f"{count} {name}" for name, count in report.tables.items())
-    emit(report, f"{report.file}: {told}", as_json=as_json)
+    counts = ", ".join(f"{count} {name}" for name, count in report.tables.items())
+    emit(report, f"{report.file}: {counts}", as_json=as_json)

@@ -123,7 +123,7 @@ def _serve(settings: Settings, *, as_json: bool) -> None:
 
 
 def _raise_handles() -> int:
-    """Take as many file handles as the system allows, within reason; returns how many those are."""
+    """Raise the limit on file handles as far as the system allows; returns it."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     most = MOST_HANDLES if hard == resource.RLIM_INFINITY else min(hard, MOST_HANDLES)
     if soft == resource.RLIM_INFINITY or soft >= most:

@@ -36,7 +36,11 @@ def command() -> None:
 @command.command("create")
 @click.argument("user")
 @click.option("--label", default="", help="What it is for.")
-@click.option("--days", type=click.FloatRange(min=0, min_open=True), help="Ends after; else never.")
+@click.option(
+    "--days",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Days after which it expires; never by default.",
+)
 @json_option
 def create(user: str, label: str, days: float | None, as_json: bool) -> None:
     """Make a token of USER; it is shown this once."""

@@ -1,4 +1,4 @@
-"""Answers of operations: from memory, or computed where there is room."""
+"""Answers of operations: from memory, or computed by a worker."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from app.results.recent import RecentResults
 
 
 class Answers:
-    """Whoever asks for an operation, a request or a job, asks here.
+    """Runs operations for requests and jobs.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class Answers:
         self._data_dir = data_dir
 
     def context(self) -> Context:
-        """What operations work with that need no worker."""
+        """The context of operations that need no worker."""
         return Context(self._data_dir)
 
     async def answer(
@@ -42,7 +42,7 @@ class Answers:
         request: BaseModel,
         **turn: Any,
     ) -> Answer:
-        """What an operation says to a request; ``turn`` goes to :meth:`Compute.run`.
+        """The answer of an operation to a request; ``turn`` goes to :meth:`Compute.run`.
 
         Raises
         ------

@@ -1,8 +1,8 @@
 """Places on a Dask cluster: the same jobs with progress and cancel, on other machines.
 
-The workers run the same program. What a job tells while it runs goes through the scheduler as
-events; what it is told goes to all workers, of which one knows it. A worker that dies in mid-job
-costs a retry on another, as often as the scheduler's ``allowed-failures`` says, then the job.
+The workers run the same program. A job's progress goes through the scheduler as events; its
+cancellation goes to all workers, and the one that runs it stops it. If a worker dies in mid-job,
+the job is retried on another, as often as the scheduler's ``allowed-failures`` says; then it fails.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ TOPIC = "knitcore"
 CONNECT_S = 5.0
 WORKERS_S = 10.0
 """How long a job waits for the first worker of a cluster."""
-TOLD_EVERY_S = 0.2
+REPORT_EVERY_S = 0.2
 
 
 class ClusterError(NotBegunError):
@@ -52,7 +52,7 @@ class Cluster:
         self.listeners: dict[str, ClusterPlace] = {}
 
     def begin(self, key: str, job: Callable[..., Any]) -> ClusterFuture[Any]:
-        """Submit a job; what it tells goes to the listener with its key.
+        """Submit a job; its progress goes to the listener with its key.
 
         Raises
         ------
@@ -62,21 +62,21 @@ class Cluster:
         try:
             client.wait_for_workers(1, timeout=WORKERS_S)
         except TimeoutError:
-            raise _nobody() from None
+            raise _no_workers() from None
         return client.submit(_run, key, job, key=f"knitcore-{key}", pure=False)
 
     def check(self) -> None:
-        """See whether the scheduler answers and has workers.
+        """Check that the scheduler answers and has workers.
 
         Raises
         ------
         ClusterError
         """
         if not self._connected().scheduler_info(n_workers=-1)["workers"]:
-            raise _nobody()
+            raise _no_workers()
 
     def later(self, action: Callable[[Client], Awaitable[Any]]) -> None:
-        """Do something in the client's own thread, where its methods can be awaited."""
+        """Run an action in the client's own thread, where its methods can be awaited."""
         client = self._client
         if client is None or client.loop is None or client.status != "running":
             return
@@ -88,7 +88,7 @@ class Cluster:
         client.loop.add_callback(act)
 
     def close(self) -> None:
-        """Let go of the scheduler; what runs for nobody is taken back by it."""
+        """Disconnect from the scheduler, which then drops the jobs of this client."""
         with self._lock:
             client, self._client = self._client, None
         if client is not None:
@@ -110,12 +110,12 @@ class Cluster:
             return self._client
 
     def _hear(self, event: tuple[float, dict[str, Any]]) -> None:
-        told = event[1]
-        if (place := self.listeners.get(told["job"])) is not None:
-            place.share, place.worker = told["share"], told["worker"]
+        message = event[1]
+        if (place := self.listeners.get(message["job"])) is not None:
+            place.share, place.worker = message["share"], message["worker"]
 
 
-def _nobody() -> ClusterError:
+def _no_workers() -> ClusterError:
     return ClusterError(
         "No machine of the cluster takes computations.", remedy="Start its workers."
     )
@@ -148,14 +148,14 @@ class ClusterPlace:
         return asyncio.wrap_future(done)
 
     def cancel(self) -> None:
-        """Ask the job to stop; one that no worker has begun is taken back."""
+        """Ask the job to stop; one that no worker has begun is withdrawn."""
         key = self._key
         self._cluster.later(lambda client: client.run(_cancel, key, on_error="ignore"))
         if self.worker is None:
             self._take_back()
 
     def replace(self) -> None:
-        """Take the job back and, if it runs, have the nanny of its worker start a new process."""
+        """Withdraw the job and, if it runs, have the nanny of its worker start a new process."""
         self._take_back()
         if (worker := self.worker) is not None:
             self._cluster.later(
@@ -163,7 +163,7 @@ class ClusterPlace:
             )
 
     def close(self) -> None:
-        """Let go of the cluster."""
+        """Disconnect from the cluster."""
         self._cluster.close()
 
     def _take_back(self) -> None:
@@ -171,7 +171,7 @@ class ClusterPlace:
             self._cluster.later(lambda client: client.cancel([future]))
 
     def _settle(self, future: ClusterFuture[Any], done: Future[T]) -> None:
-        """Hand on what came of a job, and let the cluster forget it."""
+        """Pass on the outcome of a job, and let the cluster forget it."""
         if self._future is future:
             self._future = None
         if not done.set_running_or_notify_cancel():
@@ -194,20 +194,20 @@ _running: dict[str, bool] = {}
 
 def _run(key: str, job: Callable[..., T]) -> T:
     worker = get_worker()
-    last_told = -1.0
+    last_report = -1.0
 
-    def tell(done: float, of: float) -> None:
-        nonlocal last_told
-        if done and time.monotonic() < last_told + TOLD_EVERY_S:
+    def report(done: float, of: float) -> None:
+        nonlocal last_report
+        if done and time.monotonic() < last_report + REPORT_EVERY_S:
             return
-        last_told = time.monotonic()
-        told = {"job": key, "share": float(done / max(of, 1.0)), "worker": worker.address}
-        worker.log_event(TOPIC, told)
+        last_report = time.monotonic()
+        message = {"job": key, "share": float(done / max(of, 1.0)), "worker": worker.address}
+        worker.log_event(TOPIC, message)
 
     _running[key] = False
-    tell(0.0, 1.0)
+    report(0.0, 1.0)
     try:
-        return call(job, lambda: _running[key], tell, "its worker has")
+        return call(job, lambda: _running[key], report, "its worker has")
     finally:
         del _running[key]
 

@@ -1,4 +1,4 @@
-"""Heavy work elsewhere: the event loop stays free, and what nobody waits for is stopped."""
+"""Heavy work outside the event loop; abandoned computations are stopped."""
 
 from __future__ import annotations
 
@@ -27,12 +27,11 @@ POLL_S = 0.25
 GRACE_S = 3.0
 """How long a job may take to notice that it was cancelled before its process is stopped."""
 START_S = 120.0
-"""How long a job may lie with a place before it starts: a new process loads, a cluster looks for a
-worker."""
+"""How long a job may take to start: a new process loads, a cluster looks for a worker."""
 
 
 class Compute:
-    """Places for heavy work and whose turn it is.
+    """Runs heavy work in a few places, users taking turns.
 
     Parameters
     ----------
@@ -58,16 +57,16 @@ class Compute:
         owner: str | None = None,
         background: bool = False,
         timeout_s: float | None = None,
-        told: Callable[[float], Awaitable[None]] | None = None,
+        on_share: Callable[[float], Awaitable[None]] | None = None,
     ) -> T:
-        """Run a job; stop it when ``abandoned`` says that nobody waits any more.
+        """Run a job; stop it when ``abandoned`` returns true.
 
         Parameters
         ----------
-        owner : in whose turn; by default whoever asks.
-        background : whether it may wait behind those who look at a page.
+        owner : whose turn it takes; by default the user of the request.
+        background : whether requests of pages come first.
         timeout_s : longest run, from its start.
-        told : awaited with the share done, with 0 when the job starts.
+        on_share : awaited with the share done, with 0 when the job starts.
 
         Raises
         ------
@@ -88,7 +87,7 @@ class Compute:
                     raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
             place = ticket.place.result()
             future = await place.submit(partial(job, *args))
-            return await self._watch(place, future, abandoned, limit, told)
+            return await self._watch(place, future, abandoned, limit, on_share)
         finally:
             self.turns.leave(ticket)
 
@@ -98,7 +97,7 @@ class Compute:
         future: asyncio.Future[T],
         abandoned: Callable[[], Awaitable[bool]],
         limit_s: float,
-        told: Callable[[float], Awaitable[None]] | None,
+        on_share: Callable[[float], Awaitable[None]] | None,
     ) -> T:
         loop = asyncio.get_running_loop()
         begun, deadline, share = loop.time(), None, -1.0
@@ -113,15 +112,15 @@ class Compute:
                 deadline = deadline or loop.time() + limit_s
                 if loop.time() > deadline:
                     raise TimeLimitError(f"The computation took longer than {limit_s:g} s.")
-                if told is not None and now != share:
+                if on_share is not None and now != share:
                     share = now
-                    await told(share)
+                    await on_share(share)
         except (AbandonedError, TimeLimitError, NotBegunError):
             await _stop(place, future)
             raise
         except BaseException:
             future.add_done_callback(_forget)
-            place.replace()  # nobody is left who could wait for the process to notice
+            place.replace()  # the task itself was cancelled: do not wait for the process
             raise
         try:
             return future.result()
@@ -131,7 +130,7 @@ class Compute:
             raise WorkerDiedError("The process of this computation died.") from error
 
     def check_room(self, owner: str) -> None:
-        """Refuse a job of the background that could not even wait.
+        """Refuse a background job that exceeds the number that may wait.
 
         Raises
         ------
@@ -141,13 +140,13 @@ class Compute:
         self.turns.check_room(owner, background=True)
 
     def close(self) -> None:
-        """Let go of all places."""
+        """Close all places."""
         for place in self.places:
             place.close()
 
 
 def _forget(future: asyncio.Future[Any]) -> None:
-    """Retrieve what came of a job that was stopped on purpose."""
+    """Retrieve the outcome of a job that was stopped on purpose."""
     if not future.cancelled():
         future.exception()
 

@@ -1,4 +1,4 @@
-"""Memory that nobody uses any more goes back to the system."""
+"""Return unused memory to the system."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ LARGE_BYTES = 1_000_000
 
 
 def keep_no_large_blocks() -> None:
-    """Before the start: results and uploads go back to the system when they are let go of.
+    """Before the start: have the memory of results and uploads returned when they are freed.
 
-    glibc would keep such blocks for later once it has seen one freed, each between smaller ones.
+    glibc would otherwise keep such blocks for reuse once it has seen one freed.
     """
     adjust = getattr(ctypes.CDLL(None), "mallopt", None)
     if adjust is not None:
@@ -21,16 +21,16 @@ def keep_no_large_blocks() -> None:
 
 
 def settle() -> None:
-    """After the start: what there is now stays, so collecting need not look at it again."""
+    """After the start: exclude existing objects from garbage collection, since they stay."""
     gc.collect()
     gc.freeze()
 
 
 def give_back() -> None:
-    """Collect what refers to itself in circles, and return free pages.
+    """Collect reference cycles, and return free pages.
 
-    A closed 3D view is such a circle, and its threads leave half-empty arenas behind that the C
-    library would keep for later.
+    A closed 3D view is such a cycle, and its threads leave half-empty arenas that the C library
+    would keep.
     """
     gc.collect()
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc has it

@@ -1,4 +1,4 @@
-"""What can be computed elsewhere, where it is done, and how it can end without a result."""
+"""Jobs, the places that run them, and the errors that end them without a result."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class Job(Protocol[R_co]):
-    """A picklable function that looks at ``cancelled`` now and then.
+    """A picklable function that checks ``cancelled`` regularly.
 
     If it has a parameter ``progress``, it may call that with (steps done, steps in all).
     """
@@ -25,10 +25,10 @@ class Job(Protocol[R_co]):
 
 
 class Place(Protocol):
-    """Where one job at a time is done: a process here, or a share of a cluster."""
+    """Runs one job at a time: a process here, or a share of a cluster."""
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
-        """Begin a job, whose arguments but ``cancelled`` and ``progress`` are bound."""
+        """Begin a job; all its arguments except ``cancelled`` and ``progress`` are bound."""
         ...
 
     @property
@@ -41,26 +41,26 @@ class Place(Protocol):
         ...
 
     def replace(self) -> None:
-        """Stop the job, whatever it does; the next one finds a place as new."""
+        """Stop the job by force and be ready for the next one."""
         ...
 
     def close(self) -> None:
-        """Let go of everything; nobody waits for what is done here any more."""
+        """Close the place and drop its job."""
         ...
 
 
 class AbandonedError(UnavailableError):
-    """Nobody waits for the result any more."""
+    """The result is no longer waited for."""
 
 
 class TimeLimitError(UnavailableError):
-    """The computation took longer than it may."""
+    """The computation exceeded its time limit."""
 
     headers: ClassVar[dict[str, str]] = {}  # the same would take as long again
 
 
 class NotBegunError(UnavailableError):
-    """No worker took the computation on; it can be asked for again."""
+    """No worker began the computation; it can be requested again."""
 
 
 class WorkerDiedError(UnavailableError):
@@ -68,7 +68,7 @@ class WorkerDiedError(UnavailableError):
 
 
 class MemoryLimitError(ServiceError):
-    """The computation needs more memory than it may use."""
+    """The computation exceeded its memory limit."""
 
     status, type, title = 422, "unsolved", "No result was reached"
     default_remedy = "Ask for less: a smaller chart or fewer steps."
@@ -80,7 +80,7 @@ def call(
     progress: Callable[[float, float], None],
     memory: str,
 ) -> T:
-    """Do a job here; ``memory`` says in a problem how much it may use."""
+    """Run a job in this process; ``memory`` names the limit in an error message."""
     extra = {"progress": progress} if "progress" in inspect.signature(job).parameters else {}
     try:
         return job(cancelled=cancelled, **extra)

@@ -1,4 +1,4 @@
-"""Places on this machine: a process each, so that one that dies, hangs or grows costs one job."""
+"""Places on this machine, a process each: one that dies, hangs or grows loses only its own job."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ T = TypeVar("T")
 
 MEMORY_BYTES = 4_000_000_000
 NICENESS = 10
-"""About a tenth of a core that something else wants."""
+"""Nice value; leaves about a tenth of a busy core."""
 
 
 class Cell(IntEnum):
-    """Places in the memory that a worker shares with the service."""
+    """Cells of the memory that a worker shares with the service."""
 
     CANCELLED = 0
     STARTED = 1
@@ -38,7 +38,7 @@ class ProcessPlace:
     Parameters
     ----------
     memory_bytes : most memory of the process.
-    idle : whether it takes only what nothing else wants, where the system knows that (Linux).
+    idle : whether it uses only idle time, on systems that support this (Linux).
     """
 
     def __init__(self, memory_bytes: int, *, idle: bool = False) -> None:
@@ -58,7 +58,7 @@ class ProcessPlace:
             return asyncio.wrap_future(self._executor.submit(_run, job))
 
     def warm_up(self, job: Callable[..., Any]) -> None:
-        """Start the process and let it load what the first user would wait for."""
+        """Start the process and load modules before the first job."""
         self._executor.submit(_run, job)
 
     @property
@@ -73,7 +73,7 @@ class ProcessPlace:
         self._cells[Cell.CANCELLED] = 1.0
 
     def replace(self) -> None:
-        """Kill the process and have a new one for the next job."""
+        """Kill the process; the next job gets a new one."""
         lost, self._executor = self._executor, self._new()
         _kill(lost)
 
@@ -93,7 +93,7 @@ class ProcessPlace:
 def processes(
     count: int, memory_bytes: int = MEMORY_BYTES, *, idle: bool = False
 ) -> list[ProcessPlace]:
-    """Several places, each with at most so much memory."""
+    """Several places, each with a memory limit."""
     return [ProcessPlace(memory_bytes, idle=idle) for _ in range(count)]
 
 
@@ -108,7 +108,7 @@ _memory_bytes = 0
 
 
 def _adopt(cells: Any, memory_bytes: int, idle: bool) -> None:
-    """In a worker: remember the shared memory, and take no more of anything than allowed."""
+    """In a worker: keep the shared memory and set the limits."""
     global _cells, _memory_bytes
     _cells, _memory_bytes = cells, memory_bytes
     threading.Thread(target=_end_with_parent, daemon=True).start()
@@ -119,8 +119,8 @@ def _adopt(cells: Any, memory_bytes: int, idle: bool) -> None:
 def _stand_back(idle: bool) -> None:
     """Pages come before computations.
 
-    A process that is only nice keeps a core to the end of its turn, some milliseconds, while a
-    stroke waits; an idle one gives it up at once.
+    A process that is only nice keeps a core until its time slice ends, some milliseconds, while a
+    stroke waits; an idle one yields it at once.
     """
     if idle and hasattr(os, "SCHED_IDLE"):
         with contextlib.suppress(PermissionError):  # a sandbox may forbid it
@@ -130,7 +130,7 @@ def _stand_back(idle: bool) -> None:
 
 
 def _end_with_parent() -> None:
-    """A killed service cannot tell its workers to stop; they would wait for work for ever."""
+    """End a worker whose service was killed; it would otherwise wait for work for ever."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

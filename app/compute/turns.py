@@ -1,4 +1,4 @@
-"""Whose turn it is: a few places, many users, nobody ahead of the others twice."""
+"""Turns: a few places, given to many users one after the other."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Lane = OrderedDict[str, deque["Ticket[Place]"]]
 
 @dataclass(eq=False)
 class Ticket(Generic[Place]):
-    """Somebody who waits for a place."""
+    """A request that waits for a place."""
 
     owner: str
     background: bool
@@ -23,15 +23,15 @@ class Ticket(Generic[Place]):
 
 
 class Turns(Generic[Place]):
-    """Hands out places in turn: one user after the other, whoever waits in a browser first.
+    """Gives places to users in turn; requests that a browser waits for come first.
 
     Parameters
     ----------
-    places : what is handed out.
-    most_background : how many places background work may hold at once, so that a long job leaves
-        one for those who look at a page.
-    most_waiting : how many may wait in the foreground; who has none waiting there may always add
-        one, so that nobody fills the line for the others.
+    places : the places to give.
+    most_background : how many places background work may hold at once, so that one is left for
+        requests of pages.
+    most_waiting : how many may wait in the foreground; a user with none waiting there may always
+        add one, so that one user cannot fill the queue.
     most_waiting_each : how many one user may have waiting in the background.
     """
 
@@ -52,12 +52,12 @@ class Turns(Generic[Place]):
         self._lanes: dict[bool, Lane[Place]] = {False: OrderedDict(), True: OrderedDict()}
 
     def enter(self, owner: str, *, background: bool) -> Ticket[Place]:
-        """Stand in line.
+        """Join the queue.
 
         Raises
         ------
         UnavailableError
-            If the line is as long as it may be.
+            If the queue is full.
         """
         self.check_room(owner, background=background)
         lane = self._lanes[background]
@@ -67,12 +67,12 @@ class Turns(Generic[Place]):
         return ticket
 
     def check_room(self, owner: str, *, background: bool) -> None:
-        """Refuse who may not stand in line now.
+        """Refuse a request that may not join the queue.
 
         Raises
         ------
         UnavailableError
-            If the line is as long as it may be.
+            If the queue is full.
         """
         mine = len(self._lanes[background].get(owner, ()))
         full = mine > 0 and self.waiting(background=False) >= self._most_waiting
@@ -80,7 +80,7 @@ class Turns(Generic[Place]):
             raise UnavailableError("Too many computations are waiting.")
 
     def leave(self, ticket: Ticket[Place]) -> None:
-        """Give the place back, or leave the line without having had one."""
+        """Give the place back, or leave the queue without one."""
         if ticket.place.done():
             self._free.append(ticket.place.result())
             self._background -= ticket.background
@@ -94,11 +94,11 @@ class Turns(Generic[Place]):
 
     @property
     def taken(self) -> int:
-        """How many places are not free."""
+        """Number of places in use."""
         return self._count - len(self._free)
 
     def waiting(self, *, background: bool) -> int:
-        """How many wait."""
+        """Number of requests that wait."""
         return sum(len(tickets) for tickets in self._lanes[background].values())
 
     def _hand_out(self) -> None:

@@ -1,1 +1,1 @@
-"""The HTTP border: who may ask, how often, and what errors and addresses look like."""
+"""The HTTP layer: access, rate limits, errors, the page and the schema."""

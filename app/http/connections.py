@@ -1,6 +1,6 @@
-"""Connections to the service: how many there may be, and how long a client may take to ask.
+"""Connections to the service: their number, and how long a client may take to send a request.
 
-uvicorn counts time after an answer only. A client that sends nothing, or a head or a body byte by
+uvicorn limits time only after an answer. A client that sends nothing, or a head or a body byte by
 byte, would keep its connection, and a file handle of the service, for ever.
 """
 
@@ -19,18 +19,18 @@ log = logging.getLogger("knitcore.app")
 
 BODY_GRACE_S = 20.0
 LEAST_BYTES_PER_S = 20_000
-"""How fast a body must come once the grace is over."""
+"""Least speed of a body after the grace period."""
 TOLD_EVERY_S = 60.0
 
 
 class Door:
-    """Counts open connections, and closes those beyond what there may be.
+    """Counts open connections, and closes those beyond the limits.
 
     Parameters
     ----------
     most : connections in all, below the file handles that the process may have.
     most_each : connections of one address.
-    is_proxy : whether an address is of a proxy, which speaks for many.
+    is_proxy : whether an address belongs to a trusted proxy, which serves many clients.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Door:
         self._told_at = -TOLD_EVERY_S
 
     def enter(self, address: str) -> bool:
-        """Count a connection in; False if there is no room for it."""
+        """Count a new connection; False if it exceeds a limit."""
         full = self._open.total() >= self._most
         if full or (self._open[address] >= self._most_each and not self._is_proxy(address)):
             self._tell("in all" if full else f"of {address}")
@@ -52,7 +52,7 @@ class Door:
         return True
 
     def leave(self, address: str) -> None:
-        """Count a connection out."""
+        """Count a closed connection."""
         self._open[address] -= 1
         if self._open[address] <= 0:
             del self._open[address]
@@ -70,12 +70,12 @@ class Door:
 class Connection(HttpToolsProtocol):
     """A connection that is closed when a request does not come in time.
 
-    A whole head must come as soon as a kept connection may rest, and a body after some grace at a
-    least speed.
+    A whole head must come within the time that an idle connection may be kept; a body, after a
+    grace period, at a least speed.
 
     Parameters
     ----------
-    door : counts it; none if all may come.
+    door : counts connections; None without a limit.
     body_grace_s : how long a body may take, whatever its speed.
     """
 
@@ -95,7 +95,7 @@ class Connection(HttpToolsProtocol):
         self._body_bytes = 0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """The first head is awaited from now on."""
+        """Start waiting for the first head."""
         super().connection_made(transport)
         address = self.client[0] if self.client else ""
         if self._door is not None:
@@ -106,37 +106,37 @@ class Connection(HttpToolsProtocol):
         self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Nothing is awaited any more."""
+        """Stop waiting."""
         self._stop_waiting()
         self._leave()
         super().connection_lost(exc)
 
     def handle_websocket_upgrade(self) -> None:
-        """A websocket is another protocol's; the budgets of users count those."""
+        """Leave websockets to their own protocol; the budgets of users count them."""
         self._stop_waiting()
         self._leave()
         super().handle_websocket_upgrade()
 
     def on_message_begin(self) -> None:
-        """The first byte of a head: the rest is due."""
+        """The head has begun; its end is due."""
         super().on_message_begin()
         if self._due is None:
             self._await_head()
 
     def on_headers_complete(self) -> None:
-        """A whole head; its body is due next."""
+        """The head is complete; the body is due."""
         self._stop_waiting()
         super().on_headers_complete()
         self._body_since, self._body_bytes = self.loop.time(), 0
         self._due = self.loop.call_later(self._body_grace_s, self._look_at_body)
 
     def on_body(self, body: bytes) -> None:
-        """A part of a body."""
+        """A part of the body has come."""
         self._body_bytes += len(body)
         super().on_body(body)
 
     def on_message_complete(self) -> None:
-        """The whole request came; from here on the application decides."""
+        """The request is complete; the application takes over."""
         self._stop_waiting()
         super().on_message_complete()
 

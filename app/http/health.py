@@ -1,4 +1,4 @@
-"""Whether the service is up, whether it can work, and its numbers."""
+"""Health, readiness and metrics."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class NotReadyError(UnavailableError):
 
 @router.get("/healthz", summary="Whether the service is up")
 async def healthz() -> Health:
-    """Asks nothing of anything else: if this fails, restart the process."""
+    """Depends on nothing else: if this fails, restart the process."""
     return Health()
 
 
@@ -41,7 +41,7 @@ async def healthz() -> Health:
     responses={503: {"model": Problem, "description": "What is missing."}},
 )
 async def readyz(request: Request) -> Health:
-    """Asks database, disk and cluster: while this fails, send requests elsewhere."""
+    """Checks database, disk and cluster: while this fails, send requests elsewhere."""
     state = request.app.state
     try:
         async with asyncio.timeout(PATIENCE_S):

@@ -1,11 +1,11 @@
-"""Who is asking: the guard tells, and everything behind it may ask."""
+"""The user of a request: set by the guard, read by everything behind it."""
 
 from __future__ import annotations
 
 from contextvars import ContextVar
 
 LOCAL_USER = "local"
-"""Whoever sits at this machine, while the service asks for no login."""
+"""The user of this machine, while the service asks for no login."""
 
 current_user: ContextVar[str] = ContextVar("current_user", default=LOCAL_USER)
 current_session: ContextVar[str] = ContextVar("current_session", default="")
@@ -13,5 +13,5 @@ current_session: ContextVar[str] = ContextVar("current_session", default="")
 
 
 async def asking() -> str:
-    """The user whose request this is; asynchronous, for FastAPI gives others a thread."""
+    """The user whose request this is; asynchronous, because FastAPI runs others in a thread."""
     return current_user.get()

@@ -27,7 +27,7 @@ request_id: ContextVar[str | None] = ContextVar("request_id", default=None)
 SAFE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 QUIET_PATHS = frozenset({"/healthz", "/readyz", "/metrics"})
 LIBRARIES = ("websockets", "skfem", "alembic", "uvicorn", "uvicorn.access")
-"""Loggers whose small talk nobody needs."""
+"""Loggers whose routine messages are left out."""
 EXTRAS = ("user", "method", "path", "status", "ms", "job", "kind")
 
 
@@ -61,8 +61,8 @@ class TextLines(logging.Formatter):
         found = {name: getattr(record, name) for name in EXTRAS if hasattr(record, name)}
         if (request := request_id.get()) is not None:
             found["request"] = request
-        told = " ".join(f"{name}={value}" for name, value in found.items())
-        return f"{super().format(record)} {told}".rstrip()
+        context = " ".join(f"{name}={value}" for name, value in found.items())
+        return f"{super().format(record)} {context}".rstrip()
 
 
 def configure_logging(kind: str) -> None:
@@ -79,7 +79,7 @@ class Metrics:
 
     Parameters
     ----------
-    gauges : names, help texts and functions for values that are asked for when somebody looks.
+    gauges : names, help texts and functions of values that are computed when the numbers are read.
     """
 
     def __init__(self, gauges: dict[str, tuple[str, Callable[[], float]]]) -> None:
@@ -172,6 +172,6 @@ METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
 
 
 def _public_path(path: str) -> str:
-    """A path without the secret of a share link, and without what would forge lines or colours."""
+    """A path without the secret of a share link or characters that forge lines or colours."""
     shown = re.sub(r"^(/api/v1/shared/)[^/]+", r"\1…", path)
     return shown.encode("unicode_escape").decode("ascii")[:200]

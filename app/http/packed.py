@@ -1,4 +1,4 @@
-"""Answers as they are sent: packed where they were made, for they are mostly digits."""
+"""Answers as they are sent: compressed by the worker, because they are mostly digits."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from starlette.datastructures import Headers
 
 
 def takes_gzip(headers: Headers) -> bool:
-    """Whether a client unpacks gzip."""
+    """Whether a client accepts gzip."""
     return "gzip" in headers.get("accept-encoding", "")
 
 
 async def json_response(content: bytes, headers: Headers) -> Response:
-    """Packed JSON for a client with these headers, unpacked for those who cannot."""
+    """Compressed JSON for a client with these headers; unpacked if it does not accept gzip."""
     answer = {"Vary": "Accept-Encoding"}
     if takes_gzip(headers):
         answer["Content-Encoding"] = "gzip"

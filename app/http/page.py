@@ -25,7 +25,7 @@ SOURCES = Path(__file__).resolve().parents[2] / "frontend"
 PLOTLY_SCRIPT = Path(plotly.__file__).parent / "package_data" / "plotly.min.js"
 SUFFIXES = frozenset({".js", ".css", ".svg", ".map"})
 NOT_OURS = frozenset({"dist", "node_modules", "tests"})
-"""Folders beside the sources that no browser has a use for."""
+"""Folders next to the sources that browsers do not need."""
 CHECK_AGAIN = "no-cache"
 FOR_EVER = "public, max-age=31536000, immutable"
 ONE_DAY = "public, max-age=86400"
@@ -76,7 +76,7 @@ def _sources(folder: Path) -> list[Path]:
 
 
 class PageFiles(StaticFiles):
-    """The page's files, packed for who takes that, and nothing else of their folder.
+    """The page's files and nothing else of their folder, compressed for clients that accept it.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class PageFiles(StaticFiles):
 
 
 def packed(file: Path, headers: Headers, caching: str) -> Response:
-    """A file, or the gzip of it that the build has left beside it; 304 for who has it already."""
+    """A file, or the gzip of it that the build left next to it; 304 if the client has it."""
     answer = {"Cache-Control": caching, "Vary": "Accept-Encoding"}
     small = file.with_name(f"{file.name}.gz")
     if takes_gzip(headers) and small.is_file():

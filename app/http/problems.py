@@ -34,7 +34,7 @@ class Problem(BaseModel):
     type: str = Field(description="Short name of the kind of problem.")
     title: str
     status: int
-    detail: str = Field(description="What is wrong, for people.")
+    detail: str = Field(description="What is wrong, in words.")
     field: str | None = Field(None, description="The input that is to blame.")
     remedy: str | None = Field(None, description="What would be accepted.")
     most: float | None = Field(
@@ -62,7 +62,7 @@ class ServiceError(Exception):
 
     Parameters
     ----------
-    detail : what is wrong, for people.
+    detail : what is wrong, in words.
     field : the input to blame.
     remedy : what would be accepted.
     """
@@ -112,7 +112,7 @@ class NoRoomError(UnavailableError):
 
 
 class NotFoundError(ServiceError):
-    """There is no such thing, or it is somebody else's."""
+    """It does not exist, or belongs to another user."""
 
     status, type, title = 404, "not found", "There is no such thing here"
 
@@ -128,7 +128,7 @@ def problem_response(problem: Problem, headers: Mapping[str, str] | None = None)
 
 
 def problem_of(error: Exception) -> Problem:
-    """Any error as a problem; what is not foreseen keeps its details to itself."""
+    """Any error as a problem; details of unforeseen ones go to the log only."""
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         error = NoRoomError("The disk of the service is full.")
     if isinstance(error, MissingError):
@@ -185,7 +185,7 @@ def _of_http(error: HTTPException) -> Problem:
 
 
 def _invalid(error: RequestValidationError) -> Problem:
-    """The first error of a request; an address that nothing can have is not found."""
+    """The first error of a request; an impossible address counts as not found."""
     first = error.errors()[0]
     if first["type"] == "json_invalid":
         return Problem(
@@ -196,17 +196,17 @@ def _invalid(error: RequestValidationError) -> Problem:
             field="body",
             remedy="Send one JSON object as /docs describes it.",
         )
-    place, told = first["loc"], first.get("ctx", {})
+    place, context = first["loc"], first.get("ctx", {})
     if place[0] == "path":
         return NotFoundError(
             f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
         ).problem
-    if len(place) > 2 and place[2] == "request":  # of a job: its kind is no part of the place
+    if len(place) > 2 and place[2] == "request":  # of a job: leave its kind out of the place
         place = (place[0], *place[2:])
     # Pydantic names the alternatives of a union as parts of the place; no caller wrote those.
     parts = [str(part) for part in place if part not in _NOT_FIELDS]
     if first["type"].startswith("union_tag"):
-        parts.append(told["discriminator"].strip("'"))
+        parts.append(context["discriminator"].strip("'"))
     field = ".".join(parts) or "body"
     remedy = _REMEDIES.get(first["type"], "{msg}; see /docs.")
     return Problem(
@@ -215,7 +215,7 @@ def _invalid(error: RequestValidationError) -> Problem:
         status=422,
         detail=f"{field}: {first['msg']}.",
         field=field,
-        remedy=remedy.format_map(told | {"field": field, "msg": first["msg"]}),
+        remedy=remedy.format_map(context | {"field": field, "msg": first["msg"]}),
     )
 
 
@@ -239,7 +239,7 @@ _REMEDIES = {
     "int_from_float": "Use a whole number.",
     "float_parsing": "Use a number.",
 }
-"""What would be accepted, by pydantic's names of errors and with what they tell."""
+"""What would be accepted, by pydantic's type of error; fields in braces are of its context."""
 
 
 def install_problem_handlers(app: FastAPI) -> None:
@@ -258,6 +258,6 @@ def install_problem_handlers(app: FastAPI) -> None:
 
 
 def unexpected(error: Exception) -> JSONResponse:
-    """A mistake of ours; its log line has the id of the request, whose own line has the rest."""
+    """An error in the service; its log line has the id of the request."""
     log.error("unexpected error", exc_info=error)
     return problem_response(problem_of(error))

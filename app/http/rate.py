@@ -1,4 +1,4 @@
-"""How often somebody may ask."""
+"""Limits on requests per second."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class RateLimit:
         self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
     def take(self, who: str, at: float | None = None) -> tuple[int, float]:
-        """Take one: how many are left, and 0 or the seconds to wait because there was none."""
+        """Take one: how many are left, and the seconds to wait (0 if there was one)."""
         at = time.monotonic() if at is None else at
         level, since = self._buckets.pop(who, (float(self.burst), at))
         level = min(self.burst, level + (at - since) * self.per_s)
@@ -34,7 +34,7 @@ class RateLimit:
         return int(self._buckets[who][0]), wait
 
     def left(self, who: str, at: float | None = None) -> float:
-        """How many there are, without taking one."""
+        """How many are left, without taking one."""
         at = time.monotonic() if at is None else at
         level, since = self._buckets.get(who, (float(self.burst), at))
         return min(self.burst, level + (at - since) * self.per_s)

@@ -1,4 +1,4 @@
-"""The reference of the REST API as one page: made of the schema, without scripts or other hosts."""
+"""The reference of the REST API as one page: made from the schema, without scripts."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from app.http.schema import FIRST_PROBLEM
 Schema = dict[str, Any]
 
 LONGEST_EXAMPLE = 3_000
-"""Characters; longer answers are lists of numbers to their end."""
+"""Characters; longer examples are cut, since they end in lists of numbers."""
 UNSAID = "Successful Response"
-"""What FastAPI says of answers that nothing else is said of."""
+"""FastAPI's description of answers without one."""
 BOUNDS = {
     "minimum": "≥",
     "exclusiveMinimum": ">",
@@ -75,7 +75,7 @@ def reference(schema: Schema) -> str:
 <title>{escape(schema["info"]["title"])}: REST API</title>
 <style>{STYLE}</style>
 <h1>{escape(schema["info"]["title"])}: REST API</h1>
-<p>Every operation with what to send and what comes back; what is sent is JSON
+<p>Every operation, its request and its answer. Requests are JSON
 (<code>Content-Type: application/json</code>). Every refusal is a <a href="#Problem">problem</a>
 that names the field and the remedy. For programs: <a href="/openapi.json">openapi.json</a>.</p>
 <nav>{links}</nav>
@@ -95,14 +95,14 @@ def _operation(method: str, path: str, operation: Schema) -> str:
         parts.append(f"<p>Send {_kind(content['schema'])}:</p>{_example(content)}")
     refusals = []
     for status, response in operation["responses"].items():
-        told = _prose(response["description"], tag="")
+        text = _prose(response["description"], tag="")
         if int(status) >= FIRST_PROBLEM:
-            refusals.append(f"<tr><td>{status}</td><td>{told}</td></tr>")
+            refusals.append(f"<tr><td>{status}</td><td>{text}</td></tr>")
             continue
         for media, content in response.get("content", {"": {}}).items():
             kind = _kind(content["schema"]) if content.get("schema") else escape(media) or "nothing"
-            told = "" if told == UNSAID else f". {told}"
-            parts.append(f"<p>{status}: {kind}{told}</p>{_example(content)}")
+            text = "" if text == UNSAID else f". {text}"
+            parts.append(f"<p>{status}: {kind}{text}</p>{_example(content)}")
     parts.append(f"<table>{''.join(refusals)}</table>")
     name = f"<b>{method}</b><code>{escape(path)}</code> {_prose(operation['summary'], tag='')}"
     return f"<details><summary>{name}</summary>{''.join(parts)}</details>"
@@ -115,27 +115,27 @@ def _parameter(parameter: Schema) -> tuple[str, str, str]:
 
 
 def _shape(name: str, shape: Schema) -> str:
-    told = f'<h3 id="{escape(name)}">{escape(name)}</h3>{_prose(shape.get("description", ""))}'
+    text = f'<h3 id="{escape(name)}">{escape(name)}</h3>{_prose(shape.get("description", ""))}'
     if "properties" not in shape:
-        return f"{told}<p>{_kind(shape)}</p>"
+        return f"{text}<p>{_kind(shape)}</p>"
     required = shape.get("required", ())
     rows = (
         (field, _kind(of) + _or_else(of, field in required), of.get("description", ""))
         for field, of in shape["properties"].items()
     )
-    return told + _table("field", rows)
+    return text + _table("field", rows)
 
 
 def _table(what: str, rows: Iterable[tuple[str, str, str]]) -> str:
     lines = (
-        f"<tr><td>{_code(name)}</td><td>{kind}</td><td>{_prose(told, tag='')}</td></tr>"
-        for name, kind, told in rows
+        f"<tr><td>{_code(name)}</td><td>{kind}</td><td>{_prose(text, tag='')}</td></tr>"
+        for name, kind, text in rows
     )
     return f"<table><tr><th>{what}</th><th>kind</th><th></th></tr>{''.join(lines)}</table>"
 
 
 def _kind(of: Schema) -> str:
-    """What a value is, in a few words."""
+    """The type of a value, in a few words."""
     if "$ref" in of:
         name = escape(of["$ref"].rsplit("/", 1)[1])
         return f'<a href="#{name}">{name}</a>'
@@ -156,7 +156,7 @@ def _kind(of: Schema) -> str:
 
 
 def _or_else(of: Schema, required: bool) -> str:
-    """What becomes of a value that is left out."""
+    """The default of a value."""
     if required:
         return ""
     return ", optional" if of.get("default") is None else f", {_code(of['default'])} if left out"

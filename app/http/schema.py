@@ -1,4 +1,4 @@
-"""The OpenAPI schema, with what FastAPI does not say by itself: examples, and what problems are."""
+"""The OpenAPI schema, with examples and problem responses, which FastAPI does not add itself."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fastapi import FastAPI
 from app.http.problems import PROBLEM_TYPE, Problem
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
-"""Requests, written by hand, and what the service answered to them (`make examples`)."""
+"""Requests, written by hand, and the service's answers to them (`make examples`)."""
 FIRST_PROBLEM = 400
 EXAMPLE = Problem(
     type="input",
@@ -25,7 +25,7 @@ EXAMPLE = Problem(
 
 
 def install_schema(app: FastAPI) -> None:
-    """Give every operation its example, say of every problem that it is one, and show one."""
+    """Add an example to every operation, and mark problem responses as such."""
     made = app.openapi
 
     def openapi() -> dict[str, Any]:

@@ -32,8 +32,8 @@ SESSION_COOKIE = "knitcore_session"
 OPENED_BY = "knitcore.opened_by"
 """Token and session of a request, in its scope."""
 LOGIN_FAILURES = 20
-"""Unknown tokens that one address may try before it is told to wait, 10 s each. A right token
-always opens: 256 random bits are not guessed, and a stranger cannot lock others out."""
+"""Unknown tokens that one address may try before it must wait 10 s for each. A right token is
+always accepted: 256 random bits cannot be guessed, and a stranger cannot lock others out."""
 MOST_VALUES = 250_000
 """Values in a JSON body, counted by their commas: reading them keeps the event loop for less than a
 tenth of a second. Charts and files are one value each."""
@@ -129,7 +129,7 @@ class Guard:
             await send(message)
 
         if refusal is not None:
-            if _has_body(scope):  # nobody reads it any more
+            if _has_body(scope):  # it will not be read
                 refusal.headers["Connection"] = "close"
             await refusal(scope, receive, send_with_headers)
             return
@@ -214,7 +214,7 @@ class Guard:
         return await self._begin(scope, identifier, user, scope["path"])
 
     async def _signed_in(self, scope: Scope, receive: Receive) -> Response:
-        """Begin the session that somebody clicked for."""
+        """Begin a session after the click on the sign-in page."""
         token, to = await sign_in_form(scope, receive)
         login: Login = scope["app"].state.login
         try:
@@ -242,9 +242,9 @@ class Guard:
 
     @contextlib.asynccontextmanager
     async def _while_open(self, scope: Scope) -> AsyncIterator[list[bool]]:
-        """Do something as long as the token or session that began it opens the service.
+        """Run a block as long as the token or session of its request is valid.
 
-        What is given is empty once it does not; then what was done was stopped.
+        Yields a list that is emptied when it is revoked; the block is then cancelled.
         """
         open_ = [True]
         if OPENED_BY not in scope:
@@ -262,7 +262,9 @@ class Guard:
 
         async def watch() -> None:
             nonlocal timer
-            with contextlib.suppress(StoreError):  # while the database is away nobody is sent away
+            with contextlib.suppress(
+                StoreError
+            ):  # while the database is away, connections stay open
                 if not await asyncio.to_thread(login.is_open, *scope[OPENED_BY]):
                     open_.clear()
                     if task is not None:
@@ -288,8 +290,8 @@ def _is_sign_in(scope: Scope) -> bool:
 
 
 def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str, str]:
-    """(token's id, user, session) of who asks."""
-    if token:  # who names one is not let in by another
+    """(token's id, user, session) of a request."""
+    if token:  # a header with a token overrides link and cookie
         return *login.by_token(token), ""
     if link and (found := login.by_token(link))[1]:
         return *found, ""
@@ -298,7 +300,7 @@ def _who(login: Login, token: str, link: str, cookie: str) -> tuple[str, str, st
 
 
 def _place_of(origin: str) -> str | None:
-    """Host and port of an origin, or None if it is none."""
+    """Host and port of an origin, or None if it is malformed."""
     try:
         return urlsplit(origin).netloc.lower()
     except ValueError:
@@ -356,7 +358,7 @@ def _has_body(scope: Scope) -> bool:
 
 
 def _limited(receive: Receive, most_bytes: int) -> Receive:
-    """Receive a body, as long as it is not too large, whatever its head says."""
+    """Receive a body and refuse it once it is too large, whatever its head says."""
     seen = values = 0
 
     async def limited() -> Message:

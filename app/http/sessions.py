@@ -23,7 +23,7 @@ class SessionSummary(BaseModel):
 
 
 class SignedIn(BaseModel):
-    """Who asks, and where else that user is signed in."""
+    """The user of this request, and all sessions of that user."""
 
     user: str = Field(examples=["ada"])
     sessions: list[SessionSummary] = Field(description="Latest first; scripts have none.")
@@ -72,6 +72,6 @@ class Sessions:
         return self._database.write(lambda c: c.execute(gone).rowcount == 1)
 
     def tidy(self) -> None:
-        """Forget those that are too old."""
+        """Delete expired sessions."""
         old = delete(sessions).where(sessions.c.created_at < now() - SESSION_S)
         self._database.write(lambda c: c.execute(old))

@@ -25,7 +25,7 @@ REMEMBERED_S = 5.0
 """How long an answer of the database is trusted: a revoked token works no longer than this."""
 MOST_REMEMBERED = 10_000
 ENVIRONMENT = "environment"
-"""Stands for the one token that is a setting."""
+"""Identifier of the token in the settings."""
 
 
 class TokenSummary(BaseModel):
@@ -40,7 +40,7 @@ class TokenSummary(BaseModel):
 
 
 class NewToken(TokenSummary):
-    """A new token; its secret is told this once."""
+    """A new token; its secret is shown only here."""
 
     token: str
 
@@ -106,7 +106,7 @@ class Tokens:
             raise InputError("id", f"there is no open token {token}.", "See `knitcore token list`.")
 
     def find(self, *, hashed: str | None = None, identifier: str | None = None) -> tuple[str, str]:
-        """(id, user) of an open token by its hash or id; empty texts if there is none."""
+        """(id, user) of an open token by its hash or id; empty strings if there is none."""
         which = (
             access_tokens.c.token_hash == hashed
             if hashed is not None
@@ -160,14 +160,14 @@ class Login:
         self._remembered: dict[tuple[str, str], tuple[float, tuple[str, str]]] = {}
 
     def by_token(self, token: str) -> tuple[str, str]:
-        """(id, user) of whoever has this token; empty texts if nobody has."""
+        """(id, user) of a token; empty strings if it is unknown."""
         hashed = _hash(token)
         if self._environment is not None and hmac.compare_digest(hashed, self._environment):
             return ENVIRONMENT, LOCAL_USER
         return self._ask("hashed", hashed)
 
     def by_session(self, cookie: str) -> tuple[str, str]:
-        """(session, user) of whoever holds this cookie; empty texts if it is none of ours."""
+        """(session, user) of a cookie; empty strings if this service did not sign it."""
         try:
             session = str(self._signer.loads(cookie, max_age=SESSION_S))
         except (BadSignature, ValueError, TypeError):
@@ -191,7 +191,8 @@ class Login:
         return identifier == ENVIRONMENT or bool(self._ask("identifier", identifier)[1])
 
     def _opened_with(self, identifier: str) -> str:
-        """What a session keeps of its token; it ends when the one in the settings is changed."""
+        """What a session stores of its token; for the token in the settings, a part of its hash, so
+        that the session ends when that token is changed."""
         if identifier != ENVIRONMENT:
             return identifier
         return f"{ENVIRONMENT} {(self._environment or '')[:16]}"

@@ -21,7 +21,7 @@ class JobState(StrEnum):
 
     @property
     def is_final(self) -> bool:
-        """Whether nothing will happen any more."""
+        """Whether the job has ended."""
         return self not in (JobState.WAITING, JobState.RUNNING)
 
 

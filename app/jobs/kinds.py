@@ -42,5 +42,5 @@ else:
 
 
 def content_key(kind: str, request: str) -> str:
-    """A name made of everything that decides a result: kind, request, and this program."""
+    """A key of everything that determines a result: kind, request, and this program."""
     return hashlib.sha256(f"{program_version()}\0{kind}\0{request}".encode()).hexdigest()

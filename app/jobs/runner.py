@@ -1,4 +1,4 @@
-"""Running jobs: one task each, which waits for its turn, works, and writes down what came of it."""
+"""Running jobs: one task each, which waits for its turn, computes, and stores the outcome."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BEATS_TO_LOOK_ROUND = 10
 AGAIN_S = 10.0
 """After which a job that no worker began is tried again."""
 STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
-"""A database that is away for half a minute costs no result."""
+"""How long a result waits for a database that is away."""
 
 
 @dataclass(eq=False)
@@ -44,7 +44,7 @@ class JobRunner:
     Parameters
     ----------
     store : jobs and results that survive a restart.
-    answers : where operations are asked.
+    answers : runs the operations.
     timeout_s : longest run of one job.
     """
 
@@ -58,14 +58,14 @@ class JobRunner:
         self._heart: asyncio.Task[None] | None = None
 
     async def resume(self) -> None:
-        """After a start: go on with what waited, and say of the rest that it was interrupted."""
+        """After a start: resume waiting jobs, and mark running ones as interrupted."""
         await self._go_on(await asyncio.to_thread(self.store.adopt))
         self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
 
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
     ) -> JobStatus:
-        """Take a job on; if its result is known, it is done at once.
+        """Add a job; if its result is known, it is done at once.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class JobRunner:
         return status
 
     async def again(self, owner: str, job: str) -> JobStatus:
-        """The same job once more."""
+        """Run the same job again."""
         kind, request = await asyncio.to_thread(self.store.request_of, owner, job)
         return await self.submit(owner, kind, request)
 
@@ -110,7 +110,7 @@ class JobRunner:
         return await self.status(owner, job)
 
     def owners(self) -> set[str]:
-        """Whose jobs wait or run here."""
+        """Owners of the jobs that wait or run here."""
         return {run.owner for run in self._runs.values()}
 
     async def cancel_all(self, owner: str) -> None:
@@ -119,12 +119,12 @@ class JobRunner:
             await self.cancel(owner, job)
 
     def counts(self) -> dict[str, int]:
-        """Jobs of this process that wait and that run."""
+        """Numbers of waiting and running jobs of this process."""
         waiting = self._compute.turns.waiting(background=True)
         return {"waiting": waiting, "running": len(self._runs) - waiting}
 
     async def close(self) -> None:
-        """Put what runs back in line for the next start."""
+        """Put running jobs back in the queue for the next start."""
         self._stopping = True
         tasks = [run.task for run in self._runs.values()]
         if self._heart is not None:
@@ -139,7 +139,7 @@ class JobRunner:
             self._start(job, owner, kind, request)
 
     async def _beat(self) -> None:
-        """Share with the other processes of this service, until it stops."""
+        """Exchange states with the other processes of this service, until it stops."""
         beats = 0
         while True:
             await asyncio.sleep(BEAT_S)
@@ -164,7 +164,7 @@ class JobRunner:
     async def _work(self, job: str, owner: str, kind: str, request: str) -> None:
         run = self._runs[job]
 
-        async def told(share: float) -> None:
+        async def on_share(share: float) -> None:
             run.progress = min(share, 1.0)
             if not run.begun:
                 run.begun = True
@@ -185,7 +185,7 @@ class JobRunner:
                 owner=owner,
                 background=True,
                 timeout_s=self.timeout_s,
-                told=told,
+                on_share=on_share,
             )
             key = content_key(kind, request)
             await self._keep(lambda: self.store.finish(job, kind, key, answer.body))
@@ -228,7 +228,7 @@ class JobRunner:
             log.exception("the end of job %s could not be written down", job)
 
     async def _keep(self, write: Callable[[], object]) -> None:
-        """Write, however often it takes while the database is away for a while."""
+        """Write, and repeat while the database is away."""
         for pause in STORE_RETRY_S:
             try:
                 await asyncio.to_thread(write)

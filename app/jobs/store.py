@@ -30,7 +30,7 @@ from knitcore.errors import InputError
 OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
 ORPHANED_S = 60.0
-"""A process that was not seen for so long is gone; the others look after its jobs."""
+"""A process not seen for this long counts as gone; the others take over its jobs."""
 INTERRUPTED = Problem(
     type="interrupted",
     title="The service stopped in the middle of this job",
@@ -45,8 +45,8 @@ class JobStore:
 
     Parameters
     ----------
-    database : where.
-    process : name of this service process; it answers for the jobs that carry it.
+    database : where they are kept.
+    process : name of this service process; jobs that carry it are run by it.
     """
 
     def __init__(self, database: Database, process: str) -> None:
@@ -64,9 +64,9 @@ class JobStore:
         job: str | None = None,
         retry: Retry | None = None,
     ) -> JobStatus:
-        """Keep a new job, of this id if one is given; one whose result is known already is done.
+        """Store a new job, with this id if one is given; it is done if its result is known.
 
-        If the request came before, its first job is returned, which has another id.
+        If the request was sent before, its first job is returned, which has another id.
         """
         at = now()
         values = {
@@ -124,21 +124,21 @@ class JobStore:
         )
 
     def begin(self, job: str) -> bool:
-        """A waiting job runs now; False if it does not wait any more."""
+        """Mark a waiting job as running; False if it no longer waits."""
         return self._move(job, (JobState.WAITING,), JobState.RUNNING, started_at=now())
 
     def wait_again(self, job: str) -> bool:
-        """A running job goes back in line."""
+        """Put a running job back in the queue."""
         return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None, progress=0.0)
 
     def end(self, job: str, state: JobState, problem: Problem | None = None) -> bool:
         """Close an open job; False if it was closed before."""
-        told = None if problem is None else problem.model_dump_json()
+        packed = None if problem is None else problem.model_dump_json()
         return self._move(
             job,
             (JobState.WAITING, JobState.RUNNING),
             state,
-            problem=told,
+            problem=packed,
             finished_at=now(),
         )
 
@@ -151,11 +151,11 @@ class JobStore:
         return self._database.write(lambda connection: connection.execute(change).rowcount == 1)
 
     def adopt(self) -> list[tuple[str, str]]:
-        """After a start: interrupt what ran when the service went; (id, owner) of what waits."""
+        """After a start: mark running jobs as interrupted; (id, owner) of those waiting."""
         return self._take(jobs.c.process == self.process)
 
     def adopt_orphans(self) -> list[tuple[str, str]]:
-        """The same for jobs that no process has looked after for a while."""
+        """The same for jobs of processes that are gone."""
         return self._take(jobs.c.seen_at < now() - ORPHANED_S)
 
     def _take(self, which: ColumnElement[bool]) -> list[tuple[str, str]]:
@@ -181,14 +181,14 @@ class JobStore:
         return self._database.write(action)
 
     def beat(self, shares: Mapping[str, float]) -> set[str]:
-        """Tell the other processes how far this one's open jobs are, and that it lives.
+        """Share the progress of this process's open jobs, and that it is alive.
 
-        Returns those that are not open any more: they were cancelled through another process, or
-        taken over by one that believed this one dead.
+        Returns those no longer open: they were cancelled through another process, or taken over by
+        one that took this one for dead.
         """
 
         def action(connection: Connection) -> set[str]:
-            told = (
+            report = (
                 update(jobs)
                 .where(
                     jobs.c.id == bindparam("job"),
@@ -199,7 +199,7 @@ class JobStore:
                 .returning(jobs.c.id)
             )
             open_ = (
-                connection.execute(told, {"job": job, "share": share}).scalar()
+                connection.execute(report, {"job": job, "share": share}).scalar()
                 for job, share in shares.items()
             )
             return set(shares) - {job for job in open_ if job is not None}
@@ -207,7 +207,7 @@ class JobStore:
         return self._database.write(action)
 
     def result(self, owner: str, job: str) -> bytes | None:
-        """The result of a job as packed JSON, or None if it is not kept (any more)."""
+        """The result of a job as compressed JSON, or None if it is not stored."""
         with self._database.read() as connection:
             key = _one(connection, owner, job).key
             body: bytes | None = connection.execute(
@@ -218,7 +218,7 @@ class JobStore:
         return body
 
     def knows(self, key: str) -> bool:
-        """Whether the result of this content is kept; if so, for longer."""
+        """Whether the result of this content is stored; if so, renew its time of use."""
         with self._database.read() as connection:
             found = connection.execute(select(results.c.key).where(results.c.key == key)).scalar()
         if found is not None:
@@ -231,7 +231,7 @@ class JobStore:
             self._database.write(lambda connection: connection.execute(used))
 
     def finish(self, job: str, kind: str, key: str, body: bytes) -> bool:
-        """Keep a packed result and close its job, both or neither."""
+        """Store a compressed result and close its job, both or neither."""
 
         def action(connection: Connection) -> bool:
             done = connection.execute(
@@ -250,7 +250,7 @@ class JobStore:
         return self._database.write(action)
 
     def tidy(self, most_bytes: int) -> None:
-        """Forget old jobs, and the longest unused results beyond a size."""
+        """Delete old jobs, and the longest unused results beyond a size."""
 
         def action(connection: Connection) -> None:
             connection.execute(jobs.delete().where(jobs.c.finished_at < now() - KEPT_S))
@@ -270,7 +270,7 @@ def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
     ).one_or_none()
     if row is None:
         raise NotFoundError(
-            f"There is no job {job} of yours.",
+            f"You have no job {job}.",
             field="job",
             remedy="Look it up in the list of your jobs.",
         )

@@ -1,4 +1,4 @@
-"""Reading and writing, durable before it is acknowledged."""
+"""Reading and writing; a write is durable before it is acknowledged."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ T = TypeVar("T")
 Action = Callable[[Connection], Any]
 
 FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
-"""The database itself failed; everything else is an answer of it or a mistake of ours."""
+"""Failures of the database itself; other errors come from a statement or from this program."""
 FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
 BUSY_TIMEOUT_MS = 10_000
@@ -39,7 +39,7 @@ UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing 
 
 
 class StoreError(UnavailableError):
-    """The database did not take or give something: it is gone, locked, or its disk is full."""
+    """The database failed to read or write: it is gone, locked, or its disk is full."""
 
 
 class StoreFullError(StoreError, NoRoomError):
@@ -47,13 +47,13 @@ class StoreFullError(StoreError, NoRoomError):
 
 
 class DamagedError(StoreError):
-    """The database's file is not as it was written."""
+    """The database's file is damaged."""
 
     default_remedy = "Stop the service and restore a backup."
 
 
 class VanishedError(StoreError):
-    """The database's file is gone, or another one is in its place."""
+    """The database's file is gone or was replaced."""
 
     default_remedy = "Put the file back, or stop the service, restore a backup and start again."
 
@@ -63,9 +63,9 @@ class Database:
 
     Notes
     -----
-    SQLite knows one writer at a time and pays a disk flush for every commit. One thread writes:
-    what arrives while it flushes shares the next commit, each change behind its own savepoint.
-    A change is acknowledged after the commit that holds it. PostgreSQL does both by itself.
+    SQLite allows one writer at a time and flushes the disk at every commit. One thread writes:
+    changes that arrive while it flushes share the next commit, each behind its own savepoint. A
+    change is acknowledged after the commit that holds it. PostgreSQL needs none of this.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Database:
             self._writer.start()
 
     def insert_new(self, table: Table) -> Insert:
-        """An insertion of rows that are not there yet; those that are stay as they are."""
+        """An insertion that leaves existing rows unchanged."""
         kind = sqlite_insert if self.is_sqlite else postgresql_insert
         return kind(table).on_conflict_do_nothing()
 
@@ -103,7 +103,7 @@ class Database:
         return _lock_file(Path(self.url.database or ""))
 
     def check(self) -> None:
-        """See whether the database answers, and was whole whenever it was read.
+        """Check that the database answers and has not been found damaged.
 
         Raises
         ------
@@ -133,7 +133,7 @@ class Database:
         ------
         StoreError
         """
-        with self._told(), contextlib.closing(self.engine.raw_connection()) as connection:
+        with self._failures(), contextlib.closing(self.engine.raw_connection()) as connection:
             os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
             connection.cursor().execute("VACUUM INTO ?", (str(file),))
 
@@ -146,7 +146,7 @@ class Database:
         StoreError
             If the database cannot be reached.
         """
-        with self._told(), self.engine.connect() as connection:
+        with self._failures(), self.engine.connect() as connection:
             yield connection
 
     @contextlib.contextmanager
@@ -158,7 +158,7 @@ class Database:
             yield connection
 
     def write(self, action: Callable[[Connection], T]) -> T:
-        """Run ``action`` in a transaction and return what it returns, once that is on disk.
+        """Run ``action`` in a transaction and return what it returns, once the change is on disk.
 
         Raises
         ------
@@ -166,13 +166,13 @@ class Database:
             If it could not be made durable; then nothing of it is kept.
         """
         if self._writer is None:
-            with self._told(), self.engine.begin() as connection:
+            with self._failures(), self.engine.begin() as connection:
                 return action(connection)
-        with self._told():
+        with self._failures():
             return self._hand_in(action).result()
 
     async def written(self, action: Callable[[Connection], T]) -> T:
-        """The same for the event loop, where no thread waits for the disk.
+        """The same for the event loop, without a thread that waits for the disk.
 
         Raises
         ------
@@ -181,11 +181,11 @@ class Database:
         """
         if self._writer is None:
             return await run_in_threadpool(self.write, action)
-        with self._told():
+        with self._failures():
             return await asyncio.wrap_future(self._hand_in(action))
 
     def close(self) -> None:
-        """Write what waits, then let go of all connections."""
+        """Write pending changes, then close all connections."""
         if self._writer is not None:
             self._waiting.put(None)
             self._writer.join()
@@ -193,8 +193,8 @@ class Database:
         self.engine.dispose()
 
     @contextlib.contextmanager
-    def _told(self) -> Iterator[None]:
-        """Tell what the database itself did not do."""
+    def _failures(self) -> Iterator[None]:
+        """Turn errors of the database itself into a StoreError."""
         try:
             yield
         except DatabaseError as error:
@@ -220,7 +220,7 @@ class Database:
             batch = []
             entry = self._waiting.get()
             while entry is not None:
-                if entry[1].set_running_or_notify_cancel():  # somebody still waits for it
+                if entry[1].set_running_or_notify_cancel():  # not cancelled meanwhile
                     batch.append(entry)
                 if len(batch) == LARGEST_BATCH:
                     break
@@ -243,7 +243,7 @@ class Database:
                         outcomes.append((done, *attempt(connection, action)))
         except Exception as error:
             if len(batch) > 1:
-                for entry in batch:  # one by one: only who is to blame pays
+                for entry in batch:  # one by one, so that only the failing change is refused
                     self._commit([entry])
             else:
                 batch[0][1].set_exception(error)
@@ -289,7 +289,7 @@ def _lock_file(database: Path) -> Path:
 
 
 def _public(reason: str) -> str:
-    """A reason without addresses and names of the machines behind."""
+    """A reason without internal addresses and machine names."""
     for known in (*FULL, "disk I/O error", "database is locked", "readonly database"):
         if known in reason:
             return known
@@ -299,8 +299,8 @@ def _public(reason: str) -> str:
 class _File:
     """The one SQLite file of a database, made here if it is not there, and never again.
 
-    SQLite would put an empty database in the place of a lost one, and would go on writing into a
-    file that was deleted.
+    SQLite would create an empty database in place of a lost one, and would go on writing into a
+    deleted file.
     """
 
     def __init__(self, path: Path) -> None:

@@ -1,4 +1,4 @@
-"""One service process for one set of data: a second one would end the first one's jobs."""
+"""One service process per set of data: a second one would end the first one's jobs."""
 
 from __future__ import annotations
 

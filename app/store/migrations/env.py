@@ -7,7 +7,7 @@ from sqlalchemy import text
 
 from app.store.tables import metadata
 
-LOCK = 5_202_404  # any number that nobody else uses for an advisory lock
+LOCK = 5_202_404  # any number not used for another advisory lock
 
 connection = context.config.attributes["connection"]
 if connection.dialect.name == "postgresql":

@@ -91,7 +91,7 @@ def test_results_errors_and_progress_come_back(compute: Compute) -> None:
     assert asyncio.run(compute.run(never, jobs.add, 2, 3)) == 5
     with pytest.raises(InputError, match="Use less"):
         asyncio.run(compute.run(never, jobs.refuse))
-    assert asyncio.run(compute.run(never, jobs.climb, 6, 0.3, told=told)) == 6
+    assert asyncio.run(compute.run(never, jobs.climb, 6, 0.3, on_share=told)) == 6
     assert shares == sorted(shares)
     assert len(set(shares)) >= 3
     assert 0 <= shares[0] < shares[-1] <= 1
@@ -131,7 +131,7 @@ def test_an_abandoned_job_and_one_beyond_its_time_are_stopped(
         return bool(begun)
 
     with pytest.raises(AbandonedError):
-        asyncio.run(compute.run(once_begun, jobs.until_cancelled, str(mark), told=told))
+        asyncio.run(compute.run(once_begun, jobs.until_cancelled, str(mark), on_share=told))
     assert mark.read_text() == "stopped"
     mark.unlink()
     with pytest.raises(TimeLimitError):

@@ -114,7 +114,7 @@ def test_progress_is_told_from_zero_upwards(compute: Compute) -> None:
     async def told(share: float) -> None:
         shares.append(share)
 
-    assert asyncio.run(compute.run(never, jobs.climb, 8, 0.15, told=told)) == 8
+    assert asyncio.run(compute.run(never, jobs.climb, 8, 0.15, on_share=told)) == 8
     assert shares == sorted(shares)
     assert len(set(shares)) >= 3
     assert 0 <= shares[0] < shares[-1] <= 1
