@@ -134,7 +134,7 @@ export interface BoxInput {
   column1: number;
 }
 
-/** Which shapes of the yarn are admitted. */
+/** Shapes of the yarn that are admitted. */
 export type Branch = "published" | "mirrored" | "free";
 
 /** Where to start from, and tests whose forces the law should keep. */
@@ -574,7 +574,7 @@ export interface DeviationDocument {
 /** A material direction: course = along rows (x), wale = along columns (y). */
 export type Direction = "course" | "wale";
 
-/** What is imposed at the clamped edges: their measured motion, or its mean (rigid clamps). */
+/** Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps). */
 export type Edges = "measured" | "rigid";
 
 /** Which sheet energy is meant. */
@@ -2005,7 +2005,7 @@ export interface WristBrace {
   target_mmhg?: number | null;
 }
 
-/** A yarn by itself; everything is optional. */
+/** The yarn of a material; every field is optional. */
 export interface YarnDocument {
   fibre: string;
   product: string;
