@@ -55,14 +55,14 @@ def main() -> None:
         ):
             answer = model.answer(densities(chart), materials[entry["yarn"]], known)
             if known is None:
-                tell(
+                record(
                     missed,
                     kind_of(chart),
                     "null",
                     entry,
                     *like_the_mean(answer, chart, learned_from),
                 )
-            tell(missed, kind_of(chart), name, entry, *of_answer(answer, entry))
+            record(missed, kind_of(chart), name, entry, *of_answer(answer, entry))
     print(f"{len(entries)} charts, {seen} of them predicted by a model without them")
     for (kind, quantity, name), pairs in sorted(missed.items()):
         off, spread = np.array(pairs).T
@@ -97,7 +97,9 @@ def like_the_mean(answer: LearnedAnswer, chart: StitchChart, learned_from: list[
     return answer.mixture.size_mm * np.exp(fold), strain
 
 
-def tell(missed, kind: str, name: str, entry, size, strains, size_sd=None, strain_sd=None) -> None:
+def record(
+    missed, kind: str, name: str, entry, size, strains, size_sd=None, strain_sd=None
+) -> None:
     """Note by how much sizes and strains are missed."""
     stress = np.array(entry["stress_n_per_mm"])
     if name in ("learned", "null"):

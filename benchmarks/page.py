@@ -44,7 +44,7 @@ PAINTED = """() => ({
 })"""
 
 
-def told(what: str, value: float, unit: str, target: float) -> None:
+def report(what: str, value: float, unit: str, target: float) -> None:
     """Print a figure with its target."""
     verdict = "ok" if value <= target else "MISSED"
     print(f"{what:58s} {value:8.1f} {unit:3s} target {target:g} {unit:3s} {verdict}", flush=True)
@@ -60,9 +60,9 @@ def weight() -> None:
     subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     sizes = json.loads((ROOT / "frontend/dist/sizes.json").read_text())
     total, initial = sizes["total"], sizes["initial"]
-    told("scripts of the first visit", initial["bytes"] / 1000, "kB", 200)
-    told("… compressed, as transferred", initial["gzip_bytes"] / 1000, "kB", 200)
-    told(
+    report("scripts of the first visit", initial["bytes"] / 1000, "kB", 200)
+    report("… compressed, as transferred", initial["gzip_bytes"] / 1000, "kB", 200)
+    report(
         "with every panel that loads when it is opened, compressed",
         total["gzip_bytes"] / 1000,
         "kB",
@@ -81,8 +81,8 @@ def first_paint(browser: Browser, url: str) -> None:
         page.wait_for_function(f"() => Object.values(({PAINTED})()).every(Number.isFinite)")
         visits.append(page.evaluate(PAINTED))
         context.close()
-    told("first paint of a cold visit, median", median(visits, "first"), "ms", 1500)
-    told("chart ready to paint on, median", median(visits, "studio"), "ms", 1500)
+    report("first paint of a cold visit, median", median(visits, "first"), "ms", 1500)
+    report("chart ready to paint on, median", median(visits, "studio"), "ms", 1500)
 
 
 def median(visits: list[dict[str, float]], what: str) -> float:
@@ -144,9 +144,9 @@ def painting(browser: Browser, url: str) -> None:
             mapped += last
             page.context.close()
         size = f"{side} x {side}"
-        told(f"stroke to painted cell at {size}, median", statistics.median(painted), "ms", 16)
-        told(f"stroke to painted cell at {size}, p95", p95(painted), "ms", 16)
-        told(f"stroke to the map at {size}, p95", p95(mapped), "ms", target)
+        report(f"stroke to painted cell at {size}, median", statistics.median(painted), "ms", 16)
+        report(f"stroke to painted cell at {size}, p95", p95(painted), "ms", 16)
+        report(f"stroke to the map at {size}, p95", p95(mapped), "ms", target)
 
 
 def main() -> None:

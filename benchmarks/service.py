@@ -52,7 +52,7 @@ class Figures:
 
     missed: list[str] = field(default_factory=list)
 
-    def told(self, name: str, value: float, unit: str, most: float) -> None:
+    def report(self, name: str, value: float, unit: str, most: float) -> None:
         reached = value <= most
         if not reached:
             self.missed.append(name)
@@ -214,15 +214,15 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
     for name, ms in waits.items():
         print("in all", percentiles(name, ms))
     p95 = {name: float(np.percentile(ms, 95)) for name, ms in waits.items()}
-    figures.told(f"p95 of {USERS} users' strokes", p95[alone], "ms", 250)
-    figures.told("p95 with a stretch test", p95[beside], "ms", 250)
-    figures.told("… compared with p95 alone", 100 * (p95[beside] / p95[alone] - 1), "%", 50)
-    figures.told("strokes that were refused", sum(p.errors for p in painters), "", 0)
-    figures.told("designs with a lost edit", lost, "", 0)
+    figures.report(f"p95 of {USERS} users' strokes", p95[alone], "ms", 250)
+    figures.report("p95 with a stretch test", p95[beside], "ms", 250)
+    figures.report("… compared with p95 alone", 100 * (p95[beside] / p95[alone] - 1), "%", 50)
+    figures.report("strokes that were refused", sum(p.errors for p in painters), "", 0)
+    figures.report("designs with a lost edit", lost, "", 0)
     failed = len([state for state in ended if state != "done"])
-    figures.told(f"stretch tests that failed, of {len(ended)}", failed, "", 0)
+    figures.report(f"stretch tests that failed, of {len(ended)}", failed, "", 0)
     grown = 100 * (resident_mb(pid) / warm - 1)
-    figures.told(f"memory after {SECONDS:g} s of painting, from {warm:.0f} MB", grown, "%", 5)
+    figures.report(f"memory after {SECONDS:g} s of painting, from {warm:.0f} MB", grown, "%", 5)
 
 
 async def look(client: httpx.AsyncClient, service: Service, number: int) -> None:
@@ -267,10 +267,10 @@ async def looking(client: httpx.AsyncClient, service: Service, figures: Figures)
         )
     what = f"{VIEWS} views opened and dropped {ROUNDS} times"
     left = np.min(rounds[-3:], axis=0)  # a pool with one more thread at one moment is not a leak
-    figures.told(f"threads more after {what}", left[0] - threads, "", 0)
-    figures.told(f"handles more after {what}", left[1] - handles, "", 0)
+    figures.report(f"threads more after {what}", left[0] - threads, "", 0)
+    figures.report(f"handles more after {what}", left[1] - handles, "", 0)
     grown = 100 * (resident_mb(service.pid) / memory - 1)
-    figures.told(f"memory after {what}, from {memory:.0f} MB", grown, "%", 2)
+    figures.report(f"memory after {what}, from {memory:.0f} MB", grown, "%", 2)
 
 
 async def main() -> int:

@@ -43,7 +43,7 @@ STITCH_LIMIT_S, SWEEP_LIMIT_S, SWEEPS_LIMIT_S = 0.15, 4.0, 90.0
 AUTHORS_COURSE_MM, AUTHORS_SPLINE_N_MM = 2.80, 0.3957
 
 
-def told(value: float, limit: float, unit: str = "s") -> str:
+def against(value: float, limit: float, unit: str = "s") -> str:
     """A value, its limit and whether it is within it."""
     return f"{value:.4g} {unit} (limit {limit:g}: {'kept' if value <= limit else 'MISSED'})"
 
@@ -67,9 +67,9 @@ def stitches() -> None:
             f"{name:24}{zero.seconds:9.3f}{ratio:11.0f}{times[0]:10.2f}{times[1]:8.2f}"
             f"{zero.energy_n_mm:9.4f}"
         )
-    print("slowest stitch:", told(slowest, STITCH_LIMIT_S))
-    print("longest sweep:", told(longest, SWEEP_LIMIT_S))
-    print("all 16 sweeps:", told(total, SWEEPS_LIMIT_S))
+    print("slowest stitch:", against(slowest, STITCH_LIMIT_S))
+    print("longest sweep:", against(longest, SWEEP_LIMIT_S))
+    print("all 16 sweeps:", against(total, SWEEPS_LIMIT_S))
 
 
 def cells(sides: list[int]) -> None:
@@ -86,7 +86,7 @@ def cells(sides: list[int]) -> None:
         )
         state = "" if found.converged else "  not converged"
         print(
-            f"{side} x {side}: {told(found.seconds, LIMITS_S[side])}, {found.evaluations} "
+            f"{side} x {side}: {against(found.seconds, LIMITS_S[side])}, {found.evaluations} "
             f"evaluations, {found.energy_n_mm:.4f} N·mm a stitch{state}"
         )
 
@@ -105,8 +105,8 @@ def authors_sample() -> None:
         )  # fmt: skip
         found.append(held.energy_n_mm)
         print(f"  {grid.controls}: {held.energy_n_mm:.6f} N·mm")
-    print("  relaxed energy:", told(found[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
-    print("  grid (20 to 32):", told(abs(found[1] / found[-1] - 1.0), 1e-4, "relative"))
+    print("  relaxed energy:", against(found[-1], AUTHORS_SPLINE_N_MM, "N·mm"))
+    print("  grid (20 to 32):", against(abs(found[1] / found[-1] - 1.0), 1e-4, "relative"))
     energies = []
     for cell in (
         mirrored_cell(stitch, SplineGrid(16, 3)),
@@ -117,7 +117,10 @@ def authors_sample() -> None:
             options=Options(tolerance=1e-9),
         )  # fmt: skip
         energies.append(state.terms.energy / cell.stitches)
-    print("  single and general solver:", told(abs(energies[1] / energies[0] - 1.0), 1e-5, "apart"))
+    print(
+        "  single and general solver:",
+        against(abs(energies[1] / energies[0] - 1.0), 1e-5, "relative"),
+    )
 
 
 def published() -> None:
@@ -128,8 +131,8 @@ def published() -> None:
         cell = relax_published(entry.fabric, entry.yarn, entry.loop_length_mm)
         energy = max(energy, abs(cell.energy_n_mm / entry.energy_n_mm - 1.0))
         share = max(share, abs(cell.contact_share - entry.contact_share))
-    print("  energies off by at most", told(energy, 0.03, "relative"))
-    print("  contact shares off by at most", told(share, 0.015, "absolute"))
+    print("  energies off by at most", against(energy, 0.03, "relative"))
+    print("  contact shares off by at most", against(share, 0.015, "absolute"))
     configured, loop_mm = sample("acrylic", "stockinette").as_configured()
     cell = relax_published(
         "stockinette", replace(configured, core_radius_mm=0.30), loop_mm,

@@ -87,15 +87,15 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
         answer.raise_for_status()
         print(name, answer.status_code)
         kind = answer.headers.get("content-type", "")
-        told = answer.json() if answer.content and kind.startswith("application/json") else None
+        content = answer.json() if answer.content and kind.startswith("application/json") else None
         if name == "POST /api/v1/designs":
-            place["design"] = told["id"]
+            place["design"] = content["id"]
         elif name == "POST /api/v1/jobs":
-            place["job"] = told["id"]
+            place["job"] = content["id"]
         elif name == "POST /api/v1/designs/{design}/shares":
-            place |= {"share": told["id"], "token": told["token"]}
-        if told is not None:
-            answers[name] = short(told)
+            place |= {"share": content["id"], "token": content["token"]}
+        if content is not None:
+            answers[name] = short(content)
     return {"parameters": place, "answers": answers}
 
 

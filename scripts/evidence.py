@@ -56,7 +56,7 @@ def stretch(folder: Path) -> list[str]:
         "- a fabric whose published law is carried over by the other fabrics' correction, its own",
         "  tests unseen: `python scripts/refit_laws.py --tests FOLDER --check` prints it.",
         "",
-        "*Not shown*: other samples of the same cloth, other widths than those tested, unloading,",
+        "*Not shown*: other samples of the same fabric, other widths than those tested, unloading,",
         "and time. The intervals hold reading errors of width (3 %) and length (1.5 %) that all",
         "pulls of one sample share, so they cover more than 90 % of the pulls of that sample.",
         "",

@@ -38,7 +38,7 @@ ASKED: tuple[type[BaseModel], ...] = (
     designs.Strokes,
     designs.VersionRequest,
 )
-TOLD: tuple[type[BaseModel], ...] = (
+ANSWERED: tuple[type[BaseModel], ...] = (
     DesignLayout,
     Problem,
     JobPage,
@@ -66,9 +66,9 @@ def page_types() -> str:
     """The content of the file."""
     made = operations().values()
     asked = [*(operation.request for operation in made), *ASKED]
-    told = [*(operation.result for operation in made), *TOLD]
+    answered = [*(operation.result for operation in made), *ANSWERED]
     shapes = _shapes(asked, "validation")
-    for name, shape in _shapes(told, "serialization").items():
+    for name, shape in _shapes(answered, "serialization").items():
         required = shape.get("required") if name == "Problem" else list(shape.get("properties", ()))
         shapes[name] = shape | {"required": required}
     parts = [_declared(name, shape) for name, shape in sorted(shapes.items())]

@@ -1,4 +1,4 @@
-"""Refit the library's laws from the authors' raw tests, and carry the correction to other yarns.
+"""Refit the library's laws to the authors' raw tests, and apply the correction to other yarns.
 
     python scripts/refit_laws.py --tests FOLDER [--check]
 
@@ -96,8 +96,8 @@ def main() -> None:
                 record.fabric,
                 fit.law,
                 carried_uncertainty(record, fit, log_strain, extra),
-                "the paper's law carried over from its strain (middle of the cloth to the lower "
-                f"clamp) to clamp to clamp, as acrylic's tests show it: strain over "
+                "the paper's law converted from its strain (middle of the sample to the lower "
+                f"clamp) to clamp-to-clamp strain, as found in acrylic's tests: strain over "
                 f"{mean.strain_ratio:.2f}, within a factor of {math.exp(1.645 * log_strain):.2f}",
             )
         )

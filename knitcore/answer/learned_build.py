@@ -2,7 +2,7 @@
 
 Reads the packaged store and training library and writes ``data/learned.npz``: samples, settings
 (largest marginal likelihood), slopes, and scales calibrated on charts left out in ten folds. Prints
-what was left out is missed by. A minute of CPU time.
+the errors for the charts left out. A minute of CPU time.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class Fields:
     """Fields of one state on the corners of the cells; arrays (rows + 1, columns + 1), not a
-    number (NaN) at corners without cloth.
+    number (NaN) at corners without fabric.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ def cell_strains(sheet: Sheet, state: State) -> CellStrains:
 
 
 def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
-    """alpha * strain of every cell and direction, (2, rows, columns); 0 without cloth."""
+    """alpha * strain of every cell and direction, (2, rows, columns); 0 without fabric."""
     return np.asarray(triangle_utilisation(sheet, strains).mean(axis=3))
 
 
@@ -152,7 +152,7 @@ def _response(sheet: Sheet, xx: Array, yy: Array, xy: Array) -> dict[str, Array]
 
 
 def corner_means(grid: QuarterGrid, cells: Array) -> Array:
-    """Means (rows + 1, columns + 1) of cells over the cloth that meets at each corner, weighted by
+    """Means (rows + 1, columns + 1) of the fabric's cells that meet at each corner, weighted by
     rest area; NaN where there is none.
     """
     with np.errstate(invalid="ignore"):

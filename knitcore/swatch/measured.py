@@ -1,9 +1,9 @@
 """Measured displacement fields (digital image correlation) of a strip test.
 
 File layout (``.npz``): ``displacement`` (frames, 2, rows, columns) in pixels, component x then y,
-sampled every 8 pixels on the *deformed* picture, rows downwards, (0, 0) or NaN outside the cloth;
+sampled every 8 pixels on the *deformed* picture, rows downwards, (0, 0) or NaN outside the fabric;
 ``frame`` (frames,) the picture numbers. The picture with the least displacement gives the region
-at rest. ``pitch_px`` may give another distance. A point of the cloth now at x was at X = x - u.
+at rest. ``pitch_px`` may give another distance. A point of the fabric now at x was at X = x - u.
 """
 
 from __future__ import annotations
@@ -234,7 +234,7 @@ def _edge(points: Array, moved: Array, line: NDArray[np.int64], y: float) -> Arr
             continue
         heights = points[nearest, 1] - y
         if np.abs(heights).max() > 2 * EDGE_POINTS * PITCH_PX:
-            continue  # this line of the picture leaves the cloth before it meets the edge
+            continue  # this line of the picture leaves the fabric before it meets the edge
         values = np.column_stack([points[nearest, 0], moved[nearest]])
         found.append(np.polyfit(heights, values, 1)[1])
     if len(found) < 4:

@@ -87,12 +87,12 @@ class SwatchTest:
 
     @property
     def ux_mm(self) -> Array:
-        """Course-wise displacements, (steps, rows + 1, columns + 1); NaN without cloth."""
+        """Course-wise displacements, (steps, rows + 1, columns + 1); NaN without fabric."""
         return self._displacements(0)
 
     @property
     def uy_mm(self) -> Array:
-        """Wale-wise displacements, (steps, rows + 1, columns + 1); NaN without cloth."""
+        """Wale-wise displacements, (steps, rows + 1, columns + 1); NaN without fabric."""
         return self._displacements(1)
 
     def fields(self, step: int = -1) -> Fields:

@@ -79,7 +79,7 @@ class PathSolver:
     sheet : the sheet.
     fixed : bool array (corners, 2)
         Unknowns that are prescribed. They must at least take away the rigid motions. Corners
-        without cloth are prescribed in any case.
+        without fabric are prescribed in any case.
     tolerance : when a state counts as balanced.
     cancelled : called between linear solves; True stops with :class:`CancelledError`.
     factor : makes the factorisation for a grid's columns, rows and prescribed unknowns.

@@ -291,7 +291,7 @@ class _Descent:
 
 @numba.njit(cache=True)
 def _scaled(matrix: Array, scale: Array, damping: float) -> NDArray[np.float32]:
-    """Lower triangle, damped and scaled, in single precision; what is above it is arbitrary."""
+    """Lower triangle, damped and scaled, in single precision; entries above it are arbitrary."""
     n = matrix.shape[0]
     out = np.empty((n, n), np.float32)
     for i in range(n):

@@ -1,4 +1,4 @@
-"""Bending, regularisation, gauge penalty and tension: what one sample of the curve has by itself.
+"""Bending, regularisation, gauge penalty and tension: terms of single samples of the curve.
 
 Everything depends on a = |d1|², b = d1·d2, c = |d2|², d = d1·d3, e = d2·d3, f = |d3|², d_n the n-th
 derivative with respect to the parameter t. Bending and regularisation are sums of monomials in

@@ -29,7 +29,7 @@ class SlideQuenching(StrEnum):
 
     @classmethod
     def default(cls, fabric: Fabric, direction: Direction) -> SlideQuenching:
-        """What the paper did: quenched for seed along the course, free otherwise."""
+        """As in the paper: quenched for seed along the course, free otherwise."""
         quenched = fabric is Fabric.SEED and direction is Direction.COURSE
         return cls.PAPER if quenched else cls.NONE
 
