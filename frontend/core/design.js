@@ -207,7 +207,7 @@ function readRepeat(item, rows, columns) {
  */
 function items(value, what) {
   if (value === undefined || value === null) return [];
-  if (!Array.isArray(value) || !value.every(isObject)) throw new DesignError(`Its ${what} are no list.`);
+  if (!Array.isArray(value) || !value.every(isObject)) throw new DesignError(`Its ${what} are not a list.`);
   if (value.length > MAX_ITEMS) throw new DesignError(`It has more than ${MAX_ITEMS} ${what}.`);
   const ids = value.map(({ id }) => id).filter((id) => id !== undefined);
   if (new Set(ids).size < ids.length) throw new DesignError(`Two of its ${what} have one id.`);
@@ -221,7 +221,7 @@ function items(value, what) {
  */
 function text(value, what, most) {
   if (typeof value !== "string" || !value || /\p{Cc}/u.test(value)) {
-    throw new DesignError(`The ${what} is no text of one line.`);
+    throw new DesignError(`The ${what} must be one line of text.`);
   }
   return value.slice(0, most);
 }

@@ -45,7 +45,7 @@ const STOPS = [
   },
   {
     at: "#designs-button",
-    title: "Kept by itself",
+    title: "Saved automatically",
     text: "Every stroke is saved, here and at the service. Your designs, their versions, examples to begin with and this tour are in this menu.",
   },
 ];

@@ -83,7 +83,7 @@ export async function importFile(context, file) {
   }
   const text = await file.text();
   if (text.includes("\0")) {
-    return refusal(`${file.name} is no text file.`, "Use lines of K and P, a PNG, or a project file (.json).");
+    return refusal(`${file.name} is not a text file.`, "Use lines of K and P, a PNG, or a project file (.json).");
   }
   return importText(context, text, file.name);
 }

@@ -9,9 +9,9 @@
  * @property {"chart" | "selection" | "region"} kind
  * @property {string} title
  * @property {string} size in words
- * @property {Grid} grid the stitches whose moduli are told, as a chart of their own
+ * @property {Grid} grid the stitches whose moduli are shown, as a chart of their own
  * @property {{grid: Grid, mask: Uint8Array | null}} counted the stitches whose segments are counted
- * @property {string} note how the grid stands for stitches that are no rectangle; "" where it is them
+ * @property {string} note how the grid represents stitches that do not form a rectangle; "" if they do
  */
 
 import { largestRectangle } from "../core/inscribed.js";

@@ -79,7 +79,7 @@ test("what is wrong with a file is said in words", () => {
       { ...WHOLE, repeats: [{ ...WHOLE.repeats[0], placements: [{ row: 2, column: 0, rows: 2, columns: 4 }] }] },
       /leaves the chart/,
     ],
-    [{ ...WHOLE, shelf: "none" }, /no list/],
+    [{ ...WHOLE, shelf: "none" }, /not a list/],
   ];
   for (const [value, message] of wrong) assert.throws(() => readDesign(value), message);
 });

@@ -59,7 +59,7 @@ def test_broken_files_are_explained_and_nothing_is_lost(flat_studio: Page) -> No
     for name, kind, content, message in (
         ("broken.png", "image/png", b"\x89PNG nonsense", "not a picture"),
         ("empty.txt", "text/plain", b"", "is empty"),
-        ("program.bin", "", b"\x00\x01\x02", "no text file"),
+        ("program.bin", "", b"\x00\x01\x02", "is not a text file"),
         ("half.json", "application/json", b'{"format": "knitcore-des', "not valid JSON"),
         ("other.json", "application/json", b'{"a": 1}', "not a design"),
         ("new.json", "", json.dumps(old | {"version": 9, "chart": "K"}).encode(), "version 9"),

@@ -131,7 +131,7 @@ export function create(studio, context) {
       ? ["No design has that in its name.", ""]
       : deleted
         ? ["Nothing was deleted.", "Deleted designs stay here for 30 days."]
-        : ["No designs yet.", "Paint on the chart and it is kept here by itself, or begin with an example."];
+        : ["No designs yet.", "Paint on the chart and it is saved here automatically, or begin with an example."];
     list.append(h("li", { class: "empty" }, h("strong", {}, text[0]), h("p", { class: "muted" }, text[1])));
   };
 

@@ -53,7 +53,7 @@ export function create(studio, { keeper }) {
     h(
       "p",
       { class: "muted" },
-      "Every stroke is saved by itself. A version is a state that you can come back to; restoring one keeps the present state, too.",
+      "Every stroke is saved automatically. A version is a state that you can come back to; restoring one keeps the present state, too.",
     ),
     form,
     status,
@@ -98,7 +98,7 @@ export function create(studio, { keeper }) {
         "span",
         { class: "row-text" },
         h("span", { class: "ellipsis" }, version.name),
-        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept by itself" : ""}`),
+        h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`),
       ),
       h(
         "button",

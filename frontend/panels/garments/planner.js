@@ -30,7 +30,7 @@ import { facts } from "./facts.js";
 import { DIGITS, TEMPLATES } from "./templates.js";
 
 const TYPING_MS = 250;
-/** In the middle of what the study wanted for its glove, 20 to 30. */
+/** The middle of the range that the paper wanted for its glove, 20 to 30. */
 const TARGET_MMHG = 25;
 
 /**
@@ -229,7 +229,7 @@ export function create(studio, { keeper }) {
     ),
     h("div", { class: "dialog-buttons" }, make),
   );
-  /** A glove's ease is that of its fingers; the pressure is told for its wrist. */
+  /** A glove's ease is that of its fingers; the pressure is shown for its wrist. */
   function showFit() {
     easeRow.hidden = byPressure && template.id !== "glove";
     targetRow.hidden = !byPressure;

@@ -134,7 +134,7 @@ export function fillTab(studio) {
             h(
               "li",
               { class: "muted inverse-hint" },
-              "Select stitches in the chart (M, Q or W) and add them as a part, or add all regions; then say how stiff each shall be. An empty field is no wish.",
+              "Select stitches in the chart (M, Q or W) and add them as a part, or add all regions; then enter how stiff each should be. Leave a field empty for no preference.",
             ),
           ]),
     );
