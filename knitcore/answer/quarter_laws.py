@@ -79,8 +79,12 @@ def quarter_laws(chart: StitchChart, material: Material) -> QuarterLaws:
     patches = patches_of(chart, material)
     phases = quarter_phases(chart)
     laws: list[ConstitutiveLaw] = []
-    number = np.zeros(chart.purl.shape, dtype=np.intp)
-    scale = np.ones((*chart.purl.shape, 2))
+    extent = (
+        int(patches.rows[-1]),
+        int(patches.columns[-1]),
+    )  # of the repeat, if it has several patches
+    number = np.zeros(extent, dtype=np.intp)
+    scale = np.ones((*extent, 2))
     spread = np.zeros((2, len(SPREAD_AT)))
     for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
         for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
@@ -91,13 +95,16 @@ def quarter_laws(chart: StitchChart, material: Material) -> QuarterLaws:
                 laws += _own_laws(cells, material)
                 continue
             laws += _fitted_laws(cells, answer, material)
-            share = (above - below) * (right - left) / chart.purl.size
+            share = (above - below) * (right - left) / number.size
             for direction in Direction:
                 sizes = [_size(record, direction) for record in _records(cells, material)]
                 flat = float(_shares(cells) @ sizes)
                 scale[(*here, direction.axis)] = answer.along(direction).relaxed_mm / flat
                 spread[direction.axis] += share * _own_log_sd(cells, answer, material, direction)
-    return QuarterLaws(tuple(laws), number, scale, spread)
+    whole = np.ix_(
+        *(np.arange(n) % period for n, period in zip(chart.purl.shape, extent, strict=True))
+    )
+    return QuarterLaws(tuple(laws), number[whole], scale[whole], spread)
 
 
 def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:

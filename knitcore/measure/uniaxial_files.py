@@ -106,11 +106,7 @@ def _read_hdf5(path: Path, gauge: Gauge) -> StretchTest:
         with h5py.File(path, "r") as file:
             return _test_from_hdf5(path.name, file, gauge)
     except UnicodeDecodeError:
-        raise InputError(
-            path.name,
-            "has a name or a text that is not UTF-8.",
-            "Name groups and datasets in plain letters, as docs/fit-a-law.md lists them.",
-        ) from None
+        raise _not_utf_8(path.name) from None
     except (OSError, RuntimeError, KeyError) as error:
         reason = (str(error).splitlines() or ["no reason given"])[0]
         raise InputError(
@@ -120,7 +116,17 @@ def _read_hdf5(path: Path, gauge: Gauge) -> StretchTest:
         ) from None
 
 
+def _not_utf_8(name: str) -> InputError:
+    return InputError(
+        name,
+        "has a name or a text that is not UTF-8.",
+        "Name groups and datasets in plain letters, as docs/fit-a-law.md lists them.",
+    )
+
+
 def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
+    if any(isinstance(key, bytes) for key in file):  # h5py's form of a name it cannot decode
+        raise _not_utf_8(name)
     videos = sorted(
         (int(match.group(1)), key)
         for key in file

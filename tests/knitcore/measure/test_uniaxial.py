@@ -364,4 +364,5 @@ def test_a_width_below_that_of_the_tracked_points_is_told(tmp_path: Path) -> Non
 
 
 def test_the_distance_of_the_clamps_is_read(tmp_path: Path) -> None:
-    assert read_stretch_test(write_h5(tmp_path / "x.h5", X)).length_mm == pytest.approx(90.0)
+    length = read_stretch_test(write_h5(tmp_path / "x.h5", X)).length_mm
+    assert length == pytest.approx(90.0, rel=0.01)  # of the first frames, a little stretched
