@@ -112,7 +112,7 @@ class Mixture:
 
     def _strains(self, direction: Direction, stress_n_per_mm: ArrayLike) -> list[Array]:
         return [
-            share * _law_strains(record.law, direction, np.asarray(stress_n_per_mm, dtype=float))
+            share * law_strains(record.law, direction, np.asarray(stress_n_per_mm, dtype=float))
             for share, record in self.parts
         ]
 
@@ -120,7 +120,7 @@ class Mixture:
 _STRESSES: Array = np.geomspace(1e-7, 100.0, 1000)
 
 
-def _law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
+def law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
     """Strains of a law from its table, within 1e-4 of their own size."""
     at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
     found = np.exp(np.interp(at, np.log(_STRESSES), _log_strains(law, direction)))

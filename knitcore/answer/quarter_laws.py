@@ -27,12 +27,12 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from knitcore.answer.answer import Answer
+from knitcore.answer.mixture import law_strains
 from knitcore.answer.patches import patches_of
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.stiffening import stiffening
-from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import FabricRecord, Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.phases import pure_fabric, quarter_phases
@@ -161,9 +161,7 @@ def _fitted_laws(
         parts = 1 / _flat_strains(cells, records, direction)
         fits.append(
             [
-                _fitted(
-                    strains * (1 + parts * free_strains_at_stress(r.law, direction, STRESSES)) / 2
-                )
+                _fitted(strains * (1 + parts * law_strains(r.law, direction, STRESSES)) / 2)
                 for r in records
             ]
         )
@@ -201,7 +199,7 @@ def _flat_strains(
     counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)
     kinds, same = np.unique(counts, axis=0, return_inverse=True)
     lengths = kinds * along
-    strains = np.stack([free_strains_at_stress(r.law, direction, _FINE) for r in records])
+    strains = np.stack([law_strains(r.law, direction, _FINE) for r in records])
     of_line = lengths @ strains / lengths.sum(axis=1, keepdims=True)
     width = np.bincount(same.ravel()) * (kinds @ across)
     common = np.linspace(0.0, 1.0, 400) ** 2 * of_line[:, -1].min()
