@@ -290,7 +290,7 @@ def _shape(width: int, height: int, sides: tuple[bool, bool, bool, bool], column
         own = _unknowns(corner[~shared])
         cy, cx = np.mgrid[0:height, 0:width]
         cells = (cy * columns + cx).ravel()
-        corners = np.column_stack(corners_of.py_func(cells, columns))
+        corners = np.column_stack(corners_of(cells, columns))
         local = _positions(np.concatenate([own, border]), _unknowns(corners.ravel()))
         places = _places(local.reshape(-1, 8), len(own), len(border))
         return _Shape((), cells, places, own, border)

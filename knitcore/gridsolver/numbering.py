@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import TypeVar
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 Cells = TypeVar("Cells", int, NDArray[np.int64])
 
 
-@njit(cache=True)
 def corners_of(cell: Cells, columns: int) -> tuple[Cells, Cells, Cells, Cells]:
     """Corners of a cell of a grid (or of many), counter-clockwise from the lower left."""
     first = cell // columns * (columns + 1) + cell % columns
@@ -27,5 +25,5 @@ def cell_corners(columns: int, rows: int) -> NDArray[np.int64]:
     >>> cell_corners(2, 1).tolist()
     [[0, 1, 4, 3], [1, 2, 5, 4]]
     """
-    corners = corners_of.py_func(np.arange(columns * rows, dtype=np.int64), columns)
+    corners = corners_of(np.arange(columns * rows, dtype=np.int64), columns)
     return np.column_stack(corners)

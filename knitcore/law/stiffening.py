@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,22 +35,31 @@ class StiffeningForm(StrEnum):
     PUBLISHED = "published"
 
 
+Values = TypeVar("Values", float, NDArray[np.float64])
+
+
+def full(s: Values) -> tuple[Values, Values, Values]:
+    """``w``, ``w'`` and ``w''`` of the full form, at a number or an array."""
+    inside = np.minimum(np.maximum(s, 0.0), EXTENSION_START)
+    gap = 1.0 - inside
+    slope = inside * inside * (3.0 - 2.0 * inside) / (gap * gap)
+    curvature = 2.0 / (gap * gap * gap) - 2.0
+    beyond = np.maximum(s - EXTENSION_START, 0.0)
+    energy = inside**3 / gap + slope * beyond + 0.5 * curvature * beyond * beyond
+    return energy, slope + curvature * beyond, curvature
+
+
+def published(s: Values) -> tuple[Values, Values, Values]:
+    """``w``, ``w'`` and ``w''`` of the published form, at a number or an array."""
+    return s**3 * (1.0 + s), s * s * (3.0 + 4.0 * s), s * (6.0 + 12.0 * s)
+
+
 def stiffening(
     s: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """``w``, ``w'`` and ``w''`` at s (dimensionless arrays of the shape of s)."""
     x = np.asarray(s, dtype=float)
-    if form is StiffeningForm.PUBLISHED:
-        return x**3 * (1 + x), x**2 * (3 + 4 * x), x * (6 + 12 * x)
-    inside = np.clip(x, 0.0, EXTENSION_START)
-    gap = 1.0 - inside
-    energy = inside**3 / gap
-    slope = inside**2 * (3 - 2 * inside) / gap**2
-    curvature = 2.0 / gap**3 - 2.0
-    beyond = np.maximum(x - EXTENSION_START, 0.0)
-    energy = energy + slope * beyond + 0.5 * curvature * beyond**2
-    slope = slope + curvature * beyond
-    return energy, slope, curvature
+    return published(x) if form is StiffeningForm.PUBLISHED else full(x)
 
 
 Array = NDArray[np.float64]

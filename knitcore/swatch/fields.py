@@ -103,9 +103,7 @@ def triangle_utilisation(sheet: Sheet, strains: CellStrains) -> Array:
 def stiffening_of(sheet: Sheet, codes: NDArray[np.uint8]) -> CoupledStiffening:
     """The stiffening of the laws with these codes (an array of any shape)."""
     names = ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy")
-    return CoupledStiffening(
-        *(np.array([getattr(law, name) for law in sheet.laws])[codes] for name in names)
-    )
+    return CoupledStiffening(*(sheet.parameters[name][codes] for name in names))
 
 
 def node_fields(sheet: Sheet, state: State) -> Fields:
@@ -135,14 +133,11 @@ def node_fields(sheet: Sheet, state: State) -> Fields:
 def _response(sheet: Sheet, xx: Array, yy: Array, xy: Array) -> dict[str, Array]:
     """Stresses and energy density of cells at mean strains (wrinkling not considered)."""
     codes = sheet.grid.law_of_cell
-
-    def constant(name: str) -> Array:
-        return np.array([getattr(law, name) for law in sheet.laws])[codes]
-
     stiff = stiffening_of(sheet, codes).response(xx, yy, StiffeningForm(sheet.model.energy.value))
-    coupling, shear = constant("stiffness_xxyy"), constant("shear_modulus")
-    linear_x = constant("stiffness_xxxx") * xx + coupling * yy
-    linear_y = constant("stiffness_yyyy") * yy + coupling * xx
+    laws = sheet.parameters[codes]
+    coupling, shear = laws["stiffness_xxyy"], laws["shear_modulus"]
+    linear_x = laws["stiffness_xxxx"] * xx + coupling * yy
+    linear_y = laws["stiffness_yyyy"] * yy + coupling * xx
     return {
         "stress_xx": linear_x + stiff.stress_xx,
         "stress_yy": linear_y + stiff.stress_yy,

@@ -15,12 +15,15 @@ Corners are numbered in the order (0, 0), (1, 0), (1, 1), (0, 1) of (column, row
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from knitcore.law.stiffening import EXTENSION_START
+from knitcore.gridsolver.numbering import corners_of
+from knitcore.law import stiffening
 
 Array = NDArray[np.float64]
 
@@ -34,38 +37,92 @@ _SECOND = (1, 2, 2, 3)
 _COURSEWISE = (True, False, True, False)
 _INWARD = (1.0, -1.0, -1.0, 1.0)
 
+Stiffening = tuple[float, float, float]
+"""w, w', w'' in one direction."""
+Response = tuple[float, float, float, float, float, float]
+"""Energy density, stresses xx and yy, stiffnesses xx, yy and xy."""
+
+_compiled: Any = njit(cache=True)
+_corners_of: Callable[[int, int], tuple[int, int, int, int]] = _compiled(corners_of)
+_full: Callable[[float], Stiffening] = _compiled(stiffening.full)
+_published: Callable[[float], Stiffening] = _compiled(stiffening.published)
+
+Law = Any
+"""A record of :data:`knitcore.swatch.models.LAW`."""
+
+
+class Nodes(NamedTuple):
+    """Vectors at the nodes of a sheet: positions or steps (mm), forces (N).
+
+    Attributes
+    ----------
+    corners : (corners, 2).
+    centres : (cells, 2).
+    """
+
+    corners: Array
+    centres: Array
+
+
+class Cells(NamedTuple):
+    """What the cells of a sheet are, row by row.
+
+    Attributes
+    ----------
+    columns : of the grid.
+    law : (cells,), code of each cell's law.
+    cloth : (cells,), where there is cloth.
+    width, height : (cells,), rest sizes, mm.
+    published : whether the energy is that of the published model (else the full one).
+    tension_field : whether the sheet wrinkles (full model).
+    """
+
+    columns: int
+    law: NDArray[np.uint8]
+    cloth: NDArray[np.bool_]
+    width: Array
+    height: Array
+    published: bool
+    tension_field: bool
+
+
+class Tangent(NamedTuple):
+    """Tangents of the cells with their centres eliminated, and what recovers the centres.
+
+    Attributes
+    ----------
+    matrix : (cells, 8, 8), N/mm.
+    centre_rows : (cells, 2, 8), N/mm, from the corners to the centre's force.
+    centre_inverse : (cells, 3), mm/N: xx, xy, yy of the inverse of the centre's own block.
+    """
+
+    matrix: Array
+    centre_rows: Array
+    centre_inverse: Array
+
 
 @njit(cache=True)
-def _stiffening(s: float) -> tuple[float, float, float]:
-    """w, w', w'' of the full law; see knitcore.law.stiffening."""
-    if s <= 0.0:
-        return 0.0, 0.0, 0.0
-    inside = min(s, EXTENSION_START)
-    gap = 1.0 - inside
-    energy = inside**3 / gap
-    slope = inside * inside * (3.0 - 2.0 * inside) / (gap * gap)
-    curvature = 2.0 / (gap * gap * gap) - 2.0
-    beyond = s - inside
-    return (
-        energy + slope * beyond + 0.5 * curvature * beyond * beyond,
-        slope + curvature * beyond,
-        curvature,
-    )
+def _axial(law: Law, ex: float, ey: float) -> Response:
+    """The full law at fibre strains."""
+    x = _full(law.alpha_xx * (ex + law.kappa_xx * ey))
+    y = _full(law.alpha_yy * (ey + law.kappa_yy * ex))
+    return _stiffened(law, (law.kappa_xx, law.kappa_yy), x, y, ex, ey)
 
 
 @njit(cache=True)
-def _axial(p: Array, ex: float, ey: float) -> tuple[float, float, float, float, float, float]:
-    """Energy density, stresses and stiffness of the full law at fibre strains."""
-    cxx, cyy, cxy, kappa_x, kappa_y = p[0], p[1], p[2], p[8], p[9]
-    wx, dwx, ddwx = _stiffening(p[4] * (ex + kappa_x * ey))
-    wy, dwy, ddwy = _stiffening(p[5] * (ey + kappa_y * ex))
+def _stiffened(
+    law: Law, kappa: tuple[float, float], x: Stiffening, y: Stiffening, ex: float, ey: float
+) -> Response:
+    """The law at strains along course and wale, given its stiffening in both directions."""
+    cxx, cyy, cxy = law.stiffness_xxxx, law.stiffness_yyyy, law.stiffness_xxyy
+    (kappa_x, kappa_y), (wx, dwx, ddwx), (wy, dwy, ddwy) = kappa, x, y
     energy = 0.5 * cxx * ex * ex + 0.5 * cyy * ey * ey + cxy * ex * ey
-    if p[4] > 0.0:
-        energy += p[6] / p[4] * wx
-    if p[5] > 0.0:
-        energy += p[7] / p[5] * wy
-    sx, sy = p[6] * dwx, p[7] * dwy
-    kx, ky = p[4] * p[6] * ddwx, p[5] * p[7] * ddwy
+    if law.alpha_xx > 0.0:
+        energy += law.beta_xx / law.alpha_xx * wx
+    if law.alpha_yy > 0.0:
+        energy += law.beta_yy / law.alpha_yy * wy
+    sx, sy = law.beta_xx * dwx, law.beta_yy * dwy
+    kx, ky = law.alpha_xx * law.beta_xx * ddwx, law.alpha_yy * law.beta_yy * ddwy
     return (
         energy,
         cxx * ex + cxy * ey + sx + kappa_y * sy,
@@ -77,16 +134,16 @@ def _axial(p: Array, ex: float, ey: float) -> tuple[float, float, float, float, 
 
 
 @njit(cache=True)
-def _wrinkled(p: Array, ex: float, ey: float) -> tuple[float, float, float, float, float, float]:
+def _wrinkled(law: Law, ex: float, ey: float) -> Response:
     """The law relaxed by wrinkling: the least energy over all longer fibres."""
-    taut = _axial(p, ex, ey)
+    taut = _axial(law, ex, ey)
     if ex <= 0.0 and ey <= 0.0:
         slack = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     elif ey > 0.0 and taut[1] < 0.0:
-        e, _, s, kxx, kyy, kxy = _axial(p, _free(p, ey, 0), ey)
+        e, _, s, kxx, kyy, kxy = _axial(law, _free(law, ey, 0), ey)
         slack = (e, 0.0, s, 0.0, kyy - kxy * kxy / kxx, 0.0)
     elif ex > 0.0 and taut[2] < 0.0:
-        e, s, _, kxx, kyy, kxy = _axial(p, ex, _free(p, ex, 1))
+        e, s, _, kxx, kyy, kxy = _axial(law, ex, _free(law, ex, 1))
         slack = (e, s, 0.0, kxx - kxy * kxy / kyy, 0.0, 0.0)
     else:
         return taut
@@ -102,14 +159,14 @@ def _wrinkled(p: Array, ex: float, ey: float) -> tuple[float, float, float, floa
 
 
 @njit(cache=True)
-def _free(p: Array, along: float, axis: int) -> float:
+def _free(law: Law, along: float, axis: int) -> float:
     """Strain on an axis at which its stress vanishes, at a strain on the other one (above 0).
 
     The stress is convex in the strain, so Newton's method comes down to the root from one side.
     """
     across = 0.0
     for _ in range(100):
-        values = _axial(p, across, along) if axis == 0 else _axial(p, along, across)
+        values = _axial(law, across, along) if axis == 0 else _axial(law, along, across)
         step = values[1 + axis] / values[3 + axis]
         across -= step
         if abs(step) <= 1e-14:
@@ -118,40 +175,44 @@ def _free(p: Array, along: float, axis: int) -> float:
 
 
 @njit(cache=True)
-def _point(
-    model: int, p: Array, a0: float, a1: float, b0: float, b1: float, force: Array, stiffness: Array
+def _published_point(
+    law: Law, a0: float, a1: float, b0: float, b1: float, force: Array, stiffness: Array
 ) -> float:
     """Energy density at (a, b); writes dW/d(a0, a1, b0, b1) and the (4, 4) second derivative."""
-    if model == 0:
-        ex, ey, shear = a0 - 1.0, b1 - 1.0, a1 + b0
-        sx, sy = p[4] * ex, p[5] * ey
-        energy = (
-            0.5 * p[0] * ex * ex + 0.5 * p[1] * ey * ey + p[2] * ex * ey + 0.5 * p[3] * shear**2
-        )
-        if p[4] > 0.0:
-            energy += p[6] / p[4] * sx**3 * (1.0 + sx)
-        if p[5] > 0.0:
-            energy += p[7] / p[5] * sy**3 * (1.0 + sy)
-        force[0] = p[0] * ex + p[2] * ey + p[6] * sx * sx * (3.0 + 4.0 * sx)
-        force[1] = force[2] = p[3] * shear
-        force[3] = p[1] * ey + p[2] * ex + p[7] * sy * sy * (3.0 + 4.0 * sy)
-        stiffness[:] = 0.0
-        stiffness[0, 0] = p[0] + p[4] * p[6] * sx * (6.0 + 12.0 * sx)
-        stiffness[3, 3] = p[1] + p[5] * p[7] * sy * (6.0 + 12.0 * sy)
-        stiffness[0, 3] = stiffness[3, 0] = p[2]
-        stiffness[1, 1] = stiffness[2, 2] = stiffness[1, 2] = stiffness[2, 1] = p[3]
-        return float(energy)
+    shear = a1 + b0
+    ex, ey = a0 - 1.0, b1 - 1.0
+    x, y = _published(law.alpha_xx * ex), _published(law.alpha_yy * ey)
+    energy, force[0], force[3], kxx, kyy, kxy = _stiffened(law, (0.0, 0.0), x, y, ex, ey)
+    force[1] = force[2] = law.shear_modulus * shear
+    stiffness[:] = 0.0
+    stiffness[0, 0], stiffness[3, 3] = kxx, kyy
+    stiffness[0, 3] = stiffness[3, 0] = kxy
+    stiffness[1, 1] = stiffness[2, 2] = stiffness[1, 2] = stiffness[2, 1] = law.shear_modulus
+    return float(energy + 0.5 * law.shear_modulus * shear**2)
 
+
+@njit(cache=True)
+def _full_point(
+    law: Law,
+    tension_field: bool,
+    a0: float,
+    a1: float,
+    b0: float,
+    b1: float,
+    force: Array,
+    stiffness: Array,
+) -> float:
+    """As :func:`_published_point`, of the full model."""
     la, lb = math.sqrt(a0 * a0 + a1 * a1), math.sqrt(b0 * b0 + b1 * b1)
     if la < 1e-9 or lb < 1e-9:
         return np.inf
-    if p[10] > 0.0:
-        energy, wa, wb, waa, wbb, wab = _wrinkled(p, la - 1.0, lb - 1.0)
+    if tension_field:
+        energy, wa, wb, waa, wbb, wab = _wrinkled(law, la - 1.0, lb - 1.0)
     else:
-        energy, wa, wb, waa, wbb, wab = _axial(p, la - 1.0, lb - 1.0)
+        energy, wa, wb, waa, wbb, wab = _axial(law, la - 1.0, lb - 1.0)
     gamma = math.atan2(a0 * b0 + a1 * b1, a0 * b1 - a1 * b0)
-    energy += 0.5 * p[3] * gamma * gamma
-    wg, wgg = p[3] * gamma, p[3]
+    energy += 0.5 * law.shear_modulus * gamma * gamma
+    wg, wgg = law.shear_modulus * gamma, law.shear_modulus
     # Unit vectors along each fibre (t) and a quarter turn ahead of it (n). Turning the course
     # fibre by d theta changes gamma by d theta, turning the wale fibre by -d theta.
     at0, at1, bt0, bt1 = a0 / la, a1 / la, b0 / lb, b1 / lb
@@ -180,30 +241,27 @@ def _point(
 
 
 @njit(cache=True)
-def strain_change(
-    model: int,
-    cloth: NDArray[np.bool_],
-    columns: int,
-    width: Array,
-    height: Array,
-    corners: Array,
-    centres: Array,
-    corner_step: Array,
-    centre_step: Array,
-) -> Array:
+def _gather(vectors: Array, nodes: tuple[int, int, int, int], out: Array) -> None:
+    """Write a cell's corners' share (4, 2) of vectors (corners, 2)."""
+    for i in range(4):
+        out[i, 0], out[i, 1] = vectors[nodes[i], 0], vectors[nodes[i], 1]
+
+
+@njit(cache=True)
+def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
     """Change of the mean strains along course and wale of every cell, (2, cells), to first order
-    in a step of corners and centres.
+    in a step.
     """
-    out = np.zeros((2, cloth.size))
+    out = np.zeros((2, cells.law.size))
     x, d = np.empty((4, 2)), np.empty((4, 2))
-    for cell in range(cloth.size):
-        if not cloth[cell]:
+    for cell in range(cells.law.size):
+        if not cells.cloth[cell]:
             continue
-        first = cell // columns * (columns + 1) + cell % columns
-        nodes = (first, first + 1, first + columns + 2, first + columns + 1)
-        for i in range(4):
-            for m in range(2):
-                x[i, m], d[i, m] = corners[nodes[i], m], corner_step[nodes[i], m]
+        nodes = _corners_of(cell, cells.columns)
+        _gather(state.corners, nodes, x)
+        _gather(step.corners, nodes, d)
+        centre, centre_step = state.centres[cell], step.centres[cell]
+        size = cells.width[cell], cells.height[cell]
         for t in range(4):
             i, j = _FIRST[t], _SECOND[t]
             along = 0 if _COURSEWISE[t] else 1  # of the edge; the inward derivative is across
@@ -211,17 +269,17 @@ def strain_change(
                 (along, x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], d[j, 0] - d[i, 0], d[j, 1] - d[i, 1]),
                 (
                     1 - along,
-                    _INWARD[t] * (2.0 * centres[cell, 0] - x[i, 0] - x[j, 0]),
-                    _INWARD[t] * (2.0 * centres[cell, 1] - x[i, 1] - x[j, 1]),
-                    _INWARD[t] * (2.0 * centre_step[cell, 0] - d[i, 0] - d[j, 0]),
-                    _INWARD[t] * (2.0 * centre_step[cell, 1] - d[i, 1] - d[j, 1]),
+                    _INWARD[t] * (2.0 * centre[0] - x[i, 0] - x[j, 0]),
+                    _INWARD[t] * (2.0 * centre[1] - x[i, 1] - x[j, 1]),
+                    _INWARD[t] * (2.0 * centre_step[0] - d[i, 0] - d[j, 0]),
+                    _INWARD[t] * (2.0 * centre_step[1] - d[i, 1] - d[j, 1]),
                 ),
             ):
-                if model == 0:
+                if cells.published:
                     change = s0 if axis == 0 else s1
                 else:
                     change = (f0 * s0 + f1 * s1) / math.sqrt(f0 * f0 + f1 * f1)
-                out[axis, cell] += 0.25 * change / (width[cell] if axis == 0 else height[cell])
+                out[axis, cell] += 0.25 * change / size[axis]
     return out
 
 
@@ -258,73 +316,55 @@ def _add_triangle(
 
 
 @njit(cache=True)
-def _eliminate_centre(
-    k: Array, kc: Array, kcc: Array, matrix: Array, rows: Array, inverse: Array
-) -> None:
+def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: Tangent, cell: int) -> None:
     """Write a cell's tangent without its centre, and what recovers the centre."""
     det = kcc[0, 0] * kcc[1, 1] - kcc[0, 1] * kcc[0, 1]
     i00, i01, i11 = kcc[1, 1] / det, -kcc[0, 1] / det, kcc[0, 0] / det
     for r in range(8):
         g0, g1 = i00 * kc[0, r] + i01 * kc[1, r], i01 * kc[0, r] + i11 * kc[1, r]
         for s in range(8):
-            matrix[r, s] = k[r, s] - g0 * kc[0, s] - g1 * kc[1, s]
-    rows[:] = kc
+            tangent.matrix[cell, r, s] = k[r, s] - g0 * kc[0, s] - g1 * kc[1, s]
+    tangent.centre_rows[cell] = kc
+    inverse = tangent.centre_inverse[cell]
     inverse[0], inverse[1], inverse[2] = i00, i01, i11
 
 
 @njit(cache=True)
 def assemble(
-    model: int,
-    laws: Array,
-    law_of_cell: NDArray[np.uint8],
-    cloth: NDArray[np.bool_],
-    columns: int,
-    width: Array,
-    height: Array,
-    corners: Array,
-    centres: Array,
-    corner_force: Array,
-    centre_force: Array,
-    matrix: Array,
-    centre_rows: Array,
-    centre_inverse: Array,
+    cells: Cells, laws: NDArray[Any], state: Nodes, force: Nodes, tangent: Tangent | None
 ) -> float:
-    """Energy, forces and condensed element tangents.
+    """Energy, forces and, where wanted, condensed element tangents.
 
-    Writes ``corner_force`` (corners, 2) and ``centre_force`` (cells, 2), the full gradient;
-    ``matrix`` (cells, 8, 8), the tangent of each cell with its centre eliminated; and what is
-    needed to recover the centre, ``centre_rows`` (cells, 2, 8) and ``centre_inverse`` (cells, 3:
-    xx, xy, yy of the inverse of the centre's own block). These three may be empty where no tangent
-    is wanted. All is 0 where there is no ``cloth``, and where all of a law is 0. Energy and forces
-    are linear in the laws' stiffnesses and betas, so that laws made of derivatives of these give
-    the derivative of the forces.
+    Writes ``force``, the full gradient, and ``tangent``. All is 0 where there is no cloth, and
+    where the law is all 0. Energy and forces are linear in the laws' stiffnesses and betas.
     Returns the energy (N·mm), infinite where a fibre has collapsed to a point; nothing else that
     is written then means anything.
+
+    Parameters
+    ----------
+    cells : the sheet.
+    laws : records of :data:`knitcore.swatch.models.LAW`, by code.
+    state : positions.
+    force, tangent : to be written.
     """
-    corner_force[:] = 0.0
-    centre_force[:] = 0.0
+    force.corners[:] = 0.0
+    force.centres[:] = 0.0
     total = 0.0
-    tangent = matrix.size > 0
-    force, h = np.empty(4), np.empty((4, 4))
+    f, h = np.empty(4), np.empty((4, 4))
     x = np.empty((4, 2))
     k, kc, kcc = np.empty((8, 8)), np.empty((2, 8)), np.empty((2, 2))
-    node = np.empty(4, np.int64)
-    for cell in range(law_of_cell.size):
-        p = laws[law_of_cell[cell]]
-        if not cloth[cell] or not p.any():
-            if tangent:
-                matrix[cell], centre_rows[cell], centre_inverse[cell] = 0.0, 0.0, 0.0
+    for cell in range(cells.law.size):
+        law = laws[cells.law[cell]]
+        if not cells.cloth[cell] or law.stiffness_xxxx == 0.0:
+            if tangent is not None:
+                tangent.matrix[cell] = 0.0
+                tangent.centre_rows[cell] = 0.0
+                tangent.centre_inverse[cell] = 0.0
             continue
-        first = cell // columns * (columns + 1) + cell % columns
-        node[0], node[1], node[2], node[3] = (
-            first,
-            first + 1,
-            first + columns + 2,
-            first + columns + 1,
-        )
-        for i in range(4):
-            x[i, 0], x[i, 1] = corners[node[i], 0], corners[node[i], 1]
-        hx, hy = width[cell], height[cell]
+        node = _corners_of(cell, cells.columns)
+        _gather(state.corners, node, x)
+        centre = state.centres[cell]
+        hx, hy = cells.width[cell], cells.height[cell]
         area = 0.25 * hx * hy
         k[:] = 0.0
         kc[:] = 0.0
@@ -333,66 +373,78 @@ def assemble(
             i, j = _FIRST[t], _SECOND[t]
             inward = _INWARD[t]
             e0, e1 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
-            c0 = inward * (2.0 * centres[cell, 0] - x[i, 0] - x[j, 0])
-            c1 = inward * (2.0 * centres[cell, 1] - x[i, 1] - x[j, 1])
+            c0 = inward * (2.0 * centre[0] - x[i, 0] - x[j, 0])
+            c1 = inward * (2.0 * centre[1] - x[i, 1] - x[j, 1])
             # e, c: offsets of the edge-wise and the inward derivative in (a0, a1, b0, b1)
             if _COURSEWISE[t]:
                 e, c = 0, 2
                 se, sc = 1.0 / hx, inward / hy
-                total += area * _point(model, p, e0 / hx, e1 / hx, c0 / hy, c1 / hy, force, h)
+                a0, a1, b0, b1 = e0 / hx, e1 / hx, c0 / hy, c1 / hy
             else:
                 e, c = 2, 0
                 se, sc = 1.0 / hy, inward / hx
-                total += area * _point(model, p, c0 / hx, c1 / hx, e0 / hy, e1 / hy, force, h)
+                a0, a1, b0, b1 = c0 / hx, c1 / hx, e0 / hy, e1 / hy
+            if cells.published:
+                total += area * _published_point(law, a0, a1, b0, b1, f, h)
+            else:
+                total += area * _full_point(law, cells.tension_field, a0, a1, b0, b1, f, h)
             for m in range(2):
-                fe, fc = area * se * force[e + m], area * sc * force[c + m]
-                corner_force[node[i], m] += -fe - fc
-                corner_force[node[j], m] += fe - fc
-                centre_force[cell, m] += 2.0 * fc
-            if tangent:
+                fe, fc = area * se * f[e + m], area * sc * f[c + m]
+                force.corners[node[i], m] += -fe - fc
+                force.corners[node[j], m] += fe - fc
+                force.centres[cell, m] += 2.0 * fc
+            if tangent is not None:
                 _add_triangle(i, j, e, c, se, sc, area, h, k, kc, kcc)
         if total == np.inf:
             return total
-        if tangent:
-            _eliminate_centre(k, kc, kcc, matrix[cell], centre_rows[cell], centre_inverse[cell])
+        if tangent is not None:
+            _eliminate_centre(k, kc, kcc, tangent, cell)
     return total
 
 
 @njit(cache=True)
-def condense(
-    columns: int,
-    corner_force: Array,
-    centre_force: Array,
-    centre_rows: Array,
-    centre_inverse: Array,
-) -> Array:
+def condense(columns: int, force: Nodes, tangent: Tangent) -> Array:
     """Gradient on the corners after the centres have been eliminated, shape (corners, 2)."""
-    out = corner_force.copy()
-    for cell in range(centre_force.shape[0]):
-        first = cell // columns * (columns + 1) + cell % columns
-        nodes = (first, first + 1, first + columns + 2, first + columns + 1)
-        f0, f1 = centre_force[cell, 0], centre_force[cell, 1]
-        i00, i01, i11 = centre_inverse[cell]
+    out = force.corners.copy()
+    for cell in range(len(force.centres)):
+        nodes, rows = _corners_of(cell, columns), tangent.centre_rows[cell]
+        f0, f1 = force.centres[cell]
+        i00, i01, i11 = tangent.centre_inverse[cell]
         g0, g1 = i00 * f0 + i01 * f1, i01 * f0 + i11 * f1
         for r in range(8):
-            out[nodes[r // 2], r % 2] -= centre_rows[cell, 0, r] * g0 + centre_rows[cell, 1, r] * g1
+            out[nodes[r // 2], r % 2] -= rows[0, r] * g0 + rows[1, r] * g1
     return out
 
 
 @njit(cache=True)
-def centre_step(
-    columns: int, step: Array, centre_force: Array, centre_rows: Array, centre_inverse: Array
-) -> Array:
+def centre_step(columns: int, step: Array, force: Nodes, tangent: Tangent) -> Array:
     """Newton step of the centres (cells, 2) that goes with a step of the corners (corners, 2)."""
-    out = np.empty_like(centre_force)
-    for cell in range(centre_force.shape[0]):
-        first = cell // columns * (columns + 1) + cell % columns
-        nodes = (first, first + 1, first + columns + 2, first + columns + 1)
-        f0, f1 = centre_force[cell, 0], centre_force[cell, 1]
+    out = np.empty_like(force.centres)
+    for cell in range(len(out)):
+        nodes, rows = _corners_of(cell, columns), tangent.centre_rows[cell]
+        f0, f1 = force.centres[cell]
         for r in range(8):
             d = step[nodes[r // 2], r % 2]
-            f0 += centre_rows[cell, 0, r] * d
-            f1 += centre_rows[cell, 1, r] * d
-        i00, i01, i11 = centre_inverse[cell]
+            f0 += rows[0, r] * d
+            f1 += rows[1, r] * d
+        i00, i01, i11 = tangent.centre_inverse[cell]
         out[cell, 0], out[cell, 1] = -(i00 * f0 + i01 * f1), -(i01 * f0 + i11 * f1)
+    return out
+
+
+@njit(cache=True)
+def apply(columns: int, tangent: Tangent, step: Array) -> Array:
+    """Condensed tangent times a step of the corners, (corners, 2)."""
+    out, v = np.zeros_like(step), np.empty(8)
+    for cell in range(len(tangent.matrix)):
+        nodes = _corners_of(cell, columns)
+        for i in range(4):
+            v[2 * i], v[2 * i + 1] = step[nodes[i], 0], step[nodes[i], 1]
+        for i in range(4):
+            s0 = s1 = 0.0
+            for j in range(8):
+                s0 += tangent.matrix[cell, 2 * i, j] * v[j]
+                s1 += tangent.matrix[cell, 2 * i + 1, j] * v[j]
+            out[nodes[i], 0] += s0
+            out[nodes[i], 1] += s1
     return out

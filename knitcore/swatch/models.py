@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,17 +23,31 @@ from numpy.typing import NDArray
 from knitcore.errors import InputError
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation
 
+LAW = np.dtype(
+    [
+        (name, float)
+        for name in (
+            "stiffness_xxxx",
+            "stiffness_yyyy",
+            "stiffness_xxyy",
+            "shear_modulus",
+            "alpha_xx",
+            "alpha_yy",
+            "beta_xx",
+            "beta_yy",
+            "kappa_xx",
+            "kappa_yy",
+        )
+    ]
+)
+"""A symmetric law as the kernel reads it; attributes of ConstitutiveLaw by name."""
+
 
 class EnergyModel(StrEnum):
     """Which sheet energy is meant."""
 
     PUBLISHED = "published"
     FULL = "full"
-
-    @property
-    def code(self) -> int:
-        """Number by which the compiled kernel knows the model."""
-        return 0 if self is EnergyModel.PUBLISHED else 1
 
 
 class Coupling(StrEnum):
@@ -117,23 +132,7 @@ class SheetModel:
                 "Use the geometric rule, which never does, or the full model.",
             ) from None
 
-    def parameters(self, laws: Sequence[ConstitutiveLaw]) -> NDArray[np.float64]:
-        """Kernel parameters of symmetric laws, shape (laws, 11)."""
-        return np.array(
-            [
-                [
-                    law.stiffness_xxxx,
-                    law.stiffness_yyyy,
-                    law.stiffness_xxyy,
-                    law.shear_modulus,
-                    law.alpha_xx,
-                    law.alpha_yy,
-                    law.beta_xx,
-                    law.beta_yy,
-                    law.kappa_xx,
-                    law.kappa_yy,
-                    float(self.tension_field),
-                ]
-                for law in (self.prepare(law) for law in laws)
-            ]
-        )
+    def parameters(self, laws: Sequence[ConstitutiveLaw]) -> NDArray[np.void]:
+        """Symmetric laws as records of :data:`LAW`, shape (laws,)."""
+        constants = attrgetter(*(LAW.names or ()))
+        return np.array([constants(self.prepare(law)) for law in laws], LAW)

@@ -192,7 +192,9 @@ class PathSolver:
                 "The balanced state is unstable (its tangent is not positive definite)."
             ) from None
         self._history = [*self._history[1 - HISTORY :], (level, state)]
-        return Equilibrium(state, lin.energy, np.where(self.fixed, lin.corner_force, 0), iterations)
+        return Equilibrium(
+            state, lin.energy, np.where(self.fixed, lin.force.corners, 0), iterations
+        )
 
     def _is_close(self, lin: Linearisation) -> bool:
         """Whether an extrapolated state is near enough to balance to start from it."""
@@ -207,7 +209,7 @@ class PathSolver:
         if not self._has_factor:
             self._try_factorise(lin)
         step = move + self._solve(lin, -force * self.free, 1e-3)
-        guess = state.moved(step, lin.centre_step(step))
+        guess = state.moved(lin.newton_step(step))
         guess.corners[self.fixed] = prescribed[self.fixed]
         self._spare = lin
         return guess
@@ -234,23 +236,22 @@ class PathSolver:
 
     def _residual(self, lin: Linearisation) -> tuple[float, float]:
         """Norm of the unbalanced force (N) and the norm that is tolerated."""
-        free = float(
-            np.sqrt(np.sum((lin.corner_force * self.free) ** 2) + np.sum(lin.centre_force**2))
-        )
-        held = float(np.linalg.norm(lin.corner_force[self.fixed]))
+        corners, centres = lin.force
+        free = float(np.sqrt(np.sum((corners * self.free) ** 2) + np.sum(centres**2)))
+        held = float(np.linalg.norm(corners[self.fixed]))
         return free, max(self.tolerance.relative * held, self.tolerance.absolute_n)
 
     def _line_search(
-        self, state: State, lin: Linearisation, step: Array
+        self, state: State, lin: Linearisation, corner_step: Array
     ) -> tuple[State, Linearisation]:
-        centre_step = lin.centre_step(step)
-        slope = float(np.sum(lin.corner_force * step) + np.sum(lin.centre_force * centre_step))
+        step = lin.newton_step(corner_step)
+        slope = sum(float(np.sum(f * d)) for f, d in zip(lin.force, step, strict=True))
         energy = lin.energy
         noise = 1e-13 * abs(energy) + 1e-300
         share = 1.0
         self._spare = lin
         while share > 1e-6:
-            trial = state.moved(step, centre_step, share)
+            trial = state.moved(step, share)
             found = self._linearise(trial)
             if found.energy <= energy + 1e-4 * share * slope + noise:
                 return trial, found
@@ -269,7 +270,7 @@ class PathSolver:
 
     def _factorise(self, lin: Linearisation) -> None:
         self._has_factor = False  # one that fails half-way is of no use
-        self.factor.factorise(lin.matrix)
+        self.factor.factorise(lin.tangent.matrix)
         self.factorisations += 1
         self._has_factor = True
         self._factor_is_current = True

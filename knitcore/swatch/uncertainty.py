@@ -40,6 +40,7 @@ from knitcore.materials.material import Material
 from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_interval
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
 from knitcore.swatch.fields import cell_strains, corner_means, stiffening_of, utilisation
+from knitcore.swatch.kernel import Nodes
 from knitcore.swatch.models import Coupling
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.sheet import Sheet
@@ -81,14 +82,14 @@ class _Parameter:
 
     Attributes
     ----------
-    up, down : (laws, 11), kernel's parameters with this one raised and lowered by ``STEP``; 0 for
+    up, down : (laws,), the kernel's laws with this one raised and lowered by ``STEP``; 0 for
         laws without it.
     sd : of the parameter.
     model_sd : of the composite's error in it, which counts for strains.
     """
 
-    up: Array
-    down: Array
+    up: NDArray[np.void]
+    down: NDArray[np.void]
     sd: float
     model_sd: float
 
@@ -140,7 +141,7 @@ class StripSpread:
         test, sheet = self.test, self.test.sheet
         grid, state, axis = sheet.grid, test.states[step], test.direction.axis
         lin = sheet.linearise(state)
-        self._factor.factorise(lin.matrix)
+        self._factor.factorise(lin.tangent.matrix)
         pulled = grid.edge(clamp_edges(test.direction)[1])
         slope = self._utilisation_slope(step)
         force_variance = waist_variance = 0.0
@@ -149,7 +150,7 @@ class StripSpread:
             raised = sheet.law_force(parameter.up, state)
             lowered = sheet.law_force(parameter.down, state)
             change = lin.with_force(
-                *((u - d) / (2 * STEP) for u, d in zip(raised, lowered, strict=True))
+                Nodes(*((u - d) / (2 * STEP) for u, d in zip(raised, lowered, strict=True)))
             )
             condensed = change.condensed_force()
             free = np.where(self._fixed, 0.0, -condensed)
@@ -159,7 +160,7 @@ class StripSpread:
             waist = waist_strain(grid, state.corners + corner_step, test.direction)
             full_sd = math.hypot(parameter.sd, parameter.model_sd)
             waist_variance += (full_sd * (waist - test.waist_strain[step])) ** 2
-            strains = sheet.strain_change(state, corner_step, change.centre_step(corner_step))
+            strains = sheet.strain_change(state, change.newton_step(corner_step))
             used = (slope * strains).sum(axis=0)
             for name, cells in enumerate((*strains, used)):
                 variances[name] += (full_sd * corner_means(grid, cells)) ** 2
@@ -251,8 +252,8 @@ def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Para
 
 def _varied(
     sheet: Sheet, codes: list[int], vary: Callable[[ConstitutiveLaw, float], ConstitutiveLaw]
-) -> tuple[Array, Array]:
-    """Kernel parameters of these laws with a parameter raised and lowered; 0 for the others."""
+) -> tuple[NDArray[np.void], NDArray[np.void]]:
+    """The kernel's records of these laws with a parameter raised and lowered; 0 for the others."""
     tables = []
     for step in (STEP, -STEP):
         table = np.zeros_like(sheet.parameters)
