@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -13,7 +14,13 @@ from knitcore.answer.relaxed import RelaxedSize
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.response import LawResponse, Response, Stiffened, stress_at_strain
+from knitcore.law.response import (
+    HeldLawResponse,
+    LawResponse,
+    Response,
+    Stiffened,
+    stress_at_strain,
+)
 from knitcore.materials.uncertainty import Z_SCORE, Interval, log_interval, normal_interval
 
 Array = NDArray[np.float64]
@@ -35,12 +42,14 @@ class Source(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """Response to a pull along one direction, with the other direction free.
+    """Response to a pull along one direction, with the other direction free unless said.
 
     Attributes
     ----------
     response : stretch under stress.
     stiff, soft : the ends of its 90 % interval, as responses.
+    across : strains across the pull at stresses.
+    held : stretch under stress while the width is held.
     poisson, poisson_sd : contraction across the pull over the strain along it, at small strain.
     relaxed_mm, relaxed_log_sd : extent of the mean stitch at rest, and the standard deviation of
         its logarithm.
@@ -51,6 +60,8 @@ class Along:
     response: Response
     stiff: Response
     soft: Response
+    across: Callable[[ArrayLike], Array]
+    held: Response
     poisson: float
     poisson_sd: float
     relaxed_mm: float
@@ -100,6 +111,18 @@ class Along:
         wanted = _not_negative("strain", strain)
         return stress_at_strain(self.soft, wanted), stress_at_strain(self.stiff, wanted)
 
+    def held_strain(self, stress_n_per_mm: ArrayLike) -> Array:
+        """Strains at stresses (N/mm, at least 0) while the width is held."""
+        return self.held.strain(_not_negative("stress", stress_n_per_mm))
+
+    def held_stress(self, strain: ArrayLike) -> Array:
+        """Stresses (N/mm) at strains of at least 0 while the width is held; at most 10 N/mm."""
+        return stress_at_strain(self.held, _not_negative("strain", strain))
+
+    def across_strain(self, stress_n_per_mm: ArrayLike) -> Array:
+        """Strains across the pull, below 0 where it narrows, at stresses (N/mm, at least 0)."""
+        return self.across(_not_negative("stress", stress_n_per_mm))
+
 
 @dataclass(frozen=True, eq=False)
 class Answer:
@@ -147,6 +170,8 @@ class Answer:
                 LawResponse(law, d),
                 Stiffened(LawResponse(law, d), math.exp(Z_SCORE * log_sd[d.axis])),
                 Stiffened(LawResponse(law, d), math.exp(-Z_SCORE * log_sd[d.axis])),
+                LawResponse(law, d).across,
+                HeldLawResponse(law, d),
                 poisson=ratios[d.axis],
                 poisson_sd=poisson_sd[d.axis],
                 relaxed_mm=relaxed.extent_mm(d),

@@ -90,6 +90,26 @@ class LearnedAnswer:
         ratio = np.exp(self._at(self.log_ratio, direction, stress_n_per_mm))
         return np.asarray(ratio * self.mixture.strain(direction, stress_n_per_mm))
 
+    def across_strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Strain across the pull at stresses (N/mm, at least 0).
+
+        Poisson's ratio at first; with more stress it changes as the mixture's contraction does.
+        """
+        first, share = (
+            self.mixture.shares_of_strain(direction, stress)[0] for stress in (0.0, stress_n_per_mm)
+        )
+        share = share - first - self.poisson[direction.axis]
+        return np.asarray(share * self.strain(direction, stress_n_per_mm))
+
+    def held_strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Strain at stresses (N/mm, at least 0) while the width is held.
+
+        The yarn level was not stretched like that: the same share of the free strain as the
+        mixture's.
+        """
+        share = self.mixture.shares_of_strain(direction, stress_n_per_mm)[1]
+        return np.asarray(share * self.strain(direction, stress_n_per_mm))
+
     def strain_log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Standard deviation of the log strain: of the learning, and of the pure fabrics' laws."""
         own = self._at(self.log_ratio_sd, direction, stress_n_per_mm)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,6 +52,24 @@ class LearnedResponse:
         return np.asarray(strain * np.exp(spread))
 
 
+@dataclass(frozen=True, eq=False)
+class HeldLearnedResponse:
+    """Stretch of a mixed chart whose width is held."""
+
+    answer: LearnedAnswer
+    direction: Direction
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Stress over strain at no stress."""
+        share = float(self.answer.mixture.shares_of_strain(self.direction, 0.0)[1])
+        return self.answer.modulus_n_per_mm(self.direction) / share
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        return self.answer.held_strain(self.direction, stress)
+
+
 def mixed(
     repeat: StitchChart, found: Densities, material: Material, gauge: RelaxedSize | None
 ) -> Answer:
@@ -91,6 +110,8 @@ def _along(found: LearnedAnswer, direction: Direction) -> Along:
         response,
         LearnedResponse(found, direction, -Z_SCORE),
         LearnedResponse(found, direction, Z_SCORE),
+        partial(found.across_strain, direction),
+        HeldLearnedResponse(found, direction),
         poisson=float(found.poisson[direction.axis]),
         poisson_sd=float(found.poisson_sd[direction.axis]),
         relaxed_mm=float(found.size_mm[direction.axis]),

@@ -17,7 +17,11 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.law.uniaxial import (
+    free_strains_at_stress,
+    free_transverse_strains,
+    held_strains_at_stress,
+)
 from knitcore.materials import FabricRecord, Material, Origin
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.yarns import yarn_for
@@ -93,6 +97,16 @@ class Mixture:
         """Strain at stresses (N/mm, at least 0)."""
         return np.asarray(np.sum(self._strains(direction, stress_n_per_mm), axis=0))
 
+    def shares_of_strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """(2, …) strain across, and strain at a held width, over the strain at equal stress.
+
+        Each is a mean of the parts, as the strain itself is.
+        """
+        stress = np.maximum(np.asarray(stress_n_per_mm, dtype=float), _STRESSES[0])
+        strains = np.array(self._strains(direction, stress))
+        own = np.array([_law_shares(r.law, direction, stress) for _, r in self.parts])
+        return np.asarray((strains[:, None] * own).sum(axis=0) / strains.sum(axis=0))
+
     def log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Standard deviation of the log strain from the uncertainty of the pure fabrics' laws.
 
@@ -132,6 +146,19 @@ def _law_slopes(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Arr
     logs = np.log(_STRESSES)
     slopes = np.gradient(_log_strains(law, direction), logs)
     return np.asarray(np.interp(np.log(np.maximum(stress_n_per_mm, _STRESSES[0])), logs, slopes))
+
+
+def _law_shares(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
+    """(2, …) strain across, and strain at a held width, over a law's strain, from its table."""
+    at, logs = np.log(stress_n_per_mm), np.log(_STRESSES)
+    return np.array([np.interp(at, logs, shares) for shares in _shares(law, direction)])
+
+
+@lru_cache(maxsize=128)
+def _shares(law: ConstitutiveLaw, direction: Direction) -> Array:
+    free = np.exp(_log_strains(law, direction))
+    across = free_transverse_strains(law, direction, free)
+    return np.array([across, held_strains_at_stress(law, direction, _STRESSES)]) / free
 
 
 @lru_cache(maxsize=128)

@@ -80,12 +80,16 @@ class Patches:
         def mean(of: Callable[[Along], float]) -> float:
             return float(share @ [of(part) for part in parts])
 
-        response, stiff, soft = (
+        def across(stress: ArrayLike) -> Array:
+            return np.tensordot(share, [part.across(stress) for part in parts], axes=1)
+
+        response, stiff, soft, held = (
             self._response(direction, kind)
             for kind in (
                 lambda along: along.response,
                 lambda along: along.stiff,
                 lambda along: along.soft,
+                lambda along: along.held,
             )
         )
         modulus = response.modulus_n_per_mm
@@ -93,6 +97,8 @@ class Patches:
             response,
             stiff,
             soft,
+            across,
+            held,
             poisson=mean(lambda part: part.poisson),
             poisson_sd=mean(lambda part: part.poisson_sd),
             relaxed_mm=mean(lambda part: part.relaxed_mm),

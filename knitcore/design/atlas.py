@@ -25,11 +25,14 @@ from knitcore.fabric import Direction
 
 Array = NDArray[np.float64]
 
-FORMAT = 3
+FORMAT = 4
 MAXIMUM_BYTES = 50_000_000
 
 STRESS_N_PER_MM: Array = np.array(
-    [0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5]
+    [
+        *(0.0, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.075),
+        *(0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 2.0),
+    ]
 )
 """Stresses at which an atlas keeps the strains."""
 
@@ -61,11 +64,15 @@ class Entry:
     ----------
     values : one of each of :data:`VALUES`.
     strains : course-wise and then wale-wise strains at ``STRESS_N_PER_MM``.
+    across : strains across those pulls.
+    held : strains at the same stresses while the width is held.
     provenance : where the law comes from.
     """
 
     values: tuple[float, ...]
     strains: tuple[float, ...]
+    across: tuple[float, ...]
+    held: tuple[float, ...]
     provenance: str
 
 
@@ -80,6 +87,8 @@ class Atlas:
     keys : the repeats (see :attr:`~knitcore.chart.StitchChart.key`).
     values : (repeats, len(VALUES)).
     strains : (repeats, 2, stresses), course-wise and wale-wise, at ``STRESS_N_PER_MM``.
+    across : strains across those pulls, of the same shape.
+    held : strains at the same stresses while the width is held, of the same shape.
     provenance : where each repeat's law comes from.
     """
 
@@ -88,18 +97,22 @@ class Atlas:
     keys: tuple[str, ...]
     values: Array
     strains: Array
+    across: Array
+    held: Array
     provenance: tuple[str, ...]
 
     @classmethod
     def of_entries(cls, material: str, fingerprint: str, entries: Mapping[str, Entry]) -> Atlas:
         """A table of entries by key."""
-        found = entries.values()
+        found, shape = entries.values(), (-1, 2, len(STRESS_N_PER_MM))
         return cls(
             material=material,
             fingerprint=fingerprint,
             keys=tuple(entries),
             values=np.array([e.values for e in found]).reshape(-1, len(VALUES)),
-            strains=np.array([e.strains for e in found]).reshape(-1, 2, len(STRESS_N_PER_MM)),
+            strains=np.array([e.strains for e in found]).reshape(shape),
+            across=np.array([e.across for e in found]).reshape(shape),
+            held=np.array([e.held for e in found]).reshape(shape),
             provenance=tuple(e.provenance for e in found),
         )
 
@@ -122,7 +135,7 @@ class Atlas:
     def strain_at(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Strain of every repeat at a stress (N/mm), one for all or one each.
 
-        NaN beyond the last stress of the table, 0.5 N/mm.
+        NaN beyond the last stress of the table, 2 N/mm.
         """
         wanted = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
         curves = self.strains[:, direction.axis]
@@ -130,21 +143,19 @@ class Atlas:
             shape = PchipInterpolator(STRESS_N_PER_MM, curves, axis=1, extrapolate=False)
             found: Array = shape(float(wanted[0]))
             return found
-        each = [
-            PchipInterpolator(STRESS_N_PER_MM, curve, extrapolate=False)(stress)
-            for curve, stress in zip(curves, wanted, strict=True)
-        ]
-        return np.array(each, dtype=float)
+        return _each(curves, wanted)
 
     def stress_at(self, direction: Direction, strain: float) -> Array:
         """Stress (N/mm) of every repeat at a strain, free across; NaN beyond the table."""
-        # A curve at its lock-up hardly grows any more; an inverse needs it to grow.
-        rising = np.maximum.accumulate(self.strains[:, direction.axis], axis=1)
-        rising = rising + 1e-9 * np.arange(len(STRESS_N_PER_MM))
-        stresses = [
-            PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain) for curve in rising
-        ]
-        return np.array(stresses, dtype=float)
+        return _stresses(self.strains[:, direction.axis], strain)
+
+    def held_stress_at(self, direction: Direction, strain: float) -> Array:
+        """Stress (N/mm) of every repeat at a strain, the width held; NaN beyond the table."""
+        return _stresses(self.held[:, direction.axis], strain)
+
+    def across_at(self, direction: Direction, stress_n_per_mm: Array) -> Array:
+        """Strain across a pull by stresses (N/mm), one of each repeat; NaN beyond the table."""
+        return _each(self.across[:, direction.axis], stress_n_per_mm)
 
     def index_of(self, repeat: StitchChart) -> int | None:
         """Where a repeat stands, whichever of its images is given; None if it is not here."""
@@ -169,11 +180,17 @@ class Atlas:
         rows = zip(
             self.keys,
             self.values.tolist(),
-            self.strains.reshape(len(self), -1).tolist(),
+            *(
+                curves.reshape(len(self), -1).tolist()
+                for curves in (self.strains, self.across, self.held)
+            ),
             self.provenance,
             strict=True,
         )
-        return {key: Entry(tuple(v), tuple(s), source) for key, v, s, source in rows}
+        return {
+            key: Entry(tuple(values), tuple(strains), tuple(across), tuple(held), source)
+            for key, values, strains, across, held, source in rows
+        }
 
     def only(self, keys: tuple[str, ...]) -> Atlas:
         """The atlas of some of the repeats, in that order."""
@@ -185,6 +202,25 @@ class Atlas:
     @cached_property
     def _index(self) -> dict[str, int]:
         return {key: k for k, key in enumerate(self.keys)}
+
+
+def _each(curves: Array, stress_n_per_mm: Array) -> Array:
+    """Each curve of strains at its own stress."""
+    found = [
+        PchipInterpolator(STRESS_N_PER_MM, curve, extrapolate=False)(stress)
+        for curve, stress in zip(curves, stress_n_per_mm, strict=True)
+    ]
+    return np.array(found, dtype=float)
+
+
+def _stresses(curves: Array, strain: float) -> Array:
+    """Stress at a strain by each curve of strains."""
+    # A curve at its lock-up hardly grows any more; an inverse needs it to grow.
+    rising = np.maximum.accumulate(curves, axis=1) + 1e-9 * np.arange(len(STRESS_N_PER_MM))
+    found = [
+        PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain) for curve in rising
+    ]
+    return np.array(found, dtype=float)
 
 
 def save_atlas(atlas: Atlas, file: Path) -> None:
@@ -201,6 +237,8 @@ def save_atlas(atlas: Atlas, file: Path) -> None:
                 keys=np.array(atlas.keys, dtype=np.str_),
                 values=atlas.values,
                 strains=atlas.strains.astype(np.float32),
+                across=atlas.across.astype(np.float32),
+                held=atlas.held.astype(np.float32),
                 provenance=np.array(atlas.provenance, dtype=np.str_),
             )
         Path(name).replace(file)
@@ -230,6 +268,8 @@ def load_atlas(file: Path) -> Atlas:
                 keys=tuple(data["keys"].tolist()),
                 values=data["values"],
                 strains=data["strains"].astype(float),
+                across=data["across"].astype(float),
+                held=data["held"].astype(float),
                 provenance=tuple(data["provenance"].tolist()),
             )
     except Exception:  # a damaged archive fails in many ways: zlib, zipfile, numpy's own header
@@ -239,7 +279,11 @@ def load_atlas(file: Path) -> Atlas:
             ) from None
         raise InputError("atlas", f"{file.name} holds no atlas.", "Build it again.") from None
     rows = len(atlas.keys)
-    shapes = (rows, len(VALUES)), (rows, 2, len(STRESS_N_PER_MM))
-    if (atlas.values.shape, atlas.strains.shape) != shapes or len(atlas.provenance) != rows:
+    curves = {atlas.strains.shape, atlas.across.shape, atlas.held.shape}
+    if (
+        atlas.values.shape != (rows, len(VALUES))
+        or curves != {(rows, 2, len(STRESS_N_PER_MM))}
+        or len(atlas.provenance) != rows
+    ):
         raise InputError("atlas", f"{file.name} is damaged.", "Build it again.")
     return atlas

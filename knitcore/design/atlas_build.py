@@ -17,7 +17,7 @@ from knitcore.answer.answer import Answer
 from knitcore.answer.choose import choose
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
-from knitcore.design.atlas import STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
+from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
 from knitcore.errors import InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
@@ -127,13 +127,19 @@ def entry_of(answer: Answer) -> Entry:
         course.relaxed_mm,
         wale.relaxed_mm,
     )
-    strains = np.concatenate([along.strain(STRESS_N_PER_MM) for along in (course, wale)])
-    kept = strains.astype(np.float32).tolist()  # as a file keeps them
-    return Entry(values, tuple(kept), answer.provenance.value)
+    strains, across, held = (
+        tuple(np.concatenate(both).astype(np.float32).tolist())  # as a file keeps them
+        for both in (
+            [along.strain(STRESS_N_PER_MM) for along in (course, wale)],
+            [along.across_strain(STRESS_N_PER_MM) for along in (course, wale)],
+            [along.held_strain(STRESS_N_PER_MM) for along in (course, wale)],
+        )
+    )
+    return Entry(values, strains, across, held, answer.provenance.value)
 
 
 def material_fingerprint(material: Material) -> str:
-    """A hash of the laws and the learned model that the predictions of a material depend on."""
+    """A hash of the laws and the learned model that an atlas of a material depends on."""
     content = {
         str(fabric): [
             asdict(record.law),
@@ -144,7 +150,7 @@ def material_fingerprint(material: Material) -> str:
         ]
         for fabric, record in sorted(material.fabrics.items())
     }
-    text = json.dumps([material.identifier, content], sort_keys=True, default=str)
+    text = json.dumps([FORMAT, material.identifier, content], sort_keys=True, default=str)
     digest = hashlib.sha256(text.encode())
     digest.update(files("knitcore.answer").joinpath("data/learned.npz").read_bytes())
     return digest.hexdigest()[:24]
@@ -177,7 +183,10 @@ def parts_folder(file: Path) -> Path:
 
 def _entry(document: dict[str, Any]) -> Entry:
     """A row from JSON."""
-    return Entry(tuple(document["values"]), tuple(document["strains"]), document["provenance"])
+    values, strains, across, held = (
+        tuple(document[name]) for name in ("values", "strains", "across", "held")
+    )
+    return Entry(values, strains, across, held, document["provenance"])
 
 
 def _three(value: float, interval: Interval) -> tuple[float, float, float]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from knitcore.design.atlas import Atlas
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.mechanics.pressure import MMHG_PER_KPA
+from knitcore.mechanics.pressure import LEAST_LENGTH, MMHG_PER_KPA
 
 Array = NDArray[np.float64]
 
@@ -198,13 +198,10 @@ def _pressures_mmhg(atlas: Atlas, direction: Direction, limb: Limb) -> tuple[Arr
     """Pressures of a tube, the lower and the higher of axially free and axially fixed.
 
     As :func:`knitcore.mechanics.pressure.limb_pressure`, with the repeats' curves: free across,
-    the tube shortens by Poisson's ratio times the strain; fixed, its linear part is stiffer by
-    1 / (1 - nu_xy nu_yx).
+    the tube shortens; fixed, its width is held.
     """
-    strain = limb.strain
-    free = atlas.stress_at(direction, strain)
-    both = np.clip(atlas.column("poisson_yx") * atlas.column("poisson_xy"), 0.0, 0.95)
-    fixed = free + atlas.modulus(direction) * strain * both / (1 - both)
-    shortened = free / np.maximum(1 - atlas.poisson(direction) * strain, 0.05)
+    free = atlas.stress_at(direction, limb.strain)
+    fixed = atlas.held_stress_at(direction, limb.strain)
+    shortened = free / np.maximum(1 + atlas.across_at(direction, free), LEAST_LENGTH)
     to_mmhg = 2 * math.pi / limb.worn_mm * 1000.0 * MMHG_PER_KPA
     return np.minimum(shortened, fixed) * to_mmhg, np.maximum(shortened, fixed) * to_mmhg

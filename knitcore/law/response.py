@@ -1,4 +1,4 @@
-"""Stretch of a sheet under stress along one direction while the other is free.
+"""Stretch of a sheet under stress along one direction, the other free or held.
 
 Every response, whatever its source, has a modulus and gives the strain at a stress.
 """
@@ -13,7 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.law.uniaxial import (
+    free_strains_at_stress,
+    free_transverse_strains,
+    held_strains_at_stress,
+)
 
 Array = NDArray[np.float64]
 
@@ -23,7 +27,7 @@ class Response(Protocol):
 
     @property
     def modulus_n_per_mm(self) -> float:
-        """Young's modulus at zero stress."""
+        """Stress over strain at zero stress."""
         ...
 
     def strain(self, stress: ArrayLike) -> Array:
@@ -33,7 +37,7 @@ class Response(Protocol):
 
 @dataclass(frozen=True)
 class LawResponse:
-    """The response of a constitutive law."""
+    """The response of a constitutive law, free across the pull."""
 
     law: ConstitutiveLaw
     direction: Direction
@@ -46,6 +50,27 @@ class LawResponse:
     def strain(self, stress: ArrayLike) -> Array:
         """Strains at stresses (N/mm)."""
         return free_strains_at_stress(self.law, self.direction, stress)
+
+    def across(self, stress: ArrayLike) -> Array:
+        """Strains across the pull at stresses (N/mm)."""
+        return free_transverse_strains(self.law, self.direction, self.strain(stress))
+
+
+@dataclass(frozen=True)
+class HeldLawResponse:
+    """The response of a constitutive law whose width is held."""
+
+    law: ConstitutiveLaw
+    direction: Direction
+
+    @property
+    def modulus_n_per_mm(self) -> float:
+        """Stiffness of the law."""
+        return float(self.law.stiffness[self.direction.axis, self.direction.axis])
+
+    def strain(self, stress: ArrayLike) -> Array:
+        """Strains at stresses (N/mm)."""
+        return held_strains_at_stress(self.law, self.direction, stress)
 
 
 @dataclass(frozen=True)

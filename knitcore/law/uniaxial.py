@@ -57,7 +57,7 @@ def uniaxial_response(
     across = (
         np.zeros_like(axial)
         if transverse is Transverse.FIXED
-        else _free_strains(law, direction, axial, form)
+        else free_transverse_strains(law, direction, axial, form)
     )
     pair = (axial, across) if direction is Direction.COURSE else (across, axial)
     stress = law.stress(pair[0], pair[1], form)[direction.axis]
@@ -129,6 +129,32 @@ def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
     return result
 
 
+def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
+    """Axial strains of the full law at many stresses (N/mm, at least 0), the width held.
+
+    The same as :func:`strain_at_stress` with ``Transverse.FIXED``, all at once.
+
+    Raises
+    ------
+    InputError
+        If a stress is negative or not a number.
+    """
+    wanted = np.asarray(stress, dtype=float)
+    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
+        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+    axis = direction.axis
+    low, high = np.zeros_like(wanted), wanted / law.stiffness[axis, axis]
+    high = np.minimum(high, law.lock_up_strain(direction))
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        carried = law.stress(*((middle, 0.0) if axis == 0 else (0.0, middle)))[axis]
+        low, high = (
+            np.where(carried < wanted, middle, low),
+            np.where(carried < wanted, high, middle),
+        )
+    return np.asarray((low + high) / 2)
+
+
 def _by_newton(
     law: ConstitutiveLaw, direction: Direction, stress: Array, low: Array, high: Array
 ) -> Array:
@@ -136,7 +162,7 @@ def _by_newton(
     along, across = direction.axis, direction.other.axis
     strain = np.minimum(high, 0.5 * law.lock_up_strain(direction))
     for _ in range(_NEWTON_STEPS):
-        other = _free_strains(law, direction, strain, StiffeningForm.FULL)
+        other = free_transverse_strains(law, direction, strain)
         pair = (strain, other) if along == 0 else (other, strain)
         excess = law.stress(*pair)[along] - stress
         tangent = law.tangent(*pair)
@@ -174,10 +200,13 @@ def check_below_lock_up(
         )
 
 
-def _free_strains(
-    law: ConstitutiveLaw, direction: Direction, axial: Array, form: StiffeningForm
+def free_transverse_strains(
+    law: ConstitutiveLaw,
+    direction: Direction,
+    axial: Array,
+    form: StiffeningForm = StiffeningForm.FULL,
 ) -> Array:
-    """Transverse strains at which the transverse stress vanishes."""
+    """Transverse strains at which the transverse stress vanishes, at axial strains that exist."""
     ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
     linear = -ratio * axial
     if form is StiffeningForm.PUBLISHED:

@@ -31,6 +31,8 @@ NEAR_LOCK_UP = 0.8
 TESTED_SHARE = 0.7
 """Share of the lock-up strain that stretch tests typically reach (0.6 to 0.8 in the paper's)."""
 MAXIMUM_CIRCUMFERENCE_MM = 5000.0
+LEAST_LENGTH = 0.05
+"""Share of its length that an axially free tube keeps at least: laws are not meant for less."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +196,7 @@ def _tension(
 ) -> float:
     """Hoop tension per worn length (N/mm)."""
     curve = uniaxial_response(law, direction, strain, transverse=transverse)
-    return float(curve.stress[0] / (1 + curve.transverse_strain[0]))
+    return float(curve.stress[0] / max(1 + curve.transverse_strain[0], LEAST_LENGTH))
 
 
 def _tensions(law: ConstitutiveLaw, direction: Direction, strain: float) -> tuple[Interval, float]:

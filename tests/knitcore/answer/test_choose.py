@@ -13,6 +13,8 @@ from knitcore.answer.answer import Source
 from knitcore.answer.patches import patches_of
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import Transverse
+from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import Laws, load_library, load_variants, material
 
 ALL = {**load_library(Laws.PUBLISHED), **load_variants(Laws.PUBLISHED)}
@@ -32,6 +34,37 @@ def test_pure_fabrics_have_their_table_values(identifier):
         expected = Source.SWEPT if simulated else Source.MEASURED
         assert found.provenance is expected
         assert found.relaxed_course_mm == record.stitch_course_mm
+
+
+@pytest.mark.parametrize("direction", Direction)
+@pytest.mark.parametrize("fabric", Fabric)
+def test_a_held_pure_fabric_is_its_law(fabric, direction):
+    acrylic = material("acrylic")
+    along = predict(StitchChart.of_fabric(fabric, 4, 4), acrylic).along(direction)
+    law = acrylic.law(fabric)
+    strain = np.array([0.02, 0.4, 0.7]) * law.lock_up_strain(direction)
+    held = uniaxial_response(law, direction, strain, transverse=Transverse.FIXED)
+    np.testing.assert_allclose(along.held_stress(strain), held.stress, rtol=0.01)
+    free = uniaxial_response(law, direction, strain)
+    np.testing.assert_allclose(along.across_strain(free.stress), free.transverse_strain, rtol=1e-6)
+
+
+@pytest.mark.parametrize("direction", Direction)
+@pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KKPP/KKPP/PPKK/PPKK"])
+def test_a_held_mixed_chart_is_stiffer_and_of_one_mind_in_patches(text, direction):
+    """The whole piece in patches as the repeat, within 15 %."""
+    repeat, acrylic = StitchChart.parse(text), material("acrylic")
+    cut = repeat.resized(40, 40).purl.copy()
+    cut[0, 0] ^= True  # one stitch off, so that it does not repeat
+    one, many = (predict(c, acrylic).along(direction) for c in (repeat, StitchChart(cut)))
+    stress = np.array([0.005, 0.05, 0.2])
+    for along in (one, many):
+        assert np.all(along.held_strain(stress) < along.strain(stress))
+        assert along.held.modulus_n_per_mm > along.modulus_n_per_mm
+    np.testing.assert_allclose(many.held_strain(stress), one.held_strain(stress), rtol=0.15)
+    np.testing.assert_allclose(many.across_strain(stress), one.across_strain(stress), rtol=0.15)
+    first = one.across_strain(1e-5) / one.strain(1e-5)
+    assert -first == pytest.approx(one.poisson, abs=0.02)
 
 
 def test_sources_are_labelled_by_the_rule():

@@ -11,7 +11,11 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation, Transverse
 from knitcore.law.stiffening import EXTENSION_START, StiffeningForm, stiffening
-from knitcore.law.uniaxial import strain_at_stress, uniaxial_response
+from knitcore.law.uniaxial import (
+    held_strains_at_stress,
+    strain_at_stress,
+    uniaxial_response,
+)
 from knitcore.materials import Laws, load_library, load_variants, material
 
 ROWS = [
@@ -143,6 +147,15 @@ def test_the_strain_at_a_stress_carries_it(law, direction, transverse, stress):
     curve = uniaxial_response(law, direction, strain, transverse=transverse)
     assert curve.stress[0] == pytest.approx(stress, rel=1e-6)
     assert strain < law.lock_up_strain(direction)
+
+
+@given(laws, st.sampled_from(Direction))
+def test_many_strains_at_a_held_width_are_those_of_single_stresses(law, direction):
+    stresses = [0.0, 1e-3, 0.1, 1.0]
+    single = [strain_at_stress(law, direction, s, transverse=Transverse.FIXED) for s in stresses]
+    np.testing.assert_allclose(
+        held_strains_at_stress(law, direction, stresses), single, rtol=1e-6, atol=1e-11
+    )
 
 
 @given(laws, st.sampled_from(Direction))
