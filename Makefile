@@ -1,4 +1,4 @@
-# Two commands do everything: `make serve` runs the tool, `make test` runs every test.
+# Two commands do everything: `make serve` runs the tool, `make test` runs the tests.
 # Set-up happens on the way and is skipped while its inputs have not changed.
 SHELL := /bin/bash
 PYTHON ?= python3
@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -47,9 +47,12 @@ serve: install   ## Run the tool and print its address
 	$(BIN)/knitcore serve
 
 # --- checking ---------------------------------------------------------------------------------
-test: $(VENV)/.installed-dev frontend-check page ## Run every test (browser tests install Chromium if missing)
+test: $(VENV)/.installed-dev frontend-check page ## Run the default suite (browser tests install Chromium if missing)
 	scripts/ensure-chromium
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
+
+test-slow: $(VENV)/.installed-dev ## Run the tests that compute for many seconds
+	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
 test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real PostgreSQL
 	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql

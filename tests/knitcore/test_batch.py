@@ -146,6 +146,7 @@ def slow_square(number: int) -> dict[str, int]:
     return square(number)
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_though_a_worker_is_killed(
     cluster: tuple[str, list["subprocess.Popen[str]"]],
 ) -> None:

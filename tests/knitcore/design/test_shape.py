@@ -35,6 +35,7 @@ def fill(width: np.ndarray, strain: float = 0.3, **options: Any) -> ShapedSwatch
     return fill_shape(width, 16, Direction.WALE, strain, ACRYLIC, ATLAS, **options)
 
 
+@pytest.mark.slow
 def test_the_outline_of_a_hidden_chart_is_found_again() -> None:
     wanted = outline(banded("seed", "stockinette", "garter"), 0.3)
     assert np.ptp(wanted) > 0.03
@@ -45,6 +46,7 @@ def test_the_outline_of_a_hidden_chart_is_found_again() -> None:
     assert found.force_n > 0
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_chart() -> None:
     wanted = 1 - 0.08 * np.sin(np.linspace(0, np.pi, 16))
     assert fill(wanted, seed=4).chart == fill(wanted, seed=4).chart

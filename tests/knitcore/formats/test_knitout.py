@@ -24,6 +24,7 @@ def test_the_machine_knits_the_chart(finish: Finish, chart: StitchChart) -> None
 
 @settings(max_examples=40, deadline=None)
 @given(piece=pieces(most_rows=6, most_columns=8), finish=st.sampled_from(Finish))
+@pytest.mark.slow
 def test_the_machine_knits_outlines_and_colours(piece: Piece, finish: Finish) -> None:
     try:
         program = verified(piece, finish=finish)

@@ -167,6 +167,7 @@ def test_files_that_are_no_photos(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         load_grey(big)
 
 
+@pytest.mark.slow
 def test_the_studys_photos(study_data: Path) -> None:
     """20 photos of acrylic yarn; published 45.15 ± 5.96, by another tracing 47.3 ± 10.4."""
     photos = sorted((study_data / "bending").glob("*_*.jpg"))

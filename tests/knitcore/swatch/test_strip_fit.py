@@ -43,6 +43,7 @@ def made_strip(
 @pytest.mark.parametrize(
     "sizes", [EVEN, pytest.param(CLAMPED, marks=pytest.mark.slow)], ids=["even", "clamped"]
 )
+@pytest.mark.slow
 def test_a_law_comes_back_from_strips_that_it_made(
     sizes: dict[Direction, tuple[float, float | None]],
 ) -> None:

@@ -59,6 +59,7 @@ def test_contact_takes_over_along_the_wale_of_cotton_garter():
     assert 0.6 < curve.contact_overtakes_at_strain < 1.0
 
 
+@pytest.mark.slow
 def test_acrylic_seed_buckles_along_the_wale():
     # paper, "Instability in acrylic seed": at a strain of about 0.8
     curve = stretch("acrylic", "seed", "wale", 0.91, 14)
@@ -69,6 +70,7 @@ def test_acrylic_seed_buckles_along_the_wale():
     assert curve.contact_share[after] < curve.contact_share[after - 1]
 
 
+@pytest.mark.slow
 def test_quenched_slides_keep_their_lengths_and_stiffen_seed():
     known = sample("acrylic", "seed")
     stitch = Stitch(known.fabric, known.yarn)
