@@ -1,8 +1,9 @@
 """Laws of the paper's yarns refitted clamp to clamp, as packaged data (``data/refitted.csv``).
 
 The paper takes strain between the middle of the sample and the lower clamp; from clamp to clamp it
-is smaller. Acrylic's four fabrics are refitted from the authors' raw tests. For the other yarns
-the difference found for acrylic is applied. ``scripts/refit_laws.py`` writes the file;
+is smaller. Acrylic's four fabrics are refitted from the authors' raw tests. Cotton, pulled on the
+same rig, is converted by the ratio found there. The lace and glove yarns were pulled on a testing
+machine, clamp to clamp: their laws stay. ``scripts/refit_laws.py`` writes the file;
 ``docs/fit-a-law.md`` says how far it can be trusted.
 """
 

@@ -2,30 +2,23 @@
 
 A published law gives stress over the strain between the middle of the sample and the lower clamp,
 which is ``r`` times the strain from clamp to clamp, and Poisson ratios from straight lines, which
-overstate the waist. :class:`ClampCorrection` measures both effects on raw tests.
-:func:`carried_strip` converts a published law to the test as measured between the clamps, which
-:func:`knitcore.swatch.strip_fit.fit_strips` can fit again.
+overstate the waist. :class:`ClampCorrection` measures both effects on raw tests, and
+:func:`converted` applies them to a law without raw tests.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import strain_at_stress, uniaxial_response
 from knitcore.measure.stretch_test import StretchTest
-from knitcore.swatch.strip_fit import LEVELS, MeasuredStrip
 
-LARGEST_STRESS_N_PER_MM = 0.25
-"""About where the authors' tests end (30 N)."""
-LOCK_UP_SHARE = 0.95
-WAIST_NOISE = 0.06
-"""Error of a waist computed from published Poisson ratios: these are slopes of straight lines, for
-samples of unknown size."""
+_LEAST_HELD = 0.05
+"""Of 1 - nu_xy nu_yx, so that a converted law stays stable."""
 
 
 @dataclass(frozen=True)
@@ -64,32 +57,23 @@ def _median(values: Iterable[float]) -> float:
     return float(np.median(list(values)))
 
 
-def carried_strip(
-    law: ConstitutiveLaw,
-    direction: Direction,
-    size_mm: tuple[float, float],
-    correction: ClampCorrection,
-) -> MeasuredStrip:
-    """The test behind a published law, as measured between the clamps.
+def converted(law: ConstitutiveLaw, correction: ClampCorrection) -> ConstitutiveLaw:
+    """A published law, over the strain between the clamps.
 
-    Parameters
-    ----------
-    law : as published.
-    direction : of the pull.
-    size_mm : clamped width and distance of the clamps.
-    correction : to apply.
+    With the published strain r times the one between the clamps, sigma_p(r e) = sigma(e): Young's
+    moduli and alpha are r times as large, and beta stays. The waist at that strain is the
+    published one times the waist's ratio.
     """
-    top = min(
-        strain_at_stress(law, direction, LARGEST_STRESS_N_PER_MM),
-        LOCK_UP_SHARE * law.lock_up_strain(direction),
-    )
-    published = np.linspace(0.08, 1.0, LEVELS) * top
-    curve = uniaxial_response(law, direction, published)
-    return MeasuredStrip(
-        direction,
-        *size_mm,
-        strain=published / correction.strain_ratio,
-        stress_n_per_mm=curve.stress[None],
-        waist=correction.waist_ratio * curve.transverse_strain[None],
-        waist_noise=WAIST_NOISE,
+    strain, waist = correction.strain_ratio, correction.strain_ratio * correction.waist_ratio
+    yx, xy = waist * law.poisson_yx, waist * law.poisson_xy
+    held = max(1.0 - yx * xy, _LEAST_HELD)
+    stiffness_xx, stiffness_yy = (strain * law.modulus(d) / held for d in Direction)
+    return replace(
+        law,
+        stiffness_xxxx=stiffness_xx,
+        stiffness_yyyy=stiffness_yy,
+        stiffness_xxyy=xy * stiffness_xx,
+        stiffness_yyxx=yx * stiffness_yy,
+        alpha_xx=strain * law.alpha_xx,
+        alpha_yy=strain * law.alpha_yy,
     )

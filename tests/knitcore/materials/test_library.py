@@ -132,11 +132,13 @@ def test_refitted_laws_stand_beside_the_published_ones(identifier):
         new, old = refitted.record(fabric), published.record(fabric)
         assert new.printed == old.printed
         assert new.law != old.law
-        assert new.law.is_symmetric
-        assert "clamp to clamp" in new.law_source
+        assert "clamp" in new.law_source
+        converted = identifier in ("acrylic", "cotton")  # the others were measured clamp to clamp
         for direction in Direction:
-            told = new.uncertainty.curve(direction)
-            assert (told.log_strain > 0) == (identifier != "acrylic")
+            same = math.isclose(
+                new.law.modulus(direction), old.law.modulus(direction), rel_tol=1e-3
+            )
+            assert same != converted
 
 
 def test_an_identifier_can_name_its_laws():
