@@ -122,7 +122,8 @@ class _Options:
         if "regions" in fields and size is None and Path(chart).suffix:
             from app.operations.import_ import design_in
 
-            return {name: value for name, value in design_in(Path(chart)) if name in fields}
+            held = design_in(Path(chart))
+            return {name: value for name, value in held if name in fields and value is not None}
         if chart.lower() in set(Fabric):
             if size is None and IS_REPEAT in self._fields["chart"].metadata:
                 return {"chart": fabric_repeat(Fabric.parse(chart)).text}

@@ -181,7 +181,7 @@ class ClusterPlace:
         except (KilledWorker, CancelledError, OSError, TimeoutError) as error:
             log.warning("a job was lost on the cluster: %s", error)
             lost: Exception = WorkerDiedError("The machine of this computation was lost.")
-            if self.worker is None:
+            if self.worker is None and not isinstance(error, KilledWorker):
                 lost = NotBegunError("The cluster lost this computation before it began.")
             done.set_exception(lost)
         except Exception as error:

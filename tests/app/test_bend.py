@@ -33,7 +33,7 @@ def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
 def test_states_that_differ_much_are_told() -> None:
     bent = bend(BendRequest(chart="P\nK", material="cotton"), Context(Path()))
     assert not bent.stable
-    assert any("a range, not a figure" in note for note in bent.notes)
+    assert any("treat it as a range" in note for note in bent.notes)
 
 
 def test_a_repeat_too_large_to_bend_is_refused(client: TestClient) -> None:

@@ -124,12 +124,12 @@ def test_one_yarn_has_to_be_named(body: dict[str, object]) -> None:
     [
         (["--loop-lengths", "12"], "missing"),
         (["cotton", "cotton"], "twice"),
-        (["cotton", "--loop-lengths", "twelve"], "no list of numbers"),
+        (["cotton", "--loop-lengths", "twelve"], "not a list of numbers"),
         (["cotton", "--fabrics", "tweed"], "tweed"),
         (["--yarn", "mine", "--loop-lengths", "12"], "bending_modulus_n_mm2"),
         (YARN, "none is given"),
         ([*YARN[:-1], "0.7", "--loop-lengths", "12"], "not inside the yarn"),
-        (["cotton", "--scheduler", "somewhere"], "no address"),
+        (["cotton", "--scheduler", "somewhere"], "not an address"),
     ],
 )
 def test_what_cannot_work_is_refused(arguments: list[str], words: str, tmp_path: Path) -> None:

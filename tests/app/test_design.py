@@ -16,7 +16,7 @@ from app.results.atlases import repeats_of
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
 
-WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.223, "tolerance": 0.05, "weight": 1.0}
+WISH = {"quantity": "modulus_course_n_per_mm", "value": 0.135, "tolerance": 0.05, "weight": 1.0}
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_rest_and_command_line_find_the_same(
         "--atlas",
         str(atlas[0]),
         "--target",
-        "course=0.223~5%*1",
+        "course=0.135~5%*1",
         "--count=3",
         "--json",
     ]
@@ -117,8 +117,8 @@ def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
 def test_wishes_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
     box = [[row, 0, 8] for row in range(8)]
     wishes = [
-        {"name": "palm", "runs": box, "modulus_course_n_per_mm": 0.223},
-        {"name": "back", "runs": [[row, 8, 8] for row in range(8)], "modulus_wale_n_per_mm": 0.75},
+        {"name": "palm", "runs": box, "modulus_course_n_per_mm": 0.135},
+        {"name": "back", "runs": [[row, 8, 8] for row in range(8)], "modulus_wale_n_per_mm": 0.48},
     ]
     request = {"material": "acrylic", "rows": 8, "columns": 16, "wishes": wishes}
     filled = client.post("/api/v1/fill", json=request)

@@ -137,7 +137,7 @@ def test_a_database_that_went_away_is_told_and_found_again(tmp_path: Path) -> No
 def test_settings_come_from_a_file_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "knitcore.toml"
     monkeypatch.setenv("KNITCORE_CONFIG", str(file))
-    with pytest.raises(InputError, match="no TOML"):
+    with pytest.raises(InputError, match="not a TOML"):
         Settings()
     file.write_text('port = 9001\nworkers = 3\nlog_format = "json"\n')
     monkeypatch.setenv("KNITCORE_WORKERS", "1")
@@ -146,7 +146,7 @@ def test_settings_come_from_a_file_too(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(ValueError, match="porrt"):
         Settings()
     file.write_text("not toml at all")
-    with pytest.raises(InputError, match="no TOML"):
+    with pytest.raises(InputError, match="not a TOML"):
         Settings()
 
 

@@ -113,7 +113,7 @@ def test_beyond_the_lock_up_the_limit_is_named(client: TestClient) -> None:
     result = CliRunner().invoke(main, ["stretch", *arguments, "--strain", "0.9", "--json"])
     assert result.exit_code == 2
     assert "locks up before that" in result.stderr
-    assert "Use at most 0.3" in result.stderr
+    assert "Use at most 0.44" in result.stderr
 
 
 def test_the_published_model_says_when_it_leaves_the_cloth_behind(client: TestClient) -> None:
