@@ -45,8 +45,8 @@ def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
 def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Shift+F")
     values = flat_studio.locator(".wish-value")
-    values.nth(0).fill("0.223")
-    values.nth(1).fill("0.056")
+    values.nth(0).fill("0.135")
+    values.nth(1).fill("0.079")
     flat_studio.click("#find-run")
     first = flat_studio.locator(".candidate").first
     expect(first).to_contain_text("garter")
@@ -61,8 +61,8 @@ def test_a_wish_fills_the_chart_as_one_step(flat_studio: Page) -> None:
     flat_studio.click("#fill-run")
     expect(flat_studio.locator("#inverse-fill-content")).to_contain_text("Nothing is wished for")
     flat_studio.click("#part-add")
-    flat_studio.fill("#part-0-course", "0.0100")
-    flat_studio.fill("#part-0-wale", "0.119")
+    flat_studio.fill("#part-0-course", "0.0136")
+    flat_studio.fill("#part-0-wale", "0.096")
     flat_studio.click("#fill-run")
     expect(flat_studio.locator("#fill-answer")).to_contain_text("within 10 % of it")
     assert kept_chart(flat_studio) == CHART

@@ -117,7 +117,7 @@ def test_a_wish_for_a_region_fills_it_alone(visitor: Page, service: str) -> None
     page = open_design(visitor, service, regions=[LEFT])
     page.keyboard.press("Shift+W")
     page.click("#part-regions")
-    fill_first_part(page, course="0.223", wale="0.056")  # garter's
+    fill_first_part(page, course="0.135", wale="0.079")  # garter's
     lines = kept_chart(page).split("\n")
     assert [line[6:] for line in lines] == [line[6:] for line in RIBBED.split("\n")]
     inner = {line[:5] for line in lines}
@@ -135,7 +135,7 @@ def test_a_wish_for_a_selection_fills_it_alone(visitor: Page, service: str) -> N
     page.keyboard.press("Shift+W")
     page.click("#part-add")
     expect(page.locator(".part-count")).to_have_text("48 sts")
-    fill_first_part(page, course="0.223", wale="0.056")
+    fill_first_part(page, course="0.135", wale="0.079")
     before, after = RIBBED.split("\n"), kept_chart(page).split("\n")
     outside = [line[:2] + line[8:] for line in after]
     assert outside == [line[:2] + line[8:] for line in before]

@@ -14,7 +14,7 @@ import { h } from "../../dom.js";
 const PAD = { left: 54, right: 14, top: 10, bottom: 40 };
 const NEAR_PX = 16;
 /** Repeats of the four fabrics, in the order of the palette. */
-const PURE = ["K", "K/P", "PK", "PK/KP"];
+const PURE = ["K", "P/K", "KP", "PK/KP"];
 const PURE_NAMES = ["stockinette", "garter", "1×1 rib", "seed"];
 
 /**
