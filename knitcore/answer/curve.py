@@ -62,8 +62,8 @@ def curve(
     --------
     >>> from knitcore.materials import material
     >>> wide = curve(StitchChart.parse("KKPP"), material("acrylic"), "course", [0.1])
-    >>> pure = curve(StitchChart.parse("KP"), material("acrylic"), "course", [0.1])
-    >>> bool(wide.strain[0] > pure.strain[0])
+    >>> flat = curve(StitchChart.parse("K"), material("acrylic"), "course", [0.1])
+    >>> bool(wide.strain[0] > flat.strain[0])
     True
     """
     stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))

@@ -79,7 +79,7 @@ def stitch_table(material: Material) -> StitchTable:
     >>> from knitcore.materials import material
     >>> table = stitch_table(material("acrylic"))
     >>> round(float(table.modulus_course_n_per_mm[0b1100]), 3)  # garter: odd below and above
-    0.223
+    0.135
     """
     missing = np.full(4, np.nan)
     moduli, deviations, sizes = np.array([missing] * 2), np.array([missing] * 2), np.ones((2, 4))
@@ -203,7 +203,7 @@ def local_moduli(chart: StitchChart, material: Material, *, periodic: bool = Fal
     >>> from knitcore.materials import material
     >>> chart = StitchChart.parse("KKKPKPKP")
     >>> local_moduli(chart, material("acrylic")).modulus_course_n_per_mm.round(3)
-    array([[0.165, 0.165, 0.021, 0.01 , 0.01 , 0.01 , 0.01 , 0.01 ]])
+    array([[0.308, 0.308, 0.029, 0.014, 0.014, 0.014, 0.014, 0.014]])
     """
     codes = surroundings(chart, periodic=periodic)
     if not material.is_complete:
