@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -11,7 +10,7 @@ from pydantic import Field, create_model
 
 from app.models.base import RequestModel
 from app.operations.registry import Operation, operations
-from app.results.version import program_version
+from knitcore.yarnlibrary import fingerprint
 
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job
@@ -42,5 +41,9 @@ else:
 
 
 def content_key(kind: str, request: str) -> str:
-    """A key of everything that determines a result: kind, request, and this program."""
-    return hashlib.sha256(f"{program_version()}\0{kind}\0{request}".encode()).hexdigest()
+    """A key of everything that determines a result: the request, and the operation's code and data.
+
+    The first of a kind takes half a second.
+    """
+    module = KINDS[kind].run.__module__
+    return fingerprint.content_key({"kind": kind, "request": request}, (module,))

@@ -72,7 +72,7 @@ class JobRunner:
         UnavailableError
             If too many jobs of this owner wait.
         """
-        key = content_key(kind, request)
+        key = await asyncio.to_thread(content_key, kind, request)
         known = await asyncio.to_thread(self.store.knows, key)
         state = JobState.DONE if known else JobState.WAITING
         if not known:
@@ -187,7 +187,7 @@ class JobRunner:
                 timeout_s=self.timeout_s,
                 on_share=on_share,
             )
-            key = content_key(kind, request)
+            key = await asyncio.to_thread(content_key, kind, request)
             await self._keep(lambda: self.store.finish(job, kind, key, answer.body))
             log.info("job done", extra=extra)
         except asyncio.CancelledError:

@@ -8,17 +8,20 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from app.results.version import program_version
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint
 from knitcore.design.repeats import known_larger_repeats, repeats_up_to, striped_repeats
 from knitcore.errors import InputError
+from knitcore.yarnlibrary.fingerprint import code_version
 
 if TYPE_CHECKING:
     from app.operations.context import Context
 
 log = logging.getLogger("knitcore.atlas")
+
+DECIDING = ("knitcore.design.atlas_build", "knitcore.design.repeats")
+"""Modules whose code and data decide an atlas."""
 
 Extent = Literal["small", "all"]
 EXTENTS = "small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics."
@@ -38,7 +41,7 @@ def atlas_of(name: str, extent: Extent, context: Context) -> Atlas:
     key = f"{material.identifier}-{extent}-{material_fingerprint(material)}"
     built = _built()
     if key not in built:
-        file = cache_folder() / f"{key}-{program_version()[:8]}.npz"
+        file = cache_folder() / f"{key}-{code_version(*DECIDING)[:8]}.npz"
         repeats = repeats_of(extent)
         found = _load(file, len(repeats))
         if found is None:

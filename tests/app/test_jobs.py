@@ -19,7 +19,6 @@ from app.compute import compute as compute_module
 from app.compute.compute import Compute
 from app.compute.processes import processes
 from app.http.problems import NotFoundError, UnavailableError
-from app.jobs import kinds as kinds_module
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS
@@ -29,6 +28,7 @@ from app.main import create_app
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate
+from knitcore.yarnlibrary import fingerprint
 from tests.app.jobs import WORK, Wish, answers
 from tests.app.service import Service
 
@@ -165,14 +165,14 @@ def test_jobs_are_private_and_results_are_shared_by_content(
     asyncio.run(scenario())
 
 
-def test_results_of_another_program_are_not_taken_for_ones_own(
+def test_a_result_of_other_code_is_computed_again(
     database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
         runner = _runner(database, compute)
         first = await runner.submit("ada", "work", _wish("answer"))
         assert (await _ended(runner, first.id)).state is JobState.DONE
-        monkeypatch.setattr(kinds_module, "program_version", lambda: "the next one")
+        monkeypatch.setattr(fingerprint, "code_version", lambda *_: "the next one")
         again = await runner.again("ada", first.id)
         assert again.state is JobState.WAITING
         assert (await _ended(runner, again.id)).state is JobState.DONE
