@@ -15,24 +15,29 @@ help:            ## Show the targets
 
 # --- set-up -----------------------------------------------------------------------------------
 $(VENV)/.installed: requirements.lock pyproject.toml
-	$(PYTHON) scripts/check_python.py
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --editable .
-	touch $@
+	@$(PYTHON) scripts/check_python.py
+	@echo "Making $(VENV) …"
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "Installing Knitcore's packages …"
+	@scripts/install --require-hashes -r requirements.lock
+	@scripts/install --no-deps --editable .
+	@touch $@
 
 $(VENV)/.installed-dev: requirements-dev.lock $(VENV)/.installed
-	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
-	touch $@
+	@echo "Installing what the tests need …"
+	@scripts/install --require-hashes -r requirements-dev.lock
+	@touch $@
 
 frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
-	cd frontend && npm ci --no-audit --no-fund --loglevel=error
-	touch $@
+	@echo "Installing what bundles the page …"
+	@cd frontend && npm ci --no-audit --no-fund --loglevel=error >/dev/null
+	@touch $@
 
 # The page also runs as its sources: without Node, or without a way to its packages, it gets those.
 PAGE_SOURCES := $(shell find frontend \( -name node_modules -o -name dist -o -name tests \) -prune -o -type f -print)
 frontend/dist/index.html: $(PAGE_SOURCES)
-	@( $(MAKE) --no-print-directory frontend/node_modules/.installed && node frontend/build.mjs ) \
+	@( $(MAKE) --no-print-directory frontend/node_modules/.installed \
+		&& echo "Bundling the page …" && node frontend/build.mjs ) \
 		|| echo "The page could not be bundled (it needs Node 18 or newer): its sources are served instead."
 
 page: frontend/dist/index.html ## Bundle the page
@@ -43,8 +48,10 @@ wheel: page      ## Build dist/knitcore-….whl with the page in it
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
 # --- running ----------------------------------------------------------------------------------
-serve: install   ## Run the tool and print its address
-	$(BIN)/knitcore serve
+# Python's and Node's packages at once; OPTIONS="--port 8738" goes to `knitcore serve`
+serve:           ## Run the tool and print its address
+	@$(MAKE) --no-print-directory --silent -j 2 install
+	@$(BIN)/knitcore serve $(OPTIONS)
 
 # --- checking ---------------------------------------------------------------------------------
 test: $(VENV)/.installed-dev frontend-check page ## Run the default suite (browser tests install Chromium if missing)
@@ -107,7 +114,8 @@ stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--schedu
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-dev ## Pin the dependencies again
-	$(BIN)/pip install --quiet uv
+	echo uv | $(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --no-header \
+		--python-version 3.11 - -o requirements-uv.lock
 	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \
 		--extra service --extra cluster pyproject.toml -o requirements.lock
 	$(BIN)/uv pip compile --quiet --generate-hashes --no-emit-index-url --no-annotate --python-version 3.11 \

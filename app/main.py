@@ -36,6 +36,7 @@ from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate
+from app.version import VERSION
 from app.viewer import relay
 from app.viewer.views import Views
 
@@ -95,7 +96,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app = FastAPI(
         title="Knitcore",
         summary="Design the mechanics of knitted fabric, stitch by stitch.",
-        version="1",
+        version=VERSION,
         lifespan=lifespan,
         docs_url=None,  # FastAPI's pages ask other hosts for their scripts
         redoc_url=None,

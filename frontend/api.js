@@ -96,6 +96,9 @@ export async function fetched(path, { method = "GET", body, signal, headers = {}
 }
 
 export const api = {
+  /** @type {() => Promise<import("./types.js").VersionResult>} */
+  version: () => call("/version"),
+
   /** @type {() => Promise<{materials: import("./types.js").MaterialSummary[]}>} */
   materials: () => call("/materials"),
 

@@ -1923,6 +1923,14 @@ export interface VersionRequest {
   name: string;
 }
 
+/** The program behind the address. */
+export interface VersionResult {
+  /** Of the program, as `knitcore --version` says. */
+  version: string;
+  /** Of the REST API: the part of its addresses after /api/. */
+  api: string;
+}
+
 /** A kept state of a design. */
 export interface VersionSummary {
   /** From 1, oldest first. */

@@ -69,6 +69,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("knitcore")
     if name not in _HOMES:
         raise AttributeError(f"module 'knitcore' has no attribute {name!r}")
     module, _, home = _HOMES[name].rpartition(".")

@@ -41,15 +41,22 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     os.umask(0o077)  # files are readable by this user only
     configure_logging(settings.log_format)
     try:
-        with _prepared(settings):
-            _serve(settings, as_json=as_json)
+        with contextlib.closing(_listen(settings)) as listener:
+            address = _address(settings, listener)
+            with _prepared(settings, address):
+                click.echo(
+                    json.dumps({"url": address})
+                    if as_json
+                    else f"Knitcore is at {address}  (Ctrl+C stops it)"
+                )
+                _serve(settings, listener)
     except ServiceError as error:
         remedy = f" {error.remedy}" if error.remedy else ""
         raise click.ClickException(f"{error.detail}{remedy}") from error
 
 
 @contextlib.contextmanager
-def _prepared(settings: Settings) -> Iterator[None]:
+def _prepared(settings: Settings, address: str) -> Iterator[None]:
     """Lock and migrate the data, and report failed checks."""
     from app.doctor import examine
     from app.store.database import Database
@@ -58,7 +65,7 @@ def _prepared(settings: Settings) -> Iterator[None]:
 
     database = Database(settings.store_url)
     try:
-        with held(database, settings.process_name):
+        with held(database, settings.process_name, address):
             database.check_pages()
             migrate(database)
             for check in examine(settings).failed:
@@ -68,7 +75,7 @@ def _prepared(settings: Settings) -> Iterator[None]:
         database.close()
 
 
-def _serve(settings: Settings, *, as_json: bool) -> None:
+def _serve(settings: Settings, listener: socket.socket) -> None:
     import uvicorn
 
     from app.compute import memory
@@ -77,13 +84,6 @@ def _serve(settings: Settings, *, as_json: bool) -> None:
     from app.viewer.incoming import MOST_PICTURE_BYTES
 
     memory.keep_no_large_blocks()
-    listener = _listen(settings)
-    shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
-    name = f"[{shown}]" if ":" in shown else shown
-    address = f"http://{name}:{listener.getsockname()[1]}/"
-    click.echo(
-        json.dumps({"url": address}) if as_json else f"Knitcore is at {address}  (Ctrl+C stops it)"
-    )
     app = create_app(settings)
     door = Door(
         _raise_handles() - SPARE_HANDLES, settings.connections_per_address, settings.is_proxy
@@ -116,7 +116,7 @@ def _serve(settings: Settings, *, as_json: bool) -> None:
     )
     # uvicorn raises the signal again after a clean stop: end like any program, not killed by it
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
-    log.info("starts at %s", address)
+    log.info("starts at %s:%s", *listener.getsockname()[:2])
     with contextlib.suppress(KeyboardInterrupt):
         server.run(sockets=[listener])
     log.info("stopped")
@@ -132,6 +132,13 @@ def _raise_handles() -> int:
     return most
 
 
+def _address(settings: Settings, listener: socket.socket) -> str:
+    """What to type into a browser on this machine."""
+    shown = "127.0.0.1" if settings.host in ("0.0.0.0", "::") else settings.host  # noqa: S104
+    name = f"[{shown}]" if ":" in shown else shown
+    return f"http://{name}:{listener.getsockname()[1]}/"
+
+
 def _listen(settings: Settings) -> socket.socket:
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     # asyncio turns off Nagle's delay (40 ms an answer) only where the protocol is named
@@ -145,6 +152,8 @@ def _listen(settings: Settings) -> socket.socket:
         raise InputError(
             "port",
             f"{settings.host}:{settings.port} cannot be used ({error.strerror}).",
-            "Stop what listens there, or choose another with --port.",
+            "If it is a Knitcore that you started, open that address in a browser; otherwise stop "
+            "what listens there, or choose another port (--port 0 takes a free one; with make: "
+            "make serve OPTIONS='--port 0').",
         ) from error
     return listener

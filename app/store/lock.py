@@ -15,10 +15,16 @@ from knitcore.errors import InputError
 
 
 @contextlib.contextmanager
-def held(database: Database, process: str) -> Iterator[None]:
+def held(database: Database, process: str, at: str = "") -> Iterator[None]:
     """Keep the data to this process while the block runs.
 
     An SQLite file has one service; a PostgreSQL database has one of each name.
+
+    Parameters
+    ----------
+    database : the data.
+    process : name of this process.
+    at : its address, which a second one tells its user.
 
     Raises
     ------
@@ -27,31 +33,33 @@ def held(database: Database, process: str) -> Iterator[None]:
     StoreError
         If the database cannot be reached.
     """
-    with _of_file(database.lock_file) if database.is_sqlite else _of_server(database, process):
+    with _of_file(database.lock_file, at) if database.is_sqlite else _of_server(database, process):
         yield
 
 
 @contextlib.contextmanager
-def _of_file(file: Path) -> Iterator[None]:
+def _of_file(file: Path, at: str) -> Iterator[None]:
     handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
+            pid, _, address = _holder(handle).partition(" ")
+            known = f"Open {address} in a browser, or stop" if address else "Stop"
             raise InputError(
                 "data_dir",
-                f"{file.parent} is used by another service (process {_holder(handle)}).",
-                "Stop that one, set KNITCORE_DATA_DIR to another folder, or share PostgreSQL.",
+                f"{file.parent} is used by another service (process {pid}).",
+                f"{known} that one, set KNITCORE_DATA_DIR to another folder, or share PostgreSQL.",
             ) from None
         os.truncate(handle, 0)
-        os.pwrite(handle, str(os.getpid()).encode(), 0)
+        os.pwrite(handle, f"{os.getpid()} {at}".strip().encode(), 0)
         yield
     finally:
         os.close(handle)  # which unlocks it, as the end of a killed process does
 
 
 def _holder(handle: int) -> str:
-    return os.pread(handle, 20, 0).decode(errors="replace") or "unknown"
+    return os.pread(handle, 300, 0).decode(errors="replace") or "unknown"
 
 
 @contextlib.contextmanager

@@ -168,10 +168,11 @@ def _start(folder: Path) -> subprocess.CompletedProcess[str]:
 def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
     file = _database(tmp_path)
     database = Database(f"sqlite:///{file}")
-    with held(database, "main"):
+    with held(database, "main", "http://127.0.0.1:8737/"):
         done = _start(tmp_path)
         assert done.returncode == 2
         assert "another service (process" in done.stderr
+        assert "Open http://127.0.0.1:8737/ in a browser" in done.stderr
         assert "KNITCORE_DATA_DIR" in done.stderr
         with pytest.raises(InputError, match="another service"), held(database, "other"):
             pass

@@ -78,4 +78,5 @@ def test_a_port_in_use_is_told() -> None:
         )
     assert result.returncode == 2, result.stderr
     assert "cannot be used" in result.stderr
-    assert "--port" in result.stderr
+    assert "open that address in a browser" in result.stderr
+    assert "--port 0" in result.stderr

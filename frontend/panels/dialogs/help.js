@@ -1,6 +1,7 @@
 /** All keys and tools. */
 
 import { ACTIONS, shown } from "../../actions/registry.js";
+import { api } from "../../api.js";
 import { h } from "../../dom.js";
 import { TOOLS } from "../../tools/registry.js";
 import { dialog } from "../../widgets/dialog.js";
@@ -8,6 +9,7 @@ import { dialog } from "../../widgets/dialog.js";
 export function create() {
   const hints = new Map(TOOLS.map((tool) => [`tool-${tool.id}`, tool.hint]));
   const groups = [...new Set(ACTIONS.map(({ group }) => group))];
+  const version = h("p", { class: "muted" });
   const element = dialog(
     "help-dialog",
     "Keys and tools",
@@ -35,6 +37,11 @@ export function create() {
         ),
       ),
     ),
+    version,
   );
-  return () => element.showModal();
+  return async () => {
+    element.showModal();
+    const found = await api.version().catch(() => undefined); // not reached: nothing is said
+    if (found) version.replaceChildren(`Knitcore ${found.version} · `, h("a", { href: "/docs" }, "for programs"));
+  };
 }
