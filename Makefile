@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults fuzz lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -70,6 +70,9 @@ test-kill: $(VENV)/.installed-dev ## Kill the service 50 times while designs are
 
 test-faults: $(VENV)/.installed-dev ## Full disk, database away for 30 s, clients that vanish, workers that die
 	KNITCORE_OUTAGE_S=30 $(BIN)/pytest tests/app/test_faults.py tests/app/test_job_kinds.py tests/app/compute/test_cluster.py
+
+fuzz: $(VENV)/.installed-dev ## Send 10,000 requests with hostile fields to every operation
+	KNITCORE_FUZZ_REQUESTS=10000 $(BIN)/pytest -s tests/app/http/test_fuzz.py
 
 frontend-check: frontend/node_modules/.installed
 	cd frontend && npm run --silent check && npm run --silent test

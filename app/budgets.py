@@ -3,11 +3,25 @@
 from __future__ import annotations
 
 import contextlib
+import math
+import os
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from pydantic import BaseModel
+
+from app.http.identity import LOCAL_USER
 from app.http.problems import ServiceError
+from app.http.rate import RateLimit
+
+DAY_S = 86_400.0
+LEAST_S = 60.0
+"""Computing time that has come back when a user may compute again."""
+
+
+def _machine_bytes() -> int:
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
 @dataclass(frozen=True)
@@ -16,6 +30,11 @@ class Budgets:
 
     Attributes
     ----------
+    connections : requests and websockets that are open at once, where a login is asked for.
+    cpu_s : CPU seconds of computations in a day, where users have logins of their own; what was
+        used comes back evenly.
+    memory_bytes : memory of computations at work together, each counted with the limit of its
+        worker; by default that of the machine.
     views : 3D views kept open; the longest unwatched one makes room for the next.
     watchers : browsers that show views.
     streams : event streams followed, of jobs and of views.
@@ -27,6 +46,9 @@ class Budgets:
     kept_bytes : designs and their versions together.
     """
 
+    connections: int = 128
+    cpu_s: float = 12 * 3_600.0
+    memory_bytes: int = field(default_factory=_machine_bytes)
     views: int = 16
     watchers: int = 32
     streams: int = 32
@@ -41,11 +63,69 @@ class Budgets:
 BUDGETS = Budgets()
 
 
+class Use(BaseModel):
+    """How much of a limit is used."""
+
+    used: float
+    most: float
+
+
 class OverBudgetError(ServiceError):
     """A limit of the user is reached."""
 
     status, type, title = 429, "too many", "You have as many as one user may"
     default_remedy = "Close one you do not need."
+
+    @classmethod
+    def of(cls, what: str, held: int, most: int) -> OverBudgetError:
+        """All of them are held."""
+        return cls(f"You have {held} of {most} {what}.", field=what)
+
+
+class SpentError(OverBudgetError):
+    """The user's computing time of the day is spent."""
+
+    title = "Your computing time is spent"
+
+    def __init__(self, most_s: float, wait_s: float) -> None:
+        wait = math.ceil(wait_s)
+        super().__init__(
+            f"Your computations have used the {most_s / 3600:g} h of computing time of a day.",
+            field="cpu_s",
+            remedy=f"Try again in {math.ceil(wait / 60)} min, or start a job, which waits.",
+        )
+        self.headers = {"Retry-After": str(wait)}
+
+
+class ComputingTime:
+    """CPU seconds that users' computations have used, given back evenly over a day.
+
+    The user of this machine, who has no login, is not counted.
+    """
+
+    def __init__(self, budgets: Budgets = BUDGETS) -> None:
+        self._most_s = budgets.cpu_s
+        self._left = RateLimit(budgets.cpu_s / DAY_S, budgets.cpu_s)
+
+    def used_s(self, owner: str) -> float:
+        """CPU seconds that count against a user's budget now."""
+        return self._most_s - self._left.left(owner)
+
+    def check(self, owner: str) -> None:
+        """Refuse a computation of a user whose time is spent.
+
+        Raises
+        ------
+        SpentError
+        """
+        left = self._left.left(owner)
+        if left <= 0:
+            raise SpentError(self._most_s, (LEAST_S - left) / self._left.per_s)
+
+    def spend(self, owner: str, seconds: float) -> None:
+        """Count a computation, which may have taken more than was left."""
+        if owner != LOCAL_USER:
+            self._left.spend(owner, seconds)
 
 
 class InUse:
@@ -55,6 +135,10 @@ class InUse:
         self._budgets = budgets
         self._held: Counter[tuple[str, str]] = Counter()
 
+    def held(self, what: str, owner: str) -> int:
+        """How many a user holds."""
+        return self._held[what, owner]
+
     def check(self, what: str, owner: str) -> None:
         """Refuse one more.
 
@@ -62,9 +146,9 @@ class InUse:
         ------
         OverBudgetError
         """
-        most = getattr(self._budgets, what)
-        if self._held[what, owner] >= most:
-            raise OverBudgetError(f"You have {most} of {most} {what}.", field=what)
+        held, most = self._held[what, owner], getattr(self._budgets, what)
+        if held >= most:
+            raise OverBudgetError.of(what, held, most)
 
     @contextlib.contextmanager
     def hold(self, what: str, owner: str) -> Iterator[None]:

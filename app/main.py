@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 
 from app.api import routers
-from app.budgets import InUse
+from app.budgets import BUDGETS, InUse
 from app.compute import memory
 from app.compute.answers import Answers
 from app.compute.compute import Compute
@@ -66,7 +66,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.state.database = await asyncio.to_thread(_open_database, chosen)
         app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
         app.state.cluster = _cluster(chosen)
-        app.state.compute = Compute(_places(chosen, app.state.cluster), chosen.job_timeout_s)
+        app.state.compute = Compute(
+            _places(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
+        )
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.answers = Answers(
@@ -165,6 +167,13 @@ def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
     for worker in workers:
         worker.warm_up(warm_up)
     return list(workers)
+
+
+def _most_each(settings: Settings) -> int | None:
+    """Places that one user may hold, by the memory of their workers; a cluster has its own."""
+    if settings.scheduler is not None or not settings.asks_for_login:
+        return None
+    return max(1, BUDGETS.memory_bytes // settings.worker_memory_bytes)
 
 
 def _open_database(settings: Settings) -> Database:

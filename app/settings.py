@@ -25,7 +25,9 @@ NO_SETTINGS = frozenset(
     for name in (
         "CONFIG",
         "STUDY_DATA",
-        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),  # of tests
+        # of tests:
+        *("KILLS", "OUTAGE_S", "SCHEMA_EXAMPLES", "HOSTILE_FILES", "HOSTILE_REQUESTS"),
+        "FUZZ_REQUESTS",
     )
 )
 

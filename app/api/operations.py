@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from app.compute.answers import Answers
 from app.http.packed import json_response
-from app.http.problems import Problem
+from app.http.problems import Problem, StoppingError
 from app.models.charts import size_of
 from app.operations.registry import Operation, operations
 
@@ -32,7 +32,13 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
         answers: Answers = request.app.state.answers
         if not operation.heavy and size_of(body) <= MOST_LIGHT:
             return await run_in_threadpool(operation.run, body, answers.context())
-        answer = await answers.answer(request.is_disconnected, operation, body)
+
+        async def abandoned() -> bool:
+            if request.app.state.stopping:
+                raise StoppingError("The service is stopping.")
+            return await request.is_disconnected()
+
+        answer = await answers.answer(abandoned, operation, body)
         return await json_response(answer.body, request.headers)
 
     def get(request: Request, **fields: Any) -> Any:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 
+from app.budgets import BUDGETS, InUse, Use
+from app.designs.store import DesignStore
 from app.http.identity import asking, current_session
 from app.http.problems import NotFoundError, Problem
 from app.http.security import SESSION_COOKIE
@@ -20,8 +22,25 @@ SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="O
 
 @router.get("/session", summary="Who you are, and where you are signed in")
 def get_session(owner: Owner, request: Request) -> SignedIn:
-    """The user's name, `local` without logins, and the browsers that are signed in."""
-    return Sessions(request.app.state.database).of(owner, current_session.get())
+    """The user's name, `local` without logins, the browsers that are signed in, and limits."""
+    sessions = Sessions(request.app.state.database).of(owner, current_session.get())
+    return SignedIn(user=owner, sessions=sessions, use=_use(owner, request.app.state))
+
+
+def _use(owner: str, state: Any) -> dict[str, Use]:
+    designs, kept_bytes = DesignStore(state.database).kept(owner)
+    in_use: InUse = state.in_use
+    used = {
+        name: float(in_use.held(name, owner)) for name in ("connections", "watchers", "streams")
+    }
+    used |= {
+        "views": state.views.count(owner),
+        "jobs": state.compute.turns.waiting_of(owner),
+        "cpu_s": round(state.compute.spent.used_s(owner), 1),
+        "designs": designs,
+        "kept_bytes": kept_bytes,
+    }
+    return {name: Use(used=value, most=getattr(BUDGETS, name)) for name, value in used.items()}
 
 
 @router.delete("/session", status_code=204, summary="Sign out")

@@ -128,7 +128,10 @@ class ClusterPlace:
     ----------
     share : how much of the job is done; None until it starts.
     worker : address of the worker that runs it.
+    cpu_s : not known; the time that the job takes counts instead.
     """
+
+    cpu_s = None
 
     def __init__(self, cluster: Cluster) -> None:
         self._cluster = cluster

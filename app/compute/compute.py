@@ -9,7 +9,7 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any, TypeVar
 
-from app.budgets import BUDGETS
+from app.budgets import BUDGETS, ComputingTime
 from app.compute.places import (
     AbandonedError,
     NotBegunError,
@@ -37,16 +37,25 @@ class Compute:
     ----------
     places : where jobs are done. Four times as many may wait in the foreground.
     timeout_s : longest run of one job, unless it is given another.
+    most_each : places that one user may hold at once; None is all of them.
+
+    Attributes
+    ----------
+    spent : computing time of users.
     """
 
-    def __init__(self, places: Sequence[Place], timeout_s: float) -> None:
+    def __init__(
+        self, places: Sequence[Place], timeout_s: float, most_each: int | None = None
+    ) -> None:
         self._timeout_s = timeout_s
+        self.spent = ComputingTime()
         self.places = list(places)
         self.turns = Turns(
             self.places,
             most_background=max(1, len(places) - 1),
             most_waiting=4 * len(places),
             most_waiting_each=BUDGETS.jobs,
+            most_each=most_each,
         )
 
     async def run(
@@ -75,9 +84,13 @@ class Compute:
             If no place was free, or none began, in time.
         UnavailableError
             If too many wait already, or the cluster cannot be reached.
+        OverBudgetError
+            If the user's computing time is spent, or too many of the user's jobs wait.
         """
         limit = self._timeout_s if timeout_s is None else timeout_s
-        ticket = self.turns.enter(owner or current_user.get(), background=background)
+        owner = owner or current_user.get()
+        self.spent.check(owner)
+        ticket = self.turns.enter(owner, background=background)
         asked = asyncio.get_running_loop().time()
         try:
             while not (await asyncio.wait([ticket.place], timeout=POLL_S))[0]:
@@ -86,8 +99,14 @@ class Compute:
                 if not background and asyncio.get_running_loop().time() > asked + self._timeout_s:
                     raise NotBegunError(f"No worker was free for {self._timeout_s:g} s.")
             place = ticket.place.result()
+            self.spent.check(owner)  # jobs of the same user may have run meanwhile
+            begun = asyncio.get_running_loop().time()
             future = await place.submit(partial(job, *args))
-            return await self._watch(place, future, abandoned, limit, on_share)
+            try:
+                return await self._watch(place, future, abandoned, limit, on_share)
+            finally:
+                lasted = asyncio.get_running_loop().time() - begun
+                self.spent.spend(owner, lasted if place.cpu_s is None else place.cpu_s)
         finally:
             self.turns.leave(ticket)
 
@@ -134,7 +153,7 @@ class Compute:
 
         Raises
         ------
-        UnavailableError
+        OverBudgetError
             If too many of this owner wait already.
         """
         self.turns.check_room(owner, background=True)

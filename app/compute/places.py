@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import inspect
-from collections.abc import Callable
-from typing import Any, ClassVar, Protocol, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol, TypeVar
 
 from app.http.problems import ServiceError, UnavailableError
 
@@ -36,6 +36,11 @@ class Place(Protocol):
         """How much of the job is done, 0 to 1; None until it starts."""
         ...
 
+    @property
+    def cpu_s(self) -> float | None:
+        """CPU seconds that the job took; None where that is not known."""
+        ...
+
     def cancel(self) -> None:
         """Ask the job to stop."""
         ...
@@ -50,13 +55,15 @@ class Place(Protocol):
 
 
 class AbandonedError(UnavailableError):
-    """The result is no longer waited for."""
+    """The result is no longer waited for; nobody sees this answer, but the log does."""
+
+    status = 499
 
 
 class TimeLimitError(UnavailableError):
     """The computation exceeded its time limit."""
 
-    headers: ClassVar[dict[str, str]] = {}  # the same would take as long again
+    headers: Mapping[str, str] = {}  # the same would take as long again
 
 
 class NotBegunError(UnavailableError):

@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import resource
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -30,6 +31,7 @@ class Cell(IntEnum):
     STARTED = 1
     DONE = 2
     OF = 3
+    CPU_S = 4
 
 
 class ProcessPlace:
@@ -67,6 +69,11 @@ class ProcessPlace:
         if not self._cells[Cell.STARTED]:
             return None
         return float(self._cells[Cell.DONE] / max(self._cells[Cell.OF], 1.0))
+
+    @property
+    def cpu_s(self) -> float | None:
+        """CPU seconds that the job took; None if it was stopped by force."""
+        return float(self._cells[Cell.CPU_S]) or None
 
     def cancel(self) -> None:
         """Ask the job to stop."""
@@ -148,4 +155,8 @@ def _run(job: Callable[..., T]) -> T:
         cells[Cell.OF] = of
         cells[Cell.DONE] = done
 
-    return call(job, cancelled, progress, f"the {_memory_bytes / 1e9:g} GB it may use")
+    begun = time.process_time()
+    try:
+        return call(job, cancelled, progress, f"the {_memory_bytes / 1e9:g} GB it may use")
+    finally:
+        cells[Cell.CPU_S] = time.process_time() - begun

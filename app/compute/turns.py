@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+from app.budgets import OverBudgetError
 from app.http.problems import UnavailableError
 
 Place = TypeVar("Place")
@@ -33,6 +34,7 @@ class Turns(Generic[Place]):
     most_waiting : how many may wait in the foreground; a user with none waiting there may always
         add one, so that one user cannot fill the queue.
     most_waiting_each : how many one user may have waiting in the background.
+    most_each : how many places one user may hold at once; None is all of them.
     """
 
     def __init__(
@@ -42,12 +44,15 @@ class Turns(Generic[Place]):
         most_background: int,
         most_waiting: int,
         most_waiting_each: int,
+        most_each: int | None = None,
     ) -> None:
         self._free = list(places)
         self._count = len(places)
         self._most_background = most_background
         self._most_waiting = most_waiting
         self._most_waiting_each = most_waiting_each
+        self.most_each = most_each or len(places)
+        self._held: Counter[str] = Counter()
         self._background = 0
         self._lanes: dict[bool, Lane[Place]] = {False: OrderedDict(), True: OrderedDict()}
 
@@ -56,7 +61,7 @@ class Turns(Generic[Place]):
 
         Raises
         ------
-        UnavailableError
+        UnavailableError, OverBudgetError
             If the queue is full.
         """
         self.check_room(owner, background=background)
@@ -73,10 +78,13 @@ class Turns(Generic[Place]):
         ------
         UnavailableError
             If the queue is full.
+        OverBudgetError
+            If too many of this user wait in the background.
         """
-        mine = len(self._lanes[background].get(owner, ()))
-        full = mine > 0 and self.waiting(background=False) >= self._most_waiting
-        if mine >= self._most_waiting_each if background else full:
+        if background and self.waiting_of(owner) >= self._most_waiting_each:
+            raise OverBudgetError.of("jobs", self.waiting_of(owner), self._most_waiting_each)
+        full = self.waiting(background=False) >= self._most_waiting
+        if not background and full and owner in self._lanes[False]:
             raise UnavailableError("Too many computations are waiting.")
 
     def leave(self, ticket: Ticket[Place]) -> None:
@@ -84,6 +92,7 @@ class Turns(Generic[Place]):
         if ticket.place.done():
             self._free.append(ticket.place.result())
             self._background -= ticket.background
+            self._held -= Counter([ticket.owner])
         else:
             ticket.place.cancel()
             lane = self._lanes[ticket.background]
@@ -101,19 +110,27 @@ class Turns(Generic[Place]):
         """Number of requests that wait."""
         return sum(len(tickets) for tickets in self._lanes[background].values())
 
+    def waiting_of(self, owner: str) -> int:
+        """Number of background jobs of a user that wait."""
+        return len(self._lanes[True].get(owner, ()))
+
     def _hand_out(self) -> None:
-        while self._free:
-            if self._lanes[False]:
-                lane = self._lanes[False]
-            elif self._lanes[True] and self._background < self._most_background:
-                lane = self._lanes[True]
-                self._background += 1
-            else:
-                return
-            owner, tickets = next(iter(lane.items()))
-            ticket = tickets.popleft()
-            if tickets:
-                lane.move_to_end(owner)
-            else:
-                del lane[owner]
+        while self._free and (ticket := self._next()) is not None:
+            self._held[ticket.owner] += 1
+            self._background += ticket.background
             ticket.place.set_result(self._free.pop())
+
+    def _next(self) -> Ticket[Place] | None:
+        """Take the next in turn out of the queue; None if nobody may have a place now."""
+        for background, lane in self._lanes.items():
+            if background and self._background >= self._most_background:
+                continue
+            for owner, tickets in lane.items():
+                if self._held[owner] < self.most_each:
+                    ticket = tickets.popleft()
+                    if tickets:
+                        lane.move_to_end(owner)
+                    else:
+                        del lane[owner]
+                    return ticket
+        return None

@@ -234,6 +234,11 @@ class DesignStore:
 
         return self._database.write(action)
 
+    def kept(self, owner: str) -> tuple[int, int]:
+        """Number of an owner's designs, deleted ones included, and their bytes with versions."""
+        with self._database.read() as connection:
+            return _count(connection, owner), _kept_bytes(connection, owner)
+
     def forget_deleted(self) -> int:
         """Remove designs that were deleted 30 days ago for good; returns their number."""
 
@@ -296,8 +301,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
     ConflictError
         If the owner has as many as the service keeps.
     """
-    count = select(func.count()).select_from(designs).where(designs.c.owner == owner)
-    if connection.execute(count).scalar_one() >= BUDGETS.designs:
+    if _count(connection, owner) >= BUDGETS.designs:
         raise ConflictError(
             f"You have {BUDGETS.designs} designs, deleted ones included; no more are kept.",
             remedy="Export and delete some; deleted ones leave for good after 30 days.",
@@ -313,6 +317,12 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
     }
     connection.execute(insert(designs).values(values))
     return full(connection.execute(select(designs).where(designs.c.id == values["id"])).one())
+
+
+def _count(connection: Connection, owner: str) -> int:
+    """Number of an owner's designs, deleted ones included."""
+    count = select(func.count()).select_from(designs).where(designs.c.owner == owner)
+    return int(connection.execute(count).scalar_one())
 
 
 def copied(row: Row[Any]) -> dict[str, Any]:
@@ -382,19 +392,24 @@ def _check_room(connection: Connection, owner: str, more: int) -> None:
     ------
     ConflictError
     """
-    kept = select(func.coalesce(func.sum(designs.c.size_bytes), 0)).where(designs.c.owner == owner)
-    versions = (
-        select(func.coalesce(func.sum(design_versions.c.size_bytes), 0))
-        .join(designs, designs.c.id == design_versions.c.design_id)
-        .where(designs.c.owner == owner)
-    )
-    total = sum(connection.execute(query).scalar_one() for query in (kept, versions))
+    total = _kept_bytes(connection, owner)
     if total + more > BUDGETS.kept_bytes:
         raise ConflictError(
             f"Your designs and their versions have {total / 1e6:.1f} of "
             f"{BUDGETS.kept_bytes / 1e6:.0f} MB; this would be {more / 1e6:.1f} MB more.",
             remedy="Export and delete some; deleted ones leave for good after 30 days.",
         )
+
+
+def _kept_bytes(connection: Connection, owner: str) -> int:
+    """Size of an owner's designs and their versions."""
+    kept = select(func.coalesce(func.sum(designs.c.size_bytes), 0)).where(designs.c.owner == owner)
+    versions = (
+        select(func.coalesce(func.sum(design_versions.c.size_bytes), 0))
+        .join(designs, designs.c.id == design_versions.c.design_id)
+        .where(designs.c.owner == owner)
+    )
+    return sum(int(connection.execute(query).scalar_one()) for query in (kept, versions))
 
 
 def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) -> VersionSummary:

@@ -11,9 +11,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextvars import ContextVar
 from datetime import UTC, datetime
+from importlib.metadata import version
 from typing import Any
 
-from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector
+from prometheus_client import CollectorRegistry, Counter, Histogram, Info, ProcessCollector
 from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.registry import Collector
 from starlette.datastructures import Headers, MutableHeaders
@@ -97,6 +98,9 @@ class Metrics:
             buckets=(0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0, 60.0),
             registry=self.registry,
         )
+        Info("knitcore", "The program.", registry=self.registry).info(
+            {"version": version("knitcore")}
+        )
         ProcessCollector(registry=self.registry)
         self.registry.register(_Gauges(gauges))
 
@@ -125,6 +129,9 @@ class Observer:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Watch one request."""
+        if scope["type"] == "websocket":
+            await self._watch_socket(scope, receive, send)
+            return
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -148,6 +155,27 @@ class Observer:
         finally:
             self._note(scope, asked, status, time.perf_counter() - start)
 
+    async def _watch_socket(self, scope: Scope, receive: Receive, send: Send) -> None:
+        start, code = time.perf_counter(), 1006  # closed without a word
+
+        async def watched_send(message: Message) -> None:
+            nonlocal code
+            if message["type"] == "websocket.close":
+                code = message.get("code", 1000)
+            await send(message)
+
+        async def watched_receive() -> Message:
+            nonlocal code
+            message = await receive()
+            if message["type"] == "websocket.disconnect":
+                code = message.get("code", 1005)
+            return message
+
+        try:
+            await self.app(scope, watched_receive, watched_send)
+        finally:
+            log.info("websocket", extra=_extra(scope, "GET", code, time.perf_counter() - start))
+
     def _note(self, scope: Scope, asked: str, status: int, seconds: float) -> None:
         # the route's template (below its prefix), not the address: that would make endless numbers
         route = getattr(scope.get("route"), "path", None) or "other"
@@ -156,19 +184,20 @@ class Observer:
         self.metrics.seconds.labels(method, route).observe(seconds)
         if scope["path"] in QUIET_PATHS:
             return
-        log.info(
-            "request",
-            extra={
-                "user": current_user.get(),
-                "method": method,
-                "path": _public_path(scope["path"]),
-                "status": status,
-                "ms": round(1000 * seconds, 1),
-            },
-        )
+        log.info("request", extra=_extra(scope, method, status, seconds))
 
 
 METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
+
+
+def _extra(scope: Scope, method: str, status: int, seconds: float) -> dict[str, Any]:
+    return {
+        "user": current_user.get(),
+        "method": method,
+        "path": _public_path(scope["path"]),
+        "status": status,
+        "ms": round(1000 * seconds, 1),
+    }
 
 
 def _public_path(path: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import logging
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -71,7 +71,7 @@ class ServiceError(Exception):
     type = "internal"
     title = "Something went wrong in the service"
     default_remedy: str | None = None
-    headers: ClassVar[dict[str, str]] = {}
+    headers: Mapping[str, str] = {}
 
     def __init__(self, detail: str, *, field: str | None = None, remedy: str | None = None) -> None:
         super().__init__(detail)
@@ -97,14 +97,20 @@ class UnavailableError(ServiceError):
 
     status, type, title = 503, "busy", "Not now"
     default_remedy = "Try again in a moment, or ask for less."
-    headers: ClassVar[dict[str, str]] = {"Retry-After": "2"}
+    headers: Mapping[str, str] = {"Retry-After": "2"}
+
+
+class StoppingError(UnavailableError):
+    """The service is being stopped."""
+
+    default_remedy = "Try again when it is back."
 
 
 class NoRoomError(UnavailableError):
     """The disk is full."""
 
     status, type, title = 507, "full", "No room left"
-    headers: ClassVar[dict[str, str]] = {}
+    headers: Mapping[str, str] = {}
     default_remedy = (
         "Make room on the disk of the service, then try again; nothing that was acknowledged is "
         "lost."

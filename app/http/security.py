@@ -19,8 +19,9 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
-from app.http.identity import current_session, current_user
-from app.http.problems import Problem, problem_response, unexpected
+from app.budgets import InUse, OverBudgetError
+from app.http.identity import NOBODY, current_session, current_user
+from app.http.problems import Problem, StoppingError, problem_response, unexpected
 from app.http.rate import RateLimit
 from app.http.sessions import SESSION_S
 from app.http.sign_in import PATH, sign_in_form, sign_in_page
@@ -95,22 +96,38 @@ class Guard:
             await self.app(scope, receive, send)
             return
         limits: dict[str, str] = {}
+        if self.settings.asks_for_login:
+            current_user.set(NOBODY)  # until the request's token or session is known
         refusal = self._refusal(scope)
         if refusal is None and self.settings.asks_for_login and _is_sign_in(scope):
             refusal = await self._signed_in(scope, receive)
         elif refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
             refusal = await self._login(scope, limits)
         if scope["type"] == "websocket":
-            if refusal is not None:
-                await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
-                return
-            async with self._while_open(scope) as open_:
-                await self.app(scope, receive, send)
-            if not open_:
-                with contextlib.suppress(RuntimeError):  # it was closed already
-                    await WebSocketClose(code=1008, reason="signed out")(scope, receive, send)
-            return
+            await self._pass_socket(refusal, scope, receive, send)
+        else:
+            await self._pass_request(refusal, scope, receive, send, limits)
 
+    async def _pass_socket(
+        self, refusal: Response | None, scope: Scope, receive: Receive, send: Send
+    ) -> None:
+        if refusal is not None:
+            await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
+            return
+        async with self._while_open(scope) as open_:
+            await self.app(scope, receive, send)
+        if not open_:
+            with contextlib.suppress(RuntimeError):  # it was closed already
+                await WebSocketClose(code=1008, reason="signed out")(scope, receive, send)
+
+    async def _pass_request(
+        self,
+        refusal: Response | None,
+        scope: Scope,
+        receive: Receive,
+        send: Send,
+        limits: dict[str, str],
+    ) -> None:
         started = False
 
         async def send_with_headers(message: Message) -> None:
@@ -139,6 +156,12 @@ class Guard:
                 await self.app(scope, limited, send_with_headers)
             if not open_ and started:
                 await send({"type": "http.response.body", "body": b""})
+        except asyncio.CancelledError:  # the service stops, and does not wait any longer
+            if started or not scope["app"].state.stopping:
+                raise
+            stopping = StoppingError("The service is stopping.")
+            answer = problem_response(stopping.problem, stopping.headers)
+            await answer(scope, receive, send_with_headers)
         except Exception as error:  # answered here, so that its answer has the headers, too
             if started:
                 raise
@@ -190,16 +213,27 @@ class Guard:
                 "Open the page as /?token=…, or send the header Authorization: Bearer ….",
                 403,
             )
+        current_user.set(user)
+        if (refusal := self._over_budget(scope, user, limits)) is not None:
+            return refusal
+        current_session.set(session)
+        scope[OPENED_BY] = identifier, session
+        if link and not (token or session) and scope["type"] == "http" and scope["method"] == "GET":
+            return await self._by_link(scope, identifier, user, link)
+        return None
+
+    def _over_budget(self, scope: Scope, user: str, limits: dict[str, str]) -> Response | None:
+        """Refuse more requests than one user may send, a second or at once; tell what is left."""
         left, wait = self.rate.take(user)
         limits["RateLimit-Limit"] = str(self.rate.burst)
         limits["RateLimit-Remaining"] = str(left)
         if wait:
             return _too_many("You are asking too often.", wait)
-        current_user.set(user)
-        current_session.set(session)
-        scope[OPENED_BY] = identifier, session
-        if link and not (token or session) and scope["type"] == "http" and scope["method"] == "GET":
-            return await self._by_link(scope, identifier, user, link)
+        in_use: InUse = scope["app"].state.in_use
+        try:
+            in_use.check("connections", user)
+        except OverBudgetError as error:
+            return problem_response(error.problem)
         return None
 
     async def _by_link(self, scope: Scope, identifier: str, user: str, link: str) -> Response:
@@ -242,7 +276,7 @@ class Guard:
 
     @contextlib.asynccontextmanager
     async def _while_open(self, scope: Scope) -> AsyncIterator[list[bool]]:
-        """Run a block as long as the token or session of its request is valid.
+        """Run a block as long as the token or session of its request is valid, and count it.
 
         Yields a list that is emptied when it is revoked; the block is then cancelled.
         """
@@ -251,6 +285,7 @@ class Guard:
             yield open_
             return
         login: Login = scope["app"].state.login
+        in_use: InUse = scope["app"].state.in_use
         task = asyncio.current_task()
 
         loop, watching = asyncio.get_running_loop(), set[asyncio.Task[None]]()
@@ -273,7 +308,8 @@ class Guard:
             timer = again()
 
         try:
-            yield open_
+            with in_use.hold("connections", current_user.get()):
+                yield open_
         except asyncio.CancelledError:
             if open_:
                 raise

@@ -7,6 +7,7 @@ import secrets
 from pydantic import AwareDatetime, BaseModel, Field
 from sqlalchemy import delete, insert, select
 
+from app.budgets import Use
 from app.designs.store import moment, now
 from app.store.database import Database
 from app.store.tables import sessions
@@ -23,10 +24,14 @@ class SessionSummary(BaseModel):
 
 
 class SignedIn(BaseModel):
-    """The user of this request, and all sessions of that user."""
+    """The user of this request, with all sessions, and what is used of the limits of one user."""
 
     user: str = Field(examples=["ada"])
     sessions: list[SessionSummary] = Field(description="Latest first; scripts have none.")
+    use: dict[str, Use] = Field(
+        description="By the name that a refusal has in `field`; of this process, if there are "
+        "several, except for what is kept."
+    )
 
 
 class Sessions:
@@ -51,8 +56,8 @@ class Sessions:
             row = connection.execute(found).one_or_none()
         return ("", "") if row is None else (row.token, row.user)
 
-    def of(self, user: str, this: str) -> SignedIn:
-        """All sessions of a user."""
+    def of(self, user: str, this: str) -> list[SessionSummary]:
+        """All sessions of a user, latest first; ``this`` is the one that asks."""
         found = (
             select(sessions)
             .where(sessions.c.user == user, sessions.c.created_at > now() - SESSION_S)
@@ -60,11 +65,10 @@ class Sessions:
         )
         with self._database.read() as connection:
             rows = connection.execute(found).all()
-        summaries = [
+        return [
             SessionSummary(id=r.id, created_at=moment(r.created_at), is_this=r.id == this)
             for r in rows
         ]
-        return SignedIn(user=user, sessions=summaries)
 
     def end(self, user: str, session: str) -> bool:
         """End a session; False if the user has none of that id."""

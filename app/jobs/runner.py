@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from app.budgets import SpentError
 from app.compute.answers import Answers
 from app.compute.places import AbandonedError, NotBegunError
 from app.designs.idempotency import Retry
@@ -69,7 +70,7 @@ class JobRunner:
 
         Raises
         ------
-        UnavailableError
+        OverBudgetError
             If too many jobs of this owner wait.
         """
         key = await asyncio.to_thread(content_key, kind, request)
@@ -205,11 +206,12 @@ class JobRunner:
             await self._fail(job, problem)
 
     async def _begun(self, *args: Any, **turn: Any) -> Any:
-        """Compute a job; one that no worker has started keeps waiting."""
+        """Compute a job; one that no worker has started, or whose owner's computing time is spent,
+        keeps waiting."""
         while True:
             try:
                 return await self._answers.answer(*args, **turn)
-            except NotBegunError as error:
+            except (NotBegunError, SpentError) as error:
                 log.warning("a job waits on: %s", error)
                 await asyncio.sleep(AGAIN_S)
 

@@ -126,6 +126,13 @@ class Views:
     def __len__(self) -> int:
         return len(self._views)
 
+    def count(self, owner: str) -> int:
+        """Number of open views of a user."""
+        return len(self._of(owner))
+
+    def _of(self, owner: str) -> list[str]:
+        return [design for design in list(self._views) if design.rpartition("/")[0] == owner]
+
     def _pass_clicks_on(self, design: str, view: View) -> None:
         @view.server.scene.on_click()
         def clicked(event: viser.SceneClickEvent) -> None:
@@ -138,11 +145,9 @@ class Views:
                 self.clicks.tell(design, cell)
 
     def _make_room(self, owner: str) -> None:
-        mine = [d for d in self._views if d.rpartition("/")[0] == owner]
+        mine = self._of(owner)
         if len(mine) >= BUDGETS.views:
-            self._close_oldest(
-                mine, OverBudgetError(f"You watch {len(mine)} of {BUDGETS.views} 3D views.")
-            )
+            self._close_oldest(mine, OverBudgetError.of("views", len(mine), BUDGETS.views))
         if len(self._views) >= self._most:
             full = UnavailableError(f"All {self._most} 3D views are in use.")
             self._close_oldest(list(self._views), full)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,18 @@ import viser
 from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from app.budgets import Budgets, InUse, OverBudgetError
+from app.budgets import BUDGETS, Budgets, ComputingTime, InUse, OverBudgetError, SpentError
+from app.compute.compute import Compute
 from app.designs import sharing as sharing_module
 from app.designs import store as store_module
 from app.designs.conditions import ConflictError
 from app.designs.document import DesignDocument, ShareMode
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
+from app.http.identity import LOCAL_USER
+from app.http.tokens import Tokens
+from app.main import create_app
+from app.settings import Settings
 from app.store.database import Database
 from app.viewer import views as views_module
 from app.viewer.views import Views
@@ -35,6 +41,70 @@ def test_what_is_held_is_counted_for_each_user_and_let_go() -> None:
         uses.check("watchers", "ada")
     uses.check("streams", "ada")
     assert not uses._held
+
+
+class _Finished:
+    """A place whose jobs are done at once, and took some CPU seconds."""
+
+    share, cpu_s = 0.0, 0.2
+
+    async def submit(self, job: Callable[..., int]) -> asyncio.Future[int]:
+        done = asyncio.get_running_loop().create_future()
+        done.set_result(1)
+        return done
+
+
+async def _never() -> bool:
+    return False
+
+
+def test_computing_time_is_spent_and_comes_back() -> None:
+    compute = Compute([_Finished()], timeout_s=30.0)  # type: ignore[list-item]
+    compute.spent = ComputingTime(Budgets(cpu_s=0.1))
+
+    def run(owner: str) -> int:
+        return asyncio.run(compute.run(_never, print, owner=owner))
+
+    assert run("ada") == 1
+    assert compute.spent.used_s("ada") == pytest.approx(0.2, abs=1e-3)
+    with pytest.raises(SpentError, match="computing time of a day") as refused:
+        run("ada")
+    assert int(refused.value.headers["Retry-After"]) > 60
+    assert run("bob") == 1
+    assert [run(LOCAL_USER) for _ in range(2)] == [1, 1]
+    assert compute.spent.used_s(LOCAL_USER) == 0
+
+
+def test_computations_of_a_user_share_the_memory_of_the_machine(tmp_path: Path) -> None:
+    """With the default limit of a worker, half of the machine's memory, that is two at once."""
+    settings = Settings(require_login=True, workers=3, data_dir=tmp_path)
+    with TestClient(create_app(settings)) as client:
+        turns = client.app.state.compute.turns  # type: ignore[attr-defined]
+        most = BUDGETS.memory_bytes // settings.worker_memory_bytes
+        assert turns.most_each == max(1, most)
+
+
+def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
+    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+        state = client.app.state  # type: ignore[attr-defined]
+        state.in_use = InUse(Budgets(connections=2, streams=2))
+        headers = {"Authorization": f"Bearer {Tokens(state.database).create('ada').token}"}
+        client.put(
+            "/api/v1/views/a-view", json={"chart": "K", "material": "cotton"}, headers=headers
+        )
+        told = client.get("/api/v1/session", headers=headers).json()["use"]
+        assert (told["connections"], told["views"]) == (
+            {"used": 1, "most": BUDGETS.connections},
+            {"used": 1, "most": BUDGETS.views},
+        )
+        with state.in_use.hold("connections", "ada"), state.in_use.hold("connections", "ada"):
+            refused = client.get("/api/v1/session", headers=headers)
+            assert (refused.status_code, refused.json()["field"]) == (429, "connections")
+            assert "2 of 2" in refused.json()["detail"]
+            other = {"Authorization": f"Bearer {Tokens(state.database).create('bob').token}"}
+            assert client.get("/api/v1/session", headers=other).status_code == 200
+        assert not state.in_use._held
 
 
 def test_bytes_kept_are_counted_with_versions(

@@ -14,11 +14,11 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.budgets import Budgets
+from app.budgets import Budgets, OverBudgetError
 from app.compute import compute as compute_module
 from app.compute.compute import Compute
 from app.compute.processes import processes
-from app.http.problems import NotFoundError, UnavailableError
+from app.http.problems import NotFoundError
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS
@@ -136,7 +136,7 @@ def test_who_has_too_many_waiting_is_refused_at_once(
         await _running(runner, first.id)
         await runner.submit("ada", "work", _wish("wait", "second"))
         await asyncio.sleep(0.1)
-        with pytest.raises(UnavailableError):
+        with pytest.raises(OverBudgetError, match="1 of 1 jobs"):
             await runner.submit("ada", "work", _wish("wait", "third"))
         assert len(runner.store.page("ada", limit=9, cursor=None).jobs) == 2
         await runner.close()

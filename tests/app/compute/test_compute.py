@@ -36,6 +36,7 @@ async def at_once() -> bool:
 
 def test_results_and_errors_come_back(compute: Compute) -> None:
     assert asyncio.run(compute.run(never, jobs.add, 2, 3)) == 5
+    assert 0 < (compute.places[0].cpu_s or 0) < 30
     with pytest.raises(InputError, match="Use less"):
         asyncio.run(compute.run(never, jobs.refuse))
 

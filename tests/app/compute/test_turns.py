@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.budgets import OverBudgetError
 from app.compute.turns import Ticket, Turns
 from app.http.problems import UnavailableError
 
@@ -91,7 +92,7 @@ def test_the_line_has_an_end() -> None:
         turns.enter("ada", background=False)
         with pytest.raises(UnavailableError, match="Too many"):
             turns.enter("ada", background=False)
-        with pytest.raises(UnavailableError, match="Too many"):
+        with pytest.raises(OverBudgetError, match="1 of 1 jobs"):
             turns.enter("ada", background=True)
         turns.enter("bob", background=True)
 
@@ -110,3 +111,18 @@ def test_nobody_fills_the_line_for_the_others() -> None:
             turns.enter("bob", background=False)
 
     asyncio.run(line_up())
+
+
+def test_nobody_holds_more_places_than_a_user_may() -> None:
+    async def scenario() -> None:
+        turns = Turns(
+            [0, 1, 2], most_background=2, most_waiting=9, most_waiting_each=9, most_each=2
+        )
+        ada = [turns.enter("ada", background=False) for _ in range(3)]
+        assert [ticket.place.done() for ticket in ada] == [True, True, False]
+        bob = turns.enter("bob", background=True)
+        assert bob.place.done()  # although ada waits at a page
+        turns.leave(ada[0])
+        assert ada[2].place.done()
+
+    asyncio.run(scenario())
