@@ -619,7 +619,8 @@ export interface ExportRequest {
   repeats?: DesignRepeat[];
   shelf?: ShelfPattern[];
   chart: string | PureFabricChart;
-  to: ExportKind;
+  /** knitout, knitspeak, png, svg, pdf, report, text, written, design, glb, stl, vtu, csv; or a format of an installed extension. */
+  to: ExportKind | string;
   /** For sizes and values. */
   material?: string;
   construction?: Construction;
@@ -636,7 +637,7 @@ export interface ExportRequest {
 
 /** A file inside JSON. */
 export interface ExportResult {
-  kind: ExportKind;
+  kind: string;
   rows: number;
   columns: number;
   bytes: number;
@@ -649,6 +650,23 @@ export interface ExportResult {
   media_type: string;
   /** The file, base64. */
   content: string;
+}
+
+/** An extension of an installed package. */
+export interface ExtensionResult {
+  name: string;
+  group: Group;
+  /** Its name and version. */
+  package: string;
+  /** Identifiers. */
+  offers: string[];
+  /** Why it cannot be used; null if it can. */
+  problem: string | null;
+}
+
+/** All extensions. */
+export interface Extensions {
+  extensions: ExtensionResult[];
 }
 
 /** A fabric whose connecting segments are all alike course-wise and all alike wale-wise. */
@@ -980,6 +998,9 @@ export interface Glove {
   target_mmhg?: number | null;
 }
 
+/** Groups of entry points, and what their functions return lists of. */
+export type Group = "knitcore.patterns" | "knitcore.materials" | "knitcore.exporters" | "knitcore.measures";
+
 /** A file of any kind that holds a chart. */
 export interface ImportRequest {
   /** `.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) or `.k` (knitout). */
@@ -1201,6 +1222,15 @@ export interface Materials {
   materials: MaterialSummary[];
 }
 
+/** A number that an extension adds. */
+export interface MeasureResult {
+  identifier: string;
+  /** Null where it has no finite value. */
+  value: number | null;
+  unit: string;
+  description: string;
+}
+
 /** The model refitted from the packaged tables, and its leave-one-yarn-out figures. */
 export interface ModelReport {
   yarns: number;
@@ -1321,6 +1351,8 @@ export interface PredictRequest {
   outline?: string | null;
   /** Relaxed size of the mean stitch; estimated if left out. */
   gauge?: GaugeInput | null;
+  /** Further numbers, by the names of installed extensions. */
+  measures?: string[];
 }
 
 /** Effective elastic constants of the whole chart at small strain; intervals cover 90 %. */
@@ -1357,6 +1389,8 @@ export interface PredictResult {
   provenance: string;
   method: string;
   notes: string[];
+  /** Those that were asked for. */
+  measures: MeasureResult[];
 }
 
 /** A fabric of a material, or a law, as a tube on a limb. */

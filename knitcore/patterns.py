@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from knitcore.chart import StitchChart
+from knitcore.extensions import Group, offered
 
 
 @dataclass(frozen=True)
@@ -52,4 +53,10 @@ PATTERNS = (
         "Purl lines on stockinette; soft along the lines.",
     ),
 )
-"""The pattern shelf, in the order in which it is shown."""
+"""The patterns that are built in, in the order in which they are shown."""
+
+
+def patterns() -> tuple[Pattern, ...]:
+    """All patterns: those built in, then those of extensions."""
+    built_in = {pattern.identifier for pattern in PATTERNS}
+    return (*PATTERNS, *offered(Group.PATTERNS, Pattern, built_in).values())

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
     {"errors", "threads"},
-    {"choice", "batch"},
+    {"choice", "batch", "extensions"},
     {"fabric"},
     {"chart"},
     {"segments", "patterns", "worked"},

@@ -210,7 +210,9 @@ def _is_file(field: FieldInfo) -> bool:
 
 def _type(field: FieldInfo) -> Any:
     """A type of click."""
-    kind = _kinds(field)[0]
+    kind, *others = _kinds(field)
+    if str in others:  # a choice, or a name that an extension adds
+        return str
     if get_origin(kind) is list:
         kind = get_args(kind)[0]
     if kind is UploadedFile:

@@ -14,6 +14,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.garment.piece import Piece
+from knitcore.patterns import patterns
 
 if TYPE_CHECKING:
     from app.settings import Settings
@@ -25,35 +26,35 @@ material_option = click.option(
 
 
 def resolve_chart(chart: str, size: str | None) -> StitchChart:
-    """The chart that CHART and --size name: a file, or a pure fabric of a size.
+    """The chart that CHART and --size name: a file, or a fabric or a pattern of a size.
 
     Raises
     ------
     InputError
-        If it is neither, or the size is missing or malformed.
+        If it is none, or the size is missing or malformed.
     """
-    if chart.lower() in set(Fabric):
-        if size is None:
-            raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
-        match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", size.strip().lower())
-        if match is None:
+    if Path(chart).suffix:
+        if size is not None:
             raise InputError(
-                "size", f"{size!r} is not a size.", "Write COLUMNSxROWS, such as 31x20."
+                "size", "goes with the name of a fabric, not with a file.", "Leave --size out."
             )
-        columns, rows = int(match[1]), int(match[2])
-        return StitchChart.of_fabric(chart, rows=rows, columns=columns)
-    if size is not None:
-        raise InputError(
-            "size", "goes with the name of a fabric, not with a file.", "Leave --size out."
-        )
-    if not Path(chart).suffix:
-        names = ", ".join(Fabric)
+        return read_chart(chart)
+    named = {str(fabric): StitchChart.of_fabric(fabric, 2, 2) for fabric in Fabric}
+    if chart.lower() not in named:
+        named |= {pattern.identifier: pattern.chart for pattern in patterns()}
+    if chart.lower() not in named:
+        names = ", ".join(named)
         raise InputError(
             "chart",
             f"{chart!r} is neither a file nor a fabric.",
             f"Name a .txt, .png or .json file, or one of {names} with --size.",
         )
-    return read_chart(chart)
+    if size is None:
+        raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
+    match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", size.strip().lower())
+    if match is None:
+        raise InputError("size", f"{size!r} is not a size.", "Write COLUMNSxROWS, such as 31x20.")
+    return named[chart.lower()].resized(rows=int(match[2]), columns=int(match[1]))
 
 
 def resolve_piece(chart: str, size: str | None) -> Piece:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import click
@@ -17,21 +16,12 @@ from app.operations.estimate_report import LeftOutResult, report, text_of_left_o
 from app.operations.estimate_report import text as report_text
 from app.operations.registry import Operation
 from knitcore.errors import InputError
-from knitcore.estimate.estimate import (
-    FabricEstimate,
-    MeasuredSwatch,
-    YarnEstimate,
-    estimate_yarn,
-)
+from knitcore.estimate.estimate import MeasuredSwatch, YarnEstimate, estimate_yarn
+from knitcore.estimate.material import estimated_material
 from knitcore.estimate.model import left_out
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import law_from_mapping, load_law
-from knitcore.materials import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.files import save_material_file
-from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
-
-MEASURED_LOG_SD = 0.1
-"""Of the moduli of a measured swatch in a saved material: the paper's median."""
 
 
 class SwatchInput(RequestModel):
@@ -113,46 +103,6 @@ def _result(found: YarnEstimate) -> EstimateResult:
     )
 
 
-def _material(found: YarnEstimate, request: EstimateRequest, identifier: str) -> Material:
-    """A material of an estimate, to save and to design with."""
-    return Material(
-        identifier,
-        identifier,
-        Yarn(bending_modulus_n_mm2=request.bending_modulus_n_mm2),
-        {fabric: _record(f, request.product_setting) for fabric, f in found.fabrics.items()},
-        note="Estimated from the library's yarns: see the intervals of `knitcore estimate`.",
-    )
-
-
-def _record(found: FabricEstimate, setting: str) -> FabricRecord:
-    deviations = {
-        d: MEASURED_LOG_SD
-        if found.measured
-        else math.log(found.modulus[d].high / found.modulus[d].value) / Z_SCORE
-        for d in Direction
-    }
-    return FabricRecord(
-        fabric=found.fabric,
-        law=found.law,
-        stitch_course_mm=found.stitch_course_mm,
-        stitch_wale_mm=found.stitch_wale_mm,
-        stitch_size_source="the library's mean proportion of stitch to loop length",
-        uncertainty=LawUncertainty(
-            log_modulus_course=deviations[Direction.COURSE],
-            log_modulus_wale=deviations[Direction.WALE],
-            poisson_yx=0.02 if found.measured else 0.1,
-            poisson_xy=0.02 if found.measured else 0.2,
-            source="assumed: the paper's median"
-            if found.measured
-            else "yarns of the library left out",
-        ),
-        origin=Origin.FITTED if found.measured else Origin.ESTIMATED,
-        loop_length_mm=found.loop_length_mm,
-        setting=setting,
-        measured=found.curves,
-    )
-
-
 @click.command("estimate")
 @click.option("--bending-modulus-n-mm2", type=float, help="B of the yarn (`measure bending`).")
 @click.option(
@@ -218,7 +168,8 @@ def _command(
     )
     made = _estimate(request, measured)
     if out is not None:
-        save_material_file(_material(made, request, out.stem.lower().replace(" ", "-")), out)
+        identifier = out.stem.lower().replace(" ", "-")
+        save_material_file(estimated_material(made, identifier), out)
     result = _result(made)
     emit(result, _text(result), as_json=as_json)
 

@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field
 from app.cli.options import out_option
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
+from app.models.extensions import ExtensionName
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -20,7 +21,11 @@ from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
 from knitcore.worked import Construction, Side
 
-MAX_STITCHES = {ExportKind.KNITOUT: 20_000, ExportKind.GLB: 2_500, ExportKind.STL: 2_500}
+MAX_STITCHES: dict[str, int] = {
+    ExportKind.KNITOUT: 20_000,
+    ExportKind.GLB: 2_500,
+    ExportKind.STL: 2_500,
+}
 """Over REST; the command line takes larger ones."""
 
 
@@ -30,7 +35,9 @@ class ExportRequest(DesignLayout, LawsRequest):
     model_config = ConfigDict(extra="forbid")
 
     chart: ChartInput
-    to: ExportKind
+    to: ExportKind | ExtensionName = Field(
+        description=f"{', '.join(ExportKind)}; or a format of an installed extension."
+    )
     material: MaterialName = Field("acrylic", description="For sizes and values.")
     construction: Construction = Construction.FLAT
     first_side: Side = Field(Side.RS, description="Side of row 1 in flat knitting.")
@@ -45,7 +52,7 @@ class ExportRequest(DesignLayout, LawsRequest):
 class ExportFacts(ResultModel):
     """The exported file."""
 
-    kind: ExportKind
+    kind: str
     rows: int
     columns: int
     bytes: int

@@ -15,7 +15,7 @@ from app.operations.material import (
 )
 from app.operations.registry import Command, Operation
 from app.results.own_materials import own_materials
-from knitcore.materials import load_library, load_variants
+from knitcore.materials import load_library, load_variants, offered_materials
 
 
 class Materials(ResultModel):
@@ -25,9 +25,10 @@ class Materials(ResultModel):
 
 
 def materials(request: NoRequest, context: Context) -> Materials:
-    """One's own, the yarns of the paper on their machine settings, and variants."""
+    """One's own, the yarns of the paper on their machine settings, variants, and extensions'."""
     del request
-    found = {**own_materials(context.data_dir), **load_library(), **load_variants()}
+    library = {**load_library(), **load_variants(), **offered_materials()}
+    found = {**own_materials(context.data_dir), **library}
     return Materials(materials=[summary(one) for one in found.values()])
 
 

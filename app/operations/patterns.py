@@ -7,7 +7,7 @@ from pydantic import Field
 from app.models.base import NoRequest, ResultModel
 from app.operations.context import Context
 from app.operations.registry import Operation
-from knitcore.patterns import PATTERNS
+from knitcore import patterns as library
 
 
 class PatternResult(ResultModel):
@@ -26,10 +26,12 @@ class Patterns(ResultModel):
 
 
 def patterns(request: NoRequest, context: Context) -> Patterns:
-    """Repeats to begin with: the four fabrics, ribs, basket, moss, diamonds."""
+    """Repeats to begin with: the four fabrics, ribs, basket and more; and those of extensions."""
     del request, context
     return Patterns(
-        patterns=[PatternResult.of(p, id=p.identifier, chart=p.chart.text) for p in PATTERNS]
+        patterns=[
+            PatternResult.of(p, id=p.identifier, chart=p.chart.text) for p in library.patterns()
+        ]
     )
 
 

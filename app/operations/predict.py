@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.models.base import Ends, ResultModel
+from app.models.base import Ends, Known, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
+from app.models.extensions import ExtensionName
 from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
+from knitcore.answer.measures import measure
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.garment.inscribed import largest_rectangle
@@ -27,6 +29,18 @@ class PredictRequest(LawsRequest):
     gauge: GaugeInput | None = Field(
         None, description="Relaxed size of the mean stitch; estimated if left out."
     )
+    measures: list[ExtensionName] = Field(
+        [], max_length=16, description="Further numbers, by the names of installed extensions."
+    )
+
+
+class MeasureResult(ResultModel):
+    """A number that an extension adds."""
+
+    identifier: str
+    value: Known = Field(description="Null where it has no finite value.")
+    unit: str
+    description: str
 
 
 class SegmentCountsResult(ResultModel):
@@ -67,6 +81,7 @@ class PredictResult(ResultModel):
     )
     method: str
     notes: list[str]
+    measures: list[MeasureResult] = Field([], description="Those that were asked for.")
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
@@ -87,6 +102,10 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         columns=chart.columns,
         segments={direction: segments.counts(direction) for direction in Direction},
         notes=[*notes, *found.notes],
+        measures=[
+            MeasureResult.of(one, value=one.value(chart, material, found))
+            for one in map(measure, request.measures)
+        ],
     )
 
 
@@ -108,9 +127,18 @@ def _text(r: PredictResult) -> str:
             f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
             f"stitch at rest  {_relaxed(r)}",
             f"source          {r.provenance} ({r.method})",
+            *(
+                f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
+                for m in r.measures
+            ),
             *(f"note: {note}" for note in r.notes),
         ]
     )
+
+
+def _measured(measure: MeasureResult) -> str:
+    value = "unknown" if measure.value is None else f"{measure.value:.4g} {measure.unit}"
+    return f"{measure.identifier:15} {value}"
 
 
 def _relaxed(r: PredictResult) -> str:
@@ -128,5 +156,9 @@ OPERATION = Operation(
     request=PredictRequest,
     result=PredictResult,
     run=predict,
-    command=Command(_text, help="Moduli, Poisson's ratios and extensibility of CHART."),
+    command=Command(
+        _text,
+        help="Moduli, Poisson's ratios and extensibility of CHART.",
+        names={"measures": "--measure"},
+    ),
 )

@@ -100,10 +100,19 @@ class FabricEstimate:
 
 @dataclass(frozen=True)
 class YarnEstimate:
-    """All four fabrics of a new yarn, and what to know before relying on them."""
+    """All four fabrics of a new yarn, and what to know before relying on them.
+
+    Attributes
+    ----------
+    fabrics : the four.
+    warnings : in sentences.
+    bending_modulus_n_mm2, product_setting : as given.
+    """
 
     fabrics: Mapping[Fabric, FabricEstimate]
     warnings: tuple[str, ...]
+    bending_modulus_n_mm2: float
+    product_setting: str
 
 
 def estimate_yarn(
@@ -158,7 +167,8 @@ def estimate_yarn(
             measured=swatch is not None,
             curves=swatch.curves if swatch else {},
         )
-    return YarnEstimate(fabrics, tuple(_warnings(swatches, loops, scale, table, product_setting)))
+    warnings = tuple(_warnings(swatches, loops, scale, table, product_setting))
+    return YarnEstimate(fabrics, warnings, bending_modulus_n_mm2, product_setting)
 
 
 def _own_values(swatches: Sequence[MeasuredSwatch], bending: float) -> dict[str, Array]:

@@ -8,6 +8,7 @@ from enum import StrEnum
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.extensions import Group, offered, running
 from knitcore.formats import (
     chart_drawing,
     design,
@@ -116,28 +117,60 @@ class ExportedFile:
     notes : for the user.
     transfers : loops moved between beds, of a knitout program.
     carriers : yarn carriers, of a knitout program.
+    ends : suffix and media type of an extension's format.
     """
 
-    kind: ExportKind
+    kind: str
     content: bytes
     notes: tuple[str, ...] = field(default=())
     transfers: int | None = None
     carriers: int | None = None
+    ends: tuple[str, str] | None = None
 
     @property
     def suffix(self) -> str:
         """Usual end of the file's name."""
-        return SUFFIXES[self.kind][0]
+        return (self.ends or SUFFIXES[ExportKind(self.kind)])[0]
 
     @property
     def media_type(self) -> str:
         """For HTTP."""
-        return SUFFIXES[self.kind][1]
+        return (self.ends or SUFFIXES[ExportKind(self.kind)])[1]
+
+
+@dataclass(frozen=True)
+class Exporter:
+    """A format of an extension (:mod:`knitcore.extensions`).
+
+    Attributes
+    ----------
+    identifier : the name of the format.
+    suffix, media_type : of its files, such as ``.txt`` and ``text/plain; charset=utf-8``.
+    write : the content of a file; may raise InputError for a piece that the format cannot hold.
+    notes : for the user, about every file.
+    """
+
+    identifier: str
+    suffix: str
+    media_type: str
+    write: Callable[[Piece, Material, ExportOptions], bytes]
+    notes: tuple[str, ...] = ()
+
+
+def exporters() -> dict[str, Exporter]:
+    """Formats of extensions.
+
+    Warns
+    -----
+    knitcore.extensions.ExtensionWarning
+        Of every extension that cannot be used.
+    """
+    return offered(Group.EXPORTERS, Exporter, set(ExportKind))
 
 
 def export_chart(
     chart: StitchChart,
-    kind: ExportKind,
+    kind: ExportKind | str,
     material: Material,
     options: ExportOptions | None = None,
 ) -> ExportedFile:
@@ -146,20 +179,25 @@ def export_chart(
     Parameters
     ----------
     chart : the face grid.
-    kind : the format.
+    kind : the format, or the name of an extension's.
     material : gives the stitches their size and their values.
     options : see there.
 
     Raises
     ------
     InputError
-        If the chart is too wide for the machine or too large for a mesh, or has an outline that
-        this format cannot hold.
+        If there is no such format, the chart is too wide for the machine or too large for a mesh,
+        or has an outline that this format cannot hold.
+    ExtensionError
+        If an extension's format fails.
     KnitoutMismatchError
         If a knitout program does not knit its chart on the virtual machine.
     """
     options = options or ExportOptions()
     piece = piece_of(chart, options.layout)
+    if kind not in set(ExportKind):
+        return _by_extension(piece, kind, material, options)
+    kind = ExportKind(kind)
     if kind in RECTANGULAR_KINDS and not piece.is_rectangle:
         known = ", ".join(k for k in ExportKind if k not in RECTANGULAR_KINDS)
         raise InputError(
@@ -171,6 +209,20 @@ def export_chart(
     if kind in COLOURLESS_KINDS and len(piece.yarns) > 1:
         return replace(file, notes=(*file.notes, f"{kind} has no colours: the yarns are left out."))
     return file
+
+
+def _by_extension(
+    piece: Piece, kind: str, material: Material, options: ExportOptions
+) -> ExportedFile:
+    found = exporters()
+    if kind not in found:
+        known = ", ".join([*ExportKind, *found])
+        raise InputError("to", f"{kind!r} is no format.", f"Use one of {known}.")
+    exporter = found[kind]
+    with running(Group.EXPORTERS, kind):
+        content = bytes(exporter.write(piece, material, options))
+    ends = exporter.suffix, exporter.media_type
+    return ExportedFile(kind, content, exporter.notes, ends=ends)
 
 
 _Writer = Callable[[Piece, Material, ExportOptions], ExportedFile]

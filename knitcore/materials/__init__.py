@@ -7,7 +7,7 @@ from knitcore.materials.files import (
     material_from_mapping,
     save_material_file,
 )
-from knitcore.materials.library import load_library, load_variants, material
+from knitcore.materials.library import load_library, load_variants, material, offered_materials
 from knitcore.materials.material import FabricRecord, Laws, Material, Origin, Yarn
 from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import Interval, LawUncertainty
@@ -30,6 +30,7 @@ __all__ = [
     "load_variants",
     "material",
     "material_from_mapping",
+    "offered_materials",
     "paper_figures",
     "save_material_file",
 ]

@@ -10,6 +10,7 @@ from statistics import median
 from types import MappingProxyType
 
 from knitcore.errors import InputError
+from knitcore.extensions import Group, offered
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.consistency import LAW_QUANTITIES, consistent_law
@@ -99,7 +100,7 @@ def load_variants(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
 
 
 def material(identifier: str, laws: Laws | str | None = None) -> Material:
-    """A material of the library, or one of its variants.
+    """A material of the library, one of its variants, or one of an extension's yarn library.
 
     The laws are the refitted ones by default; ``laws="published"``, or an identifier that ends in
     ``:published``, selects the paper's.
@@ -124,12 +125,26 @@ def material(identifier: str, laws: Laws | str | None = None) -> Material:
     named = Laws.PUBLISHED if sample != key else Laws.REFITTED
     chosen = named if laws is None else Laws.parse(laws)
     found = load_library(chosen).get(sample) or load_variants(chosen).get(sample)
-    if found is None:
-        known = ", ".join([*load_library(), *load_variants()])
+    if found is not None:
+        return found
+    others = offered_materials()
+    if key not in others:
+        known = ", ".join([*load_library(), *load_variants(), *others])
         raise InputError(
             "material", f"{identifier!r} is not in the library.", f"Use a file or one of {known}."
         )
-    return found
+    return others[key]
+
+
+def offered_materials() -> dict[str, Material]:
+    """Materials of extensions by identifier; their laws are theirs, so there is no choice of them.
+
+    Warns
+    -----
+    knitcore.extensions.ExtensionWarning
+        Of every extension that cannot be used.
+    """
+    return offered(Group.MATERIALS, Material, {*load_library(), *load_variants()})
 
 
 def _with_laws(materials: Mapping[str, Material], laws: Laws) -> dict[str, Material]:

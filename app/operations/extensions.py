@@ -1,0 +1,74 @@
+"""What installed packages add, and which of them cannot be used."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.models.base import NoRequest, ResultModel
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.answer.measures import Measure
+from knitcore.extensions import ExtensionError, Group, Offer
+from knitcore.extensions import extensions as installed
+from knitcore.formats.export import Exporter
+from knitcore.materials import Material
+from knitcore.patterns import Pattern
+
+KINDS: dict[Group, type[Offer]] = {
+    Group.PATTERNS: Pattern,
+    Group.MATERIALS: Material,
+    Group.EXPORTERS: Exporter,
+    Group.MEASURES: Measure,
+}
+
+
+class ExtensionResult(ResultModel):
+    """An extension of an installed package."""
+
+    name: str
+    group: Group
+    package: str = Field(description="Its name and version.")
+    offers: list[str] = Field(description="Identifiers.")
+    problem: str | None = Field(description="Why it cannot be used; null if it can.")
+
+
+class Extensions(ResultModel):
+    """All extensions."""
+
+    extensions: list[ExtensionResult]
+
+
+def extensions(request: NoRequest, context: Context) -> Extensions:
+    """Patterns, materials, formats and measures that installed packages add."""
+    del request, context
+    found = []
+    for group, kind in KINDS.items():
+        for extension in installed(group):
+            offers: list[str] = []
+            problem = None
+            try:
+                offers = [one.identifier for one in extension.load(kind)]
+            except ExtensionError as error:
+                problem = str(error)
+            found.append(ExtensionResult.of(extension, offers=offers, problem=problem))
+    return Extensions(extensions=found)
+
+
+def _text(found: Extensions) -> str:
+    lines = [
+        f"{e.group:20} {e.name} ({e.package}): {e.problem or ', '.join(e.offers)}"
+        for e in found.extensions
+    ]
+    return "\n".join(lines) or "no extensions are installed"
+
+
+OPERATION = Operation(
+    name="extensions",
+    method="GET",
+    tag="materials",
+    summary="What installed packages add",
+    request=NoRequest,
+    result=Extensions,
+    run=extensions,
+    command=Command(_text),
+)

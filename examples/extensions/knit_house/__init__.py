@@ -1,0 +1,1 @@
+"""A knitting house's additions to Knitcore, as an example of extensions."""

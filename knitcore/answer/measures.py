@@ -1,0 +1,61 @@
+"""Measures: further numbers of a chart of a material, which extensions compute from its answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from knitcore.answer.answer import Answer
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.extensions import Group, offered, running
+from knitcore.materials import Material
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A number that an extension adds (:mod:`knitcore.extensions`).
+
+    Attributes
+    ----------
+    identifier : by which it is asked for.
+    unit : of its value; empty for a ratio.
+    description : one sentence.
+    of : computes it; may raise InputError where the material lacks what it needs.
+    """
+
+    identifier: str
+    unit: str
+    description: str
+    of: Callable[[StitchChart, Material, Answer], float]
+
+    def value(self, chart: StitchChart, material: Material, answer: Answer) -> float:
+        """Its value, given the answer for the chart of the material.
+
+        Raises
+        ------
+        ExtensionError
+            If it fails.
+        """
+        with running(Group.MEASURES, self.identifier):
+            return float(self.of(chart, material, answer))
+
+
+def measure(identifier: str) -> Measure:
+    """A measure by its name.
+
+    Raises
+    ------
+    InputError
+        If no extension offers it.
+
+    Warns
+    -----
+    knitcore.extensions.ExtensionWarning
+        Of every extension that cannot be used.
+    """
+    found = offered(Group.MEASURES, Measure)
+    if identifier not in found:
+        known = f"Use one of {', '.join(found)}." if found else "Install a package that has it."
+        raise InputError("measures", f"there is no measure {identifier!r}.", known)
+    return found[identifier]

@@ -1,0 +1,76 @@
+"""What extensions add, over REST and on the command line."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+from app.operations.context import Context
+from app.operations.export import ExportRequest, export
+from knitcore.errors import InputError
+from knitcore.extensions import Group
+from tests.extension_package import install, install_example
+
+
+@pytest.fixture(autouse=True)
+def house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    install_example(monkeypatch, tmp_path / "site")
+
+
+def run(*arguments: str) -> str:
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def test_the_command_predicts_with_pattern_yarn_and_measures(tmp_path: Path) -> None:
+    asked = ["waffle", "--size", "24x6", "--material", "house-dk", "--measure", "stitches-per-cm2"]
+    found = json.loads(run("predict", *asked, "--json"))
+    assert (found["columns"], found["rows"]) == (24, 6)
+    (measured,) = found["measures"]
+    assert measured["value"] > 0
+    assert "stitches-per-cm2" in run("predict", *asked)
+
+    out = tmp_path / "card.txt"
+    run("export", "waffle", "--size", "24x6", "--to", "punchcard", "-o", str(out))
+    assert out.read_text().splitlines()[1] == "oo." * 8
+
+
+def test_the_service_has_them(client: TestClient) -> None:
+    assert "waffle" in [p["id"] for p in client.get("/api/v1/patterns").json()["patterns"]]
+    assert "house-dk" in [m["id"] for m in client.get("/api/v1/materials").json()["materials"]]
+    asked = {"chart": "KP", "material": "house-dk", "measures": ["cover-factor"]}
+    (cover,) = client.post("/api/v1/predict", json=asked).json()["measures"]
+    assert cover["value"] is None  # the yarn's diameter is not known
+
+
+def test_a_request_for_its_format_is_a_file(tmp_path: Path) -> None:
+    request = ExportRequest(chart="KP/KK", to="punchcard", name="Card")
+    file = export(request, Context(tmp_path))
+    assert (file.name, file.media_type) == ("Card.txt", "text/plain; charset=utf-8")
+    assert b".o.o" in base64.b64decode(file.content)
+    with pytest.raises(InputError, match="no format"):
+        export(ExportRequest(chart="KP", to="no-such-format"), Context(tmp_path))
+
+
+def test_a_measure_that_nobody_offers_is_refused(client: TestClient) -> None:
+    refused = client.post(
+        "/api/v1/predict", json={"chart": "KP", "material": "acrylic", "measures": ["x"]}
+    )
+    assert refused.json()["field"] == "measures"
+
+
+def test_the_list_says_what_is_wrong(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, client: TestClient
+) -> None:
+    install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.MEASURES: {"gone": "gone:all"}})
+    found = {e["name"]: e for e in client.get("/api/v1/extensions").json()["extensions"]}
+    assert found["knit-house"]["problem"] is None
+    assert "ModuleNotFoundError" in found["gone"]["problem"]
+    assert "gone (bad 2.0)" in run("extensions")
