@@ -29,7 +29,8 @@ from knitcore.measure.stretch_test import StretchTest
 from knitcore.measure.uniaxial import Reduction, fit_law
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
 from knitcore.swatch.clamp_correction import ClampCorrection, converted
-from knitcore.swatch.strip_fit import MeasuredStrip, StripFit, fit_strips
+from knitcore.swatch.measured_strip import MeasuredStrip
+from knitcore.swatch.strip_fit import StripFit, fit_strips
 
 FILE = Path(__file__).parent.parent / "knitcore" / "materials" / "data" / "refitted.csv"
 AXES = {Direction.COURSE: "X", Direction.WALE: "Y"}
@@ -204,7 +205,7 @@ def carried_uncertainty(record: FabricRecord, like: LawUncertainty, error: float
 
     def curve(direction: Direction) -> CurveUncertainty:
         stress = math.hypot(printed.log_modulus(direction), error)
-        return CurveUncertainty(stress, 0.0, like.curve(direction).log_lock_up)
+        return CurveUncertainty(stress, like.curve(direction).log_lock_up)
 
     return replace(
         like,

@@ -18,7 +18,7 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty, log_deviation
-from knitcore.mechanics.pressure import limb_pressure, rest_circumference, stress_log_sd
+from knitcore.mechanics.pressure import limb_pressure, rest_circumference
 
 
 class PressureRequest(LawsRequest):
@@ -103,8 +103,8 @@ def _of_law(
     found = limb_pressure(law, direction, rest, worn, tested_strain=tested)
     widened = None
     if uncertainty is not None:
-        curve = uncertainty.curve(direction)
-        factor = math.exp(Z_SCORE * stress_log_sd(law, direction, found.strain, curve))
+        spread = uncertainty.log_stress(direction, found.tension_n_per_mm.low)
+        factor = math.exp(Z_SCORE * float(spread))
         widened = IntervalResult(low=found.mmhg.low / factor, high=found.mmhg.high * factor)
     return PressureResult.of(
         found,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -21,7 +20,13 @@ from knitcore.law.response import (
     Stiffened,
     stress_at_strain,
 )
-from knitcore.materials.uncertainty import Z_SCORE, Interval, log_interval, normal_interval
+from knitcore.materials.uncertainty import (
+    Z_SCORE,
+    Interval,
+    LawUncertainty,
+    log_interval,
+    normal_interval,
+)
 
 Array = NDArray[np.float64]
 
@@ -152,8 +157,7 @@ class Answer:
         law: ConstitutiveLaw,
         relaxed: RelaxedSize,
         *,
-        log_sd: tuple[float, float],
-        poisson_sd: tuple[float, float],
+        spread: LawUncertainty,
         provenance: Source,
         method: str,
         relaxed_source: str,
@@ -161,19 +165,29 @@ class Answer:
     ) -> Answer:
         """Answer for a sheet with one constitutive law.
 
-        ``log_sd`` is that of the whole scale of stress, course-wise and wale-wise: the lock-up
-        strain, which tests fix best, stays where it is.
+        ``spread`` is that of the stress at each strain: the lock-up strain, which tests fix best,
+        stays where it is.
         """
-        ratios = law.poisson_yx, law.poisson_xy
+        ratios, ratio_sds = (
+            (law.poisson_yx, law.poisson_xy),
+            (spread.poisson_yx, spread.poisson_xy),
+        )
+
+        def stiffened(direction: Direction, deviations: float) -> Stiffened:
+            return Stiffened(
+                LawResponse(law, direction),
+                lambda stress: deviations * spread.log_stress(direction, stress),
+            )
+
         course, wale = (
             Along(
                 LawResponse(law, d),
-                Stiffened(LawResponse(law, d), math.exp(Z_SCORE * log_sd[d.axis])),
-                Stiffened(LawResponse(law, d), math.exp(-Z_SCORE * log_sd[d.axis])),
+                stiffened(d, Z_SCORE),
+                stiffened(d, -Z_SCORE),
                 LawResponse(law, d).across,
                 HeldLawResponse(law, d),
                 poisson=ratios[d.axis],
-                poisson_sd=poisson_sd[d.axis],
+                poisson_sd=ratio_sds[d.axis],
                 relaxed_mm=relaxed.extent_mm(d),
                 relaxed_log_sd=relaxed.log_sd,
                 bounds_n_per_mm=Interval(law.modulus(d), law.modulus(d)),

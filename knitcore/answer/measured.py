@@ -34,8 +34,7 @@ def measured(fabric: Fabric, material: Material) -> Answer:
     return Answer.of_law(
         record.law,
         size,
-        log_sd=(spread.log_modulus_course, spread.log_modulus_wale),
-        poisson_sd=(spread.poisson_yx, spread.poisson_xy),
+        spread=spread,
         provenance=_SOURCES.get(record.origin, Source.MEASURED),
         method=f"law of {fabric}, {record.origin}; uncertainty: {spread.source}",
         relaxed_source="gauge of the pure fabric",

@@ -116,7 +116,7 @@ class Mixture:
         total = strains.sum(axis=0)
         deviations = np.array(
             [
-                record.uncertainty.log_modulus(direction)
+                record.uncertainty.log_stress(direction, stress_n_per_mm)
                 * _law_slopes(record.law, direction, np.asarray(stress_n_per_mm, dtype=float))
                 for _, record in self.parts
             ]

@@ -147,8 +147,8 @@ def _own_log_sd(
     low, high = along.stress_interval(along.strain(SPREAD_AT))
     whole = np.log(high / low) / (2 * Z_SCORE)
     records = _records(cells, material)
-    laws = _shares(cells) * [r.uncertainty.log_modulus(direction) for r in records]
-    return np.sqrt(np.maximum(whole**2 - float(laws @ laws), 0.0))
+    laws = [r.uncertainty.log_stress(direction, SPREAD_AT) for r in records]
+    return np.sqrt(np.maximum(whole**2 - _shares(cells) ** 2 @ np.square(laws), 0.0))
 
 
 def _fitted_laws(

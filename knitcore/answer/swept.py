@@ -22,7 +22,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Material
-from knitcore.materials.uncertainty import MODEL_POISSON_SD, YARN_LEVEL_LOG_SD
+from knitcore.materials.uncertainty import MODEL_POISSON_SD, YARN_LEVEL_LOG_SD, LawUncertainty
 from knitcore.phases import quarter_phases, reference_fabric
 
 NO_FRICTION = "The yarn level has no friction or set: draw-in is probably exaggerated."
@@ -61,8 +61,9 @@ def swept_answer(
     return Answer.of_law(
         law_in_material(law, pure, repeat, material),
         size,
-        log_sd=(YARN_LEVEL_LOG_SD, YARN_LEVEL_LOG_SD),
-        poisson_sd=(MODEL_POISSON_SD, MODEL_POISSON_SD),
+        spread=LawUncertainty(
+            YARN_LEVEL_LOG_SD, YARN_LEVEL_LOG_SD, MODEL_POISSON_SD, MODEL_POISSON_SD, "yarn level"
+        ),
         provenance=Source.SWEPT,
         method="law fitted to a yarn-level stretch of this repeat",
         relaxed_source="yarn level",

@@ -6,9 +6,9 @@
 and likewise for y. x is the course direction, y the wale direction. Stress is force per width.
 
 A law fitted to simulated tests also couples the stiffening of each direction to the strain across:
-its argument is ``alpha_xx (e_xx + kappa_xx e_yy)``, so a fabric that narrows frees yarn along the
-pull, and stiffening pulls the width in. The energy stays convex for any kappa. The paper's laws
-have ``kappa = 0``.
+its argument is ``alpha_xx (e_xx + kappa_xx (e_yy + e_yy**2 / 2))``, so a fabric that narrows frees
+yarn along the pull, and stiffening pulls the width in, the less the narrower it is. The energy
+stays convex for any kappa. The paper's laws have ``kappa = 0``.
 """
 
 from __future__ import annotations
@@ -64,8 +64,8 @@ class ConstitutiveLaw:
     shear_modulus : N/mm
         C_xyxy, stress per engineering shear angle.
     kappa_xx, kappa_yy : dimensionless
-        Share of the strain across that counts in the stiffening course-wise and wale-wise (full
-        form only).
+        Share of half the squared stretch across that counts in the stiffening course-wise and
+        wale-wise (full form only).
 
     Raises
     ------

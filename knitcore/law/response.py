@@ -5,6 +5,7 @@ Every response, whatever its source, has a modulus and gives the strain at a str
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -75,19 +76,22 @@ class HeldLawResponse:
 
 @dataclass(frozen=True)
 class Stiffened:
-    """A response that needs ``factor`` times the stress for every strain."""
+    """A response that needs ``exp(log_factor)`` times the stress for every strain.
+
+    ``log_factor`` is a function of the stress (N/mm) that changes slowly.
+    """
 
     response: Response
-    factor: float
+    log_factor: Callable[[ArrayLike], Array]
 
     @property
     def modulus_n_per_mm(self) -> float:
         """Young's modulus."""
-        return self.factor * self.response.modulus_n_per_mm
+        return float(np.exp(self.log_factor(0.0))) * self.response.modulus_n_per_mm
 
     def strain(self, stress: ArrayLike) -> Array:
         """Strains at stresses (N/mm)."""
-        return self.response.strain(np.asarray(stress, dtype=float) / self.factor)
+        return self.response.strain(stress * np.exp(-self.log_factor(stress)))
 
 
 _STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, 10.0, 600)])

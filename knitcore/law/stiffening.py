@@ -80,8 +80,10 @@ class StiffeningResponse:
 class CoupledStiffening:
     """The stiffening of both directions, each coupled to the strain across by its kappa.
 
-    Its energy density is ``beta_xx/alpha_xx w(alpha_xx (e_xx + kappa_xx e_yy))`` and likewise for
-    y. The published form leaves the couplings out.
+    Its energy density is ``beta_xx/alpha_xx w(alpha_xx (e_xx + kappa_xx g_yy))`` and likewise for
+    y, with ``g = e + e**2 / 2``, half the change of the squared stretch. So the pull on the width
+    fades as the width does, and no stretch narrows a sheet to nothing; the energy is convex. The
+    published form leaves the couplings out.
 
     Parameters
     ----------
@@ -108,7 +110,19 @@ class CoupledStiffening:
         """s course-wise and wale-wise; 1 is the lock-up."""
         xx, yy = _array(strain_xx), _array(strain_yy)
         kappa_x, kappa_y = self._kappa(form)
-        return self.alpha_xx * (xx + kappa_x * yy), self.alpha_yy * (yy + kappa_y * xx)
+        return (
+            self.alpha_xx * (xx + kappa_x * (yy + yy * yy / 2)),
+            self.alpha_yy * (yy + kappa_y * (xx + xx * xx / 2)),
+        )
+
+    def argument_slopes(
+        self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
+    ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Derivatives of both arguments by the strains course-wise and wale-wise."""
+        kappa_x, kappa_y = self._kappa(form)
+        across_x = self.alpha_xx * kappa_x * (1 + _array(strain_yy))
+        across_y = self.alpha_yy * kappa_y * (1 + _array(strain_xx))
+        return (self.alpha_xx, across_x), (across_y, self.alpha_yy)
 
     def response(
         self, strain_xx: ArrayLike, strain_yy: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
@@ -117,7 +131,8 @@ class CoupledStiffening:
         s_x, s_y = self.arguments(strain_xx, strain_yy, form)
         energy_x, slope_x, curvature_x = stiffening(s_x, form)
         energy_y, slope_y, curvature_y = stiffening(s_y, form)
-        kappa_x, kappa_y = self._kappa(form)
+        bent_x, bent_y = self._kappa(form)
+        kappa_x, kappa_y = bent_x * (1 + _array(strain_yy)), bent_y * (1 + _array(strain_xx))
         stress_x, stress_y = self.beta_xx * slope_x, self.beta_yy * slope_y
         tangent_x = self.alpha_xx * self.beta_xx * curvature_x
         tangent_y = self.alpha_yy * self.beta_yy * curvature_y
@@ -126,8 +141,8 @@ class CoupledStiffening:
             + _over(self.beta_yy, self.alpha_yy) * energy_y,
             stress_xx=stress_x + kappa_y * stress_y,
             stress_yy=stress_y + kappa_x * stress_x,
-            tangent_xx=tangent_x + kappa_y**2 * tangent_y,
-            tangent_yy=tangent_y + kappa_x**2 * tangent_x,
+            tangent_xx=tangent_x + kappa_y**2 * tangent_y + bent_y * stress_y,
+            tangent_yy=tangent_y + kappa_x**2 * tangent_x + bent_x * stress_x,
             tangent_xy=kappa_x * tangent_x + kappa_y * tangent_y,
         )
 

@@ -11,7 +11,12 @@ import math
 from dataclasses import dataclass
 from statistics import NormalDist
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from knitcore.fabric import Direction
+
+Array = NDArray[np.float64]
 
 COVERAGE = 0.90
 """Probability content of all intervals."""
@@ -28,6 +33,10 @@ fabrics are off by a factor of 2.1 (rms). Scaling a law to the measured pure fab
 error that its phases have in common; half of the rest, in logarithms, is kept."""
 
 
+QUIET_STRESS_N_PER_MM = 0.03
+"""Stress below which a stretch test tells more about slack than about the curve."""
+
+
 @dataclass(frozen=True)
 class Interval:
     """A 90 % interval, in the unit of the value it belongs to."""
@@ -42,13 +51,11 @@ class CurveUncertainty:
 
     Attributes
     ----------
-    log_stress : of the stress at a strain, as far as it grows and falls as a whole.
-    log_strain : of the scale of strain: sigma(e) may be sigma(r e).
+    log_stress : of the stress at a strain, above about :data:`QUIET_STRESS_N_PER_MM`.
     log_lock_up : of the lock-up strain 1 / alpha.
     """
 
     log_stress: float
-    log_strain: float = 0.0
     log_lock_up: float = 0.0
 
 
@@ -84,6 +91,14 @@ class LawUncertainty:
         """Of the stress-strain curve in a direction."""
         known = self.curve_course if direction is Direction.COURSE else self.curve_wale
         return known or CurveUncertainty(self.log_modulus(direction))
+
+    def log_stress(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
+        """Standard deviation of the logarithm of the stress at the strain that carries it: of the
+        modulus at first, then of the curve.
+        """
+        first = 1 / (1 + (np.asarray(stress_n_per_mm, dtype=float) / QUIET_STRESS_N_PER_MM) ** 2)
+        modulus, curve = self.log_modulus(direction), self.curve(direction).log_stress
+        return np.sqrt(first * modulus**2 + (1 - first) * curve**2)
 
 
 def log_deviation(value: float, standard_deviation: float) -> float:

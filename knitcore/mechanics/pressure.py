@@ -23,7 +23,6 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.uniaxial import uniaxial_response
-from knitcore.materials.uncertainty import CurveUncertainty
 
 MMHG_PER_KPA = 760.0 / 101.325
 NEAR_LOCK_UP = 0.8
@@ -173,22 +172,6 @@ def rest_circumference(
         )
         found.append(worn_mm / (1 + float(strain)))
     return Interval(min(found), max(found))
-
-
-def stress_log_sd(
-    law: ConstitutiveLaw, direction: Direction, strain: float, curve: CurveUncertainty
-) -> float:
-    """Standard deviation of the logarithm of the stress at a strain.
-
-    The uncertainty of the scale of strain is multiplied by d ln(stress) / d ln(strain).
-    """
-    if strain <= 0 or curve.log_strain == 0:
-        return curve.log_stress
-    step = 1e-3
-    ends = strain * (1 - step), strain
-    low, high = uniaxial_response(law, direction, ends).stress
-    slope = math.log(high / low) / -math.log1p(-step)
-    return math.hypot(curve.log_stress, slope * curve.log_strain)
 
 
 def _tension(

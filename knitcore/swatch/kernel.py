@@ -104,8 +104,8 @@ class Tangent(NamedTuple):
 @njit(cache=True)
 def _axial(law: Law, ex: float, ey: float) -> Response:
     """The full law at fibre strains."""
-    x = _full(law.alpha_xx * (ex + law.kappa_xx * ey))
-    y = _full(law.alpha_yy * (ey + law.kappa_yy * ex))
+    x = _full(law.alpha_xx * (ex + law.kappa_xx * (ey + 0.5 * ey * ey)))
+    y = _full(law.alpha_yy * (ey + law.kappa_yy * (ex + 0.5 * ex * ex)))
     return _stiffened(law, (law.kappa_xx, law.kappa_yy), x, y, ex, ey)
 
 
@@ -115,7 +115,8 @@ def _stiffened(
 ) -> Response:
     """The law at strains along course and wale, given its stiffening in both directions."""
     cxx, cyy, cxy = law.stiffness_xxxx, law.stiffness_yyyy, law.stiffness_xxyy
-    (kappa_x, kappa_y), (wx, dwx, ddwx), (wy, dwy, ddwy) = kappa, x, y
+    (bent_x, bent_y), (wx, dwx, ddwx), (wy, dwy, ddwy) = kappa, x, y
+    kappa_x, kappa_y = bent_x * (1.0 + ey), bent_y * (1.0 + ex)
     energy = 0.5 * cxx * ex * ex + 0.5 * cyy * ey * ey + cxy * ex * ey
     if law.alpha_xx > 0.0:
         energy += law.beta_xx / law.alpha_xx * wx
@@ -127,8 +128,8 @@ def _stiffened(
         energy,
         cxx * ex + cxy * ey + sx + kappa_y * sy,
         cxy * ex + cyy * ey + sy + kappa_x * sx,
-        cxx + kx + kappa_y * kappa_y * ky,
-        cyy + ky + kappa_x * kappa_x * kx,
+        cxx + kx + kappa_y * kappa_y * ky + bent_y * sy,
+        cyy + ky + kappa_x * kappa_x * kx + bent_x * sx,
         cxy + kappa_x * kx + kappa_y * ky,
     )
 

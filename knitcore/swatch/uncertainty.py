@@ -10,9 +10,8 @@ nodes by
 with the tangent K and the internal forces R of the equilibrium, and variances of independent
 parameters add up. The parameters are
 
-- the logarithm of each fabric's scale of stress along course and wale (C_aaaa and beta together);
-- the logarithm of its scale of strain along both (sigma(e) becomes sigma(r e)), where the tests'
-  strain is uncertain;
+- the logarithm of each fabric's scale of stress along course and wale (C_aaaa and beta together),
+  as unsure as the curve is at the test's stress;
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
 - the model's own error, where fabrics are mixed: for the force that of the chart's answer
@@ -36,6 +35,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.gridsolver.dissection import GridFactor
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
+from knitcore.law.stiffening import StiffeningForm
 from knitcore.materials.material import Material
 from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_interval
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
@@ -77,7 +77,7 @@ class StepSpread:
 
 
 @dataclass(frozen=True, eq=False)
-class _Parameter:
+class LawParameter:
     """An uncertain parameter of the laws.
 
     Attributes
@@ -133,7 +133,7 @@ class StripSpread:
         self._fixed = fixed
         self._factor = GridFactor(grid.columns, grid.rows, fixed.ravel())
         self._model_sd = model_log_sd(test.sheet)
-        self._parameters = _parameters(test.sheet, material, self._model_sd)
+        self._material = material
         self._lock_up_sd = _lock_up_sd(test.sheet, material)
 
     def at(self, step: int) -> StepSpread:
@@ -146,7 +146,9 @@ class StripSpread:
         slope = self._utilisation_slope(step)
         force_variance = waist_variance = 0.0
         variances = np.zeros((3, grid.rows + 1, grid.columns + 1))
-        for parameter in self._parameters:
+        for parameter in law_parameters(
+            sheet, self._material, self._model_sd, float(test.stress_n_per_mm[step])
+        ):
             raised = sheet.law_force(parameter.up, state)
             lowered = sheet.law_force(parameter.down, state)
             change = lin.with_force(
@@ -187,15 +189,13 @@ class StripSpread:
     def _utilisation_slope(self, step: int) -> Array:
         """d utilisation / d (strain course-wise, wale-wise) of every cell, (2, rows, columns)."""
         sheet = self.test.sheet
-        used = utilisation(sheet, cell_strains(sheet, self.test.states[step]))
+        strains = cell_strains(sheet, self.test.states[step])
+        used = utilisation(sheet, strains)
         stiff = stiffening_of(sheet, sheet.grid.law_of_cell)
+        form = StiffeningForm(sheet.model.energy.value)
+        (xx, xy), (yx, yy) = stiff.argument_slopes(*strains.mean[:2], form)
         course = used[0] >= used[1]
-        return np.stack(
-            [
-                np.where(course, stiff.alpha_xx, np.multiply(stiff.kappa_yy, stiff.alpha_yy)),
-                np.where(course, np.multiply(stiff.kappa_xx, stiff.alpha_xx), stiff.alpha_yy),
-            ]
-        )
+        return np.stack([np.where(course, xx, yx), np.where(course, xy, yy)])
 
 
 def model_log_sd(sheet: Sheet) -> float:
@@ -219,7 +219,13 @@ def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
     return found
 
 
-def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Parameter]:
+def law_parameters(
+    sheet: Sheet, material: Material, model_sd: float, stress_n_per_mm: float
+) -> list[LawParameter]:
+    """The uncertain parameters of a sheet's laws, one by one, and of the assumed shear modulus.
+
+    ``stress_n_per_mm`` is about the stress that the cloth carries.
+    """
     found = []
     codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
     for code in codes:
@@ -228,16 +234,13 @@ def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Para
             material.record(PHASES[code % len(PHASES)]).uncertainty,
         )
         for direction in Direction:
-            curve = spread.curve(direction)
             step = _varied(sheet, [code], partial(_stress_scaled, direction))
-            found.append(_Parameter(*step, curve.log_stress, model_sd))
-            if curve.log_strain > 0:
-                step = _varied(sheet, [code], partial(_strain_scaled, direction))
-                found.append(_Parameter(*step, curve.log_strain, 0.0))
+            sd = float(spread.log_stress(direction, stress_n_per_mm))
+            found.append(LawParameter(*step, sd, model_sd))
         sd = _coupling_sd(law, sheet.model.rule, spread)
-        found.append(_Parameter(*_varied(sheet, [code], _coupled), sd, 0.0))
+        found.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
-            found.append(_Parameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
+            found.append(LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
     assumed = [
         code
         for code in codes
@@ -246,7 +249,7 @@ def _parameters(sheet: Sheet, material: Material, model_sd: float) -> list[_Para
         and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
     ]
     if assumed:
-        found.append(_Parameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+        found.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
     return found
 
 
@@ -264,19 +267,8 @@ def _varied(
 
 def _stress_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
     """By the logarithm of the scale of stress in a direction, Poisson's ratios' product fixed."""
-    return _scaled(law, direction, math.exp(step), "beta")
-
-
-def _strain_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By the logarithm of the scale of strain in a direction: sigma(e) becomes sigma(r e)."""
-    return _scaled(law, direction, math.exp(step), "alpha")
-
-
-def _scaled(
-    law: ConstitutiveLaw, direction: Direction, factor: float, constant: str
-) -> ConstitutiveLaw:
-    axis = "xx" if direction is Direction.COURSE else "yy"
-    stiffness, stiffening = f"stiffness_{axis * 2}", f"{constant}_{axis}"
+    factor, axis = math.exp(step), "xx" if direction is Direction.COURSE else "yy"
+    stiffness, stiffening = f"stiffness_{axis * 2}", f"beta_{axis}"
     coupling = law.stiffness_xxyy * math.sqrt(factor)
     return replace(
         law,

@@ -24,6 +24,11 @@ ROWS = [
     for fabric in m.fabrics
 ]
 laws = st.sampled_from(ROWS).map(lambda row: material(row[0]).law(row[1]))
+coupled = st.builds(
+    lambda law, kappa: replace(law, kappa_xx=kappa, kappa_yy=1.5 * kappa),
+    laws,
+    st.sampled_from([0.0, 0.4]),
+)
 forms = st.sampled_from(StiffeningForm)
 
 
@@ -66,7 +71,7 @@ def test_stiffening_is_differentiated_right(form):
     )
 
 
-@given(laws, forms, st.floats(-0.3, 1.2), st.floats(-0.3, 1.2))
+@given(coupled, forms, st.floats(-0.3, 1.2), st.floats(-0.3, 1.2))
 def test_stress_is_the_gradient_of_the_energy(law, form, s_x, s_y):
     law = law.symmetrised()
     ex, ey = s_x / law.alpha_xx, s_y / law.alpha_yy
@@ -84,7 +89,7 @@ def test_stress_is_the_gradient_of_the_energy(law, form, s_x, s_y):
     np.testing.assert_allclose(numeric, stress, rtol=1e-4, atol=1e-6 * scale)
 
 
-@given(laws, forms, st.floats(-0.3, 1.2), st.floats(-0.3, 1.2))
+@given(coupled, forms, st.floats(-0.3, 1.2), st.floats(-0.3, 1.2))
 def test_tangent_is_the_derivative_of_the_stress(law, form, s_x, s_y):
     ex, ey = s_x / law.alpha_xx, s_y / law.alpha_yy
     step = 1e-7
@@ -99,11 +104,23 @@ def test_tangent_is_the_derivative_of_the_stress(law, form, s_x, s_y):
     np.testing.assert_array_equal(tangent[2], [0, 0, law.shear_modulus])
 
 
-@given(laws, st.floats(-1, 3), st.floats(-1, 3))
+@given(coupled, st.floats(-1, 3), st.floats(-1, 3))
 def test_the_full_symmetric_law_is_convex(law, s_x, s_y):
     law = law.symmetrised()
-    tangent = law.tangent(s_x / law.alpha_xx, s_y / law.alpha_yy)
-    assert np.linalg.eigvalsh(tangent).min() > 0
+    strains = np.maximum([s_x / law.alpha_xx, s_y / law.alpha_yy], -1)  # no fibre is shorter than 0
+    assert np.linalg.eigvalsh(law.tangent(*strains)).min() > 0
+
+
+@pytest.mark.parametrize("fabric", Fabric)
+@pytest.mark.parametrize("direction", Direction)
+def test_a_sheet_pulled_to_the_lock_up_keeps_some_width(fabric, direction):
+    law = material("acrylic").law(fabric)
+    assert max(law.kappa_xx, law.kappa_yy) > 0
+    strain = np.linspace(0.1, 0.999, 50) * law.lock_up_strain(direction)
+    pulled = uniaxial_response(law, direction, strain)
+    assert np.all(np.diff(pulled.transverse_strain) < 0)
+    assert pulled.transverse_strain[-1] > -1
+    assert np.all(np.diff(pulled.stress) > 0)
 
 
 @given(laws)

@@ -9,6 +9,14 @@ from knitcore.materials import material
 from knitcore.swatch import strip_test
 
 
+def test_a_checkerboard_is_stretched_up_to_its_lock_up() -> None:
+    """Corners between clamp and free edge narrow most, and must not fold over."""
+    test = strip_test(
+        StitchChart.parse("KP\nPK").resized(16, 16), material("acrylic"), "course", 0.75
+    )
+    assert test.converged, test.problem
+
+
 @pytest.mark.parametrize("extreme", [{"shear_modulus": 1e-300}, {"width_mm": 1e-9}])
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_what_cannot_be_factorised_is_no_result(extreme: dict[str, float]) -> None:

@@ -13,7 +13,8 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import material
 from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import read_stretch_test
-from knitcore.swatch.strip_fit import LEVELS, MeasuredStrip, fit_strips, fit_tests
+from knitcore.swatch.measured_strip import LEVELS, MeasuredStrip
+from knitcore.swatch.strip_fit import fit_strips, fit_tests
 from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
 
 TRUTH = ConstitutiveLaw(
