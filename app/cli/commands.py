@@ -43,7 +43,8 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         context = Context(user_data_dir, local=True)
         request = options.request(given)
         more = {option: given[option] for option in _parameters(described.run)}
-        result = (described.run or operation.run)(request, context, **more)
+        run: Callable[..., Any] = described.run or operation.run
+        result = run(request, context, **more)
         emit(result, described.text(result), as_json=as_json)
 
     help_text = described.help or f"{operation.summary}."

@@ -160,12 +160,9 @@ def _text(r: AtlasResult) -> str:
 
 
 OPERATION = Operation(
-    name="atlas",
+    atlas,
     tag="design",
     summary="Predicted constants of all small repeats of a material",
-    request=AtlasRequest,
-    result=AtlasResult,
-    run=atlas,
     heavy=True,
     job=True,
     command=_command,

@@ -204,12 +204,9 @@ def _text(r: BendResult) -> str:
 
 
 OPERATION = Operation(
-    name="bend",
+    bend,
     tag="yarn level",
     summary="Bending, curl and shear of a repeat at the yarn level",
-    request=BendRequest,
-    result=BendResult,
-    run=bend,
     heavy=True,
     job=True,
     command=Command(

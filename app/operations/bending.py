@@ -75,13 +75,10 @@ def _text(r: BendingResult) -> str:
 
 
 OPERATION = Operation(
-    name="bending",
+    bending,
     path="/measure/bending",
     tag="measure",
     summary="Bending modulus from photos of hanging yarn",
-    request=BendingRequest,
-    result=BendingResult,
-    run=bending,
     heavy=True,
     job=True,
     command=Command(

@@ -133,12 +133,9 @@ def _text(r: CalibrateResult) -> str:
 
 
 OPERATION = Operation(
-    name="calibrate",
+    calibrate,
     tag="displacement fields",
     summary="Shear modulus and couplings from a displacement field",
-    request=CalibrateRequest,
-    result=CalibrateResult,
-    run=calibrate,
     heavy=True,
     job=True,
     command=Command(

@@ -382,13 +382,10 @@ def _line(row: CharacterisedFabric) -> str:
 
 
 OPERATION = Operation(
-    name="characterise",
+    characterise,
     path=None,
     tag="yarn level",
     summary="The pure fabrics of a yarn at many stitch settings",
-    request=CharacteriseRequest,
-    result=CharacteriseResult,
-    run=characterise,
     heavy=True,
     job=True,
     command=_command,

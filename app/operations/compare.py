@@ -80,12 +80,9 @@ def _text(r: CompareResult) -> str:
 
 
 OPERATION = Operation(
-    name="compare",
+    compare,
     tag="displacement fields",
     summary="A law compared with a measured displacement field",
-    request=CompareRequest,
-    result=CompareResult,
-    run=compare,
     heavy=True,
     job=True,
     command=Command(

@@ -119,13 +119,10 @@ def _text(r: CompressionResult) -> str:
 
 
 OPERATION = Operation(
-    name="compression",
+    compression,
     path="/measure/compression",
     tag="measure",
     summary="Contact constants from compression tests",
-    request=CompressionRequest,
-    result=CompressionResult,
-    run=compression,
     heavy=True,
     job=True,
     command=Command(

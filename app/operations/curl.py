@@ -74,7 +74,7 @@ class CurlResult(ResultModel):
     notes: list[str]
 
 
-def curl(request: CurlRequest, context: Context) -> Viewed:
+def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
     """Shape of least energy of a piece with free edges, without friction, set and weight.
 
     Stockinette rolls its sides to the back and its ends to the front, garter, 1x1 rib and seed lie
@@ -136,12 +136,9 @@ def _where(curl_mm: float, thickness_mm: float) -> str:
 
 
 OPERATION = Operation(
-    name="curl",
+    curl,
     tag="mechanics",
     summary="How a piece curls and folds",
-    request=CurlRequest,
-    result=CurlResult,
-    run=curl,
     heavy=True,
     job=True,
     command=Command(

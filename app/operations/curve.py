@@ -81,12 +81,9 @@ def _text(r: CurveResult) -> str:
 
 
 OPERATION = Operation(
-    name="curve",
+    curve,
     tag="mechanics",
     summary="Stress-strain curve of a chart",
-    request=CurveRequest,
-    result=CurveResult,
-    run=curve,
     heavy=True,
     job=True,
     command=Command(

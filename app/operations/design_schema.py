@@ -23,12 +23,9 @@ def design_schema(request: NoRequest, context: Context) -> DesignSchema:
 
 
 OPERATION = Operation(
-    name="design_schema",
+    design_schema,
     method="GET",
     path="/schemas/design",
     tag="files",
     summary="JSON schema of the project file",
-    request=NoRequest,
-    result=DesignSchema,
-    run=design_schema,
 )

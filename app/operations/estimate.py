@@ -235,11 +235,8 @@ def _percent(e: EstimateInterval) -> str:
 
 
 OPERATION = Operation(
-    name="estimate",
+    estimate,
     tag="materials",
     summary="The four fabrics of a yarn that is not in the library",
-    request=EstimateRequest,
-    result=EstimateResult,
-    run=estimate,
     command=_command,
 )

@@ -97,12 +97,9 @@ def text(r: ModelReport) -> str:
 
 
 OPERATION = Operation(
-    name="estimate_report",
+    estimate_report,
     method="GET",
     path="/estimate/report",
     tag="materials",
     summary="How well left-out yarns are predicted",
-    request=NoRequest,
-    result=ModelReport,
-    run=estimate_report,
 )

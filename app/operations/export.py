@@ -137,12 +137,9 @@ def _text(facts: ExportFacts) -> str:
 
 
 OPERATION = Operation(
-    name="export",
+    export,
     tag="files",
     summary="A chart as a file",
-    request=ExportRequest,
-    result=ExportResult,
-    run=export,
     heavy=True,
     command=Command(
         _text,

@@ -63,12 +63,9 @@ def _text(found: Extensions) -> str:
 
 
 OPERATION = Operation(
-    name="extensions",
+    extensions,
     method="GET",
     tag="materials",
     summary="What installed packages add",
-    request=NoRequest,
-    result=Extensions,
-    run=extensions,
     command=Command(_text),
 )

@@ -205,12 +205,9 @@ def _text(r: FillResult) -> str:
 
 
 OPERATION = Operation(
-    name="fill",
+    fill,
     tag="design",
     summary="A chart for a map of wanted stiffness",
-    request=FillRequest,
-    result=FillResult,
-    run=fill,
     heavy=True,
     job=True,
     command=Command(

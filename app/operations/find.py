@@ -294,12 +294,9 @@ def _value(c: CandidateResult, label: str) -> str:
 
 
 OPERATION = Operation(
-    name="find",
+    find,
     tag="design",
     summary="Fabrics with wanted properties",
-    request=FindRequest,
-    result=FindResult,
-    run=find,
     heavy=True,
     job=True,
     command=_command,

@@ -183,12 +183,9 @@ def _text(r: FitResult) -> str:
 
 
 OPERATION = Operation(
-    name="fit",
+    fit,
     tag="measure",
     summary="A law from two stretch tests",
-    request=FitRequest,
-    result=FitResult,
-    run=fit,
     heavy=True,
     job=True,
     command=Command(

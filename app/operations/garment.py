@@ -395,12 +395,9 @@ def _pressure(place: WornResult) -> str:
 
 
 OPERATION = Operation(
-    name="garment",
+    garment,
     tag="garments",
     summary="A garment from measurements",
-    request=GarmentRequest,
-    result=GarmentResult,
-    run=garment,
     command=Command(
         _text,
         help="Plan a garment from a TEMPLATE and measurements.",

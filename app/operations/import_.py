@@ -76,12 +76,9 @@ def design_in(path: Path) -> FoundDesign:
 
 
 OPERATION = Operation(
-    name="import",
+    import_,
     tag="files",
     summary="The chart in a file",
-    request=ImportRequest,
-    result=ImportResult,
-    run=import_,
     heavy=True,
     command=Command(
         lambda r: r.chart,

@@ -207,12 +207,9 @@ def _table(table: StitchTable) -> StitchTableResult:
 
 
 OPERATION = Operation(
-    name="material",
+    material,
     method="GET",
     path="/materials/{identifier}",
     tag="materials",
     summary="Everything known of a material",
-    request=MaterialRequest,
-    result=MaterialDetail,
-    run=material,
 )

@@ -67,13 +67,10 @@ def _text(found: Materials | MaterialDetail) -> str:
 
 
 OPERATION = Operation(
-    name="materials",
+    materials,
     method="GET",
     tag="materials",
     summary="The library of materials",
-    request=NoRequest,
-    result=Materials,
-    run=materials,
     command=Command(
         _text, help="List the library, or explain one MATERIAL (an id or a file).", run=_command
     ),

@@ -37,11 +37,8 @@ def parse(request: ParseRequest, context: Context) -> ParsedChart:
 
 
 OPERATION = Operation(
-    name="parse",
+    parse,
     path="/charts/parse",
     tag="charts",
     summary="Read a chart text and find its repeat",
-    request=ParseRequest,
-    result=ParsedChart,
-    run=parse,
 )

@@ -36,11 +36,8 @@ def patterns(request: NoRequest, context: Context) -> Patterns:
 
 
 OPERATION = Operation(
-    name="patterns",
+    patterns,
     method="GET",
     tag="charts",
     summary="Named patterns",
-    request=NoRequest,
-    result=Patterns,
-    run=patterns,
 )

@@ -6,12 +6,13 @@ import gzip
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from pydantic import BaseModel
 
 from app.operations.context import Context
 
+Result = TypeVar("Result", bound=BaseModel)
 LEVEL = 4
 """Of gzip: twice as fast as the usual one, for a few per cent more bytes."""
 
@@ -26,10 +27,10 @@ class View(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Viewed:
+class Viewed(Generic[Result]):
     """A result that the 3D view shows, too; an operation may return it in place of the result."""
 
-    result: BaseModel
+    result: Result
     view: View
 
 

@@ -150,12 +150,9 @@ def _relaxed(r: PredictResult) -> str:
 
 
 OPERATION = Operation(
-    name="predict",
+    predict,
     tag="mechanics",
     summary="Moduli and extensibility of a chart",
-    request=PredictRequest,
-    result=PredictResult,
-    run=predict,
     command=Command(
         _text,
         help="Moduli, Poisson's ratios and extensibility of CHART.",

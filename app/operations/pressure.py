@@ -145,12 +145,9 @@ def _text(r: PressureResult) -> str:
 
 
 OPERATION = Operation(
-    name="pressure",
+    pressure,
     tag="mechanics",
     summary="Pressure of a knitted tube on a limb",
-    request=PressureRequest,
-    result=PressureResult,
-    run=pressure,
     command=Command(
         _text,
         help="Pressure of a knitted tube on a limb, as an interval; never a medical class.",

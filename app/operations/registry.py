@@ -15,13 +15,25 @@ import inspect
 import keyword
 import pkgutil
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cache
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+from dataclasses import KW_ONLY, dataclass, field
+from functools import cache, cached_property
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Generic,
+    Literal,
+    TypeVar,
+    cast,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from pydantic import BaseModel
 
 import app.operations as package
+from app.operations.context import Context
+from app.operations.perform import Viewed
 
 if TYPE_CHECKING:
     import click
@@ -52,18 +64,17 @@ class Command:
     run: Callable[..., BaseModel] | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Operation(Generic[Request, Result]):
     """Something that Knitcore does for page, programs and command line alike.
 
     Attributes
     ----------
-    name : of the client's method, the kind of job and, by default, of the address.
+    run : the function that does it. Its name is that of the client's method, of the kind of job
+        and, by default, of the address; its annotations are the models of request and result; its
+        docstring is the description in the API's reference.
     summary : one line.
     tag : heading in the API's reference.
-    request, result : its pydantic models.
-    run : does it, given the request and a :class:`app.operations.context.Context`; the docstring
-        is the description in the API's reference.
     path : address under ``/api/v1``; None if it is a job only.
     heavy : whether it always takes long enough to need a worker process; others go there with
         large charts only.
@@ -71,17 +82,32 @@ class Operation(Generic[Request, Result]):
     command : on the command line, where its name is that of the module.
     """
 
-    name: str
+    run: Callable[[Request, Context], Result | Viewed[Result]]
+    _: KW_ONLY
     summary: str
     tag: str
-    request: type[Request]
-    result: type[Result]
-    run: Callable[..., Any]
     method: Literal["GET", "POST"] = "POST"
     path: str | None = ""
     heavy: bool = False
     job: bool = False
     command: Command | click.Command | None = None
+
+    @property
+    def name(self) -> str:
+        """Of the client's method and of the kind of job."""
+        return self.run.__name__.rstrip("_")
+
+    @cached_property
+    def request(self) -> type[Request]:
+        """The model of what is asked."""
+        first, *_ = get_type_hints(self.run).values()
+        return cast("type[Request]", first)
+
+    @cached_property
+    def result(self) -> type[Result]:
+        """The model of the answer."""
+        told = get_type_hints(self.run)["return"]
+        return cast("type[Result]", get_args(told)[0] if get_origin(told) is Viewed else told)
 
     @property
     def address(self) -> str:

@@ -110,12 +110,9 @@ def _text(r: RelaxResult) -> str:
 
 
 OPERATION = Operation(
-    name="relax",
+    relax,
     tag="yarn level",
     summary="Relax a repeat at the yarn level",
-    request=RelaxRequest,
-    result=RelaxResult,
-    run=relax,
     heavy=True,
     job=True,
     command=Command(

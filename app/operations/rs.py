@@ -75,13 +75,10 @@ def _text(result: RSResult) -> str:
 
 
 OPERATION = Operation(
-    name="rs",
+    rs,
     method="GET",
     path="/rs/{material}",
     tag="mechanics",
     summary="Moduli from the shape of the yarn",
-    request=RSRequest,
-    result=RSResult,
-    run=rs,
     command=Command(_text, help="The reduced-symmetry model of the four fabrics."),
 )

@@ -141,12 +141,9 @@ def _text(r: ShapeResult) -> str:
 
 
 OPERATION = Operation(
-    name="shape",
+    shape,
     tag="design",
     summary="A chart that takes a wanted outline when it is stretched",
-    request=ShapeRequest,
-    result=ShapeResult,
-    run=shape,
     heavy=True,
     job=True,
     command=Command(

@@ -144,7 +144,7 @@ class StretchView:
         return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))
 
 
-def stretch(request: StretchRequest, context: Context) -> Viewed:
+def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
     """Nonlinear strip test of the whole chart; stops when the caller goes away.
 
     A test that was run a short while ago is answered from memory.
@@ -255,7 +255,7 @@ def warm_up(*, cancelled: object) -> None:
 
 def _stitches(
     chart: StitchChart, request: StretchRequest, test: StripTest, margins: StretchMargins
-) -> Viewed:
+) -> Viewed[StretchResult]:
     shape = (test.steps, chart.rows, chart.columns)
     ux, uy, xx, yy, used = np.zeros((5, *shape))
     for step in range(test.steps):
@@ -369,12 +369,9 @@ def _text(curve: StretchCurve) -> str:
 
 
 OPERATION = Operation(
-    name="stretch",
+    stretch,
     tag="stretch",
     summary="Pull a chart between two clamps",
-    request=StretchRequest,
-    result=StretchResult,
-    run=stretch,
     heavy=True,
     job=True,
     command=Command(

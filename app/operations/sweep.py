@@ -158,12 +158,9 @@ def _text(r: SweepResult) -> str:
 
 
 OPERATION = Operation(
-    name="sweep",
+    sweep,
     tag="yarn level",
     summary="Stretch a repeat at the yarn level",
-    request=SweepRequest,
-    result=SweepResult,
-    run=sweep,
     heavy=True,
     job=True,
     command=Command(

@@ -22,12 +22,4 @@ def version(_: NoRequest, __: Context) -> VersionResult:
     return VersionResult(version=VERSION, api="v1")
 
 
-OPERATION = Operation(
-    name="version",
-    tag="service",
-    summary="Which version answers",
-    request=NoRequest,
-    result=VersionResult,
-    run=version,
-    method="GET",
-)
+OPERATION = Operation(version, tag="service", summary="Which version answers", method="GET")

@@ -97,9 +97,7 @@ def work(wish: Wish, context: Context) -> Answer:
     return Answer(value=42)
 
 
-WORK = Operation(
-    name="work", tag="tests", summary="Work", request=Wish, result=Answer, run=work, job=True
-)
+WORK = Operation(work, tag="tests", summary="Work", job=True)
 
 
 def answers(compute: Compute, folder: Path) -> Answers:

@@ -20,6 +20,7 @@ from app.models.gauge import GaugeInput
 from app.models.uploads import UploadedFile, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation, commands, operations
+from app.operations.stretch import StretchResult
 from knitcore.fabric import Direction
 from knitcore.materials import Interval
 from scripts.page_types import FILE, page_types
@@ -89,12 +90,9 @@ def tell(request: Asked, context: Context) -> Told:
 
 
 ASKING = Operation(
-    name="ask",
+    tell,
     tag="tests",
     summary="Ask",
-    request=Asked,
-    result=Told,
-    run=tell,
     command=Command(lambda r: r.asked, names={"parts": "--part"}),
 )
 
@@ -147,21 +145,27 @@ def test_a_file_brings_chart_and_outline(tmp_path: Path) -> None:
     assert (asked.chart, asked.outline) == ("KP\nPK", None)
 
 
-def test_a_repeat_needs_no_size() -> None:
-    class Repeat(RequestModel):
-        chart: RepeatInput
+class Repeat(RequestModel):
+    """A request about a repeat."""
 
-    operation = Operation(
-        name="repeat",
-        tag="tests",
-        summary="Repeat",
-        request=Repeat,
-        result=Told,
-        run=lambda request, _: Told(asked=str(request.chart)),
-        command=Command(lambda r: r.asked),
-    )
+    chart: RepeatInput
+
+
+def repeat(request: Repeat, context: Context) -> Told:
+    assert context.local
+    return Told(asked=str(request.chart))
+
+
+def test_a_repeat_needs_no_size() -> None:
+    operation = Operation(repeat, tag="tests", summary="Repeat", command=Command(lambda r: r.asked))
     told = CliRunner().invoke(command_of(operation, "repeat"), ["rib"])
     assert told.output == "KP\n"
+
+
+def test_an_operation_is_described_by_its_function() -> None:
+    assert (ASKING.name, ASKING.request, ASKING.result) == ("tell", Asked, Told)
+    assert operations()["stretch"].result is StretchResult  # which comes with data for the view
+    assert operations()["import"].address == "/import"
 
 
 class Found:
