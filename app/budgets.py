@@ -73,7 +73,7 @@ class Use(BaseModel):
 class OverBudgetError(ServiceError):
     """A limit of the user is reached."""
 
-    status, type, title = 429, "too many", "You have as many as one user may"
+    status, type, title = 429, "too-many", "You have as many as one user may"
     default_remedy = "Close one you do not need."
 
     @classmethod

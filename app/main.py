@@ -21,6 +21,7 @@ from app.compute.processes import processes
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
 from app.http import health
+from app.http.kinds import serve_kinds
 from app.http.observing import Metrics, Observer
 from app.http.page import serve_page
 from app.http.problems import PROBLEM_RESPONSES, install_problem_handlers
@@ -115,6 +116,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.include_router(relay.router)
     app.include_router(health.router)
     serve_reference(app)
+    serve_kinds(app)
     serve_page(app)
     app.add_middleware(Guard, settings=chosen)
     app.add_middleware(Observer, metrics=app.state.metrics)

@@ -744,6 +744,16 @@ export interface FabricSummary {
   loop_length_mm: number | null;
 }
 
+/** One thing that is wrong with a request. */
+export interface Fault {
+  /** What is wrong, in words. */
+  detail: string;
+  /** The input that is to blame. */
+  field: string | null;
+  /** What would be accepted. */
+  remedy: string | null;
+}
+
 /** Any value of each stitch on a colour map. */
 export interface FieldColours {
   /** Row by row from the bottom, each from the left. */
@@ -1437,7 +1447,7 @@ export interface PressureResult {
 
 /** What every error response looks like. */
 export interface Problem {
-  /** Short name of the kind of problem. */
+  /** The kind of problem: the address of a page about it. */
   type: string;
   title: string;
   status: number;
@@ -1449,6 +1459,8 @@ export interface Problem {
   remedy?: string | null;
   /** The largest number that the field would accept, where that is known. */
   most?: number | null;
+  /** Of inputs that cannot be used: all that is wrong, at most 100; `field`, `detail` and `remedy` are those of the first. */
+  errors?: Fault[];
 }
 
 /** A pure fabric by name and size. */

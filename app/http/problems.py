@@ -1,18 +1,20 @@
-"""Errors as problem details (RFC 9457): type, title, status, detail, field, remedy."""
+"""Errors as problem details (RFC 9457), with fields to blame and remedies."""
 
 from __future__ import annotations
 
 import errno
 import logging
 from collections.abc import Mapping
-from typing import Any
+from itertools import islice
+from typing import Annotated, Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, BeforeValidator, Field
 from starlette.exceptions import HTTPException
 
+from app.http.kinds import type_uri
 from app.models.base import MissingError
 from knitcore.errors import (
     CancelledError,
@@ -28,10 +30,24 @@ log = logging.getLogger("knitcore.app")
 PROBLEM_TYPE = "application/problem+json"
 
 
+MOST_FAULTS = 100
+
+
+class Fault(BaseModel):
+    """One thing that is wrong with a request."""
+
+    detail: str = Field(description="What is wrong, in words.")
+    field: str | None = Field(None, description="The input that is to blame.")
+    remedy: str | None = Field(None, description="What would be accepted.")
+
+
 class Problem(BaseModel):
     """What every error response looks like."""
 
-    type: str = Field(description="Short name of the kind of problem.")
+    type: Annotated[str, BeforeValidator(type_uri)] = Field(
+        description="The kind of problem: the address of a page about it.",
+        examples=["/problems/input"],
+    )
     title: str
     status: int
     detail: str = Field(description="What is wrong, in words.")
@@ -40,13 +56,19 @@ class Problem(BaseModel):
     most: float | None = Field(
         None, description="The largest number that the field would accept, where that is known."
     )
+    errors: list[Fault] = Field(
+        [],
+        description=f"Of inputs that cannot be used: all that is wrong, at most {MOST_FAULTS}; "
+        "`field`, `detail` and `remedy` are those of the first.",
+    )
 
 
 PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
     status: {"model": Problem, "description": text}
     for status, text in {
         400: "The request cannot be read.",
-        403: "The request comes from another site, or without the token.",
+        401: "The service asks for a token, and there is none or an unknown one.",
+        403: "The request comes from a page of another site.",
         405: "The address knows no such method.",
         413: "The request is too large.",
         422: "An input cannot be used; the problem names the field and the remedy.",
@@ -120,7 +142,7 @@ class NoRoomError(UnavailableError):
 class NotFoundError(ServiceError):
     """It does not exist, or belongs to another user."""
 
-    status, type, title = 404, "not found", "There is no such thing here"
+    status, type, title = 404, "not-found", "There is no such thing here"
 
 
 def problem_response(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
@@ -143,15 +165,8 @@ def problem_of(error: Exception) -> Problem:
     if isinstance(error, ServiceError):
         return error.problem
     if isinstance(error, InputError):
-        return Problem(
-            type="input",
-            title="This input cannot be used",
-            status=422,
-            detail=f"{error.field}: {error.problem}",
-            field=error.field,
-            remedy=error.remedy,
-            most=error.most,
-        )
+        detail = f"{error.field}: {error.problem}"
+        return _unusable([Fault(detail=detail, field=error.field, remedy=error.remedy)], error.most)
     if isinstance(error, ConvergenceError | UnravelledError | CancelledError):
         return Problem(
             type="unsolved",
@@ -190,38 +205,55 @@ def _of_http(error: HTTPException) -> Problem:
     )
 
 
-def _invalid(error: RequestValidationError) -> Problem:
-    """The first error of a request; an impossible address counts as not found."""
-    first = error.errors()[0]
-    if first["type"] == "json_invalid":
-        return Problem(
-            type="input",
-            title="The request is not valid JSON",
-            status=422,
-            detail=f"body: {first['ctx']['error']}",
-            field="body",
-            remedy="Send one JSON object as /docs describes it.",
-        )
-    place, context = first["loc"], first.get("ctx", {})
-    if place[0] == "path":
-        return NotFoundError(
-            f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
-        ).problem
-    if len(place) > 2 and place[2] == "request":  # of a job: leave its kind out of the place
-        place = (place[0], *place[2:])
-    # Pydantic names the alternatives of a union as parts of the place; no caller wrote those.
-    parts = [str(part) for part in place if part not in _NOT_FIELDS]
-    if first["type"].startswith("union_tag"):
-        parts.append(context["discriminator"].strip("'"))
-    field = ".".join(parts) or "body"
-    remedy = _REMEDIES.get(first["type"], "{msg}; see /docs.")
+def _unusable(faults: list[Fault], most: float | None = None) -> Problem:
+    first = faults[0]
     return Problem(
         type="input",
         title="This input cannot be used",
         status=422,
-        detail=f"{field}: {first['msg']}.",
+        detail=first.detail,
+        field=first.field,
+        remedy=first.remedy,
+        most=most,
+        errors=faults,
+    )
+
+
+def _invalid(error: RequestValidationError) -> Problem:
+    """Everything that is wrong with a request; an impossible address counts as not found."""
+    found = error.errors()
+    place = found[0]["loc"]
+    if place[0] == "path":
+        return NotFoundError(
+            f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
+        ).problem
+    faults: dict[str | None, Fault] = {}
+    for fault in map(_fault, found):  # of alternatives that all fail, the first is told
+        faults.setdefault(fault.field, fault)
+    return _unusable(list(islice(faults.values(), MOST_FAULTS)))
+
+
+def _fault(error: dict[str, Any]) -> Fault:
+    """One of pydantic's errors, in our words."""
+    if error["type"] == "json_invalid":
+        return Fault(
+            detail=f"body: The request is not valid JSON: {error['ctx']['error']}",
+            field="body",
+            remedy="Send one JSON object as /docs describes it.",
+        )
+    place, context = error["loc"], error.get("ctx", {})
+    if len(place) > 2 and place[2] == "request":  # of a job: leave its kind out of the place
+        place = (place[0], *place[2:])
+    # Pydantic names the alternatives of a union as parts of the place; no caller wrote those.
+    parts = [str(part) for part in place if part not in _NOT_FIELDS]
+    if error["type"].startswith("union_tag"):
+        parts.append(context["discriminator"].strip("'"))
+    field = ".".join(parts) or "body"
+    remedy = _REMEDIES.get(error["type"], "{msg}; see /docs.")
+    return Fault(
+        detail=f"{field}: {error['msg']}.",
         field=field,
-        remedy=remedy.format_map(context | {"field": field, "msg": first["msg"]}),
+        remedy=remedy.format_map(context | {"field": field, "msg": error["msg"]}),
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterable
 from functools import cache
 from html import escape
@@ -12,6 +11,8 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.responses import HTMLResponse
 
+from app.http.kinds import FOLDER
+from app.http.pages import page, prose
 from app.http.schema import FIRST_PROBLEM
 
 Schema = dict[str, Any]
@@ -30,32 +31,18 @@ BOUNDS = {
     "minItems": "items ≥",
     "maxItems": "items ≤",
 }
-STYLE = """
-:root { color-scheme: light dark; }
-:root { --line: light-dark(#d8d3cb, #46423c); --soft: light-dark(#f4f1ec, #26241f); }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 0 auto; padding: 1rem; }
-code, pre { font: 14px/1.45 ui-monospace, monospace; overflow-wrap: anywhere; }
-pre { background: var(--soft); padding: .7rem; overflow: auto; white-space: pre-wrap; }
-details { border-top: 1px solid var(--line); padding: .4rem 0; }
-summary { cursor: pointer; }
-summary b { display: inline-block; min-width: 4.5rem; }
-table { border-collapse: collapse; width: 100%; }
-td, th { border-top: 1px solid var(--line); padding: .25rem .8rem .25rem 0; }
-td, th { text-align: left; vertical-align: top; }
-nav a { margin-right: 1rem; }
-"""
 
 
 def serve_reference(app: FastAPI) -> None:
     """Add the page at ``/docs``."""
 
     @cache
-    def page() -> str:
+    def made() -> str:
         return reference(app.openapi())
 
     @app.get("/docs", include_in_schema=False)
     def docs() -> HTMLResponse:
-        return HTMLResponse(page())
+        return HTMLResponse(made())
 
 
 def reference(schema: Schema) -> str:
@@ -68,26 +55,19 @@ def reference(schema: Schema) -> str:
     shapes = [_shape(name, shape) for name, shape in schema["components"]["schemas"].items()]
     links = "".join(f'<a href="#{room}">{room}</a>' for room in (*rooms, "shapes"))
     parts = [f'<h2 id="{room}">{room}</h2>' + "".join(found) for room, found in rooms.items()]
-    return f"""<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(schema["info"]["title"])}: REST API</title>
-<style>{STYLE}</style>
-<h1>{escape(schema["info"]["title"])}: REST API</h1>
-<p>Every operation, its request and its answer. Requests are JSON
-(<code>Content-Type: application/json</code>). Every refusal is a <a href="#Problem">problem</a>
-that names the field and the remedy. For programs: <a href="/openapi.json">openapi.json</a>.</p>
+    content = f"""<p>Every operation, its request and its answer. Requests are JSON
+(<code>Content-Type: application/json</code>). Every refusal is a
+<a href="{FOLDER}">problem</a> that names the field and the remedy
+(<a href="#Problem">its shape</a>). For programs: <a href="/openapi.json">openapi.json</a>.</p>
 <nav>{links}</nav>
 {"".join(parts)}
 <h2 id="shapes">shapes</h2>
-{"".join(shapes)}
-</html>
-"""
+{"".join(shapes)}"""
+    return page(f"{schema['info']['title']} {schema['info']['version']}: REST API", content)
 
 
 def _operation(method: str, path: str, operation: Schema) -> str:
-    parts = [_prose(operation.get("description", ""))]
+    parts = [prose(operation.get("description", ""))]
     if parameters := operation.get("parameters"):
         parts.append(_table("parameter", map(_parameter, parameters)))
     if body := operation.get("requestBody"):
@@ -95,7 +75,7 @@ def _operation(method: str, path: str, operation: Schema) -> str:
         parts.append(f"<p>Send {_kind(content['schema'])}:</p>{_example(content)}")
     refusals = []
     for status, response in operation["responses"].items():
-        text = _prose(response["description"], tag="")
+        text = prose(response["description"], tag="")
         if int(status) >= FIRST_PROBLEM:
             refusals.append(f"<tr><td>{status}</td><td>{text}</td></tr>")
             continue
@@ -104,7 +84,7 @@ def _operation(method: str, path: str, operation: Schema) -> str:
             text = "" if text == UNSAID else f". {text}"
             parts.append(f"<p>{status}: {kind}{text}</p>{_example(content)}")
     parts.append(f"<table>{''.join(refusals)}</table>")
-    name = f"<b>{method}</b><code>{escape(path)}</code> {_prose(operation['summary'], tag='')}"
+    name = f"<b>{method}</b><code>{escape(path)}</code> {prose(operation['summary'], tag='')}"
     return f"<details><summary>{name}</summary>{''.join(parts)}</details>"
 
 
@@ -115,7 +95,7 @@ def _parameter(parameter: Schema) -> tuple[str, str, str]:
 
 
 def _shape(name: str, shape: Schema) -> str:
-    text = f'<h3 id="{escape(name)}">{escape(name)}</h3>{_prose(shape.get("description", ""))}'
+    text = f'<h3 id="{escape(name)}">{escape(name)}</h3>{prose(shape.get("description", ""))}'
     if "properties" not in shape:
         return f"{text}<p>{_kind(shape)}</p>"
     required = shape.get("required", ())
@@ -128,7 +108,7 @@ def _shape(name: str, shape: Schema) -> str:
 
 def _table(what: str, rows: Iterable[tuple[str, str, str]]) -> str:
     lines = (
-        f"<tr><td>{_code(name)}</td><td>{kind}</td><td>{_prose(text, tag='')}</td></tr>"
+        f"<tr><td>{_code(name)}</td><td>{kind}</td><td>{prose(text, tag='')}</td></tr>"
         for name, kind, text in rows
     )
     return f"<table><tr><th>{what}</th><th>kind</th><th></th></tr>{''.join(lines)}</table>"
@@ -174,11 +154,3 @@ def _example(content: Schema) -> str:
 def _code(value: object) -> str:
     text = value if isinstance(value, str) else json.dumps(value)
     return f"<code>{escape(text)}</code>"
-
-
-def _prose(text: str, tag: str = "p") -> str:
-    """Text with `names` in it; a paragraph each, or without a tag in a line."""
-    marked = re.sub(r"`+([^`]+)`+", r"<code>\1</code>", escape(text))
-    if not tag:
-        return marked
-    return "".join(f"<{tag}>{part}</{tag}>" for part in marked.split("\n\n") if part)

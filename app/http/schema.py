@@ -9,18 +9,18 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from app.http.problems import PROBLEM_TYPE, Problem
+from app.http.problems import PROBLEM_TYPE, problem_of
+from knitcore.errors import InputError
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 """Requests, written by hand, and the service's answers to them (`make examples`)."""
 FIRST_PROBLEM = 400
-EXAMPLE = Problem(
-    type="input",
-    title="This input cannot be used",
-    status=422,
-    detail="chart: line 1, stitch 2 is 'Q', which is neither K nor P.",
-    field="chart",
-    remedy="Write every stitch as K or P.",
+EXAMPLE = problem_of(
+    InputError(
+        "chart",
+        "line 1, stitch 2 is 'Q', which is neither K nor P.",
+        "Write every stitch as K or P.",
+    )
 ).model_dump()
 
 

@@ -21,6 +21,7 @@ from starlette.websockets import WebSocketClose
 
 from app.budgets import InUse, OverBudgetError
 from app.http.identity import NOBODY, current_session, current_user
+from app.http.kinds import PAGES
 from app.http.problems import Problem, StoppingError, problem_response, unexpected
 from app.http.rate import RateLimit
 from app.http.sessions import SESSION_S
@@ -40,7 +41,7 @@ MOST_VALUES = 250_000
 tenth of a second. Charts and files are one value each."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
 HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
-OPEN_PATHS = frozenset({"/healthz", "/readyz"})
+OPEN_PATHS = PAGES | {"/healthz", "/readyz"}
 
 PAGE_POLICY = "; ".join(
     [
@@ -207,11 +208,9 @@ class Guard:
         if not user:
             if (token or link) and self.failures.take(address)[1]:
                 return _too_many("Too many unknown tokens came from this address.", 10.0)
-            return _refused(
-                "token",
+            return _unknown(
                 "This service asks for a token.",
                 "Open the page as /?token=…, or send the header Authorization: Bearer ….",
-                403,
             )
         current_user.set(user)
         if (refusal := self._over_budget(scope, user, limits)) is not None:
@@ -259,7 +258,7 @@ class Guard:
             return problem_response(error.problem)
         if self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
             return _too_many("Too many unknown tokens came from this address.", 10.0)
-        return _refused("token", "Nobody has this token.", "Ask for a new one.", 403)
+        return _unknown("Nobody has this token.", "Ask for a new one.")
 
     async def _begin(self, scope: Scope, identifier: str, user: str, to: str) -> Response:
         login: Login = scope["app"].state.login
@@ -365,7 +364,7 @@ def _too_many(detail: str, wait_s: float) -> Response:
     wait = math.ceil(wait_s)
     return problem_response(
         Problem(
-            type="too many",
+            type="too-many",
             title="Too many requests",
             status=429,
             detail=detail,
@@ -373,6 +372,18 @@ def _too_many(detail: str, wait_s: float) -> Response:
         ),
         {"Retry-After": str(wait)},
     )
+
+
+def _unknown(detail: str, remedy: str) -> Response:
+    problem = Problem(
+        type="sign-in",
+        title="Sign in",
+        status=401,
+        detail=detail,
+        field="token",
+        remedy=remedy,
+    )
+    return problem_response(problem, {"WWW-Authenticate": 'Bearer realm="Knitcore"'})
 
 
 def _refused(field: str, detail: str, remedy: str, status: int) -> Response:

@@ -174,7 +174,7 @@ def narrow(client: TestClient) -> Iterator[TestClient]:
 def test_streams_pictures_and_watchers_are_bounded(narrow: TestClient, tmp_path: Path) -> None:
     for path in ("events", "picture"):
         answer = narrow.get(f"/api/v1/views/a-view/{path}")
-        assert (answer.status_code, answer.json()["type"]) == (429, "too many")
+        assert (answer.status_code, answer.json()["type"]) == (429, "/problems/too-many")
         assert answer.json()["remedy"]
 
     def watch() -> contextlib.AbstractContextManager[object]:

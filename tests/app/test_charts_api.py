@@ -56,4 +56,4 @@ def test_malformed_json_is_told_as_such(client: TestClient) -> None:
 def test_what_is_not_there_is_a_problem_too(client: TestClient) -> None:
     response = client.get("/api/v1/nothing")
     assert response.status_code == 404
-    assert response.json()["type"] == "http"
+    assert response.json()["type"] == "/problems/http"

@@ -44,7 +44,7 @@ def test_a_design_from_a_script(knit: Client) -> None:
     assert knit.save(made.id, wide, found.revision).name == "Wide"
     with pytest.raises(ProblemError, match="changed in the meantime") as refused:
         knit.save(made.id, wide, found.revision)
-    assert refused.value.problem.type == "stale"
+    assert refused.value.problem.type == "/problems/stale"
     assert made.id in [d.id for d in knit.designs()]
     kept = knit.keep(made.id, "first")
     assert [version.number for version in knit.versions(made.id)] == [kept.number]

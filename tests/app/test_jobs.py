@@ -213,7 +213,7 @@ def test_a_failure_costs_one_job(
         failed = await _ended(runner, bad.id)
         assert failed.state is JobState.FAILED
         assert failed.problem is not None
-        assert failed.problem.type == type_
+        assert failed.problem.type == f"/problems/{type_}"
         assert says in failed.problem.detail
         assert (await _ended(runner, good.id)).state is JobState.DONE
 

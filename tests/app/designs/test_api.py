@@ -54,7 +54,7 @@ def test_two_who_change_the_same_state(client: TestClient, made: str, method: st
     first = client.request(method, address, json=body, headers={"If-Match": '"1"'})
     assert (first.status_code, first.headers["etag"]) == (200, '"2"')
     second = client.request(method, address, json=body, headers={"If-Match": '"1"'})
-    assert (second.status_code, second.json()["type"]) == (412, "stale")
+    assert (second.status_code, second.json()["type"]) == (412, "/problems/stale")
     blind = client.request(method, address, json=body)
     assert (blind.status_code, blind.json()["field"]) == (428, "If-Match")
 
@@ -89,7 +89,7 @@ def test_delete_list_and_recover(client: TestClient, made: str) -> None:
     client.post(DESIGNS, json=RIB)
     assert client.delete(f"{DESIGNS}/{made}").status_code == 204
     problem = client.get(f"{DESIGNS}/{made}")
-    assert (problem.status_code, problem.json()["type"]) == (404, "not found")
+    assert (problem.status_code, problem.json()["type"]) == (404, "/problems/not-found")
     aside = client.get(DESIGNS, params={"deleted": True}).json()["designs"]
     assert made in [d["id"] for d in aside]
     assert client.post(f"{DESIGNS}/{made}/recover").json()["name"] == "Cuff"
@@ -119,7 +119,7 @@ def test_links_over_rest(client: TestClient, made: str) -> None:
     shown = client.get(f"/api/v1/shared/{read['token']}").json()
     assert shown["document"]["chart"] == RIB["chart"]
     refused = client.post(f"/api/v1/shared/{read['token']}/copy")
-    assert (refused.status_code, refused.json()["type"]) == (403, "refused")
+    assert (refused.status_code, refused.json()["type"]) == (403, "/problems/refused")
     copy = client.post(address, json={"mode": "copy"}).json()
     assert client.post(f"/api/v1/shared/{copy['token']}/copy").status_code == 201
     assert "token" not in client.get(address).text
@@ -152,4 +152,4 @@ def test_what_is_no_design_is_refused(
 )
 def test_what_does_not_exist_is_not_found_however_short(client: TestClient, address: str) -> None:
     answer = client.get(f"/api/v1/{address}")
-    assert (answer.status_code, answer.json()["type"]) == (404, "not found")
+    assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")

@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from app.http.kinds import KINDS, type_uri
+from app.http.problems import ServiceError
+
 API = "/api/v1"
 STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strain": 0.2}
 
@@ -37,6 +40,34 @@ def test_a_refusal_names_field_and_remedy(
     assert remedy in answer.json()["remedy"]
 
 
+def test_everything_that_is_wrong_is_told_at_once(client: TestClient) -> None:
+    body = {"material": 1, "strain": 6, "colour": "red", "direction": "wale"}
+    problem = client.post(f"{API}/stretch", json=body).json()
+    wrong = [fault["field"] for fault in problem["errors"]]
+    assert wrong == ["chart", "material", "strain", "colour"]
+    first = problem["errors"][0]
+    assert {name: problem[name] for name in first} == first
+    measured = client.post(f"{API}/measure/bending", json={"images": [], "length_mm": "long"})
+    wrong = [fault["field"] for fault in measured.json()["errors"]]
+    assert len(wrong) == len(set(wrong))
+    by_the_library = client.post(f"{API}/predict", json={"chart": "KQ", "material": "acrylic"})
+    assert [fault["field"] for fault in by_the_library.json()["errors"]] == ["chart"]
+
+
+def test_every_type_has_a_page(client: TestClient) -> None:
+    def types(of: type[ServiceError]) -> set[str]:
+        return {of.type}.union(*map(types, of.__subclasses__()))
+
+    assert types(ServiceError) <= set(KINDS)
+    everything = client.get("/problems").text
+    for name in KINDS:
+        page = client.get(type_uri(name))
+        assert page.status_code == 200
+        assert f">{name}</a></h2>" in page.text
+        assert f'href="{type_uri(name)}"' in everything
+    assert client.get("/problems/no-such").status_code == 404
+
+
 def test_a_form_is_told_to_be_json(client: TestClient) -> None:
     answer = client.post(f"{API}/predict", data={"chart": "K"})
     assert answer.status_code == 422
@@ -57,7 +88,7 @@ def test_a_form_is_told_to_be_json(client: TestClient) -> None:
 )
 def test_what_cannot_be_is_not_found(client: TestClient, path: str) -> None:
     answer = client.get(f"{API}{path}")
-    assert (answer.status_code, answer.json()["type"]) == (404, "not found")
+    assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")
     assert answer.json()["remedy"]
 
 

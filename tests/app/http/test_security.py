@@ -85,7 +85,9 @@ def test_without_the_token_nothing_is_served(guarded: TestClient) -> None:
         "/metrics",
     ):
         response = guarded.get(path)
-        assert response.status_code == 403
+        assert response.status_code == 401
+        assert response.headers["WWW-Authenticate"].startswith("Bearer")
+        assert guarded.get(response.json()["type"]).status_code == 200
         assert "token" in response.json()["remedy"]
     for path in ("/healthz", "/readyz"):
         assert guarded.get(path).status_code == 200
@@ -94,7 +96,7 @@ def test_without_the_token_nothing_is_served(guarded: TestClient) -> None:
 def test_the_token_opens_as_header_and_as_link(guarded: TestClient) -> None:
     assert guarded.get("/api/v1/patterns", headers=_as(TOKEN)).status_code == 200
     wrong = _as("another-long-token")
-    assert guarded.get("/api/v1/patterns", headers=wrong).status_code == 403
+    assert guarded.get("/api/v1/patterns", headers=wrong).status_code == 401
 
     link = guarded.get(f"/?token={TOKEN}", follow_redirects=False)
     assert link.status_code == 303
@@ -115,10 +117,10 @@ def test_a_link_with_a_token_leads_nowhere_else(guarded: TestClient) -> None:
 @pytest.mark.parametrize("cookie", ["nonsense", "W10.x.y", "", '"'])
 def test_a_forged_session_opens_nothing(guarded: TestClient, cookie: str) -> None:
     headers = {"Cookie": f"knitcore_session={cookie}"}
-    assert guarded.get("/api/v1/patterns", headers=headers).status_code == 403
+    assert guarded.get("/api/v1/patterns", headers=headers).status_code == 401
     forged = URLSafeTimedSerializer("guessed", salt="knitcore session").dumps(["environment", ""])
     headers = {"Cookie": f"knitcore_session={forged}"}
-    assert guarded.get("/api/v1/patterns", headers=headers).status_code == 403
+    assert guarded.get("/api/v1/patterns", headers=headers).status_code == 401
 
 
 def test_another_token_in_the_settings_ends_sessions(tmp_path: Path) -> None:
@@ -128,17 +130,17 @@ def test_another_token_in_the_settings_ends_sessions(tmp_path: Path) -> None:
         assert client.get("/api/v1/patterns").status_code == 200
     with _guarded(token="another-long-enough-one", data_dir=tmp_path) as client:
         client.cookies.update(cookies)
-        assert client.get("/api/v1/patterns").status_code == 403
+        assert client.get("/api/v1/patterns").status_code == 401
 
 
 def test_wrong_tokens_are_slowed_down_and_lock_nobody_out() -> None:
     with _guarded(token=TOKEN) as client:
         answers = [client.get("/api/v1/patterns", headers=_as(f"guess-{n}")) for n in range(25)]
         codes = [answer.status_code for answer in answers]
-        assert codes == [403] * LOGIN_FAILURES + [429] * (25 - LOGIN_FAILURES)
+        assert codes == [401] * LOGIN_FAILURES + [429] * (25 - LOGIN_FAILURES)
         assert answers[-1].headers["retry-after"] == "10"
         assert client.get("/api/v1/patterns", headers=_as(TOKEN)).status_code == 200
-        assert client.get("/api/v1/patterns").status_code == 403  # who has no token is told so
+        assert client.get("/api/v1/patterns").status_code == 401  # who has no token is told so
 
 
 def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
@@ -180,7 +182,7 @@ def test_users_see_only_their_own(lab: TestClient) -> None:
 
     share = lab.post(f"/api/v1/designs/{made}/shares", json={}, headers=ada).json()["token"]
     assert lab.get(f"/api/v1/shared/{share}", headers=bob).json()["document"]["name"] == "secret"
-    assert lab.get(f"/api/v1/shared/{share}").status_code == 403
+    assert lab.get(f"/api/v1/shared/{share}").status_code == 401
 
 
 def test_views_are_private_too(lab: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -215,12 +217,12 @@ def test_tokens_are_revoked_expire_and_are_kept_as_hashes(
     tokens = _tokens(lab)
     made, short = tokens.create("eve", "laptop"), tokens.create("eve", days=1e-9)
     assert lab.get("/api/v1/patterns", headers=_as(made.token)).status_code == 200
-    assert lab.get("/api/v1/patterns", headers=_as(short.token)).status_code == 403
+    assert lab.get("/api/v1/patterns", headers=_as(short.token)).status_code == 401
     lab.get(f"/?token={made.token}")
     assert lab.get("/api/v1/patterns").status_code == 200
     tokens.revoke(made.id)
-    assert lab.get("/api/v1/patterns", headers=_as(made.token)).status_code == 403
-    assert lab.get("/api/v1/patterns").status_code == 403  # the session ends with its token
+    assert lab.get("/api/v1/patterns", headers=_as(made.token)).status_code == 401
+    assert lab.get("/api/v1/patterns").status_code == 401  # the session ends with its token
     lab.cookies.clear()
     with lab.app.state.database.read() as connection:  # type: ignore[attr-defined]
         kept = str(connection.exec_driver_sql("SELECT * FROM access_tokens").all())
@@ -251,7 +253,7 @@ def test_who_asks_too_often_is_told_when_to_come_back(tmp_path: Path) -> None:
         )
         client.get("/api/v1/patterns", headers=ada)
         late = client.get("/api/v1/patterns", headers=ada)
-        assert (late.status_code, late.json()["type"]) == (429, "too many")
+        assert (late.status_code, late.json()["type"]) == (429, "/problems/too-many")
         assert int(late.headers["retry-after"]) in (1, 2)
         assert client.get("/api/v1/patterns", headers=bob).status_code == 200
 
@@ -350,7 +352,7 @@ def test_bodies_of_more_values_than_can_be_read_at_once_are_refused(client: Test
     ]
     body = {"name": "a", "material": "acrylic", "chart": "K", "regions": runs}
     response = client.post("/api/v1/designs", json=body)
-    assert (response.status_code, response.json()["type"]) == (413, "refused")
+    assert (response.status_code, response.json()["type"]) == (413, "/problems/refused")
     assert str(MOST_VALUES) in response.json()["detail"]
 
 

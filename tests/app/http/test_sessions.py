@@ -51,9 +51,9 @@ def test_a_signed_in_user_is_seen_and_signs_out(lab: TestClient) -> None:
     assert [session["is_this"] for session in seen["sessions"]] == [True]
     cookies = dict(lab.cookies)
     assert lab.delete(SESSION).status_code == 204
-    assert lab.get(SESSION).status_code == 403
+    assert lab.get(SESSION).status_code == 401
     lab.cookies.update(cookies)  # a copy of the cookie opens nothing either
-    assert lab.get(SESSION).status_code == 403
+    assert lab.get(SESSION).status_code == 401
 
 
 def test_sessions_are_ended_one_by_one_and_by_their_user_only(lab: TestClient) -> None:
@@ -101,8 +101,8 @@ def test_a_session_is_replaced_by_a_click_only(lab: TestClient) -> None:
 
 
 def test_a_form_with_a_wrong_token_signs_nobody_in(lab: TestClient) -> None:
-    assert lab.post("/sign-in", data={"token": "x" * 43}).status_code == 403
-    assert lab.post("/sign-in", content=b"x" * 9_000).status_code == 403
+    assert lab.post("/sign-in", data={"token": "x" * 43}).status_code == 401
+    assert lab.post("/sign-in", content=b"x" * 9_000).status_code == 401
 
 
 def test_a_revoked_token_ends_streams_views_and_jobs(lab: TestClient) -> None:
@@ -124,7 +124,7 @@ def test_a_revoked_token_ends_streams_views_and_jobs(lab: TestClient) -> None:
     while runner.store.get("ada", job).state != "cancelled" and time.monotonic() < deadline:
         time.sleep(0.02)
     assert runner.store.get("ada", job).state == "cancelled"
-    assert lab.get(SESSION).status_code == 403
+    assert lab.get(SESSION).status_code == 401
 
 
 def test_a_revoked_token_ends_an_event_stream(lab: TestClient) -> None:

@@ -1,0 +1,126 @@
+"""Kinds of problems, and the page of each: problems name it as their ``type`` (RFC 9457)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from fastapi import FastAPI, HTTPException
+from fastapi.responses import HTMLResponse
+
+from app.http.pages import page, prose
+
+FOLDER = "/problems"
+ALL = f'<p><a href="{FOLDER}">All problems</a> · <a href="/docs">REST API</a></p>'
+
+
+class Kind(NamedTuple):
+    """A kind of problem: the statuses that come with it, what it means, what to do."""
+
+    statuses: str
+    means: str
+    remedy: str
+
+
+KINDS = {
+    "input": Kind(
+        "422",
+        "An input cannot be used. `errors` lists all that is wrong with the request; `field` "
+        "and `remedy` are those of the first entry.",
+        "Correct every field that is listed, and send the request again.",
+    ),
+    "unsolved": Kind(
+        "422",
+        "The inputs are valid, but the computation found no solution.",
+        "Ask for less: a smaller strain, a smaller chart, more steps.",
+    ),
+    "sign-in": Kind(
+        "401",
+        "The service asks for a token, and the request has none or one that is not known.",
+        "Send the header `Authorization: Bearer …`, or open the page as `/?token=…`. Who runs the "
+        "service makes tokens with `knitcore token`.",
+    ),
+    "refused": Kind(
+        "400, 403, 413",
+        "The request is not allowed: it uses a name that is not the service's, comes from a page "
+        "of another site, asks a link for more than it gives, or is too large.",
+        "Follow the `remedy`; the same request will be refused again.",
+    ),
+    "not-found": Kind(
+        "404",
+        "It does not exist, or it belongs to another user.",
+        "Look it up in the list that it should be in.",
+    ),
+    "http": Kind(
+        "404, 405",
+        "The service has no such address, or the address does not support the method.",
+        "Compare address and method with `/docs`.",
+    ),
+    "conflict": Kind(
+        "409",
+        "The request conflicts with the present state, or there is no room for one more.",
+        "Read the present state, and decide again.",
+    ),
+    "stale": Kind(
+        "412",
+        "Somebody else has changed the design since you read it. Nothing was overwritten.",
+        "Read the design, make your change again, and send it with the new ETag as `If-Match`.",
+    ),
+    "condition": Kind(
+        "428",
+        "A change must say which state it was made on.",
+        'Send the ETag of the design as `If-Match`, or `"*"` to overwrite whatever is there.',
+    ),
+    "too-many": Kind(
+        "429",
+        "You ask too often, or have reached one of the limits of a user; `field` names it.",
+        "Wait as many seconds as `Retry-After` says; without that header, close or delete one.",
+    ),
+    "busy": Kind(
+        "503",
+        "Too much is asked at once, or something that the service needs is away.",
+        "Wait as many seconds as `Retry-After` says, then send the request again.",
+    ),
+    "interrupted": Kind(
+        "503", "The service was stopped or failed while a job ran.", "Run the job again."
+    ),
+    "full": Kind(
+        "507",
+        "The disk of the service is full. Nothing was changed; everything can still be read.",
+        "Make room on the disk.",
+    ),
+    "internal": Kind(
+        "500",
+        "The service met an error that it did not expect. Its log has the details under the "
+        "request's id.",
+        "Try again, or report it with those lines of the log.",
+    ),
+}
+
+PAGES = frozenset({FOLDER, *(f"{FOLDER}/{name}" for name in KINDS)})
+
+
+def type_uri(name: str) -> str:
+    """The address of a kind's page; jobs that failed in earlier versions have bare names."""
+    return name if name.startswith("/") else f"{FOLDER}/{name.replace(' ', '-')}"
+
+
+def serve_kinds(app: FastAPI) -> None:
+    """Add the pages."""
+
+    @app.get(FOLDER, include_in_schema=False)
+    def kinds() -> HTMLResponse:
+        return HTMLResponse(page("Knitcore: problems", "".join(map(_part, KINDS))))
+
+    @app.get(FOLDER + "/{name}", include_in_schema=False)
+    def kind(name: str) -> HTMLResponse:
+        if name not in KINDS:
+            raise HTTPException(404)
+        return HTMLResponse(page(f"Knitcore: problem {name}", _part(name) + ALL))
+
+
+def _part(name: str) -> str:
+    kind = KINDS[name]
+    return (
+        f'<h2><a href="{FOLDER}/{name}">{name}</a></h2>{prose(kind.means)}{prose(kind.remedy)}'
+        f"<p>Status: {kind.statuses}</p>"
+    )
