@@ -22,8 +22,9 @@ from pathlib import Path
 import numpy as np
 
 from knitcore.answer.densities import densities
-from knitcore.answer.learned import STRESS_GRID, KnownSize, LearnedAnswer, packaged_model
+from knitcore.answer.learned import STRESS_GRID, LearnedAnswer, packaged_model
 from knitcore.answer.learned_build import Row, kind_of, rows, simulated_materials
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials.uncertainty import Z_SCORE
@@ -50,8 +51,8 @@ def main() -> None:
         gauge = size * np.exp(GAUGE_LOG_SD * draw.standard_normal(2))
         for name, known in (
             ("learned", None),
-            ("gauge", KnownSize(*gauge, log_sd=GAUGE_LOG_SD)),
-            ("known size", KnownSize(*size, log_sd=RELAXED_LOG_SD)),
+            ("gauge", RelaxedSize(*gauge, log_sd=GAUGE_LOG_SD)),
+            ("known size", RelaxedSize(*size, log_sd=RELAXED_LOG_SD)),
         ):
             answer = model.answer(densities(chart), materials[entry["yarn"]], known)
             if known is None:

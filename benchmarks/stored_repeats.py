@@ -15,7 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from knitcore.answer.densities import densities
-from knitcore.answer.learned import KnownSize, packaged_model
+from knitcore.answer.learned import packaged_model
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import free_strains_at_stress
@@ -40,7 +41,7 @@ def main() -> None:
             model = packaged_model(frozenset({chart.canonical().key}))
             kind = "rib" if chart.rows == 1 else "welt" if chart.columns == 1 else "2-D"
             size = np.array([stored.cell_course_mm, stored.cell_wale_mm])
-            for name, known in (("learned", None), ("with size", KnownSize(*size, log_sd=0.0))):
+            for name, known in (("learned", None), ("with size", RelaxedSize(*size, log_sd=0.0))):
                 found = model.answer(densities(chart), simulated, known)
                 for direction in Direction:
                     own = free_strains_at_stress(stored.law, direction, STRESS)

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from knitcore.answer.densities import Densities, densities
 from knitcore.answer.kernel import KernelModel, KernelSettings, Samples
 from knitcore.answer.mixture import Mixture, present, pure_numbers
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material, Origin
@@ -50,19 +51,19 @@ _TOE = 0.15
 """Strain below which a fabric has not yet unfolded by as much as it was folded."""
 
 
-@dataclass(frozen=True)
-class KnownSize:
-    """A known relaxed size, used instead of the learned one.
+@dataclass(frozen=True, eq=False)
+class SweptChart:
+    """What a sweep of a chart says where the regressions would say what they learned.
 
     Attributes
     ----------
-    course_mm, wale_mm : width and height of the mean stitch.
-    log_sd : standard deviation of their logarithms: 0.03 for a gauge, 0 for a relaxation.
+    folding : (2,) logarithms of width and height over those of the mixture at the yarn level.
+    unfolding : (14,) logarithms of strain over the mixture's, and Poisson's ratios less the
+        mixture's, without the part that follows the folding.
     """
 
-    course_mm: float
-    wale_mm: float
-    log_sd: float = 0.03
+    folding: Array
+    unfolding: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +133,7 @@ class LearnedAnswer:
 
 
 def learned(
-    chart: StitchChart, material: Material, known: KnownSize | None = None
+    chart: StitchChart, material: Material, known: RelaxedSize | None = None
 ) -> LearnedAnswer:
     """Size and response of a chart that repeats indefinitely.
 
@@ -171,6 +172,7 @@ class LearnedModel:
     folding_scale, unfolding_scale : (3, 2), (3, 14) standard deviation over the root of the
         regression's variance, such that 90 % of the left-out values lie in their 90 % intervals:
         for ribs, welts and others. A chart between these kinds has their mean.
+    sweeps : of each sample; None where it was only relaxed.
     most_folded : see :data:`MOST_FOLDED`.
     """
 
@@ -183,22 +185,36 @@ class LearnedModel:
     slopes: Array
     folding_scale: Array
     unfolding_scale: Array
+    sweeps: tuple[SweptChart | None, ...]
     most_folded: float = MOST_FOLDED
 
     def answer(
-        self, found: Densities, material: Material, known: KnownSize | None = None
+        self,
+        found: Densities,
+        material: Material,
+        known: RelaxedSize | None = None,
+        swept: SweptChart | None = None,
     ) -> LearnedAnswer:
-        """Size and response of a chart with these densities."""
+        """Size and response of a chart with these densities.
+
+        A sweep takes the place of what was learned. Its variance is the regressions' noise: what
+        densities do not explain, such as which of several shapes the simulation settled in.
+        """
         mixture = Mixture.of(found.shares, material)
         sample = self.sample(found.features[None], mixture.numbers)
+        if swept is None:
+            folding, unfolding = self.folding(sample), self.unfolding(sample)
+        else:
+            folding = swept.folding[None], np.array([self.folding.settings.noise])
+            unfolding = swept.unfolding[None], np.array([self.unfolding.settings.noise])
         flat_mm = mixture.size_mm
         if known is not None:
             fold = np.log(np.array([known.course_mm, known.wale_mm]) / flat_mm)
             fold_sd = np.full(2, known.log_sd)
         else:
-            folds, deviations = self.folded(sample, found, simulated=mixture.simulated)
+            folds, deviations = self.folded(*folding, found, simulated=mixture.simulated)
             fold, fold_sd = folds[0], deviations[0]
-        means, variance = self.unfolding(sample)
+        means, variance = unfolding
         slopes = self.slopes * follows(mixture)
         values = means[0] + slopes @ fold
         spread = found.ways @ self.unfolding_scale
@@ -213,14 +229,16 @@ class LearnedModel:
             poisson_sd=deviations[12:],
         )
 
-    def folded(self, samples: Samples, found: Densities, *, simulated: bool) -> tuple[Array, Array]:
+    def folded(
+        self, fold: Array, variance: Array, found: Densities, *, simulated: bool
+    ) -> tuple[Array, Array]:
         """Logarithms of size over the mixture's and their standard deviations, (m, 2) each.
 
         Parameters
         ----------
+        fold, variance : (m, 2), (m,) at the yarn level.
         simulated : for yarn-level fabric, which folds more than knitted fabric.
         """
-        fold, variance = self.folding(samples)
         deviation = found.ways @ self.folding_scale * np.sqrt(variance)[:, None]
         if simulated:
             return fold, deviation
@@ -245,8 +263,22 @@ class LearnedModel:
             None if numbers is None else shares[:, phases] @ numbers[:, :-1],
         )
         simulated = all(record.origin is Origin.SIMULATED for record in records)
-        fold, _ = self.folded(samples, found, simulated=simulated)
+        fold, _ = self.folded(*self.folding(samples), found, simulated=simulated)
         return np.asarray(flat * np.exp(fold))
+
+    def sweep_of(self, chart: StitchChart, material: Material) -> SweptChart | None:
+        """The sweep of a chart among the samples, if it was of the material's yarn."""
+        found = densities(chart)
+        yarn = self.sample(found.features[None], Mixture.of(found.shares, material).numbers).numbers
+        key, numbers = chart.canonical().key, self.folding.samples.numbers
+        return next(
+            (
+                sweep
+                for text, own, sweep in zip(self.charts, numbers, self.sweeps, strict=True)
+                if text == key and np.allclose(own, yarn)
+            ),
+            None,
+        )
 
     def sample(self, features: Array, numbers: Array | None) -> Samples:
         """Charts (m, features) with their yarn's numbers, in the units of the samples."""
@@ -302,4 +334,8 @@ def packaged_model(left_out: frozenset[str] = frozenset()) -> LearnedModel:
         slopes=np.asarray(arrays["slopes"], dtype=float),
         folding_scale=np.asarray(arrays["folding_scale"], dtype=float),
         unfolding_scale=np.asarray(arrays["unfolding_scale"], dtype=float),
+        sweeps=tuple(
+            SweptChart(*both) if both_known else None
+            for *both, both_known in zip(folding, unfolding, swept, strict=True)
+        ),
     )

@@ -21,12 +21,11 @@ from knitcore.answer.densities import FEATURES, Densities, densities
 from knitcore.answer.kernel import KernelModel, KernelSettings, Samples, noisy_covariance
 from knitcore.answer.learned import STRESS_GRID, follows
 from knitcore.answer.mixture import Mixture, yarn_numbers
+from knitcore.answer.swept import STRESS, of_law, over_mixture, simulated_record
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction, Fabric
-from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import free_strains_at_stress
-from knitcore.materials import FabricRecord, Material, Origin, Yarn
-from knitcore.materials.uncertainty import COVERAGE, Z_SCORE, LawUncertainty
+from knitcore.materials import FabricRecord, Material, Yarn
+from knitcore.materials.uncertainty import COVERAGE, Z_SCORE
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.store import MATERIALS, stored_charts, stored_stitch
 from knitcore.yarnlibrary.training_data import TrainingEntry, training_entries
@@ -37,7 +36,6 @@ NUMBER_CENTRE = np.array([np.log(0.056), np.log(0.0255), np.log(0.25), 2.65])
 NUMBER_SCALE = np.array([0.15, 0.12, 1.0, 0.25])
 """Middle and spread of the library's yarns: ln r/L, ln core/L, ln k r⁴L/B, contact exponent."""
 
-_STRESS = np.geomspace(0.005, 0.33, 24)
 _FOLDS = 10
 _FIRST_SLOPE = -0.8
 _TUNED = [2, 3, 4, 8, 9, 10]
@@ -106,23 +104,14 @@ def simulated_materials() -> dict[str, Material]:
             stored = stored_stitch(chart, name)
             if stored is not None and stored.law is not None:
                 size = stored.cell_course_mm, stored.cell_wale_mm
-                record = _record(fabric, size, stored.loop_length_mm, stored.law)
+                record = simulated_record(fabric, size, stored.law, stored.loop_length_mm)
                 records.setdefault(name, {})[fabric] = record
     for entry in training_entries():
         pure = _PURE.get(entry.chart.canonical())
         if pure is not None and entry.law is not None and entry.cell_mm is not None:
-            record = _record(pure, entry.cell_mm, entry.loop_length_mm, entry.law)
+            record = simulated_record(pure, entry.cell_mm, entry.law, entry.loop_length_mm)
             records.setdefault(entry.yarn_name, {}).setdefault(pure, record)
     return {name: Material(name, name, Yarn(), fabrics) for name, fabrics in records.items()}
-
-
-def _record(
-    fabric: Fabric, size_mm: tuple[float, float], loop_length_mm: float, law: ConstitutiveLaw
-) -> FabricRecord:
-    exact = LawUncertainty(0.0, 0.0, 0.0, 0.0, "yarn level")
-    return FabricRecord(
-        fabric, law, size_mm[0], size_mm[1], exact, Origin.SIMULATED, loop_length_mm
-    )
 
 
 def rows() -> list[Row]:
@@ -144,10 +133,8 @@ def rows() -> list[Row]:
             if key in found or stored is None or not stored.converged or stored.law is None:
                 continue
             mixture, made_of = _mixture(chart, materials[name])
-            strains = [free_strains_at_stress(stored.law, d, _STRESS) for d in Direction]
-            poisson = stored.law.poisson_yx, stored.law.poisson_xy
             size = stored.cell_course_mm, stored.cell_wale_mm
-            found[key] = _row(chart, name, mixture, made_of, size, strains, poisson)
+            found[key] = _row(chart, name, mixture, made_of, size, *of_law(stored.law))
     return list(found.values())
 
 
@@ -162,7 +149,7 @@ def _row_of_entry(entry: TrainingEntry, materials: dict[str, Material]) -> Row |
     strains, poisson = [], []
     for direction in Direction:
         curve = entry.curves.get(direction)
-        strains.append(np.full(len(_STRESS), np.nan) if curve is None else curve.strain_at(_STRESS))
+        strains.append(np.full(len(STRESS), np.nan) if curve is None else curve.strain_at(STRESS))
         poisson.append(np.nan if curve is None else curve.poisson())
     ratios = poisson[0], poisson[1]
     return _row(entry.chart, entry.yarn_name, mixture, made_of, entry.cell_mm, strains, ratios)
@@ -184,18 +171,8 @@ def _row(
     size_mm: tuple[float, float], strains: list[Array], poisson: tuple[float, float],
 ) -> Row:  # fmt: skip
     assert mixture.numbers is not None  # noqa: S101 - yarns of the yarn level are known
-    at = np.log(_STRESS / mixture.bending_stress_n_per_mm)
-    ratio = np.full((2, len(STRESS_GRID)), np.nan)
-    for direction, strain in zip(Direction, strains, strict=True):
-        logs = np.log(strain / mixture.strain(direction, _STRESS))
-        known = np.isfinite(logs)
-        if np.count_nonzero(known) > len(_STRESS) // 4:
-            ratio[direction.axis] = np.interp(np.log(STRESS_GRID), at[known], logs[known])
-    fold = np.log(np.array(size_mm) / mixture.size_mm)
-    outputs = np.append(ratio.ravel(), np.array(poisson) - mixture.poisson)
-    if (
-        len(mixture.parts) == 1
-    ):  # a pure fabric is its own mixture; the residual is its law's misfit
+    fold, outputs = over_mixture(mixture, size_mm, strains, poisson)
+    if len(mixture.parts) == 1:  # a pure fabric is its own mixture; the rest is its law's misfit
         fold, outputs = np.zeros_like(fold), np.zeros_like(outputs)
     return Row(
         chart.canonical(),

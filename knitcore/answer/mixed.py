@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from knitcore.answer.answer import GAUGE, Along, Answer, Source
 from knitcore.answer.densities import Densities
-from knitcore.answer.learned import KnownSize, LearnedAnswer, packaged_model
+from knitcore.answer.learned import LearnedAnswer, SweptChart, packaged_model
 from knitcore.answer.measured import CURL
 from knitcore.answer.mixture import Mixture
 from knitcore.answer.relaxed import RelaxedSize
@@ -25,6 +25,10 @@ Array = NDArray[np.float64]
 LEARNED = (
     "Learned from yarn-level simulations, which have no friction or set: the initial stretch and "
     "the draw-in are the least certain. Your own gauge makes both more certain."
+)
+SWEPT = (
+    "From a yarn-level simulation of this chart, which has no friction or set: the initial stretch "
+    "and the draw-in are the least certain."
 )
 _LOOP_SPREAD = 1.15
 
@@ -71,7 +75,11 @@ class HeldLearnedResponse:
 
 
 def mixed(
-    repeat: StitchChart, found: Densities, material: Material, gauge: RelaxedSize | None
+    repeat: StitchChart,
+    found: Densities,
+    material: Material,
+    gauge: RelaxedSize | None,
+    swept: SweptChart | None = None,
 ) -> Answer:
     """Answer for a repeat of more than one pure fabric.
 
@@ -80,26 +88,29 @@ def mixed(
     repeat : the repeat.
     found : its densities.
     gauge : its measured relaxed size, if known.
+    swept : its sweep on the yarn level, if there is one.
 
     Raises
     ------
     InputError
         If the material lacks a pure fabric that the repeat needs.
     """
-    size = None if gauge is None else KnownSize(gauge.course_mm, gauge.wale_mm, gauge.log_sd)
-    learned = packaged_model().answer(found, material, size)
+    learned = packaged_model().answer(found, material, gauge, swept)
     course, wale = (_along(learned, direction) for direction in Direction)
     parts = learned.mixture.parts
     shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
+    source = Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE
+    taught, note = "learned from yarn-level simulations of mixed charts", LEARNED
+    if swept is not None:
+        source, taught, note = Source.SWEPT, "from a yarn-level stretch of this chart", SWEPT
     return Answer(
         course,
         wale,
         sum(share * record.law.shear_modulus for share, record in parts),
-        Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE,
-        f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, with a "
-        "correction learned from yarn-level simulations of mixed charts",
-        "learned" if gauge is None else GAUGE,
-        (LEARNED, *_notes(learned.mixture, material)),
+        source,
+        f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, with a correction {taught}",
+        ("learned" if swept is None else "yarn level") if gauge is None else GAUGE,
+        (note, *_notes(learned.mixture, material)),
     )
 
 

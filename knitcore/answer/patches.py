@@ -20,13 +20,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from knitcore.answer.answer import Along, Answer
 from knitcore.answer.densities import Densities, densities
+from knitcore.answer.learned import SweptChart, packaged_model
 from knitcore.answer.measured import measured
 from knitcore.answer.mixed import mixed
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.law.response import Response
-from knitcore.materials import Interval, Material
+from knitcore.materials import Interval, Material, Origin
 from knitcore.phases import pure_fabric
 
 Array = NDArray[np.float64]
@@ -158,13 +159,20 @@ class TabledResponse:
         return np.where(sigma < first, sigma / self.modulus_n_per_mm, curved)
 
 
-def patches_of(chart: StitchChart, material: Material, gauge: RelaxedSize | None = None) -> Patches:
+def patches_of(
+    chart: StitchChart,
+    material: Material,
+    gauge: RelaxedSize | None = None,
+    swept: SweptChart | None = None,
+) -> Patches:
     """A chart in patches, each with its answer.
 
     Parameters
     ----------
     chart : a repeat or a whole piece, as for :func:`knitcore.answer.choose.choose`.
     gauge : measured relaxed size of the whole chart's mean stitch, if known.
+    swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
+        of the packaged samples.
 
     Raises
     ------
@@ -176,8 +184,11 @@ def patches_of(chart: StitchChart, material: Material, gauge: RelaxedSize | None
         answer = measured(fabric, material)
         return _one(chart, answer if gauge is None else answer.with_size(gauge))
     repeat = chart.repeat_cut()
-    if max(repeat.rows, repeat.columns) <= SIDE or min(repeat.rows, repeat.columns) == 1:
-        return _one(chart, mixed(repeat, densities(repeat), material, gauge))
+    if swept is None and all(r.origin is Origin.SIMULATED for r in material.fabrics.values()):
+        swept = packaged_model().sweep_of(repeat, material)
+    small = max(repeat.rows, repeat.columns) <= SIDE or min(repeat.rows, repeat.columns) == 1
+    if swept is not None or small:
+        return _one(chart, mixed(repeat, densities(repeat), material, gauge, swept))
     rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
     parts = [
         [

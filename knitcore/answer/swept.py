@@ -1,132 +1,99 @@
-"""Repeats that were relaxed and stretched on the yarn level, scaled to a measured material.
+"""Charts that were relaxed and stretched on the yarn level themselves, carried to a material.
 
-The yarn level has no friction and an idealised yarn: its moduli of the pure fabrics differ from the
-measured ones by up to a factor of two. Comparing a repeat's yarn-level law with measured fabrics
-would then compare the models, not the stitches. So each constant is multiplied by the factor that
-takes the pure fabrics of the same yarn-level model to their measurements: the geometric mean over
-the repeat's phases, weighted by their shares. A pure fabric gets its measured moduli back.
+The yarn level has no friction and an idealised yarn: its pure fabrics differ from measured ones by
+up to a factor of two. So a sweep is compared with the mixture of pure fabrics of the same yarn *on
+the yarn level*, and the ratios correct the mixture of the material's own pure fabrics, as those of
+the learned model do (:mod:`knitcore.answer.learned`); knitted fabric folds less here as there.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from knitcore.answer.answer import Answer, Source
-from knitcore.answer.relaxed import RelaxedSize
+from knitcore.answer.densities import densities
+from knitcore.answer.learned import STRESS_GRID, SweptChart, follows, packaged_model
+from knitcore.answer.mixture import Mixture
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials import Material
-from knitcore.materials.uncertainty import MODEL_POISSON_SD, YARN_LEVEL_LOG_SD, LawUncertainty
-from knitcore.phases import quarter_phases, reference_fabric
+from knitcore.law.uniaxial import free_strains_at_stress
+from knitcore.materials import FabricRecord, Material, Origin
+from knitcore.materials.uncertainty import LawUncertainty
 
-NO_FRICTION = "The yarn level has no friction or set: draw-in is probably exaggerated."
-SIZE_LOG_SD = 0.10
-"""Standard deviation of the logarithm of a yarn-level size: its branches differ by that."""
+Array = NDArray[np.float64]
+
+STRESS = np.geomspace(0.005, 0.33, 24)
+"""Stresses (N/mm) at which curves are compared."""
 
 
-def swept_answer(
+def swept_chart(
+    chart: StitchChart,
+    size_mm: tuple[float, float],
     law: ConstitutiveLaw,
-    cell_mm: tuple[float, float],
-    pure: Mapping[Fabric, ConstitutiveLaw],
-    reference_mm: tuple[float, float],
-    repeat: StitchChart,
+    pure: Mapping[Fabric, FabricRecord],
     material: Material,
-) -> Answer:
-    """Answer from a sweep of this repeat itself.
+) -> SweptChart:
+    """What a sweep says of a chart.
 
     Parameters
     ----------
+    chart : the repeat that was swept.
+    size_mm : width and height of its relaxed mean stitch.
     law : fitted to the sweep.
-    cell_mm : width and height of the relaxed mean stitch.
-    pure : laws of the pure fabrics from the same yarn-level model and yarn.
-    reference_mm : the same size of the pure fabric that the repeat resembles.
-
-    Raises
-    ------
-    InputError
-        If a phase of the repeat is missing in ``pure`` or in the material.
+    pure : all pure fabrics of the chart, from the same simulation of the same yarn.
+    material : whose yarn it is.
     """
-    record = material.record(reference_fabric(repeat))
-    size = RelaxedSize(
-        cell_mm[0] / reference_mm[0] * record.stitch_course_mm,
-        cell_mm[1] / reference_mm[1] * record.stitch_wale_mm,
-        SIZE_LOG_SD,
-    )
-    return Answer.of_law(
-        law_in_material(law, pure, repeat, material),
-        size,
-        spread=LawUncertainty(
-            YARN_LEVEL_LOG_SD, YARN_LEVEL_LOG_SD, MODEL_POISSON_SD, MODEL_POISSON_SD, "yarn level"
-        ),
-        provenance=Source.SWEPT,
-        method="law fitted to a yarn-level stretch of this repeat",
-        relaxed_source="yarn level",
-        notes=(NO_FRICTION,),
-    )
+    mixture = Mixture.of(densities(chart).shares, material)
+    same = replace(mixture, parts=tuple((share, pure[r.fabric]) for share, r in mixture.parts))
+    fold, ratio = over_mixture(same, size_mm, *of_law(law))
+    slopes = packaged_model().slopes * follows(same)
+    return SweptChart(fold, ratio - slopes @ fold)
 
 
-def law_in_material(
-    law: ConstitutiveLaw,
-    pure: Mapping[Fabric, ConstitutiveLaw],
-    repeat: StitchChart,
-    material: Material,
-) -> ConstitutiveLaw:
-    """The law of a repeat, scaled to the measured material.
+def over_mixture(
+    mixture: Mixture,
+    size_mm: tuple[float, float],
+    strains: Sequence[Array],
+    poisson: tuple[float, float],
+) -> tuple[Array, Array]:
+    """What a simulation says over the mixture of the pure fabrics of the same yarn.
 
     Parameters
     ----------
-    law : fitted to a yarn-level sweep of the repeat.
-    pure : laws of the pure fabrics from the same yarn-level model and yarn; at least the repeat's
-        phases.
+    strains : at :data:`STRESS`, course-wise and wale-wise; nan where it was not stretched so far.
 
-    Raises
-    ------
-    InputError
-        If a phase of the repeat is missing in ``pure`` or in the material.
-
-    Examples
-    --------
-    >>> from knitcore.materials import material
-    >>> simulated, measured = material("acrylic:simulation"), material("acrylic:published")
-    >>> laws = {fabric: simulated.law(fabric) for fabric in Fabric}
-    >>> rib = StitchChart.parse("KP")
-    >>> round(law_in_material(laws[Fabric.RIB], laws, rib, measured).modulus_wale, 3)
-    0.119
+    Returns
+    -------
+    (2,) logarithms of width and height; (14,) logarithms of strain at the stresses of the learned
+    model, nan where a quarter of a stretch or less is known, and differences of Poisson's ratios.
     """
-    logs = dict.fromkeys(("modulus_course", "modulus_wale", *_STIFFENING), 0.0)
-    kappa = dict.fromkeys(("kappa_xx", "kappa_yy"), 0.0)
-    counts = np.bincount(quarter_phases(repeat, periodic=True).ravel(), minlength=4)
-    for phase in np.flatnonzero(counts):
-        fabric, share = PHASES[phase], float(counts[phase] / counts.sum())
-        if fabric not in pure:
-            raise InputError(
-                "pure", f"lacks {fabric}, a phase of the repeat.", "Sweep that pure fabric too."
-            )
-        measured, modelled = material.law(fabric), pure[fabric]
-        for name in logs:
-            have, need = getattr(modelled, name), getattr(measured, name)
-            # A constant that is 0 in either (no stiffening) has no ratio: it is left as it is.
-            if have > 0 and need > 0:
-                logs[name] += share * math.log(need / have)
-        for name in kappa:
-            kappa[name] += share * getattr(measured, name)
-    course, wale = math.exp(logs["modulus_course"]), math.exp(logs["modulus_wale"])
-    coupling = math.sqrt(course * wale)
-    return replace(
-        law,
-        stiffness_xxxx=law.stiffness_xxxx * course,
-        stiffness_yyyy=law.stiffness_yyyy * wale,
-        stiffness_xxyy=law.stiffness_xxyy * coupling,
-        stiffness_yyxx=law.stiffness_yyxx * coupling,
-        **{name: getattr(law, name) * math.exp(logs[name]) for name in _STIFFENING},
-        **kappa,
-    )
+    at = np.log(STRESS / mixture.bending_stress_n_per_mm)
+    ratio = np.full((2, len(STRESS_GRID)), np.nan)
+    for direction, strain in zip(Direction, strains, strict=True):
+        logs = np.log(strain / mixture.strain(direction, STRESS))
+        known = np.isfinite(logs)
+        if np.count_nonzero(known) > len(STRESS) // 4:
+            ratio[direction.axis] = np.interp(np.log(STRESS_GRID), at[known], logs[known])
+    fold = np.log(np.array(size_mm) / mixture.size_mm)
+    return fold, np.append(ratio.ravel(), np.array(poisson) - mixture.poisson)
 
 
-_STIFFENING = ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy")
+def of_law(law: ConstitutiveLaw) -> tuple[list[Array], tuple[float, float]]:
+    """Strains at :data:`STRESS` and Poisson's ratios of a law that was fitted to a sweep."""
+    strains = [free_strains_at_stress(law, direction, STRESS) for direction in Direction]
+    return strains, (law.poisson_yx, law.poisson_xy)
+
+
+def simulated_record(
+    fabric: Fabric,
+    size_mm: tuple[float, float],
+    law: ConstitutiveLaw,
+    loop_length_mm: float | None = None,
+) -> FabricRecord:
+    """A pure fabric as the yarn level has it."""
+    exact = LawUncertainty(0.0, 0.0, 0.0, 0.0, "yarn level")
+    return FabricRecord(fabric, law, *size_mm, exact, Origin.SIMULATED, loop_length_mm)

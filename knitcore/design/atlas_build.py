@@ -15,6 +15,7 @@ import numpy as np
 
 from knitcore.answer.answer import Answer
 from knitcore.answer.choose import choose
+from knitcore.answer.learned import SweptChart
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
@@ -111,9 +112,12 @@ def predict_repeats(task: AtlasTask) -> dict[str, Any]:
     return {"entries": found}
 
 
-def predict_repeat(repeat: StitchChart, material: Material) -> Answer:
-    """What a large cloth of a repeat does."""
-    return choose(repeat.tile(2, 2), material)  # twice, so that its edges are not a swatch's
+def predict_repeat(
+    repeat: StitchChart, material: Material, swept: SweptChart | None = None
+) -> Answer:
+    """What a large cloth of a repeat does, by its sweep on the yarn level if there is one."""
+    # twice, so that its edges are not a swatch's
+    return choose(repeat.tile(2, 2), material, swept=swept)
 
 
 def entry_of(answer: Answer) -> Entry:

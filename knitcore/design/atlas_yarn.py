@@ -1,8 +1,8 @@
 """The yarn level's say in an atlas: repeats relaxed and stretched one by one, small ones first.
 
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
-in a folder beside the atlas, and the run can be stopped at any point and taken up again. Laws and
-sizes are carried to the measured material by the pure fabrics of the same yarn-level model
+in a folder beside the atlas, and the run can be stopped at any point and taken up again. The pure
+fabrics of the same yarn carry what was found to the measured material
 (:mod:`knitcore.answer.swept`).
 """
 
@@ -14,14 +14,18 @@ from pathlib import Path
 from typing import Any
 
 from knitcore.answer.answer import Source
-from knitcore.answer.swept import swept_answer
+from knitcore.answer.swept import simulated_record, swept_chart
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, Entry, load_atlas, save_atlas
-from knitcore.design.atlas_build import entry_of, known_entries, material_fingerprint
+from knitcore.design.atlas_build import (
+    entry_of,
+    known_entries,
+    material_fingerprint,
+    predict_repeat,
+)
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
-from knitcore.phases import reference_fabric
 from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat, law_of
 from knitcore.yarnlibrary.yarns import yarn_for
 
@@ -129,9 +133,12 @@ def _kept(folder: Path, tasks: Mapping[str, RepeatTask]) -> dict[str, Document]:
 
 def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None:
     """Write finished repeats into the atlas, once all four fabrics to compare with are there."""
-    pure = {fabric: done.get(key_of_pure(fabric), {}) for fabric in Fabric}
-    laws = {fabric: law for fabric, doc in pure.items() if (law := law_of(doc)) is not None}
-    if len(laws) < len(Fabric):
+    pure = {}
+    for fabric in Fabric:
+        document = done.get(key_of_pure(fabric), {})
+        if (law := law_of(document)) is not None:
+            pure[fabric] = simulated_record(fabric, _cell_mm(document), law)
+    if len(pure) < len(Fabric):
         return
     fingerprint = material_fingerprint(material)
     entries = known_entries(file, fingerprint)
@@ -139,16 +146,8 @@ def _merge(material: Material, file: Path, done: Mapping[str, Document]) -> None
         chart, law = StitchChart.parse(key), law_of(document)
         if law is None or not document["converged"] or key in map(key_of_pure, Fabric):
             continue
-        reference = pure[reference_fabric(chart)]
-        answer = swept_answer(
-            law,
-            _cell_mm(document),
-            laws,
-            _cell_mm(reference),
-            chart,
-            material,
-        )
-        entries[key] = entry_of(answer)
+        sweep = swept_chart(chart, _cell_mm(document), law, pure, material)
+        entries[key] = entry_of(predict_repeat(chart, material, sweep))
     save_atlas(Atlas.of_entries(material.identifier, fingerprint, entries), file)
 
 

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from knitcore import StitchChart
 from knitcore.answer.densities import densities
-from knitcore.answer.learned import KnownSize, LearnedAnswer, learned, packaged_model
+from knitcore.answer.learned import LearnedAnswer, learned, packaged_model
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import material
 from tests.knitcore.charts import stitch_charts
@@ -76,7 +77,7 @@ def test_a_wider_rib_changes_an_answer_gradually(yarn: str) -> None:
 def test_a_known_size_is_kept_and_narrows_the_interval() -> None:
     basket = StitchChart.parse("KKPP/KKPP/PPKK/PPKK")
     guess = learned(basket, ACRYLIC)
-    known = learned(basket, ACRYLIC, KnownSize(2.9, 2.2))
+    known = learned(basket, ACRYLIC, RelaxedSize(2.9, 2.2))
     assert known.size_mm == pytest.approx([2.9, 2.2])
     for direction in Direction:
         assert known.strain_log_sd(direction, 0.05) < guess.strain_log_sd(direction, 0.05)
@@ -84,7 +85,7 @@ def test_a_known_size_is_kept_and_narrows_the_interval() -> None:
 
 def test_what_is_narrower_at_rest_has_more_to_give() -> None:
     rib = StitchChart.parse("KKPP")
-    narrow, wide = (learned(rib, ACRYLIC, KnownSize(w, 2.8)) for w in (1.9, 2.3))
+    narrow, wide = (learned(rib, ACRYLIC, RelaxedSize(w, 2.8)) for w in (1.9, 2.3))
     assert np.all(strains(narrow)[0] > strains(wide)[0])
     ends = [a.size_mm[0] * (1 + strains(a)[0, 2]) for a in (narrow, wide)]
     assert ends[0] == pytest.approx(ends[1], rel=0.1)  # the stretched size is nearly the same

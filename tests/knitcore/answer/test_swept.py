@@ -1,54 +1,76 @@
-"""A repeat's law from the yarn level, as a measured material has it."""
+"""A chart's own sweep on the yarn level, as a simulated and as a measured material have it."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from knitcore import Direction, Fabric, InputError, StitchChart
-from knitcore.answer.swept import law_in_material, swept_answer
-from knitcore.materials import material
-
-SIMULATED = {f: material("acrylic:simulation").law(f) for f in Fabric}
-
-
-@pytest.mark.parametrize("fabric", Fabric)
-def test_pure_fabrics_get_their_measured_moduli_and_stiffening(fabric: Fabric) -> None:
-    acrylic = material("acrylic:published")
-    repeat = StitchChart.of_fabric(fabric, 2, 2)
-    law = law_in_material(SIMULATED[fabric], SIMULATED, repeat, acrylic)
-    for direction in Direction:
-        assert law.modulus(direction) == pytest.approx(acrylic.law(fabric).modulus(direction))
-        assert law.lock_up_strain(direction) == pytest.approx(
-            acrylic.law(fabric).lock_up_strain(direction)
-        )
-    assert law.beta_xx == pytest.approx(acrylic.law(fabric).beta_xx)
-    assert law.poisson_xy * law.poisson_yx == pytest.approx(
-        SIMULATED[fabric].poisson_xy * SIMULATED[fabric].poisson_yx
-    )
+from knitcore import Direction, RelaxedSize, StitchChart, predict
+from knitcore.answer.choose import choose
+from knitcore.answer.densities import densities
+from knitcore.answer.learned import packaged_model
+from knitcore.answer.learned_build import simulated_materials
+from knitcore.answer.mixture import Mixture
+from knitcore.answer.swept import STRESS, of_law, swept_chart
+from knitcore.materials import Material, material
+from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
 
 
-def test_mixed_repeats_take_the_mean_ratio_of_their_phases() -> None:
-    acrylic, repeat = material("acrylic:published"), StitchChart.parse("KKPP")
-    law = law_in_material(SIMULATED[Fabric.RIB], SIMULATED, repeat, acrylic)
-    ratios = [
-        acrylic.law(f).modulus_course / SIMULATED[f].modulus_course
-        for f in (Fabric.STOCKINETTE, Fabric.RIB)
-    ]
-    expected = SIMULATED[Fabric.RIB].modulus_course * (ratios[0] * ratios[1]) ** 0.5
-    assert law.modulus_course == pytest.approx(expected)
+@pytest.fixture(scope="module")
+def simulated() -> Material:
+    """Acrylic made of the store's own pure fabrics."""
+    return simulated_materials()["acrylic"]
 
 
-def test_every_phase_must_be_known() -> None:
-    rib = StitchChart.parse("KKPP")
-    plain = {Fabric.STOCKINETTE: SIMULATED[Fabric.STOCKINETTE]}
-    with pytest.raises(InputError, match="lacks rib"):
-        law_in_material(SIMULATED[Fabric.RIB], plain, rib, material("acrylic:published"))
+def _stored(text: str) -> StoredStitch:
+    found = stored_stitch(StitchChart.parse(text), "acrylic")
+    assert found is not None
+    return found
 
 
-def test_sizes_are_carried_over_by_their_ratio_to_a_pure_fabric() -> None:
-    acrylic, rib = material("acrylic:published"), StitchChart.parse("KKPP")
-    found = swept_answer(SIMULATED[Fabric.RIB], (1.2, 2.2), SIMULATED, (1.5, 2.2), rib, acrylic)
-    record = acrylic.record(Fabric.RIB)
+@pytest.mark.parametrize("text", ["KKPP", "K/K/P", "KP/KK", "KKPP/PPKK"])
+def test_a_simulated_material_does_what_its_sweep_did(text: str, simulated: Material) -> None:
+    """Strains within 5 %: the answer goes through six stresses of the curve."""
+    stored = _stored(text)
+    assert stored.law is not None
+    size = stored.cell_course_mm, stored.cell_wale_mm
+    sweep = swept_chart(stored.chart, size, stored.law, simulated.fabrics, simulated)
+    found = choose(stored.chart, simulated, swept=sweep)
     assert found.provenance == "swept"
-    assert found.relaxed_course_mm == pytest.approx(0.8 * record.stitch_course_mm)
-    assert found.relaxed_wale_mm == pytest.approx(record.stitch_wale_mm)
+    assert (found.relaxed_course_mm, found.relaxed_wale_mm) == pytest.approx(size)
+    strains, _ = of_law(stored.law)
+    for direction, strain in zip(Direction, strains, strict=True):
+        along = found.along(direction)
+        np.testing.assert_allclose(along.strain(STRESS)[4:], strain[4:], rtol=0.05)
+        low, high = along.strain_interval(0.05)
+        assert low < along.strain(0.05) < high
+
+
+def test_a_simulated_material_finds_the_packaged_sweep(simulated: Material) -> None:
+    """And no other material does; with a gauge its stretch starts at that size."""
+    chart = StitchChart.parse("KP/KK")
+    stored = _stored("KP/KK")
+    found = choose(chart, simulated)
+    assert found.provenance == "swept"
+    assert found.relaxed_course_mm == pytest.approx(stored.cell_course_mm, rel=0.02)
+    assert predict(StitchChart.parse("KP/KK"), material("acrylic")).provenance == "learned"
+    assert packaged_model().sweep_of(chart, material("lace-bamboo")) is None
+    known = choose(chart, simulated, RelaxedSize(3.0, 2.0))
+    assert known.relaxed_course_mm == 3.0
+    assert known.course.strain(0.05) != pytest.approx(found.course.strain(0.05), rel=0.01)
+
+
+@pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KKPP/KKPP/PPKK/PPKK"])
+def test_knitted_fabric_folds_less_than_its_sweep_as_the_learned_answer_does(text: str) -> None:
+    chart, acrylic = StitchChart.parse(text), material("acrylic")
+    sweep = packaged_model().sweep_of(chart, acrylic)
+    assert sweep is not None
+    found, learned = choose(chart, acrylic, swept=sweep), choose(chart, acrylic)
+    assert found.provenance == "swept"
+    flat = Mixture.of(densities(chart).shares, acrylic).size_mm
+    for direction in Direction:
+        own, other = found.along(direction), learned.along(direction)
+        fold = np.log(own.relaxed_mm / flat[direction.axis])
+        assert abs(fold) <= abs(sweep.folding[direction.axis])
+        assert own.relaxed_mm == pytest.approx(other.relaxed_mm, rel=0.06)
+        assert own.strain(0.1) == pytest.approx(other.strain(0.1), rel=0.35)
