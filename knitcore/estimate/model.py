@@ -20,7 +20,7 @@ from knitcore.estimate.mixed_model import Mask, MixedModel, interval_factor
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
-from knitcore.materials import Laws, Material, load_library
+from knitcore.materials import Material, load_library
 from knitcore.materials.uncertainty import COVERAGE
 
 Array = NDArray[np.float64]
@@ -85,8 +85,8 @@ class LibraryTable:
 
 @cache
 def library_table() -> LibraryTable:
-    """The packaged tables of the eight yarns as arrays, with the laws as published."""
-    return table_of(tuple(load_library(Laws.PUBLISHED).values()))
+    """The library's eight yarns as arrays."""
+    return table_of(tuple(load_library().values()))
 
 
 def table_of(materials: Sequence[Material]) -> LibraryTable:
