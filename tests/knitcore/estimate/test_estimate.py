@@ -50,7 +50,7 @@ def test_ninety_percent_intervals_cover_84_to_95(measured: tuple[Fabric, ...]) -
 
 def test_the_refitted_constants_are_those_of_the_notes() -> None:
     constant = np.exp(library_table().modulus.mean(axis=0))
-    expected = [[3248, 16774], [2806, 2651], [821, 8815], [3457, 4344]]
+    expected = [[3249, 16792], [2806, 2654], [817, 8914], [3459, 4339]]
     assert constant == pytest.approx(np.array(expected), rel=0.003)
 
 
@@ -102,7 +102,7 @@ def test_a_stiffer_swatch_means_a_stiffer_yarn() -> None:
         ratio = (
             stiffer.fabrics[fabric].law.modulus_course / plain.fabrics[fabric].law.modulus_course
         )
-        assert ratio == pytest.approx(2 ** (0.756 + 0.094), rel=0.01)  # drawn towards the mean
+        assert ratio == pytest.approx(2 ** (0.752 + 0.097), rel=0.01)  # drawn towards the mean
 
 
 def test_another_setting_is_warned_of() -> None:
