@@ -23,6 +23,7 @@ FLOORS = (
     {"yarnlibrary"},
     {"answer"},
     {"swatch", "shell", "garment", "geometry"},
+    {"piece"},
     {"formats", "design"},
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""

@@ -12,6 +12,9 @@ each other (and neighbouring cells that differed as much as the pure fabrics wou
 Stitch sizes are scaled to the relaxed size. Poisson's ratios are the answer's, or less where one
 energy for both directions requires it. A patch of one pure fabric keeps its own law.
 
+Finite elements larger than a stitch take even laws instead: one for all quarters of a patch, with
+the patch's own strains.
+
 The flat composite is taken as lines of cells along the pull: in a line the phases are in series at
 one force, and all lines are strained alike.
 """
@@ -68,8 +71,8 @@ class QuarterLaws:
     log_sd: Array
 
 
-def quarter_laws(chart: StitchChart, material: Material) -> QuarterLaws:
-    """Laws of a piece.
+def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) -> QuarterLaws:
+    """Laws of a piece; ``even`` gives all quarters of a mixed patch one law, that of the patch.
 
     Raises
     ------
@@ -94,7 +97,7 @@ def quarter_laws(chart: StitchChart, material: Material) -> QuarterLaws:
             if pure_fabric(chart.region(*here)) is not None:
                 laws += _own_laws(cells, material)
                 continue
-            laws += _fitted_laws(cells, answer, material)
+            laws += _fitted_laws(cells, answer, material, even)
             share = (above - below) * (right - left) / number.size
             for direction in Direction:
                 sizes = [_size(record, direction) for record in _records(cells, material)]
@@ -152,12 +155,16 @@ def _own_log_sd(
 
 
 def _fitted_laws(
-    cells: NDArray[np.uint8], answer: Answer, material: Material
+    cells: NDArray[np.uint8], answer: Answer, material: Material, even: bool
 ) -> list[ConstitutiveLaw]:
     records = _records(cells, material)
+    shear = np.array([r.law.shear_modulus for r in records])
     fits = []
     for direction in Direction:
         strains = answer.along(direction).strain(STRESSES)
+        if even:
+            fits.append([_fitted(strains)] * len(records))
+            continue
         parts = 1 / _flat_strains(cells, records, direction)
         fits.append(
             [
@@ -166,9 +173,11 @@ def _fitted_laws(
             ]
         )
     most_yx, most_xy = (max(answer.along(d).poisson, 0.0) for d in Direction)
+    if even:
+        shear[:] = np.exp(_shares(cells) @ np.log(shear))
     found = []
-    for record, (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y) in zip(
-        records, *fits, strict=True
+    for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), shear_modulus in zip(
+        *fits, shear.tolist(), strict=True
     ):
         # One coupling for both, as an energy needs; neither contraction is more than the answer's.
         nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
@@ -184,7 +193,7 @@ def _fitted_laws(
                 alpha_yy=alpha_y,
                 beta_xx=beta_x,
                 beta_yy=beta_y,
-                shear_modulus=record.law.shear_modulus,
+                shear_modulus=shear_modulus,
             )
         )
     return found

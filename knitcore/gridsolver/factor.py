@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,26 @@ class Factor(Protocol):
         ...
 
 
+def positive_definite_factor(matrix: Any) -> Callable[[Array], Array]:
+    """SuperLU of a sparse symmetric matrix, in double precision: a function that solves with it.
+
+    Raises
+    ------
+    IndefiniteTangentError
+        If the matrix is not positive definite.
+    """
+    # pivots stay on the diagonal, so that their signs are those of the eigenvalues
+    options = {"SymmetricMode": True}
+    try:
+        factor = splu(csc_matrix(matrix), "MMD_AT_PLUS_A", 0.0, options=options)
+    except RuntimeError as error:  # exactly singular
+        raise IndefiniteTangentError from error
+    if not np.all(factor.U.diagonal() > 0.0):
+        raise IndefiniteTangentError
+    solve: Callable[[Array], Array] = factor.solve
+    return solve
+
+
 class SciPyFactor:
     """SuperLU on the assembled matrix, in double precision.
 
@@ -56,17 +77,10 @@ class SciPyFactor:
         row, column = np.repeat(self._places, 8, axis=1), np.tile(self._places, (1, 8))
         n = len(self._free)
         whole = csc_matrix((cell_matrices.ravel(), (row.ravel(), column.ravel())), shape=(n, n))
-        # pivots stay on the diagonal, so that their signs are those of the eigenvalues
-        options = {"SymmetricMode": True}
-        try:
-            self._lu = splu(whole[self._free][:, self._free], "MMD_AT_PLUS_A", 0.0, options=options)
-        except RuntimeError as error:  # exactly singular
-            raise IndefiniteTangentError from error
-        if not np.all(self._lu.U.diagonal() > 0.0):
-            raise IndefiniteTangentError
+        self._solve = positive_definite_factor(whole[self._free][:, self._free])
 
     def solve(self, right_hand_side: Array) -> Array:
         """See :class:`Factor`."""
         x = np.zeros(len(self._free))
-        x[self._free] = self._lu.solve(right_hand_side.ravel()[self._free])
+        x[self._free] = self._solve(right_hand_side.ravel()[self._free])
         return x

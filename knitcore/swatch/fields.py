@@ -74,17 +74,23 @@ def cell_strains(sheet: Sheet, state: State) -> CellStrains:
     right, left = twice - x[:, 0] - x[:, 3], x[:, 1] + x[:, 2] - twice
     a = np.stack([south / width, left / width, north / width, right / width], axis=1)
     b = np.stack([up / height, east / height, down / height, west / height], axis=1)
-    if sheet.model.energy is EnergyModel.PUBLISHED:
-        strains = a[..., 0] - 1, b[..., 1] - 1, (a[..., 1] + b[..., 0]) / 2
-    else:
-        dot = np.sum(a * b, axis=-1)
-        cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-        strains = (
-            np.linalg.norm(a, axis=-1) - 1,
-            np.linalg.norm(b, axis=-1) - 1,
-            np.arctan2(dot, cross) / 2,
-        )
+    strains = fibre_strains(sheet.model.energy, a, b)
     return CellStrains(*(s.reshape(grid.rows, grid.columns, 4) for s in strains))
+
+
+def fibre_strains(energy: EnergyModel, a: Array, b: Array) -> tuple[Array, Array, Array]:
+    """Strains xx, yy and xy of a model, given the images (..., 2) of the unit vectors along course
+    and wale.
+    """
+    if energy is EnergyModel.PUBLISHED:
+        return a[..., 0] - 1, b[..., 1] - 1, (a[..., 1] + b[..., 0]) / 2
+    dot = np.sum(a * b, axis=-1)
+    cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return (
+        np.asarray(np.linalg.norm(a, axis=-1) - 1),
+        np.asarray(np.linalg.norm(b, axis=-1) - 1),
+        np.arctan2(dot, cross) / 2,
+    )
 
 
 def utilisation(sheet: Sheet, strains: CellStrains) -> Array:
@@ -112,7 +118,7 @@ def node_fields(sheet: Sheet, state: State) -> Fields:
     strains = cell_strains(sheet, state)
     cells = {"strain_xx": strains.mean[0], "strain_yy": strains.mean[1]}
     cells["strain_xy"] = strains.mean[2]
-    cells |= _response(sheet, *strains.mean)
+    cells |= response(sheet, grid.law_of_cell, *strains.mean)
     cells["utilisation"] = utilisation(sheet, strains).max(axis=0)
     nodes = {name: corner_means(grid, value) for name, value in cells.items()}
     xx, yy, xy = nodes["strain_xx"], nodes["strain_yy"], nodes["strain_xy"]
@@ -130,9 +136,12 @@ def node_fields(sheet: Sheet, state: State) -> Fields:
     )
 
 
-def _response(sheet: Sheet, xx: Array, yy: Array, xy: Array) -> dict[str, Array]:
-    """Stresses and energy density of cells at mean strains (wrinkling not considered)."""
-    codes = sheet.grid.law_of_cell
+def response(
+    sheet: Sheet, codes: NDArray[np.uint8], xx: Array, yy: Array, xy: Array
+) -> dict[str, Array]:
+    """Stresses and energy density at strains, by the codes of the laws (wrinkling not considered);
+    arrays of one shape.
+    """
     stiff = stiffening_of(sheet, codes).response(xx, yy, StiffeningForm(sheet.model.energy.value))
     laws = sheet.parameters[codes]
     coupling, shear = laws["stiffness_xxyy"], laws["shear_modulus"]

@@ -242,6 +242,34 @@ def _full_point(
 
 
 @njit(cache=True)
+def respond(
+    laws: NDArray[Any],
+    law_of_point: NDArray[np.uint8],
+    published: bool,
+    tension_field: bool,
+    fibres: Array,
+    force: Array,
+    stiffness: Array,
+) -> Array:
+    """Energy densities (points,), N/mm, at any points of a sheet, for other meshes than the grid.
+
+    ``fibres`` (points, 4) are the images (a0, a1, b0, b1) of the unit vectors along course and
+    wale; writes the derivatives of the densities, ``force`` (points, 4) and ``stiffness``
+    (points, 4, 4). A density is infinite where a fibre has collapsed to a point.
+    """
+    energy = np.empty(len(law_of_point))
+    for point in range(len(law_of_point)):
+        law = laws[law_of_point[point]]
+        a0, a1, b0, b1 = fibres[point]
+        f, h = force[point], stiffness[point]
+        if published:
+            energy[point] = _published_point(law, a0, a1, b0, b1, f, h)
+        else:
+            energy[point] = _full_point(law, tension_field, a0, a1, b0, b1, f, h)
+    return energy
+
+
+@njit(cache=True)
 def _gather(vectors: Array, nodes: tuple[int, int, int, int], out: Array) -> None:
     """Write a cell's corners' share (4, 2) of vectors (corners, 2)."""
     for i in range(4):

@@ -1,0 +1,105 @@
+"""How sure the forces and motions of a piece are, from the uncertainty of its cloth's laws.
+
+By the delta method, as for a strip (:mod:`knitcore.swatch.uncertainty`): a parameter p of the laws
+moves the nodes by du/dp = -K⁻¹ dR/dp and changes the forces at the edges by dR/dp + K du/dp.
+Variances of independent parameters add up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.answer.quarter_laws import SPREAD_AT
+from knitcore.errors import InputError
+from knitcore.gridsolver.factor import positive_definite_factor
+from knitcore.materials.material import Material
+from knitcore.piece.results import PieceTest
+from knitcore.swatch.margins import sampled_steps
+from knitcore.swatch.uncertainty import STEP, law_parameters
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PieceSpread:
+    """Standard deviations at one load step, (conditions, 2) each: of x and y.
+
+    Attributes
+    ----------
+    force_n : of the forces on the edges.
+    moved_mm : of the mean displacements of the edges.
+    """
+
+    force_n: Array
+    moved_mm: Array
+
+
+def piece_spread(test: PieceTest, material: Material, step: int = -1) -> PieceSpread:
+    """Standard deviations of a test at a load step (the last one by default).
+
+    Raises
+    ------
+    InputError
+        If the cloth may wrinkle (``tension_field``): its forces are not linear in the laws.
+    """
+    constraints = test.constraints
+    force, moved = np.zeros((2, len(test.conditions), 2))
+    for change, motion in _changes(test, material, step):
+        force += constraints.forces(change, 0.0) ** 2
+        moved += np.array([motion[:, nodes].mean(axis=1) for nodes in constraints.nodes]) ** 2
+    own = _model_log_sd(test, step)
+    force += (own * constraints.forces(test.found[step].internal, 0.0)) ** 2
+    return PieceSpread(np.sqrt(force), np.sqrt(moved))
+
+
+def force_log_sd(
+    test: PieceTest, material: Material, force: Callable[[Array, int], float]
+) -> Array:
+    """Standard deviation per step of the logarithm of a force, or of work.
+
+    Parameters
+    ----------
+    test, material : as for :func:`piece_spread`, which has the errors.
+    force : of the internal forces (2, nodes) at a step (from 0), and linear in them. It is
+        computed at a few steps, and interpolated between them.
+    """
+    steps = sampled_steps(len(test.found))
+    found = []
+    for step in steps:
+        value = force(test.found[step].internal, step)
+        parts = [force(change, step) / value for change, _ in _changes(test, material, step)]
+        found.append(np.linalg.norm([*parts, _model_log_sd(test, step)]))
+    return np.interp(np.arange(len(test.found)), steps, found) if steps else np.empty(0)
+
+
+def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[Array, Array]]:
+    """Changes of the internal forces and of the displacements (2, nodes) by one standard deviation
+    of each parameter of the laws.
+    """
+    sheet = test.energy.cloth.sheet
+    if sheet.model.tension_field:
+        raise InputError(
+            "tension_field", "there are no intervals for cloth that wrinkles.", "Turn it off."
+        )
+    u, spread = test.found[step].displacement, test.constraints.spread
+    tangent = test.energy.at(u, test.constraints.tapes).tangent
+    solve = positive_definite_factor(spread.T @ tangent @ spread)
+    for parameter in law_parameters(sheet, material, 0.0):
+        raised, lowered = (test.energy.law_force(p, u) for p in (parameter.up, parameter.down))
+        change = parameter.sd * (raised - lowered) / (2 * STEP)
+        motion = spread @ solve(-(spread.T @ change.ravel()))
+        yield change + (tangent @ motion).reshape(u.shape), motion.reshape(u.shape)
+
+
+def _model_log_sd(test: PieceTest, step: int) -> float:
+    """The model's own error of mixed cloth, in the logarithm of stress, at the mean stress."""
+    sd = test.energy.cloth.sheet.stress_log_sd
+    if sd is None:
+        return 0.0
+    fields = test.fields(step)
+    stress = float(np.mean(np.maximum(fields.stress_course, fields.stress_wale)))
+    return float(np.interp(stress, SPREAD_AT, sd.max(axis=0)))
