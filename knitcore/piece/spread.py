@@ -88,7 +88,7 @@ def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[A
     u, spread = test.found[step].displacement, test.constraints.spread
     tangent = test.energy.at(u, test.constraints.tapes).tangent
     solve = positive_definite_factor(spread.T @ tangent @ spread)
-    for parameter in law_parameters(sheet, material, 0.0):
+    for parameter in law_parameters(sheet, material, 0.0, _mean_stress(test, step)):
         raised, lowered = (test.energy.law_force(p, u) for p in (parameter.up, parameter.down))
         change = parameter.sd * (raised - lowered) / (2 * STEP)
         motion = spread @ solve(-(spread.T @ change.ravel()))
@@ -96,10 +96,14 @@ def _changes(test: PieceTest, material: Material, step: int) -> Iterator[tuple[A
 
 
 def _model_log_sd(test: PieceTest, step: int) -> float:
-    """The model's own error of mixed cloth, in the logarithm of stress, at the mean stress."""
+    """The model's own error of mixed cloth in the logarithm of stress."""
     sd = test.energy.cloth.sheet.stress_log_sd
     if sd is None:
         return 0.0
+    return float(np.interp(_mean_stress(test, step), SPREAD_AT, sd.max(axis=0)))
+
+
+def _mean_stress(test: PieceTest, step: int) -> float:
+    """Of the larger of the two stresses along the fibres, N/mm."""
     fields = test.fields(step)
-    stress = float(np.mean(np.maximum(fields.stress_course, fields.stress_wale)))
-    return float(np.interp(stress, SPREAD_AT, sd.max(axis=0)))
+    return max(float(np.mean(np.maximum(fields.stress_course, fields.stress_wale))), 0.0)
