@@ -582,9 +582,9 @@ export type EnergyModel = "published" | "full";
 
 /** A value and its 90 % interval (of no width where it is measured). */
 export interface EstimateInterval {
-  value: number;
   low: number;
   high: number;
+  value: number;
 }
 
 /** Known facts of the yarn and the product. */
@@ -694,9 +694,11 @@ export interface FabricDetail {
   /** Relaxed height of one stitch. */
   stitch_wale_mm: number;
   loop_length_mm: number | null;
-  law: LawResult;
+  /** Contraction wale-wise when pulled course-wise. */
   poisson_yx: number;
+  /** Contraction course-wise when pulled wale-wise. */
   poisson_xy: number;
+  law: LawResult;
   lock_up_strain_course: number;
   lock_up_strain_wale: number;
   setting: string;
@@ -881,13 +883,13 @@ export interface FitResult {
   /** Share of the strain across in the stiffening. */
   kappa_xx: number;
   kappa_yy: number;
-  standard_errors: LawErrors;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
   /** Contraction wale-wise when pulled course-wise. */
   poisson_yx: number;
   /** Contraction course-wise when pulled wale-wise. */
   poisson_xy: number;
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
+  standard_errors: LawErrors;
   /** Of all residuals. */
   rms_n_per_mm: number;
   rms_course_n_per_mm: number;
@@ -992,6 +994,9 @@ export interface GaugeResult {
 
 /** The therapeutic glove; an adult's hand unless measured. */
 export interface Glove {
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
   template: "glove";
   cuff_mm?: number;
   wrist_mm?: number;
@@ -1003,9 +1008,6 @@ export interface Glove {
   gusset_girth_mm?: number;
   thumb?: FingerSize | null;
   fingers?: FingerSize[] | null;
-  ease?: number;
-  /** Wanted pressure; before the ease. */
-  target_mmhg?: number | null;
 }
 
 /** Groups of entry points, and what their functions return lists of. */
@@ -1103,10 +1105,12 @@ export interface LawErrors {
   alpha_yy: number;
   beta_xx_n_per_mm: number;
   beta_yy_n_per_mm: number;
-  poisson_yx: number;
-  poisson_xy: number;
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
+  /** Contraction wale-wise when pulled course-wise. */
+  poisson_yx: number;
+  /** Contraction course-wise when pulled wale-wise. */
+  poisson_xy: number;
   /** Recommended reduction only, and mostly its prior's: a factor of 1.5. */
   shear_modulus_n_per_mm: number | null;
   kappa_xx: number | null;
@@ -1151,15 +1155,15 @@ export interface LeftOutResult {
 
 /** A sleeve along any limb. */
 export interface Limb {
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
   template: "limb";
   /** [position_mm, circumference_mm] along the limb. */
   profile: [number, number][];
   body?: Fabric;
   hem?: Fabric;
   hem_mm?: number;
-  ease?: number;
-  /** Wanted pressure; before the ease. */
-  target_mmhg?: number | null;
 }
 
 /** A tube on a limb. */
@@ -1367,18 +1371,18 @@ export interface PredictRequest {
 
 /** Effective elastic constants of the whole chart at small strain; intervals cover 90 %. */
 export interface PredictResult {
-  /** Of the stitches that the constants are of. */
-  rows: number;
-  columns: number;
-  segments: Record<Direction, SegmentCountsResult>;
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
   /** Contraction wale-wise when pulled course-wise. */
   poisson_yx: number;
   /** Contraction course-wise when pulled wale-wise. */
   poisson_xy: number;
-  extensibility_course_mm_per_n: number;
-  extensibility_wale_mm_per_n: number;
+  /** Of the stitches that the constants are of. */
+  rows: number;
+  columns: number;
+  segments: Record<Direction, SegmentCountsResult>;
   modulus_course_interval_n_per_mm: [number, number];
   modulus_wale_interval_n_per_mm: [number, number];
   poisson_yx_interval: [number, number];
@@ -1518,6 +1522,10 @@ export type Reduction = "published" | "uniform" | "recommended";
 
 /** One region: the fabric's repeat, its colour, its size, and means over its stitches. */
 export interface RegionResult {
+  extensibility_course_mm_per_n: number;
+  extensibility_wale_mm_per_n: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
   name: string;
   fill: string;
   colour: string;
@@ -1529,10 +1537,6 @@ export interface RegionResult {
   /** Of that many stitches at rest. */
   width_mm: number;
   height_mm: number;
-  extensibility_course_mm_per_n: number;
-  extensibility_wale_mm_per_n: number;
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
   yarn_m: number;
   yarn_g: number | null;
   /** Lines of x (in the region) and ., the top row first. */
@@ -1722,13 +1726,13 @@ export type Side = "RS" | "WS";
 
 /** The leg of a sock. */
 export interface SockLeg {
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
   template: "sock-leg";
   ankle_mm: number;
   calf_mm: number;
   length_mm: number;
-  ease?: number;
-  /** Wanted pressure; before the ease. */
-  target_mmhg?: number | null;
 }
 
 /** What became of one start; null where it failed. */
@@ -1754,11 +1758,11 @@ export interface StitchFields {
 
 /** One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8. */
 export interface StitchKind {
-  code: number;
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
   extensibility_course_mm_per_n: number;
   extensibility_wale_mm_per_n: number;
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  code: number;
   modulus_course_interval: [number, number];
   modulus_wale_interval: [number, number];
   /** Shares of the four phases. */
@@ -1911,6 +1915,12 @@ export interface SweepResult {
 
 /** Constitutive law fitted to the stretches along and across (N/mm). */
 export interface SweptLaw {
+  modulus_course_n_per_mm: number;
+  modulus_wale_n_per_mm: number;
+  /** Contraction wale-wise when pulled course-wise. */
+  poisson_yx: number;
+  /** Contraction course-wise when pulled wale-wise. */
+  poisson_xy: number;
   stiffness_xxxx: number;
   stiffness_yyyy: number;
   stiffness_xxyy: number;
@@ -1919,10 +1929,6 @@ export interface SweptLaw {
   alpha_yy: number;
   beta_xx: number;
   beta_yy: number;
-  modulus_course_n_per_mm: number;
-  modulus_wale_n_per_mm: number;
-  poisson_yx: number;
-  poisson_xy: number;
   /** Upper end of the fitted range of stress. */
   max_stress_n_per_mm: number;
   largest_strain_course: number;
@@ -2050,13 +2056,13 @@ export interface WornResult {
 
 /** A brace knitted sideways and grafted. */
 export interface WristBrace {
+  ease?: number;
+  /** Wanted pressure; before the ease. */
+  target_mmhg?: number | null;
   template: "wrist-brace";
   wrist_mm: number;
   length_mm: number;
   edge_mm?: number;
-  ease?: number;
-  /** Wanted pressure; before the ease. */
-  target_mmhg?: number | null;
 }
 
 /** The yarn of a material; every field is optional. */

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Self
+from dataclasses import fields
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from knitcore.errors import InputError
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+OfLibrary = TypeVar("OfLibrary", bound="DataclassInstance")
 UNIT = "_n_per_mm"
 
 
@@ -21,6 +26,11 @@ class RequestModel(BaseModel):
     """A request, or a part of one; a field that it does not know is refused."""
 
     model_config = ConfigDict(extra="forbid")
+
+    def into(self, kind: type[OfLibrary], **more: Any) -> OfLibrary:
+        """As a dataclass of the library, made of the fields that both have and of what is given."""
+        mine = {f.name: getattr(self, f.name) for f in fields(kind) if hasattr(self, f.name)}
+        return kind(**mine | more)
 
 
 class NoRequest(RequestModel):

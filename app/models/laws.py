@@ -44,8 +44,29 @@ class LawsRequest(RequestModel):
         return self.laws.of(material)
 
 
-class LawResult(ResultModel):
-    """The constants of a constitutive law."""
+class Moduli(ResultModel):
+    """Young's moduli along rows and along columns."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+
+
+class ElasticConstants(Moduli):
+    """Moduli, and what happens across a pull."""
+
+    poisson_yx: float = Field(description="Contraction wale-wise when pulled course-wise.")
+    poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
+
+
+class Extensibility(ResultModel):
+    """How far cloth gives, the inverse of its moduli."""
+
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+
+
+class LawConstants(ResultModel):
+    """The constants of stress and strain in the plane."""
 
     stiffness_xxxx_n_per_mm: float
     stiffness_yyyy_n_per_mm: float
@@ -55,6 +76,11 @@ class LawResult(ResultModel):
     alpha_yy: float
     beta_xx_n_per_mm: float
     beta_yy_n_per_mm: float
+
+
+class LawResult(LawConstants):
+    """The constants of a constitutive law."""
+
     shear_modulus_n_per_mm: float = Field(
         description="An assumption unless it was fitted or calibrated."
     )

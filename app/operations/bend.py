@@ -125,10 +125,11 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     density = request.linear_density_g_per_m
     area = mirrored.cell_course_mm * mirrored.cell_wale_mm
     weight = None if density is None else 1e-6 * STANDARD_GRAVITY * density * loop / area  # N/mm²
-    shear, twist = stable.shear_modulus_n_per_mm, stable.twist_n_mm
+    shear = stable.shear_modulus_n_per_mm
     if shear is not None and shear <= 0.0:
         notes.append("The courses slide over each other freely: the shear modulus is not positive.")
-    return BendResult(
+    return BendResult.of(
+        shown,
         moment_course_n=shown.course.moment_n,
         moment_wale_n=shown.wale.moment_n,
         bending_course_n_mm=shown.course.rigidity_n_mm,
@@ -138,11 +139,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         strain_across_course_mm=shown.course.strain_across_mm,
         strain_across_wale_mm=shown.wale.strain_across_mm,
         shear_modulus_n_per_mm=shear,
-        twist_n_mm=twist,
-        thickness_mm=shown.thickness_mm,
-        curl=shown.curl,
-        curl_course=shown.curl_course,
-        curl_wale=shown.curl_wale,
+        twist_n_mm=stable.twist_n_mm,
         bending_length_course_mm=_hanging(shown.course, weight),
         bending_length_wale_mm=_hanging(shown.wale, weight),
         stable=shown.minimum,

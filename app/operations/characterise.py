@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import shutil
 from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
 from typing import Self, TypeVar
 
@@ -55,10 +54,6 @@ class YarnInput(RequestModel):
     contact_exponent: Positive
     radius_mm: Positive
     core_radius_mm: float = Field(ge=0, le=100, allow_inf_nan=False)
-
-    def model(self) -> YarnModel:
-        """The yarn of the model."""
-        return YarnModel(**{f.name: getattr(self, f.name) for f in fields(YarnModel)})
 
 
 class CharacteriseOptions(RequestModel):
@@ -186,19 +181,13 @@ def _plan(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> Ya
     InputError
         If there is none, or it does not go with the options.
     """
+    asked = options.model_dump(include=set(CharacteriseOptions.model_fields))
     if isinstance(yarn, Material):
-        return plan_for_material(
-            yarn, fabrics=options.fabrics, loop_lengths_mm=options.loop_lengths_mm,
-            tensions=options.tensions, branch=options.branch, convention=options.convention,
-            max_stress_n_per_mm=options.max_stress_n_per_mm,
-        )  # fmt: skip
+        return plan_for_material(yarn, **asked)
     if yarn is None:
         raise InputError("material", "is missing.", "Name a material, or give a yarn.")
-    return plan_for_yarn(
-        yarn.name, yarn.model(), options.loop_lengths_mm, fabrics=options.fabrics,
-        branch=options.branch, convention=options.convention,
-        max_stress_n_per_mm=options.max_stress_n_per_mm,
-    )  # fmt: skip
+    del asked["tensions"]  # of a material's own lengths
+    return plan_for_yarn(yarn.name, yarn.into(YarnModel), **asked)
 
 
 def _result(table: YarnTable) -> CharacteriseResult:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from app.cli.common import emit, json_option, user_data_dir
 from app.cli.options import out_option
-from app.models.base import RequestModel, ResultModel
+from app.models.base import IntervalResult, RequestModel, ResultModel
 from app.models.laws import LawResult
 from app.operations.context import Context
 from app.operations.estimate_report import LeftOutResult, report, text_of_left_out
@@ -44,12 +44,10 @@ class EstimateRequest(RequestModel):
     )
 
 
-class EstimateInterval(ResultModel):
+class EstimateInterval(IntervalResult):
     """A value and its 90 % interval (of no width where it is measured)."""
 
     value: float
-    low: float
-    high: float
 
 
 class FabricEstimateResult(ResultModel):

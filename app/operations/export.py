@@ -95,15 +95,7 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    options = ExportOptions(
-        construction=request.construction,
-        first_side=request.first_side,
-        finish=request.finish,
-        name=request.name,
-        note=request.note,
-        layout=request,
-        linear_density_tex=request.linear_density_tex,
-    )
+    options = request.into(ExportOptions, layout=request)
     return export_chart(chart, request.to, context.material(request.material), options)
 
 

@@ -62,10 +62,7 @@ class TargetInput(RequestModel):
 
     def target(self) -> Target:
         """As the library knows it."""
-        limb = None if self.limb is None else Limb(self.limb.rest_mm, self.limb.worn_mm)
-        return Target(
-            self.quantity, self.value, self.tolerance, self.weight, self.load_n_per_mm, limb
-        )
+        return self.into(Target, limb=self.limb.into(Limb) if self.limb else None)
 
 
 class LimitsInput(RequestModel):
@@ -76,10 +73,6 @@ class LimitsInput(RequestModel):
     curl: float | None = Field(
         None, ge=0, le=1, description="Knits minus purls over all stitches, either way."
     )
-
-    def limits(self) -> CostLimits:
-        """As the library knows them."""
-        return CostLimits(self.transfers_per_stitch, self.crossings_per_stitch, self.curl)
 
 
 class FindRequest(LawsRequest):
@@ -148,7 +141,7 @@ def _ranked(
 ) -> FindResult:
     """The best of some atlases, and of other yarns where those reach nothing."""
     targets = [target.target() for target in request.targets]
-    limits = request.limits.limits() if request.limits else None
+    limits = request.limits.into(CostLimits) if request.limits else None
     found = find_fabric(atlases, targets, count=request.count, limits=limits)
     message, elsewhere = found.message, list[Candidate]()
     if others and not found.reached:

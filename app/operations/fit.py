@@ -10,7 +10,7 @@ from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import Floats, RequestModel, ResultModel
-from app.models.laws import LawResult
+from app.models.laws import ElasticConstants, LawConstants, LawResult
 from app.models.uploads import UploadedFile, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -44,21 +44,9 @@ class FitRequest(RequestModel):
     residuals: bool = Field(False, description="Whether to return residuals at each point.")
 
 
-class LawErrors(ResultModel):
+class LawErrors(ElasticConstants, LawConstants):
     """Standard errors of a law's constants."""
 
-    stiffness_xxxx_n_per_mm: float
-    stiffness_yyyy_n_per_mm: float
-    stiffness_xxyy_n_per_mm: float
-    stiffness_yyxx_n_per_mm: float
-    alpha_xx: float
-    alpha_yy: float
-    beta_xx_n_per_mm: float
-    beta_yy_n_per_mm: float
-    poisson_yx: float
-    poisson_xy: float
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
     shear_modulus_n_per_mm: float | None = Field(
         None, description="Recommended reduction only, and mostly its prior's: a factor of 1.5."
     )
@@ -75,14 +63,10 @@ class ResidualPoints(ResultModel):
     fitted_n_per_mm: Floats
 
 
-class FitResult(LawResult):
+class FitResult(ElasticConstants, LawResult):
     """The constants of a law with their uncertainty."""
 
     standard_errors: LawErrors
-    poisson_yx: float = Field(description="Contraction wale-wise when pulled course-wise.")
-    poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
     rms_n_per_mm: float = Field(description="Of all residuals.")
     rms_course_n_per_mm: float
     rms_wale_n_per_mm: float

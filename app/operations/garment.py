@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import click
 from pydantic import Field
@@ -13,7 +12,7 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.models.base import IntervalResult, RequestModel, ResultModel
 from app.models.charts import MaterialName
-from app.models.laws import LawsRequest
+from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
@@ -55,53 +54,46 @@ _LENGTHS = {
 }
 
 
-class WristBrace(RequestModel):
+class Template(RequestModel):
+    """How tightly a garment sits."""
+
+    ease: Ease = -0.15
+    target_mmhg: Target = None
+
+    @property
+    def fit(self) -> Fit:
+        """As the library knows it."""
+        return Fit(self.ease, self.target_mmhg)
+
+
+class WristBrace(Template):
     """A brace knitted sideways and grafted."""
 
     template: Literal["wrist-brace"]
     wrist_mm: Length
     length_mm: Length
     edge_mm: Annotated[float, Field(ge=0, le=500)] = 15.0
-    ease: Ease = -0.15
-    target_mmhg: Target = None
 
-    def plan(self, material: Material, gauges: GaugeSet, tex: float | None) -> GarmentPlan:
-        """Make it."""
-        return wrist_brace(
-            self.wrist_mm,
-            self.length_mm,
-            material,
-            fit=Fit(self.ease, self.target_mmhg),
-            gauges=gauges,
-            edge_mm=self.edge_mm,
-            linear_density_tex=tex,
-        )
+    def plan(self, **yarn: Any) -> GarmentPlan:
+        """Its plan in a yarn: material, gauges and linear density."""
+        sizes = self.wrist_mm, self.length_mm
+        return wrist_brace(*sizes, fit=self.fit, edge_mm=self.edge_mm, **yarn)
 
 
-class SockLeg(RequestModel):
+class SockLeg(Template):
     """The leg of a sock."""
 
     template: Literal["sock-leg"]
     ankle_mm: Length
     calf_mm: Length
     length_mm: Length
-    ease: Ease = -0.15
-    target_mmhg: Target = None
 
-    def plan(self, material: Material, gauges: GaugeSet, tex: float | None) -> GarmentPlan:
-        """Make it."""
-        return sock_leg(
-            self.ankle_mm,
-            self.calf_mm,
-            self.length_mm,
-            material,
-            fit=Fit(self.ease, self.target_mmhg),
-            gauges=gauges,
-            linear_density_tex=tex,
-        )
+    def plan(self, **yarn: Any) -> GarmentPlan:
+        """Its plan in a yarn."""
+        return sock_leg(self.ankle_mm, self.calf_mm, self.length_mm, fit=self.fit, **yarn)
 
 
-class Limb(RequestModel):
+class Limb(Template):
     """A sleeve along any limb."""
 
     template: Literal["limb"]
@@ -111,22 +103,12 @@ class Limb(RequestModel):
     body: Fabric = Fabric.STOCKINETTE
     hem: Fabric = Fabric.RIB
     hem_mm: Annotated[float, Field(ge=0, le=500)] = 40.0
-    ease: Ease = -0.15
-    target_mmhg: Target = None
 
-    def plan(self, material: Material, gauges: GaugeSet, tex: float | None) -> GarmentPlan:
-        """Make it."""
+    def plan(self, **yarn: Any) -> GarmentPlan:
+        """Its plan in a yarn."""
         girths = [Girth(at, around) for at, around in self.profile]
         return limb_tube(
-            "sleeve",
-            girths,
-            material,
-            fit=Fit(self.ease, self.target_mmhg),
-            gauges=gauges,
-            body=self.body,
-            hem=self.hem,
-            hem_mm=self.hem_mm,
-            linear_density_tex=tex,
+            "sleeve", girths, fit=self.fit, body=self.body, hem=self.hem, hem_mm=self.hem_mm, **yarn
         )
 
 
@@ -136,15 +118,11 @@ class FingerSize(RequestModel):
     length_mm: Length
     circumference_mm: Length
 
-    def finger(self) -> Finger:
-        """As the library knows it."""
-        return Finger(self.length_mm, self.circumference_mm)
-
 
 _HAND = Hand()
 
 
-class Glove(RequestModel):
+class Glove(Template):
     """The therapeutic glove; an adult's hand unless measured."""
 
     template: Literal["glove"]
@@ -159,24 +137,15 @@ class Glove(RequestModel):
     thumb: FingerSize | None = None
     fingers: list[FingerSize] | None = Field(None, min_length=4, max_length=4)
     ease: Ease = -0.10
-    target_mmhg: Target = None
 
-    def plan(self, material: Material, gauges: GaugeSet, tex: float | None) -> GarmentPlan:
-        """Make it."""
-        sizes = {f.name: getattr(self, f.name) for f in fields(Hand) if f.name.endswith("_mm")}
-        hand = Hand(
-            **sizes,
-            thumb=self.thumb.finger() if self.thumb else _HAND.thumb,
-            fingers=tuple(f.finger() for f in self.fingers) if self.fingers else _HAND.fingers,
+    def plan(self, **yarn: Any) -> GarmentPlan:
+        """Its plan in a yarn."""
+        hand = self.into(
+            Hand,
+            thumb=self.thumb.into(Finger) if self.thumb else _HAND.thumb,
+            fingers=tuple(f.into(Finger) for f in self.fingers) if self.fingers else _HAND.fingers,
         )
-        return glove(
-            hand,
-            material,
-            ease=self.ease,
-            mmhg=self.target_mmhg,
-            gauges=gauges,
-            linear_density_tex=tex,
-        )
+        return glove(hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
 
 
 class GarmentRequest(LawsRequest):
@@ -195,7 +164,7 @@ class GarmentRequest(LawsRequest):
     intarsia: bool = Field(False, description="Give each fabric a yarn of its own.")
 
 
-class RegionResult(ResultModel):
+class RegionResult(Moduli, Extensibility):
     """One region: the fabric's repeat, its colour, its size, and means over its stitches."""
 
     name: str
@@ -206,10 +175,6 @@ class RegionResult(ResultModel):
     rows: int = Field(description="Rows of its longest column.")
     width_mm: float = Field(description="Of that many stitches at rest.")
     height_mm: float
-    extensibility_course_mm_per_n: float
-    extensibility_wale_mm_per_n: float
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
     yarn_m: float
     yarn_g: float | None
     cells: str = Field(description="Lines of x (in the region) and ., the top row first.")
@@ -277,7 +242,9 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         if count is None
         else GaugeSet.of_material(material, count.gauge(), count.fabric)
     )
-    plan = request.garment.plan(material, gauges, request.linear_density_tex)
+    plan = request.garment.plan(
+        material=material, gauges=gauges, linear_density_tex=request.linear_density_tex
+    )
     return GarmentResult.of(
         plan,
         plan.shaped,

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from app.models.base import Ends, Floats, MissingError, RequestModel, ResultModel
 from app.models.charts import MaterialName
-from app.models.laws import LawResult
+from app.models.laws import ElasticConstants, Extensibility, LawResult, Moduli
 from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.errors import InputError
@@ -29,11 +29,9 @@ class MaterialRequest(RequestModel):
     identifier: MaterialName
 
 
-class FabricSummary(ResultModel):
+class FabricSummary(Moduli):
     """A pure fabric of a material, in short."""
 
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
     stitch_course_mm: float = Field(description="Relaxed width of one stitch.")
     stitch_wale_mm: float = Field(description="Relaxed height of one stitch.")
     loop_length_mm: float | None
@@ -51,12 +49,10 @@ class FigureResult(ResultModel):
     reason: str
 
 
-class FabricDetail(FabricSummary):
+class FabricDetail(ElasticConstants, FabricSummary):
     """A pure fabric of a material, with everything that is known of it."""
 
     law: LawResult
-    poisson_yx: float
-    poisson_xy: float
     lock_up_strain_course: float
     lock_up_strain_wale: float
     setting: str
@@ -66,14 +62,10 @@ class FabricDetail(FabricSummary):
     figures: list[FigureResult]
 
 
-class StitchKind(ResultModel):
+class StitchKind(Moduli, Extensibility):
     """One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8."""
 
     code: int
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
-    extensibility_course_mm_per_n: float
-    extensibility_wale_mm_per_n: float
     modulus_course_interval: Ends
     modulus_wale_interval: Ends
     fractions: dict[Fabric, float] = Field(description="Shares of the four phases.")

@@ -8,7 +8,7 @@ from app.models.base import Ends, Known, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
 from app.models.extensions import ExtensionName
 from app.models.gauge import GaugeInput
-from app.models.laws import LawsRequest
+from app.models.laws import ElasticConstants, Extensibility, LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
@@ -50,18 +50,12 @@ class SegmentCountsResult(ResultModel):
     odd: int
 
 
-class PredictResult(ResultModel):
+class PredictResult(ElasticConstants, Extensibility):
     """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
 
     rows: int = Field(description="Of the stitches that the constants are of.")
     columns: int
     segments: dict[Direction, SegmentCountsResult]
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
-    poisson_yx: float = Field(description="Contraction wale-wise when pulled course-wise.")
-    poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
-    extensibility_course_mm_per_n: float
-    extensibility_wale_mm_per_n: float
     modulus_course_interval_n_per_mm: Ends
     modulus_wale_interval_n_per_mm: Ends
     poisson_yx_interval: Ends

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import MaterialName
+from app.models.laws import Moduli
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction, Fabric
@@ -33,11 +34,9 @@ class RSSegment(ResultModel):
     published_n_per_mm: float | None = Field(description="The paper's value for this modulus.")
 
 
-class RSFabricResult(ResultModel):
+class RSFabricResult(Moduli):
     """A pure fabric in the model."""
 
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
     segments: dict[Direction, RSSegment]
 
 

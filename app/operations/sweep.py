@@ -6,6 +6,7 @@ from pydantic import Field
 
 from app.cli.options import loop_lengths
 from app.models.base import Floats, ResultModel
+from app.models.laws import ElasticConstants
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -38,7 +39,7 @@ class SweepRequest(YarnLevelRequest):
     )
 
 
-class SweptLaw(ResultModel):
+class SweptLaw(ElasticConstants):
     """Constitutive law fitted to the stretches along and across (N/mm)."""
 
     stiffness_xxxx: float
@@ -49,10 +50,6 @@ class SweptLaw(ResultModel):
     alpha_yy: float
     beta_xx: float
     beta_yy: float
-    modulus_course_n_per_mm: float
-    modulus_wale_n_per_mm: float
-    poisson_yx: float
-    poisson_xy: float
     max_stress_n_per_mm: float = Field(description="Upper end of the fitted range of stress.")
     largest_strain_course: float
     largest_strain_wale: float
