@@ -5,8 +5,9 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Annotated, Any, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AwareDatetime, BaseModel, Field, model_validator
 
+from app.models.base import RequestModel
 from app.models.charts import ChartText
 from knitcore.chart import MAX_STITCHES_PER_SIDE
 from knitcore.formats.design import FORMAT, VERSION, migrated
@@ -25,13 +26,11 @@ Note = Annotated[str, Field(max_length=20_000, pattern=r"^[^\x00]*$")]
 MAX_RUNS = 20_000
 
 
-class DesignDocument(DesignLayout):
+class DesignDocument(DesignLayout, RequestModel):
     """A design as a file holds it; ``knitcore`` reads the same on the command line.
 
     Documents of older versions are taken, too, and come back as this one.
     """
-
-    model_config = ConfigDict(extra="forbid")
 
     format: Literal["knitcore-design"] = FORMAT
     version: Literal[2] = VERSION
@@ -73,30 +72,24 @@ class DesignPage(BaseModel):
     next_cursor: str | None = Field(description="Ask with it for what follows; None at the end.")
 
 
-class DesignPatch(BaseModel):
+class DesignPatch(RequestModel):
     """Fields to change; the others stay."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: Name | None = None
     material: MaterialId | None = None
     note: Note | None = None
 
 
-class Run(BaseModel):
+class Run(RequestModel):
     """Adjacent stitches of one kind in a row."""
-
-    model_config = ConfigDict(extra="forbid")
 
     row: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="0 is the bottom row.")
     column: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch, 0 at the left.")
     stitches: str = Field(pattern=r"^[KP]+$", max_length=MAX_STITCHES_PER_SIDE, examples=["KKP"])
 
 
-class Strokes(BaseModel):
+class Strokes(RequestModel):
     """Paint: new values of stitches, so that strokes of several people merge."""
-
-    model_config = ConfigDict(extra="forbid")
 
     rows: int = Field(ge=1, description="Size of the chart that was painted on.")
     columns: int = Field(ge=1)
@@ -121,10 +114,8 @@ class Painted(BaseModel):
     map: StitchKinds = Field(description="What looks different now: the strokes and one around.")
 
 
-class VersionRequest(BaseModel):
+class VersionRequest(RequestModel):
     """A name for the design's present state."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: Name
 
@@ -158,10 +149,8 @@ class ShareMode(StrEnum):
     COPY = "copy"
 
 
-class ShareRequest(BaseModel):
+class ShareRequest(RequestModel):
     """A link to give away."""
-
-    model_config = ConfigDict(extra="forbid")
 
     mode: ShareMode = ShareMode.READ
 

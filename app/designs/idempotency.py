@@ -90,6 +90,16 @@ class Retry:
             return database.write(guarded)  # its twin was faster: now its answer is there
 
 
+def once(
+    database: Database,
+    retry: Retry | None,
+    kind: type[Answer],
+    action: Callable[[Connection], Answer],
+) -> Answer:
+    """Run an action in a transaction; where the request has a key, once for that key."""
+    return database.write(action) if retry is None else retry.once(database, kind, action)
+
+
 def forget_old_keys(database: Database) -> None:
     """Drop keys after a day."""
     old = idempotency_keys.c.created_at < time.time() - KEPT_S

@@ -17,7 +17,7 @@ from app.designs.document import (
     ShareMode,
     Shares,
 )
-from app.designs.idempotency import Retry
+from app.designs.idempotency import Retry, once
 from app.designs.store import add, copied, document_of, find, moment, now
 from app.http.problems import NotFoundError, ServiceError
 from app.store.database import Database
@@ -73,12 +73,7 @@ class Sharing:
                 .where(shares.c.design_id == design, shares.c.revoked_at.is_(None))
                 .order_by(shares.c.created_at, shares.c.id)
             ).all()
-        return Shares(
-            shares=[
-                Share(id=r.id, mode=ShareMode(r.mode), created_at=moment(r.created_at))
-                for r in rows
-            ]
-        )
+        return Shares(shares=[Share.model_validate(row, from_attributes=True) for row in rows])
 
     def revoke(self, owner: str, design: str, share: str) -> None:
         """Close a link for good."""
@@ -103,12 +98,7 @@ class Sharing:
         """The design behind a link, in its present state."""
         with self._database.read() as connection:
             row = _shared(connection, token)
-        return SharedDesign(
-            mode=ShareMode(row.mode),
-            document=document_of(row),
-            revision=row.revision,
-            changed_at=moment(row.changed_at),
-        )
+        return SharedDesign.model_validate({**row._mapping, "document": document_of(row)})
 
     def copy(self, owner: str, token: str, retry: Retry | None = None) -> Design:
         """A copy of the design behind a link, for the caller.
@@ -127,9 +117,7 @@ class Sharing:
                 )
             return add(connection, owner, copied(row))
 
-        if retry is not None:
-            return retry.once(self._database, Design, action)
-        return self._database.write(action)
+        return once(self._database, retry, Design, action)
 
 
 def _shared(connection: Connection, token: str) -> Row[tuple[object, ...]]:

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from functools import cache
 from typing import Any
 
-from sqlalchemy import Connection, Row, Select, bindparam, func, insert, select, tuple_, update
+from sqlalchemy import Connection, Row, Select, bindparam, func, insert, select, update
 
 from app.budgets import BUDGETS
 from app.designs.conditions import ConflictError, check_match
@@ -24,23 +24,20 @@ from app.designs.document import (
     Versions,
     VersionSummary,
 )
-from app.designs.idempotency import Retry
+from app.designs.idempotency import Retry, once
 from app.designs.painting import kinds_around, paint
 from app.http.problems import NotFoundError
 from app.store.database import Database
+from app.store.pages import one_page
 from app.store.tables import design_versions, designs
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
 from knitcore.formats.layout import DesignLayout, check_layout
 
 DELETED_KEPT_S = 30 * 86_400.0
 """How long a deleted design can be recovered."""
 
-_HIDDEN = ("owner", "chart", "note", "layout", "size_bytes")
-_SUMMARY = [c for c in designs.c if c.name not in _HIDDEN]
-_VERSION_SUMMARY = [
-    design_versions.c[n] for n in ("number", "name", "automatic", "revision", "created_at")
-]
+_SUMMARY = [designs.c[name] for name in DesignSummary.model_fields]
+_VERSION_SUMMARY = [design_versions.c[name] for name in VersionSummary.model_fields]
 _CHANGE = update(designs).where(designs.c.id == bindparam("design"))
 
 
@@ -67,9 +64,7 @@ class DesignStore:
         def action(connection: Connection) -> Design:
             return add(connection, owner, content(connection))
 
-        if retry is not None:
-            return retry.once(self._database, Design, action)
-        return self._database.write(action)
+        return once(self._database, retry, Design, action)
 
     def get(self, owner: str, design: str) -> Design:
         """A design that is not deleted."""
@@ -82,18 +77,11 @@ class DesignStore:
             designs.c.owner == owner,
             designs.c.deleted_at.is_not(None) if deleted else designs.c.deleted_at.is_(None),
         )
-        if cursor is not None:
-            place = tuple_(designs.c.changed_at, designs.c.id)
-            chosen = chosen.where(place < tuple_(*_place(cursor)))
-        chosen = chosen.order_by(designs.c.changed_at.desc(), designs.c.id.desc())
-        with self._database.read() as connection:
-            rows = connection.execute(chosen.limit(limit + 1)).all()
-        more = len(rows) > limit
-        rows = rows[:limit]
-        return DesignPage(
-            designs=[DesignSummary(**_public(row)) for row in rows],
-            next_cursor=f"{rows[-1].changed_at!r}_{rows[-1].id}" if more else None,
+        rows, following = one_page(
+            self._database, chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
         )
+        found = [DesignSummary.model_validate(row, from_attributes=True) for row in rows]
+        return DesignPage(designs=found, next_cursor=following)
 
     def replace(
         self, owner: str, design: str, document: DesignDocument, if_match: str | None
@@ -183,9 +171,7 @@ class DesignStore:
             row = find(connection, owner, design, change=True)
             return _keep(connection, row, name, automatic=False)
 
-        if retry is not None:
-            return retry.once(self._database, VersionSummary, action)
-        return self._database.write(action)
+        return once(self._database, retry, VersionSummary, action)
 
     def versions(self, owner: str, design: str) -> Versions:
         """The kept states, oldest first."""
@@ -196,21 +182,16 @@ class DesignStore:
                 .where(design_versions.c.design_id == design)
                 .order_by(design_versions.c.number)
             )
-            return Versions(versions=[VersionSummary(**_public(row)) for row in rows])
+            found = [VersionSummary.model_validate(row, from_attributes=True) for row in rows]
+        return Versions(versions=found)
 
     def version(self, owner: str, design: str, number: int) -> Version:
         """A kept state."""
         with self._database.read() as connection:
             find(connection, owner, design)
             row = _version(connection, design, number)
-        return Version(
-            number=row.number,
-            name=row.name,
-            automatic=row.automatic,
-            revision=row.revision,
-            created_at=moment(row.created_at),
-            document=document_of(row, row.design_name),
-        )
+        document = document_of(row, row.design_name)
+        return Version.model_validate({**row._mapping, "document": document})
 
     def restore(self, owner: str, design: str, number: int, if_match: str | None) -> Design:
         """Restore a version; the present state is saved as a version first."""
@@ -221,16 +202,9 @@ class DesignStore:
             kept = _version(connection, design, number)
             _keep(connection, row, f"Before “{kept.name}” was restored"[:200], automatic=True)
             chart = StitchChart.parse(kept.chart)
-            content = {
-                "name": kept.design_name,
-                "material": kept.material,
-                "chart": kept.chart,
-                "note": kept.note,
-                "layout": kept.layout,
-                "rows": chart.rows,
-                "columns": chart.columns,
-            }
-            return _changed(connection, row, content)
+            content = {n: getattr(kept, n) for n in ("material", "chart", "note", "layout")}
+            size = {"rows": chart.rows, "columns": chart.columns}
+            return _changed(connection, row, {"name": kept.design_name, **content, **size})
 
         return self._database.write(action)
 
@@ -333,7 +307,7 @@ def copied(row: Row[Any]) -> dict[str, Any]:
 
 def full(row: Row[Any]) -> Design:
     """A row as clients get it."""
-    return Design(**_public(row, *_HIDDEN), document=document_of(row))
+    return Design.model_validate({**row._mapping, "document": document_of(row)})
 
 
 def document_of(row: Row[Any], name: str | None = None) -> DesignDocument:
@@ -421,29 +395,18 @@ def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) 
             f"{BUDGETS.versions} versions of this design are kept, as many as there can be.",
             remedy="Duplicate the design and go on with the copy.",
         )
-    values = {
+    kept = {column.name for column in design_versions.c} & row._mapping.keys()
+    values = {n: row._mapping[n] for n in kept} | {
         "design_id": row.id,
         "number": number,
         "name": name,
         "automatic": automatic,
         "design_name": row.name,
-        "material": row.material,
-        "chart": row.chart,
-        "note": row.note,
-        "layout": row.layout,
-        "revision": row.revision,
         "created_at": now(),
-        "size_bytes": row.size_bytes,
     }
     _check_room(connection, row.owner, row.size_bytes)
     connection.execute(insert(design_versions).values(values))
-    return VersionSummary(
-        number=number,
-        name=name,
-        automatic=automatic,
-        revision=row.revision,
-        created_at=moment(values["created_at"]),
-    )
+    return VersionSummary.model_validate(values)
 
 
 def _version(connection: Connection, design: str, number: int) -> Row[Any]:
@@ -459,21 +422,3 @@ def _version(connection: Connection, design: str, number: int) -> Row[Any]:
             remedy="Look it up in the list of its versions.",
         )
     return row
-
-
-def _public(row: Row[Any], *without: str) -> dict[str, Any]:
-    values = {k: v for k, v in row._mapping.items() if k not in without}
-    for name in ("created_at", "changed_at", "deleted_at"):
-        if values.get(name) is not None:
-            values[name] = moment(values[name])
-    return values
-
-
-def _place(cursor: str) -> tuple[float, str]:
-    at, _, design = cursor.partition("_")
-    try:
-        return float(at), design
-    except ValueError:
-        raise InputError(
-            "cursor", "is not one of ours.", "Send next_cursor of the page before."
-        ) from None

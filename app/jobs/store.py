@@ -15,17 +15,16 @@ from sqlalchemy import (
     func,
     insert,
     select,
-    tuple_,
     update,
 )
 
-from app.designs.idempotency import Retry
-from app.designs.store import moment, now
+from app.designs.idempotency import Retry, once
+from app.designs.store import now
 from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.store.database import Database, StoreError
+from app.store.pages import one_page
 from app.store.tables import jobs, results
-from knitcore.errors import InputError
 
 OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
@@ -86,9 +85,7 @@ class JobStore:
             connection.execute(insert(jobs).values(values))
             return _status(_one(connection, owner, str(values["id"])))
 
-        if retry is not None:
-            return retry.once(self._database, JobStatus, action)
-        return self._database.write(action)
+        return once(self._database, retry, JobStatus, action)
 
     def get(self, owner: str, job: str) -> JobStatus:
         """A job."""
@@ -103,25 +100,11 @@ class JobStore:
 
     def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
         """Jobs of an owner, latest first."""
-        chosen = select(jobs).where(jobs.c.owner == owner)
-        if cursor is not None:
-            at, _, job = cursor.partition("_")
-            try:
-                place = tuple_(float(at), job)
-            except ValueError:
-                raise InputError(
-                    "cursor", "is not one of ours.", "Send next_cursor of the page before."
-                ) from None
-            chosen = chosen.where(tuple_(jobs.c.created_at, jobs.c.id) < place)
-        chosen = chosen.order_by(jobs.c.created_at.desc(), jobs.c.id.desc()).limit(limit + 1)
-        with self._database.read() as connection:
-            rows = connection.execute(chosen).all()
-        more = len(rows) > limit
-        rows = rows[:limit]
-        return JobPage(
-            jobs=[_status(row) for row in rows],
-            next_cursor=f"{rows[-1].created_at!r}_{rows[-1].id}" if more else None,
+        mine = select(jobs).where(jobs.c.owner == owner)
+        rows, following = one_page(
+            self._database, mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
         )
+        return JobPage(jobs=[_status(row) for row in rows], next_cursor=following)
 
     def begin(self, job: str) -> bool:
         """Mark a waiting job as running; False if it no longer waits."""
@@ -278,14 +261,6 @@ def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
 
 
 def _status(row: Row[Any]) -> JobStatus:
-    state = JobState(row.state)
-    return JobStatus(
-        id=row.id,
-        kind=row.kind,
-        state=state,
-        progress=1.0 if state is JobState.DONE else row.progress,
-        problem=None if row.problem is None else Problem.model_validate_json(row.problem),
-        created_at=moment(row.created_at),
-        started_at=None if row.started_at is None else moment(row.started_at),
-        finished_at=None if row.finished_at is None else moment(row.finished_at),
-    )
+    problem = None if row.problem is None else Problem.model_validate_json(row.problem)
+    progress = 1.0 if row.state == JobState.DONE else row.progress
+    return JobStatus.model_validate({**row._mapping, "problem": problem, "progress": progress})

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, Discriminator, Field, Tag
 
+from app.models.base import RequestModel
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.fabric import Fabric
 
@@ -13,10 +14,8 @@ MAX_TEXT = 1_200_000
 """Characters of a chart text: the largest chart with its line ends and some blanks."""
 
 
-class PureFabricChart(BaseModel):
+class PureFabricChart(RequestModel):
     """A pure fabric by name and size."""
-
-    model_config = ConfigDict(extra="forbid")
 
     fabric: Fabric
     columns: int = Field(ge=1, le=MAX_STITCHES_PER_SIDE)

@@ -9,8 +9,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, EncodedBytes, EncoderProtocol, Field, PrivateAttr
+from pydantic import EncodedBytes, EncoderProtocol, Field, PrivateAttr
 from pydantic_core import PydanticCustomError
+
+from app.models.base import RequestModel
 
 MOST_NAME_BYTES = 200
 """A length that every file system accepts, with room to spare."""
@@ -40,10 +42,8 @@ class _Strict(EncoderProtocol):
 Content = Annotated[bytes, EncodedBytes(encoder=_Strict)]
 
 
-class UploadedFile(BaseModel):
+class UploadedFile(RequestModel):
     """A file's name and its content."""
-
-    model_config = ConfigDict(extra="forbid")
 
     name: str = Field(min_length=1, max_length=200, examples=["course.csv"])
     content: Content = Field(description="The file, base64.")
