@@ -72,9 +72,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         )
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
-        app.state.answers = Answers(
-            app.state.compute, app.state.recent, chosen.data_dir.expanduser()
-        )
+        app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)
         app.state.viewer_page = relay.viewer_page()
         job_store = JobStore(app.state.database, chosen.process_name)
         app.state.jobs = JobRunner(job_store, app.state.answers, chosen.background_timeout_s)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import emit, json_option, user_settings
+from app.cli.common import emit, json_option, open_database, user_settings
 
 
 @click.command("backup")
@@ -16,15 +16,8 @@ def command(file: Path, as_json: bool) -> None:
     """Write designs, versions, links, users and own materials to FILE; the service may run."""
     from app.results.own_materials import FOLDER
     from app.store.backup import back_up
-    from app.store.database import Database
-    from app.store.schema import migrate
 
     settings = user_settings()
-    database = Database(settings.store_url)
-    try:
-        migrate(database)
+    with open_database(settings) as database:
         report = back_up(database, file, settings.folder / FOLDER)
-    finally:
-        database.close()
-    counts = ", ".join(f"{count} {name}" for name, count in report.tables.items())
-    emit(report, f"{report.file}: {counts}", as_json=as_json)
+    emit(report, report.text, as_json=as_json)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +20,7 @@ from knitcore.patterns import patterns
 
 if TYPE_CHECKING:
     from app.settings import Settings
+    from app.store.database import Database
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 material_option = click.option(
@@ -83,9 +86,24 @@ def user_settings() -> Settings:
         ) from error
 
 
+@contextlib.contextmanager
+def open_database(settings: Settings, *, migrated: bool = True) -> Iterator[Database]:
+    """The database of the settings, brought up to date."""
+    from app.store.database import Database
+    from app.store.schema import migrate
+
+    database = Database(settings.store_url)
+    try:
+        if migrated:
+            migrate(database)
+        yield database
+    finally:
+        database.close()
+
+
 def user_data_dir() -> Path:
     """The data folder of the settings."""
-    return user_settings().data_dir.expanduser()
+    return user_settings().folder
 
 
 def emit(result: BaseModel, text: str, *, as_json: bool) -> None:

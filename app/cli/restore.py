@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from app.cli.common import emit, json_option, user_settings
+from app.cli.common import emit, json_option, open_database, user_settings
 
 
 @click.command("restore")
@@ -16,13 +16,8 @@ def command(file: Path, as_json: bool) -> None:
     """Read the backup FILE into the empty data folder or database of the settings."""
     from app.results.own_materials import FOLDER
     from app.store.backup import restore
-    from app.store.database import Database
 
     settings = user_settings()
-    database = Database(settings.store_url)
-    try:
+    with open_database(settings, migrated=False) as database:
         report = restore(database, file, settings.folder / FOLDER)
-    finally:
-        database.close()
-    counts = ", ".join(f"{count} {name}" for name, count in report.tables.items())
-    emit(report, f"{report.file}: {counts}", as_json=as_json)
+    emit(report, report.text, as_json=as_json)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.cli.common import emit, json_option, user_settings
+from app.cli.common import emit, json_option, open_database, user_settings
 
 if TYPE_CHECKING:
     from app.http.tokens import Tokens
@@ -17,15 +17,9 @@ if TYPE_CHECKING:
 @contextlib.contextmanager
 def _tokens() -> Iterator[Tokens]:
     from app.http.tokens import Tokens
-    from app.store.database import Database
-    from app.store.schema import migrate
 
-    database = Database(user_settings().store_url)
-    try:
-        migrate(database)
+    with open_database(user_settings()) as database:
         yield Tokens(database)
-    finally:
-        database.close()
 
 
 @click.group("token")

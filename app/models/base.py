@@ -86,6 +86,8 @@ Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
 """An interval as [low, high]."""
 Known = Annotated[float | None, BeforeValidator(_known)]
 """Null where the library has no finite number."""
+KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
+"""The same of an interval's ends."""
 
 Positive = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
 

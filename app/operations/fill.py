@@ -19,7 +19,7 @@ from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart
-from knitcore.design.atlas import Atlas, load_atlas
+from knitcore.design.atlas import Atlas
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import InputError
@@ -190,7 +190,7 @@ def _command(
     wanted = read_wanted_moduli(target)
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
-    table = load_atlas(atlas) if atlas else atlas_of(request.material, request.repeats, context)
+    table = atlas_of(request.material, request.repeats, context, atlas)
     result = _filled(request, wanted, table, context)
     write_design_of(result.chart, request.material, target.stem, out)
     return result

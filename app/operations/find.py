@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
 
 import click
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from app.cli.common import emit, json_option, user_data_dir
-from app.models.base import Ends, Known, RequestModel, ResultModel
+from app.models.base import Ends, Known, KnownEnds, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import LawsRequest
 from app.operations.context import Context
@@ -28,13 +27,6 @@ MAX_MATERIALS = 16
 MAX_TARGETS = 20
 ELSEWHERE = 3
 """Fabrics of other yarns that are offered where the wanted ones reach nothing."""
-
-
-def _ends(interval: Any) -> Any:
-    return (interval.low, interval.high) if hasattr(interval, "low") else interval
-
-
-KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
 
 
 class LimbInput(RequestModel):

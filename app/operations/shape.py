@@ -17,7 +17,7 @@ from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
-from knitcore.design.atlas import Atlas, load_atlas
+from knitcore.design.atlas import Atlas
 from knitcore.design.shape import fill_shape
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -109,7 +109,7 @@ def _widths(profile: Path) -> dict[str, Any]:
 def _command(
     request: ShapeRequest, context: Context, atlas: Path | None, out: Path | None
 ) -> ShapeResult:
-    table = load_atlas(atlas) if atlas else atlas_of(request.material, request.repeats, context)
+    table = atlas_of(request.material, request.repeats, context, atlas)
     result = _shaped(request, table, context)
     write_design_of(result.chart, request.material, "Shape", out)
     return result

@@ -1,9 +1,8 @@
-"""Atlases of materials, kept in memory and in the user's cache folder."""
+"""Atlases of materials, kept in memory and in the data folder."""
 
 from __future__ import annotations
 
 import logging
-import os
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger("knitcore.atlas")
 
+FOLDER = "atlases"
+"""Of the data folder; it may be emptied at any time."""
 DECIDING = ("knitcore.design.atlas_build", "knitcore.design.repeats")
 """Modules whose code and data decide an atlas."""
 
@@ -35,28 +36,24 @@ def repeats_of(extent: Extent) -> tuple[StitchChart, ...]:
     return tuple(dict.fromkeys((*repeats_up_to(4, 4), *larger, *striped_repeats())))
 
 
-def atlas_of(name: str, extent: Extent, context: Context) -> Atlas:
-    """The atlas of a material, from memory or the user's cache folder if it is there."""
+def atlas_of(name: str, extent: Extent, context: Context, file: Path | None = None) -> Atlas:
+    """The atlas of a material, from memory or the data folder if it is there; or that of a file."""
+    if file is not None:
+        return load_atlas(file)
     material = context.material(name)
     key = f"{material.identifier}-{extent}-{material_fingerprint(material)}"
     built = _built()
     if key not in built:
-        file = cache_folder() / f"{key}-{code_version(*DECIDING)[:8]}.npz"
+        cached = context.data_dir / FOLDER / f"{key}-{code_version(*DECIDING)[:8]}.npz"
         repeats = repeats_of(extent)
-        found = _load(file, len(repeats))
+        found = _load(cached, len(repeats))
         if found is None:
             found = build_atlas(
                 material, repeats, cancelled=context.cancelled, progress=context.progress
             )
-            _save(found, file)
+            _save(found, cached)
         built[key] = found
     return built[key]
-
-
-def cache_folder() -> Path:
-    """Where atlases are kept between runs; it may be emptied at any time."""
-    home = os.environ.get("XDG_CACHE_HOME")
-    return (Path(home) if home else Path.home() / ".cache") / "knitcore" / "atlas"
 
 
 @lru_cache(maxsize=1)
@@ -78,7 +75,9 @@ def _load(file: Path, repeats: int) -> Atlas | None:
 
 def _save(atlas: Atlas, file: Path) -> None:
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         save_atlas(atlas, file)
+        for older in set(file.parent.glob(f"{file.stem.rpartition('-')[0]}-*.npz")) - {file}:
+            older.unlink(missing_ok=True)
     except OSError as error:
         log.warning("the atlas cannot be kept for the next run: %s", error)

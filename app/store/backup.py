@@ -38,6 +38,11 @@ class BackupReport(BaseModel):
     file: str
     tables: dict[str, int]
 
+    @property
+    def text(self) -> str:
+        """For people."""
+        return f"{self.file}: {', '.join(f'{n} {name}' for name, n in self.tables.items())}"
+
 
 def back_up(database: Database, file: Path, materials: Path | None = None) -> BackupReport:
     """Write everything that must not be lost to a new file, while the service runs.

@@ -1,0 +1,59 @@
+"""Atlases kept in the data folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.operations.context import Context
+from app.results import atlases
+from app.results.atlases import FOLDER, atlas_of
+from knitcore.chart import StitchChart
+
+
+@pytest.fixture
+def context(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Context:
+    repeats = tuple(StitchChart.parse(text) for text in ("K", "KP", "K\nP"))
+    monkeypatch.setattr(atlases, "repeats_of", lambda _: repeats)
+    forget(monkeypatch)
+    return Context(tmp_path)
+
+
+def forget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a new process."""
+    monkeypatch.setattr(atlases, "_built", dict)
+
+
+def files(context: Context) -> list[str]:
+    return sorted(file.name for file in (context.data_dir / FOLDER).iterdir())
+
+
+def test_an_atlas_is_read_by_the_next_process(
+    context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built = atlas_of("acrylic", "small", context)
+    assert len(files(context)) == 1
+    monkeypatch.setattr(atlases, "build_atlas", None)
+    assert atlas_of("acrylic", "small", context).keys == built.keys
+
+
+def test_an_atlas_of_other_code_is_built_again_and_replaces_it(
+    context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    atlas_of("acrylic", "small", context)
+    atlas_of("cotton", "small", context)
+    before = files(context)
+    monkeypatch.setattr(atlases, "code_version", lambda *_: "of another program")
+    atlas_of("acrylic", "small", context)
+    after = files(context)
+    assert len(after) == 2
+    assert len(set(after) & set(before)) == 1
+
+
+def test_a_damaged_file_is_built_again(context: Context) -> None:
+    built = atlas_of("acrylic", "small", context)
+    (file,) = (context.data_dir / FOLDER).iterdir()
+    file.write_bytes(b"not an atlas")
+    assert atlas_of("acrylic", "small", context).keys == built.keys
+    assert file.stat().st_size > 100
