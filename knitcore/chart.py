@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore import showing
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 
@@ -234,6 +235,12 @@ class StitchChart:
 
     def __repr__(self) -> str:
         return f"StitchChart({self.rows} rows, {self.columns} columns)"
+
+    def _repr_html_(self) -> str:
+        most = showing.MOST_CELLS
+        size = f"{self.columns} columns × {self.rows} rows, the face side"
+        cut = f"; the lower left {most} × {most}" if max(self.purl.shape) > most else ""
+        return showing.figure(showing.stitches(self.purl), size + cut)
 
 
 def check_size(rows: int, columns: int) -> None:

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
-    {"errors", "threads"},
+    {"errors", "threads", "showing"},
     {"choice", "batch", "extensions"},
     {"fabric"},
     {"chart"},
@@ -24,7 +24,7 @@ FLOORS = (
     {"answer"},
     {"swatch", "shell", "garment", "geometry"},
     {"piece"},
-    {"formats", "design"},
+    {"formats", "design", "notebook"},
 )
 """Rooms of ``knitcore`` from the ground up; one imports from lower floors only."""
 

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore import showing
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -33,6 +34,10 @@ Array = NDArray[np.float64]
 
 GAUGE = "gauge"
 """Source of a relaxed size that the caller gave."""
+
+
+SHOWN_STRESS_N_PER_MM = 0.2
+"""Up to which an answer's curves are drawn."""
 
 
 class Source(StrEnum):
@@ -211,6 +216,33 @@ class Answer:
     def modulus_n_per_mm(self, direction: Direction) -> float:
         """Young's modulus in a direction."""
         return self.along(direction).modulus_n_per_mm
+
+    def _repr_html_(self) -> str:
+        def ends(value: float, interval: Interval, digits: str) -> str:
+            return f"{value:{digits}} ({interval.low:{digits}} to {interval.high:{digits}})"
+
+        along = {d: self.along(d) for d in Direction}
+        rows = [
+            (
+                d,
+                ends(a.modulus_n_per_mm, a.modulus_interval_n_per_mm, ".4f"),
+                ends(a.poisson, a.poisson_interval, ".2f"),
+                ends(a.relaxed_mm, a.relaxed_interval_mm, ".2f"),
+            )
+            for d, a in along.items()
+        ]
+        head = ("", "Young's modulus (N/mm)", "Poisson's ratio", "stitch at rest (mm)")
+        stress = np.linspace(0.0, SHOWN_STRESS_N_PER_MM, 31)
+        drawn = [
+            (str(d), a.strain(stress), stress, a.strain_interval(stress)) for d, a in along.items()
+        ]
+        give = self.extensibility_course_mm_per_n, self.extensibility_wale_mm_per_n
+        pictures = showing.beside(
+            showing.curves(drawn, "strain", "stress, N/mm"),
+            showing.sides([("extensibility, course × wale:", *give)], "mm/N"),
+        )
+        told = f"{self.provenance}: {self.method}. Intervals cover 90 %."
+        return showing.figure(showing.table(head, rows) + pictures, told, *self.notes)
 
     # -- under the names that command line, REST and files use ------------------------------
 

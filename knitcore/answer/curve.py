@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore import showing
 from knitcore.answer.answer import Source
 from knitcore.answer.choose import choose
 from knitcore.answer.relaxed import RelaxedSize
@@ -40,6 +41,12 @@ class ChartCurve:
     stress_low: Array
     stress_high: Array
     provenance: Source
+
+    def _repr_html_(self) -> str:
+        ends = self.strain_low, self.strain_high
+        drawn = [(str(self.provenance), self.strain, self.stress_n_per_mm, ends)]
+        picture = showing.curves(drawn, "strain", "stress, N/mm")
+        return showing.figure(picture, "The band is the 90 % interval of the strain.")
 
 
 def curve(

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore import showing
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 
@@ -93,6 +94,10 @@ class ShapedChart:
             edge = inside[:-2] & inside[1:-1] & ~inside[2:]
             grid[2:][edge] = grid[:-2][edge]
         return StitchChart(purl)
+
+    def _repr_html_(self) -> str:
+        size = f"{self.stitches} stitches in {self.chart.columns} columns × {self.chart.rows} rows"
+        return showing.figure(showing.stitches(self.chart.purl, self.stitch), size)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ShapedChart) or not np.array_equal(self.stitch, other.stitch):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
 
+from knitcore import showing
 from knitcore.choice import Choice
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -181,3 +182,22 @@ class Material:
         """The yarn's diameter in that fabric, or its nominal one if that was not measured."""
         measured = self.record(fabric).yarn_diameter_mm
         return self.yarn.diameter_mm if measured is None else measured
+
+    def _repr_html_(self) -> str:
+        head = ("", "Y course, wale (N/mm)", "Poisson yx, xy", "lock-up", "stitch (mm)", "laws")
+        rows = []
+        for fabric, record in self.fabrics.items():
+            law = record.law
+            lock_up = (f"{law.lock_up_strain(d):.2f}" for d in Direction)
+            rows.append(
+                (
+                    fabric,
+                    f"{law.modulus_course:.4f}, {law.modulus_wale:.4f}",
+                    f"{law.poisson_yx:.2f}, {law.poisson_xy:.2f}",
+                    ", ".join(lock_up),
+                    f"{record.stitch_course_mm:.2f} × {record.stitch_wale_mm:.2f}",
+                    record.origin,
+                )
+            )
+        title = f"{self.name} ({self.identifier})"
+        return showing.figure(showing.table(head, rows), title, self.note)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore import showing
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.materials import Material
@@ -65,6 +66,15 @@ class CurledPiece:
     residual: float
     seconds: float
     notes: tuple[str, ...] = (NOTE,)
+
+    def _repr_html_(self) -> str:
+        step = max(1, max(self.corners_mm.shape[:2]) // 30)
+        rows, columns = self.corners_mm[::step], self.corners_mm.transpose(1, 0, 2)[::step]
+        net = [*rows, *columns, self.corners_mm[-1], self.corners_mm[:, -1]]
+        picture = showing.in_space(net, "The piece as it lies", thickness=0.6, tilt=1.0)
+        size = f"{self.width_mm:.0f} × {self.height_mm:.0f} × {self.depth_mm:.0f} mm at rest"
+        ends = f"sides {self.curl_course_mm:+.1f} mm, top and bottom {self.curl_wale_mm:+.1f} mm"
+        return showing.figure(picture, f"{size}; towards the face: {ends}", *self.notes)
 
 
 def curl(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore import showing
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.stiffening import EXTENSION_START
 from knitcore.swatch.fields import (
@@ -128,6 +129,16 @@ class SwatchTest:
             fabric=PHASES[grid.law_of_cell[row, column] % len(PHASES)].value,
         )
 
+    def _net_html(self) -> str:
+        """The deformed net of the last step, drawn every few cells."""
+        if not self.states:
+            return ""
+        points = np.stack([self.x_mm + self.ux_mm[-1], self.y_mm + self.uy_mm[-1]], axis=-1)
+        step = max(1, max(self._shape) // 24)
+        across = points.transpose(1, 0, 2)
+        lines = [line[np.isfinite(line).all(axis=1)] for line in (*points[::step], *across[::step])]
+        return showing.net([line for line in lines if len(line) > 1], "The deformed swatch")
+
     @property
     def _shape(self) -> tuple[int, int]:
         return self.sheet.grid.rows + 1, self.sheet.grid.columns + 1
@@ -165,6 +176,17 @@ class StripTest(SwatchTest):
     width_mm: float
     length_mm: float
     requested_strain: tuple[float, ...]
+
+    def _repr_html_(self) -> str:
+        strain, stress = (np.append(0.0, a) for a in (self.strain, self.stress_n_per_mm))
+        drawn = [(f"pulled {self.direction}-wise", strain, stress, None)]
+        curve = showing.curves(drawn, "strain", "stress, N/mm") if self.steps else ""
+        told = f"{self.width_mm:.0f} mm wide, {self.length_mm:.0f} mm between the clamps"
+        if self.steps:
+            end = f"at a strain of {self.strain[-1]:.2f}: {self.force_n[-1]:.3g} N"
+            told = f"{told}; {end}, waist {self.waist_strain[-1]:+.3f}"
+        net = self._net_html()
+        return showing.figure(showing.beside(curve, net), told, self.problem or "")
 
 
 @dataclass(frozen=True, eq=False)

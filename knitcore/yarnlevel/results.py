@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from knitcore import showing
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.fabric import Direction
@@ -97,6 +98,26 @@ class RelaxedCell:
         """Size of one stitch along a direction, mm."""
         return self.cell_course_mm if direction is Direction.COURSE else self.cell_wale_mm
 
+    def _repr_html_(self) -> str:
+        lines = self.tiled_lines()
+        diameter = 2 * self.yarn.core_radius_mm
+        picture = showing.in_space(lines, "The relaxed yarn", thickness=diameter, tilt=0.6)
+        size = f"stitch {self.cell_course_mm:.3f} × {self.cell_wale_mm:.3f} mm"
+        energy = f"energy of a stitch {self.energy_n_mm:.4f} N·mm: {self.bending_share:.0%} bending"
+        contact = f"{self.contact_share:.0%} contact; branch {self.branch}"
+        return showing.figure(picture, f"{size}, {energy}, {contact}", *self.notes)
+
+    def tiled_lines(self, least: int = 4) -> list[FloatArray]:
+        """The centre lines of as many repeats as make ``least`` stitches each way, (points, 3)."""
+        rows, columns = self.chart.rows, self.chart.columns
+        shift = np.array([columns * self.cell_course_mm, rows * self.cell_wale_mm, 0.0])
+        up, along = -(-least // rows), -(-least // columns)
+        return [
+            np.concatenate([line + shift * (right, above, 0) for right in range(along)])
+            for above in range(up)
+            for line in self.centre_lines
+        ]
+
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
@@ -175,6 +196,12 @@ class Sweep:
     def converged(self) -> bool:
         """Whether every cell converged."""
         return all(cell.converged for cell in self.cells)
+
+    def _repr_html_(self) -> str:
+        drawn = [(f"pulled {self.direction}-wise", self.strain, self.stress_n_per_mm, None)]
+        told = f"{len(self.cells)} relaxed cells; {len(self.jumps)} jumps"
+        picture = showing.curves(drawn, "strain", "stress, N/mm")
+        return showing.figure(picture, told, *self.notes)
 
     def _strain(self, direction: Direction) -> FloatArray:
         rest = self.zero.cell_mm(direction)

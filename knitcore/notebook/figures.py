@@ -1,0 +1,91 @@
+"""Stress-strain curves as plotly figures."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.answer.answer import SHOWN_STRESS_N_PER_MM, Answer
+from knitcore.answer.curve import ChartCurve
+from knitcore.fabric import Direction
+from knitcore.showing import INKS
+from knitcore.swatch.figures import stress_strain_figure
+from knitcore.swatch.results import StripTest
+from knitcore.yarnlevel.results import Sweep
+
+Array = NDArray[np.float64]
+
+
+@singledispatch
+def figure(of: object) -> Any:
+    """The stress-strain curves of an answer, a curve, a sweep or a strip test, for plotly.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+
+    Raises
+    ------
+    TypeError
+        For anything else.
+    """
+    raise TypeError(f"a {type(of).__name__} has no stress-strain curve")
+
+
+@figure.register
+def _(of: Answer) -> Any:
+    stress = np.linspace(0.0, SHOWN_STRESS_N_PER_MM, 61)
+    drawn = _empty(f"{of.provenance}, with 90 % intervals")
+    for direction, ink in zip(Direction, INKS, strict=True):
+        along = of.along(direction)
+        _add(drawn, str(direction), along.strain(stress), stress, ink)
+        _add_band(drawn, *along.strain_interval(stress), stress, ink)
+    return drawn
+
+
+@figure.register
+def _(of: ChartCurve) -> Any:
+    drawn = _empty(f"{of.provenance}, with its 90 % interval")
+    _add(drawn, str(of.provenance), of.strain, of.stress_n_per_mm, INKS[0])
+    _add_band(drawn, of.strain_low, of.strain_high, of.stress_n_per_mm, INKS[0])
+    return drawn
+
+
+@figure.register
+def _(of: Sweep) -> Any:
+    drawn = _empty(f"pulled {of.direction}-wise at the yarn level")
+    _add(drawn, str(of.direction), of.strain, of.stress_n_per_mm, INKS[0])
+    return drawn
+
+
+@figure.register
+def _(of: StripTest) -> Any:
+    return stress_strain_figure(of)
+
+
+def _empty(title: str) -> Any:
+    import plotly.graph_objects as go
+
+    drawn = go.Figure()
+    drawn.update_layout(title=title, xaxis_title="strain", yaxis_title="stress (N/mm)")
+    return drawn
+
+
+def _add(drawn: Any, name: str, strain: Array, stress: Array, ink: str) -> None:
+    drawn.add_scatter(x=strain, y=stress, name=name, line={"color": ink})
+
+
+def _add_band(drawn: Any, low: Array, high: Array, stress: Array, ink: str) -> None:
+    drawn.add_scatter(
+        x=np.append(low, high[::-1]),
+        y=np.append(stress, stress[::-1]),
+        fill="toself",
+        fillcolor=ink,
+        opacity=0.2,
+        line={"width": 0},
+        hoverinfo="skip",
+        showlegend=False,
+    )

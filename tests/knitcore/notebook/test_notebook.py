@@ -1,0 +1,68 @@
+"""Figures, views and the editor of the notebook extra."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from knitcore import InputError, StitchChart, curve, material, predict
+from knitcore.notebook import ChartEditor, figure, view
+from knitcore.notebook.editor import MOST_STITCHES
+from tests.knitcore.notebook.results import curled, relaxed_cell, sweep
+
+ACRYLIC = material("acrylic")
+RIB = StitchChart.of_fabric("rib", rows=4, columns=4)
+
+
+def test_a_figure_has_the_curve_and_its_band() -> None:
+    found = curve(RIB, ACRYLIC, "course", [0.0, 0.1, 0.2])
+    line, band = figure(found).data
+    assert np.array_equal(line.x, found.strain)
+    assert np.array_equal(line.y, found.stress_n_per_mm)
+    assert np.array_equal(band.x, np.append(found.strain_low, found.strain_high[::-1]))
+
+
+def test_an_answer_has_both_directions() -> None:
+    names = [trace.name for trace in figure(predict(RIB, ACRYLIC)).data if trace.name]
+    assert names == ["course", "wale"]
+
+
+def test_a_sweep_has_its_points() -> None:
+    (line,) = figure(sweep()).data
+    assert np.allclose(line.x, [0.0, 0.1, 0.2])
+
+
+def test_yarn_in_space_has_a_tube_for_every_course() -> None:
+    tubes = view(relaxed_cell("KP")).data
+    assert len(tubes) == 4
+    assert np.isclose(max(tubes[0].z), 0.5 + 0.3, atol=0.02)  # wave and core radius
+
+
+def test_a_curled_piece_in_space_is_its_corners() -> None:
+    piece = curled()
+    (surface,) = view(piece).data
+    assert np.array_equal(surface.z, piece.corners_mm[..., 2])
+
+
+@pytest.mark.parametrize("show", [figure, view])
+def test_what_has_no_picture_says_so(show) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(TypeError, match="a str has no"):
+        show("KP")
+
+
+class TestEditor:
+    def test_it_returns_what_is_painted(self) -> None:
+        editor = ChartEditor(RIB)
+        assert editor.chart == RIB
+        editor.text = "KK\nPP"  # as the page does
+        assert editor.chart.key == "KK/PP"
+        editor.chart = StitchChart.parse("KP")
+        assert editor.text == "KP"
+
+    def test_it_refuses_what_is_no_chart(self) -> None:
+        editor = ChartEditor("KP")
+        with pytest.raises(InputError):
+            editor.text = "KX"
+        with pytest.raises(InputError):
+            ChartEditor(StitchChart.of_fabric("rib", rows=MOST_STITCHES + 1, columns=1))
+        assert editor.chart.key == "KP"
