@@ -99,9 +99,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         summary="Design the mechanics of knitted fabric, stitch by stitch.",
         version=VERSION,
         lifespan=lifespan,
+        openapi_url=None,  # app.http.schema serves it, packed
         docs_url=None,  # FastAPI's pages ask other hosts for their scripts
         redoc_url=None,
         responses=PROBLEM_RESPONSES,
+        generate_unique_id_function=lambda route: route.name,
     )
     app.state.settings = chosen
     app.state.stopping = False

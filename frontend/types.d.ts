@@ -12,6 +12,7 @@ export interface AtlasRequest {
 
 /** An atlas as columns, for the rigidity-rigidity scatter. */
 export interface AtlasResult {
+  kind: "atlas";
   material: string;
   /** Rows from the top, separated by /. */
   repeats: string[];
@@ -60,6 +61,7 @@ export interface BendRequest {
 
 /** Linear response of the relaxed repeat; course: bent along the rows. */
 export interface BendResult {
+  kind: "bend";
   /** Derivative of the energy per area by the curvature, N·mm per mm of width. Negative: left alone, the fabric curves with its face outside. */
   moment_course_n: number;
   moment_wale_n: number;
@@ -117,6 +119,7 @@ export interface BendingRequest {
 
 /** Mean over photos; proportional to the linear density given. */
 export interface BendingResult {
+  kind: "bending";
   bending_modulus_n_mm2: number;
   /** Of one photo, N·mm²; None for one. */
   standard_deviation: number | null;
@@ -167,6 +170,7 @@ export interface CalibrateResult {
   /** Share of the strain across in the stiffening. */
   kappa_xx: number;
   kappa_yy: number;
+  kind: "calibrate";
   parameters: Record<string, number>;
   standard_errors: Record<string, number>;
   /** Pictures that were used. */
@@ -226,6 +230,7 @@ export interface CharacteriseRequest {
 
 /** The table of a yarn; `material` holds its laws at the reference setting. */
 export interface CharacteriseResult {
+  kind: "characterise";
   identifier: string;
   provenance: string;
   /** Whether contact data were estimated. */
@@ -309,6 +314,7 @@ export interface CompareRequest {
 
 /** Errors per picture, in the order of the stretch. */
 export interface CompareResult {
+  kind: "compare";
   frames: FrameErrorResult[];
   edges: Edges;
   model: EnergyModel;
@@ -337,6 +343,7 @@ export interface CompressionRequest {
 
 /** Constants of the contact law, per sample and mean. */
 export interface CompressionResult {
+  kind: "compression";
   /** Mean of the yarn; null if there are several, which have one each in `mean`. */
   k_n_per_mm3: number | null;
   /** The same. */
@@ -382,6 +389,7 @@ export interface CurlRequest {
 
 /** The piece as it lies; heights are positive towards the face (the front). */
 export interface CurlResult {
+  kind: "curl";
   /** The shape, for views. */
   id: string;
   rows: number;
@@ -436,6 +444,7 @@ export interface CurveRequest {
 
 /** Strain at each stress, transverse direction free. */
 export interface CurveResult {
+  kind: "curve";
   stress_n_per_mm: number[];
   strain: number[];
   /** Lower end of the 90 % interval. */
@@ -806,6 +815,7 @@ export interface FillRequest {
 
 /** A chart, and how near it comes. */
 export interface FillResult {
+  kind: "fill";
   rows: number;
   columns: number;
   chart: string;
@@ -831,6 +841,7 @@ export interface FindRequest {
 
 /** Ranked repeats; the best first. */
 export interface FindResult {
+  kind: "find";
   reached: boolean;
   message: string;
   searched: number;
@@ -889,6 +900,7 @@ export interface FitResult {
   poisson_yx: number;
   /** Contraction course-wise when pulled wale-wise. */
   poisson_xy: number;
+  kind: "fit";
   standard_errors: LawErrors;
   /** Of all residuals. */
   rms_n_per_mm: number;
@@ -1568,6 +1580,7 @@ export interface RelaxRequest {
 
 /** The shape of least energy, free of force or held; sizes and energies of one stitch. */
 export interface RelaxResult {
+  kind: "relax";
   branch: Branch;
   convention: Convention;
   /** At least 2 in the free branch, as are the columns. */
@@ -1642,6 +1655,7 @@ export interface ShapeRequest {
 
 /** A chart, and the outline of its swatch. */
 export interface ShapeResult {
+  kind: "shape";
   rows: number;
   columns: number;
   chart: string;
@@ -1832,6 +1846,7 @@ export interface StretchResult {
   shear_modulus_assumed: boolean;
   nearest_lock_up: NearestLockUp | null;
   messages: string[];
+  kind: "stretch";
   /** Names this test for the 3D view. */
   id: string;
   rows: number;
@@ -1890,6 +1905,7 @@ export interface SweepRequest {
 
 /** A stretch, free across; sizes and energies of one stitch. */
 export interface SweepResult {
+  kind: "sweep";
   direction: Direction;
   branch: Branch;
   strain: number[];

@@ -13,10 +13,10 @@ from fastapi.responses import StreamingResponse
 from app.api.designs import Key, retry_of
 from app.designs.conditions import ConflictError
 from app.http.identity import asking
-from app.http.packed import json_response
+from app.http.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
 from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
-from app.jobs.kinds import JobRequest
+from app.jobs.kinds import JobRequest, JobResult
 from app.jobs.runner import JobRunner
 
 MISSING = {"model": Problem, "description": "No such thing, or it is not yours."}
@@ -77,7 +77,7 @@ async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
     response_class=StreamingResponse,
     responses={200: {"content": {"text/event-stream": {}}, "description": "Events `status`."}},
 )
-async def get_events(
+async def get_job_events(
     job: JobId, runner: Runner, owner: Owner, request: Request
 ) -> StreamingResponse:
     """Server-sent events, one per change, each a job as `GET /jobs/{job}` has it; ends with it."""
@@ -114,16 +114,12 @@ async def _events(
 @router.get(
     "/jobs/{job}/result",
     summary="The result of a job",
-    responses={
-        200: {
-            "content": {"application/json": {"schema": {"type": "object"}}},
-            "description": "What the operation of that kind answers.",
-        },
-        409: {"model": Problem, "description": "The job is not done."},
-    },
+    response_model=JobResult,
+    responses=TAGGED | {409: {"model": Problem, "description": "The job is not done."}},
+    openapi_extra=ASKED_WITH_TAG,
 )
 async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request) -> Response:
-    """The same JSON that the operation's own address answers."""
+    """The same JSON that the operation's own address answers; `kind` says which."""
     status = await runner.status(owner, job)
     if status.state is not JobState.DONE:
         raise ConflictError(
@@ -138,7 +134,12 @@ async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request)
         raise NotFoundError(
             "The result is not kept any more.", field="job", remedy="Run the job again."
         )
-    return await json_response(body, request.headers)
+    tag = await asyncio.to_thread(etag_of, body)
+    if is_known(tag, request.headers):
+        return Response(status_code=304, headers={"ETag": tag})
+    answer = await json_response(body, request.headers)
+    answer.headers["ETag"] = tag
+    return answer
 
 
 @router.delete("/jobs/{job}", summary="Cancel a job")

@@ -7,14 +7,15 @@ from collections.abc import Callable
 from inspect import Parameter, Signature
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Request
+from fastapi import APIRouter, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
 from app.compute.answers import Answers
-from app.http.packed import json_response
+from app.http.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
 from app.http.problems import Problem, StoppingError
 from app.models.charts import size_of
+from app.operations.perform import Viewed
 from app.operations.registry import Operation, operations
 
 MOST_LIGHT = 10_000
@@ -28,10 +29,18 @@ MISSING: dict[int | str, dict[str, Any]] = {
 def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     """What FastAPI calls: with the request as a body, or put together from the address."""
 
+    def made(body: BaseModel, request: Request) -> bytes:
+        found = operation.run(body, request.app.state.answers.context())
+        result: BaseModel = found.result if isinstance(found, Viewed) else found
+        return result.model_dump_json().encode()
+
+    def light(body: BaseModel, request: Request) -> Response:
+        return plain(made(body, request), request.headers)
+
     async def post(body: BaseModel, request: Request) -> Any:
         answers: Answers = request.app.state.answers
         if not operation.heavy and size_of(body) <= MOST_LIGHT:
-            return await run_in_threadpool(operation.run, body, answers.context())
+            return await run_in_threadpool(light, body, request)
 
         async def abandoned() -> bool:
             if request.app.state.stopping:
@@ -41,8 +50,8 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
         answer = await answers.answer(abandoned, operation, body)
         return await json_response(answer.body, request.headers)
 
-    def get(request: Request, **fields: Any) -> Any:
-        return operation.run(operation.request(**fields), request.app.state.answers.context())
+    def get(request: Request, **fields: Any) -> Response:
+        return tagged(made(operation.request(**fields), request), request.headers)
 
     if operation.method == "POST":
         return _typed(post, body=operation.request, request=Request)
@@ -67,17 +76,18 @@ def _router() -> APIRouter:
         if operation.path is None:
             continue
         in_path = bool(re.search(r"\{\w+\}", operation.address))
+        is_tagged = operation.method == "GET"
         router.add_api_route(
             operation.address,
             _endpoint(operation),
             methods=[operation.method],
             name=operation.name,
-            operation_id=operation.name,
             tags=[operation.tag],
             summary=operation.summary,
             description=operation.description,
             response_model=operation.result,
-            responses=MISSING if in_path else None,
+            responses=(MISSING if in_path else {}) | (TAGGED if is_tagged else {}),
+            openapi_extra=ASKED_WITH_TAG if is_tagged else None,
         )
     return router
 

@@ -57,7 +57,7 @@ def delete_session(owner: Owner, request: Request, response: Response) -> None:
     summary="End a session",
     responses={404: {"model": Problem, "description": "It is no session of yours."}},
 )
-def delete_one(session: SessionId, owner: Owner, request: Request) -> None:
+def end_session(session: SessionId, owner: Owner, request: Request) -> None:
     """Of another browser of yours, for instance one that was lost."""
     login: Login = request.app.state.login
     if not login.end(owner, session):

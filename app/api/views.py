@@ -100,7 +100,7 @@ async def put_camera(design: DesignId, body: CameraRequest, request: Request) ->
         200: {"content": {"text/event-stream": {}}, "description": "Events `stitch`."},
     },
 )
-async def get_events(design: DesignId, request: Request) -> StreamingResponse:
+async def get_view_events(design: DesignId, request: Request) -> StreamingResponse:
     """Server-sent events, one for each click on a stitch in the view: its row and column from 0.
 
     Ends with the view.

@@ -3,15 +3,68 @@
 from __future__ import annotations
 
 import gzip
+import hashlib
+from typing import Any
 
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 from starlette.datastructures import Headers
 
+from app.operations.perform import LEVEL
+
+WORTH_BYTES = 1_000
+"""Shorter answers are sent as they are."""
+TAGGED: dict[int | str, dict[str, Any]] = {
+    200: {"headers": {"ETag": {"$ref": "#/components/headers/ETag"}}},
+    304: {"description": "It is what If-None-Match names."},
+}
+"""For the schema, of answers with an ETag."""
+ASKED_WITH_TAG = {
+    "parameters": [
+        {
+            "name": "If-None-Match",
+            "in": "header",
+            "required": False,
+            "description": "The ETag of the answer that you have.",
+            "schema": {"type": "string", "maxLength": 200},
+        }
+    ]
+}
+"""For the schema, of requests for them."""
+
 
 def takes_gzip(headers: Headers) -> bool:
     """Whether a client accepts gzip."""
     return "gzip" in headers.get("accept-encoding", "")
+
+
+def tagged(content: bytes, headers: Headers, media_type: str = "application/json") -> Response:
+    """An answer with an ETag, or 304 for a client that has it; compressed if that is worth it."""
+    tag = etag_of(content)
+    if is_known(tag, headers):
+        return Response(status_code=304, headers={"ETag": tag, "Vary": "Accept-Encoding"})
+    response = plain(content, headers, media_type)
+    response.headers["ETag"] = tag
+    return response
+
+
+def plain(content: bytes, headers: Headers, media_type: str = "application/json") -> Response:
+    """An answer, compressed if that is worth it and the client accepts gzip."""
+    answer = {"Vary": "Accept-Encoding"}
+    if len(content) >= WORTH_BYTES and takes_gzip(headers):
+        answer["Content-Encoding"] = "gzip"
+        content = gzip.compress(content, LEVEL)
+    return Response(content, media_type=media_type, headers=answer)
+
+
+def etag_of(content: bytes) -> str:
+    """Weak, because packed and unpacked answers share it."""
+    return f'W/"{hashlib.sha256(content).hexdigest()[:32]}"'
+
+
+def is_known(tag: str, headers: Headers) -> bool:
+    """Whether a client says that it has the answer with this tag."""
+    return tag.removeprefix("W/") in headers.get("if-none-match", "")
 
 
 async def json_response(content: bytes, headers: Headers) -> Response:

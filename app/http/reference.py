@@ -8,10 +8,10 @@ from functools import cache
 from html import escape
 from typing import Any
 
-from fastapi import FastAPI
-from fastapi.responses import HTMLResponse
+from fastapi import FastAPI, Request, Response
 
 from app.http.kinds import FOLDER
+from app.http.packed import tagged
 from app.http.pages import page, prose
 from app.http.schema import FIRST_PROBLEM
 
@@ -37,12 +37,12 @@ def serve_reference(app: FastAPI) -> None:
     """Add the page at ``/docs``."""
 
     @cache
-    def made() -> str:
-        return reference(app.openapi())
+    def made() -> bytes:
+        return reference(app.openapi()).encode()
 
     @app.get("/docs", include_in_schema=False)
-    def docs() -> HTMLResponse:
-        return HTMLResponse(made())
+    def docs(request: Request) -> Response:
+        return tagged(made(), request.headers, "text/html")
 
 
 def reference(schema: Schema) -> str:

@@ -1,14 +1,16 @@
-"""The OpenAPI schema, with examples and problem responses, which FastAPI does not add itself."""
+"""The OpenAPI schema, with what FastAPI does not add: examples, headers, tags, ways to sign in."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import FastAPI, Request, Response
 
+from app.http.packed import tagged
 from app.http.problems import PROBLEM_TYPE, problem_of
 from knitcore.errors import InputError
 
@@ -22,10 +24,51 @@ EXAMPLE = problem_of(
         "Write every stitch as K or P.",
     )
 ).model_dump()
+TAGS = {
+    "charts": "Read charts, and patterns to begin with.",
+    "mechanics": "What a chart does: moduli, curves, pressure, curl.",
+    "stretch": "A stretch test of a piece, stitch by stitch.",
+    "yarn level": "Repeats as curves of yarn in space.",
+    "materials": "The library of yarns, and estimates for others.",
+    "design": "Inverse design: repeats for wished mechanics.",
+    "garments": "Sleeves, gloves and braces.",
+    "measure": "Laws and yarns from tests.",
+    "displacement fields": "Measured fields against computed ones.",
+    "files": "Charts and designs in other formats.",
+    "designs": "Designs that the service keeps, their versions and links.",
+    "jobs": "Long computations in the background.",
+    "views": "The 3D view.",
+    "session": "Who you are, and where you are signed in.",
+    "service": "The service itself.",
+}
+HEADERS = {
+    "ETag": "The state that was answered, for `If-None-Match` and `If-Match`.",
+    "Location": "Address of what was made.",
+    "Retry-After": "Seconds to wait before the request is sent again.",
+    "RateLimit-Limit": "Requests that may be sent at once; with logins only.",
+    "RateLimit-Remaining": "Requests that may be sent now; with logins only.",
+    "WWW-Authenticate": "How to sign in: `Bearer`.",
+}
+WAYS_TO_SIGN_IN = {
+    "token": {
+        "type": "http",
+        "scheme": "bearer",
+        "description": "A token, where the service asks for one.",
+    },
+    "session": {
+        "type": "apiKey",
+        "in": "cookie",
+        "name": "knitcore_session",
+        "description": "Of a browser that was opened with `/?token=…`.",
+    },
+}
+HAVE_STATES = frozenset({"Design", "Painted"})
+ARE_MADE = frozenset({"Design", "JobStatus"})
+OPEN = frozenset({"GET /healthz", "GET /readyz"})
 
 
 def install_schema(app: FastAPI) -> None:
-    """Add an example to every operation, and mark problem responses as such."""
+    """Complete the schema, and serve it."""
     made = app.openapi
 
     def openapi() -> dict[str, Any]:
@@ -34,15 +77,34 @@ def install_schema(app: FastAPI) -> None:
             asked, found = _read("requests.json"), _read("answers.json")
             for name, operation in _operations(schema):
                 _mark_problems(operation["responses"])
+                for status, response in operation["responses"].items():
+                    _add_headers(int(status), response)
+                if name in OPEN:
+                    operation["security"] = []
                 _show(operation, asked.get(name), found["answers"].get(name))
                 for parameter in operation.get("parameters", []):
                     if parameter["in"] == "path":
                         parameter["example"] = found["parameters"].get(parameter["name"])
             schema["components"]["schemas"]["Problem"]["examples"] = [EXAMPLE]
+            schema["tags"] = [{"name": n, "description": text} for n, text in TAGS.items()]
+            schema["components"]["headers"] = {
+                name: {"description": text, "schema": {"type": "string"}}
+                for name, text in HEADERS.items()
+            }
+            schema["components"]["securitySchemes"] = WAYS_TO_SIGN_IN
+            schema["security"] = [{}, *({name: []} for name in WAYS_TO_SIGN_IN)]
             app.openapi_schema = schema
         return app.openapi_schema
 
     app.openapi = openapi  # type: ignore[method-assign]
+
+    @cache
+    def content() -> bytes:
+        return json.dumps(openapi(), ensure_ascii=False).encode()
+
+    @app.get("/openapi.json", include_in_schema=False)
+    def get_schema(request: Request) -> Response:
+        return tagged(content(), request.headers)
 
 
 def operations(app: FastAPI) -> list[str]:
@@ -67,6 +129,20 @@ def _show(operation: dict[str, Any], request: Any, answer: Any) -> None:
     for status, response in operation["responses"].items():
         if int(status) < FIRST_PROBLEM and "application/json" in response.get("content", {}):
             response["content"]["application/json"]["example"] = answer
+
+
+def _add_headers(status: int, response: dict[str, Any]) -> None:
+    """Say which headers come with an answer."""
+    content = response.get("content", {}).get("application/json", {})
+    model = content.get("schema", {}).get("$ref", "").rpartition("/")[2]
+    found = ["RateLimit-Limit", "RateLimit-Remaining"] if status < FIRST_PROBLEM else []
+    found += ["ETag"] if model in HAVE_STATES and status < FIRST_PROBLEM else []
+    found += ["Location"] if model in ARE_MADE and status in (201, 202) else []
+    found += ["Retry-After"] if status in (429, 503) else []
+    found += ["WWW-Authenticate"] if status == 401 else []
+    if found:
+        headers = response.setdefault("headers", {})
+        headers.update({name: {"$ref": f"#/components/headers/{name}"} for name in found})
 
 
 def _mark_problems(responses: dict[str, Any]) -> None:

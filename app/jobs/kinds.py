@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
-from app.models.base import RequestModel
+from app.models.base import RequestModel, ResultModel
 from app.operations.registry import Operation, operations
 from knitcore.yarnlibrary import fingerprint
 
@@ -36,8 +36,12 @@ def _job_of(operation: Operation[Any, Any]) -> type[JobOf]:
 
 if TYPE_CHECKING:
     JobRequest = JobOf
+    JobResult = ResultModel
 else:
     JobRequest = Annotated[reduce(or_, map(_job_of, KINDS.values())), Field(discriminator="kind")]
+    JobResult = Annotated[
+        reduce(or_, (operation.result for operation in KINDS.values())), Field(discriminator="kind")
+    ]
 
 
 def content_key(kind: str, request: str) -> str:

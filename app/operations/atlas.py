@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import click
 from pydantic import BeforeValidator, Field
@@ -45,6 +45,7 @@ class AtlasRequest(LawsRequest):
 class AtlasResult(ResultModel):
     """An atlas as columns, for the rigidity-rigidity scatter."""
 
+    kind: Literal["atlas"] = "atlas"
     material: str
     repeats: list[str] = Field(description="Rows from the top, separated by /.")
     modulus_course_n_per_mm: Column

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
@@ -49,6 +51,7 @@ class BendRequest(LawsRequest):
 class BendResult(ResultModel):
     """Linear response of the relaxed repeat; course: bent along the rows."""
 
+    kind: Literal["bend"] = "bend"
     moment_course_n: float = Field(
         description="Derivative of the energy per area by the curvature, N·mm per mm of width. "
         "Negative: left alone, the fabric curves with its face outside."

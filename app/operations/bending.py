@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
@@ -41,6 +43,7 @@ class BendingPhotoResult(ResultModel):
 class BendingResult(ResultModel):
     """Mean over photos; proportional to the linear density given."""
 
+    kind: Literal["bending"] = "bending"
     bending_modulus_n_mm2: float
     standard_deviation: float | None = Field(description="Of one photo, N·mm²; None for one.")
     standard_error: float | None = Field(description="Of the mean, N·mm².")

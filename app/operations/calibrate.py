@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import click
 from pydantic import Field
@@ -42,6 +43,7 @@ class CalibrateRequest(FieldRequest):
 class CalibrateResult(LawResult):
     """The calibrated law; its shear modulus is calibrated, too."""
 
+    kind: Literal["calibrate"] = "calibrate"
     parameters: dict[str, float]
     standard_errors: dict[str, float]
     frames: list[int] = Field(description="Pictures that were used.")

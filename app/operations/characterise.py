@@ -6,7 +6,7 @@ import csv
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import Literal, Self, TypeVar
 
 import click
 from pydantic import Field, model_validator
@@ -148,6 +148,7 @@ class CharacterisedFabric(FabricRow):
 class CharacteriseResult(ResultModel):
     """The table of a yarn; `material` holds its laws at the reference setting."""
 
+    kind: Literal["characterise"] = "characterise"
     identifier: str
     provenance: str
     estimated: bool = Field(description="Whether contact data were estimated.")

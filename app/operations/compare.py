@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.models.base import ResultModel
@@ -33,6 +35,7 @@ class CompareRequest(FieldRequest, LawsRequest):
 class CompareResult(ResultModel):
     """Errors per picture, in the order of the stretch."""
 
+    kind: Literal["compare"] = "compare"
     frames: list[FrameErrorResult]
     edges: Edges
     model: EnergyModel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import click
 from pydantic import Field
@@ -55,6 +56,7 @@ class CompressionMeanResult(ResultModel):
 class CompressionResult(ResultModel):
     """Constants of the contact law, per sample and mean."""
 
+    kind: Literal["compression"] = "compression"
     k_n_per_mm3: float | None = Field(
         description="Mean of the yarn; null if there are several, which have one each in `mean`."
     )

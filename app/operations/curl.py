@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,7 @@ class CurlView:
 class CurlResult(ResultModel):
     """The piece as it lies; heights are positive towards the face (the front)."""
 
+    kind: Literal["curl"] = "curl"
     id: str = Field(description="The shape, for views.")
     rows: int
     columns: int

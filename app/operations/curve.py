@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import click
 import numpy as np
@@ -37,6 +37,7 @@ class CurveRequest(LawsRequest):
 class CurveResult(ResultModel):
     """Strain at each stress, transverse direction free."""
 
+    kind: Literal["curve"] = "curve"
     stress_n_per_mm: Floats
     strain: Floats
     strain_low: Floats = Field(description="Lower end of the 90 % interval.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import click
 import numpy as np
@@ -105,6 +105,7 @@ class PatchResult(ResultModel):
 class FillResult(ResultModel):
     """A chart, and how near it comes."""
 
+    kind: Literal["fill"] = "fill"
     rows: int
     columns: int
     chart: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
 import click
 from pydantic import Field
@@ -105,6 +106,7 @@ class CandidateResult(ResultModel):
 class FindResult(ResultModel):
     """Ranked repeats; the best first."""
 
+    kind: Literal["find"] = "find"
     reached: bool
     message: str
     searched: int

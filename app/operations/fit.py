@@ -66,6 +66,7 @@ class ResidualPoints(ResultModel):
 class FitResult(ElasticConstants, LawResult):
     """The constants of a law with their uncertainty."""
 
+    kind: Literal["fit"] = "fit"
     standard_errors: LawErrors
     rms_n_per_mm: float = Field(description="Of all residuals.")
     rms_course_n_per_mm: float

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.cli.options import loop_lengths
@@ -40,6 +42,7 @@ class StartResult(ResultModel):
 class RelaxResult(ResultModel):
     """The shape of least energy, free of force or held; sizes and energies of one stitch."""
 
+    kind: Literal["relax"] = "relax"
     branch: Branch
     convention: Convention
     repeat_rows: int = Field(description="At least 2 in the free branch, as are the columns.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import click
 import numpy as np
@@ -63,6 +63,7 @@ class BandResult(ResultModel):
 class ShapeResult(ResultModel):
     """A chart, and the outline of its swatch."""
 
+    kind: Literal["shape"] = "shape"
     rows: int
     columns: int
     chart: str

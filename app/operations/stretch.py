@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,6 +116,7 @@ class StretchCurve(ResultModel):
 class StretchResult(StretchCurve):
     """The curve of a test and the fields at its stitches."""
 
+    kind: Literal["stretch"] = "stretch"
     id: str = Field(description="Names this test for the 3D view.")
     rows: int
     columns: int

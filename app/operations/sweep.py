@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.cli.options import loop_lengths
@@ -60,6 +62,7 @@ class SweptLaw(ElasticConstants):
 class SweepResult(ResultModel):
     """A stretch, free across; sizes and energies of one stitch."""
 
+    kind: Literal["sweep"] = "sweep"
     direction: Direction
     branch: Branch
     strain: Floats
