@@ -10,6 +10,10 @@ image, not as its repeat.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
+from typing import NamedTuple
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
@@ -24,6 +28,7 @@ Array = NDArray[np.float64]
 
 WINDOW = 16
 """Rows and columns of a window."""
+HALF = WINDOW // 2
 
 
 def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
@@ -48,20 +53,42 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
     >>> bool(sizes[2, 20, 0] < 0.8 * sizes[37, 20, 0])
     True
     """
-    half = WINDOW // 2
-    rows, columns = chart.purl.shape
-    # the last window is whole, so that every stitch lies between middles
-    frame = [(half, half + (-n) % half) for n in (rows, columns)]
-    up, right = (_mirrored(n, *ends) for n, ends in zip((rows, columns), frame, strict=True))
-    around = chart.purl[np.ix_(up, right)]
-    windows = sliding_window_view(around, (WINDOW, WINDOW))[::half, ::half]
-    count = windows.shape[:2]
-    found = densities_of(windows.reshape(-1, WINDOW, WINDOW))
-    sizes = packaged_model().relaxed_mm(found, material).reshape(*count, 2)
-    middle = np.meshgrid(
-        (np.arange(rows) + 0.5) / half, (np.arange(columns) + 0.5) / half, indexing="ij"
-    )
-    return np.stack([map_coordinates(sizes[..., k], middle, order=1) for k in range(2)], axis=-1)
+    counted = list(product(*(_windows(count) for count in chart.purl.shape)))
+    return np.asarray(sum(_sizes(chart, material, *each) for each in counted) / len(counted))
+
+
+def _sizes(chart: StitchChart, material: Material, rows: Windows, columns: Windows) -> Array:
+    """The sizes that windows at these places give."""
+    around = chart.purl[np.ix_(rows.stitches, columns.stitches)]
+    windows = sliding_window_view(around, (WINDOW, WINDOW))[::HALF, ::HALF]
+    count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)
+    packed = np.packbits(windows.reshape(len(windows), -1), axis=1)
+    _, first, same = np.unique(packed, axis=0, return_index=True, return_inverse=True)
+    different = packaged_model().relaxed_mm(densities_of(windows[first]), material)
+    sizes = different[same].reshape(*count, 2)
+    at = np.meshgrid(rows.places, columns.places, indexing="ij")
+    return np.stack([map_coordinates(sizes[..., k], at, order=1) for k in range(2)], axis=-1)
+
+
+class Windows(NamedTuple):
+    """Windows along one side of a piece.
+
+    Attributes
+    ----------
+    stitches : the stitch at each place that the windows reach, mirrored beyond the edges.
+    places : of the stitches among the middles of the windows, counted from the first.
+    """
+
+    stitches: NDArray[np.int64]
+    places: Array
+
+
+def _windows(count: int) -> Iterator[Windows]:
+    """Windows that reach equally far beyond both ends; counted from either if that is not whole."""
+    beyond = -count % HALF
+    for before in {beyond // 2, beyond - beyond // 2}:
+        reach = before + HALF, beyond - before + HALF
+        yield Windows(_mirrored(count, *reach), (np.arange(count) + 0.5 + before) / HALF)
 
 
 def _mirrored(count: int, before: int, after: int) -> NDArray[np.int64]:

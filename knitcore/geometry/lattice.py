@@ -1,4 +1,4 @@
-"""Where the stitches of a chart lie: the flat lattice of courses and wales."""
+"""Where the stitches of a chart lie in the plane: on a straight lattice, or drawn in."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import dctn, idctn
 
+from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES
+from knitcore.fabric import PHASES, Direction
 from knitcore.materials.material import Material
-from knitcore.phases import QUARTERS_OF_CODE, surroundings
+from knitcore.phases import QUARTERS_OF_CODE, pure_fabric, quarter_phases, surroundings
 
 Array = NDArray[np.float64]
 
@@ -58,6 +60,51 @@ def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
         centres_mm=np.stack(np.meshgrid(x, y), axis=-1),
         sizes_mm=np.stack(np.meshgrid(widths, heights), axis=-1),
     )
+
+
+def resting_lattice(chart: StitchChart, material: Material) -> Lattice:
+    """The chart as it lies at rest with free edges: textures of different gauge draw each other in.
+
+    Every stitch wants the size that its surroundings give it
+    (:mod:`knitcore.answer.neighbourhood`), and shear holds rows and columns together: the places x
+    of the edges between stitches minimise the sum of (step along the course - width)² + weight
+    (step along the wale)², and y likewise; the weights are shear over Young's modulus. Both are
+    Poisson's equation on a rectangle, which a cosine transform solves.
+
+    Raises
+    ------
+    InputError
+        If the material lacks a pure fabric that the chart needs.
+    """
+    if pure_fabric(chart) is not None:
+        return flat_lattice(chart, material)
+    sizes = neighbourhood_sizes(chart, material)
+    shares = np.bincount(quarter_phases(chart).ravel(), minlength=len(PHASES))
+    laws = [(share, material.law(PHASES[k])) for k, share in enumerate(shares) if share]
+    shear, course, wale = np.sum(
+        [(n * law.shear_modulus, *(n * law.modulus(d) for d in Direction)) for n, law in laws],
+        axis=0,
+    )
+    aspect = float(sizes[..., 0].mean() / sizes[..., 1].mean())
+    x = _edges(sizes[..., 0], float(shear / course) * aspect**2)
+    y = _edges(sizes[..., 1].T, float(shear / wale) / aspect**2).T
+    return Lattice(
+        centres_mm=np.stack([(x[:, 1:] + x[:, :-1]) / 2, (y[1:] + y[:-1]) / 2], axis=-1),
+        sizes_mm=np.stack([np.diff(x, axis=1), np.diff(y, axis=0)], axis=-1),
+    )
+
+
+def _edges(wanted: Array, weight: float) -> Array:
+    """Places (lines, steps + 1) of the edges between stitches whose steps along each line are
+    nearest to the wanted ones (lines, steps); those from line to line, times the weight, to 0.
+    """
+    pull = -np.diff(wanted, axis=1, prepend=0.0, append=0.0)
+    wave = dctn(pull, norm="ortho")
+    across, along = (2 - 2 * np.cos(np.pi * np.arange(n) / n) for n in pull.shape)
+    stiffness = along[None, :] + weight * across[:, None]
+    stiffness[0, 0] = 1.0  # the mean place is free, and 0
+    found: Array = idctn(wave / stiffness, norm="ortho")
+    return found - float(found.min())
 
 
 def course_angles(centres_mm: Array) -> Array:

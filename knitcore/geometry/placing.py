@@ -53,7 +53,7 @@ class Placement:
 def at_rest(shapes: StitchShapes) -> Placement:
     """The fabric as it lies."""
     lattice = shapes.lattice
-    return Placement(lattice.centres_mm, lattice.sizes_mm, np.zeros(shapes.index.shape), 1.0)
+    return Placement(*_turned(lattice.centres_mm, lattice.sizes_mm), 1.0)
 
 
 def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placement:
@@ -68,12 +68,15 @@ def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placemen
     centres_mm : (rows, columns, 2) centres of the stitches in the stretched sheet.
     sheet : where the stitches lay before.
     """
-    sizes = stretched_sizes_mm(centres_mm, sheet)
+    placed = _turned(centres_mm, stretched_sizes_mm(centres_mm, sheet))
+    return Placement(*placed, _depth(shapes, placed[1]))
+
+
+def _turned(centres_mm: Array, sizes_mm: Array) -> tuple[Array, Array, Array]:
+    """Centres, sizes along and across the courses from those along x and y, and their angles."""
     angles = course_angles(centres_mm)
-    cosine = np.cos(angles)  # the sizes so far are along x and y
-    sizes[..., 0] /= cosine
-    sizes[..., 1] *= cosine
-    return Placement(centres_mm, sizes, angles, _depth(shapes, sizes))
+    cosine = np.cos(angles)[..., None]
+    return centres_mm, sizes_mm * np.concatenate([1 / cosine, cosine], axis=-1), angles
 
 
 def lying(corners_mm: Array) -> Placement:

@@ -30,7 +30,7 @@ from knitcore.geometry.fabrics import (
     fabric_lines,
     stored_material,
 )
-from knitcore.geometry.lattice import Lattice, flat_lattice
+from knitcore.geometry.lattice import Lattice, resting_lattice
 from knitcore.materials import Material
 from knitcore.phases import (
     ABOVE,
@@ -101,7 +101,7 @@ def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True
     if stored is not None:
         return _of_stored(chart, material, stored, radius)
     lines, index = _of_quarters(chart, fabrics)
-    return StitchShapes(lines, index, flat_lattice(chart, material), radius, fabrics.source)
+    return StitchShapes(lines, index, resting_lattice(chart, material), radius, fabrics.source)
 
 
 # -- a repeat that was relaxed -----------------------------------------------------------------

@@ -30,6 +30,7 @@ def test_a_piece_and_its_back_have_the_same_sizes(piece: StitchChart) -> None:
     sizes = neighbourhood_sizes(piece, ACRYLIC)
     assert sizes.shape == (piece.rows, piece.columns, 2)
     assert np.allclose(neighbourhood_sizes(piece.swap(), ACRYLIC), sizes)
+    assert np.allclose(neighbourhood_sizes(piece.turn_over(), ACRYLIC), sizes[:, ::-1])
 
 
 @pytest.mark.parametrize("above", ["K", "KP/PK", "K/P"])

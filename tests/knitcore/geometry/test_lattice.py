@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from knitcore import Fabric, StitchChart
-from knitcore.geometry.lattice import flat_lattice, stretched_sizes_mm
+from knitcore.geometry.lattice import flat_lattice, resting_lattice, stretched_sizes_mm
 from knitcore.materials import material
 
 
@@ -28,3 +28,33 @@ def test_stretched_stitches_grow_with_their_distances() -> None:
 def test_a_lone_stitch_keeps_its_size() -> None:
     lattice = flat_lattice(StitchChart.parse("K"), material("acrylic"))
     np.testing.assert_allclose(stretched_sizes_mm(lattice.centres_mm, lattice), lattice.sizes_mm)
+
+
+@pytest.mark.parametrize("above", ["K", "KP/PK", "K/P", "KKPP/KKPP/PPKK/PPKK"])
+def test_a_ribbed_hem_pulls_in_beside_any_texture(above: str) -> None:
+    """Gradually, and less where the texture above holds it."""
+    rib, texture = (StitchChart.parse(text) for text in ("KKPP", above))
+    piece = StitchChart(np.vstack([rib.resized(20, 60).purl, texture.resized(60, 60).purl]))
+    lattice = resting_lattice(piece, material("glove-wool"))
+    widths = lattice.sizes_mm[..., 0].sum(axis=1)
+    assert widths[0] < 0.8 * widths[-1]
+    assert np.all(np.diff(widths) > -1e-3 * widths[-1])
+    assert np.abs(np.diff(np.log(widths))).max() < 0.05
+    x = lattice.centres_mm[..., 0]
+    np.testing.assert_allclose(x + x[:, ::-1], x[0, 0] + x[0, -1], rtol=2e-2)
+
+
+def test_welts_shorten_the_columns_that_have_them() -> None:
+    welt, plain = (StitchChart.parse(text).resized(40, 30).purl for text in ("KK/PP", "K"))
+    heights = resting_lattice(StitchChart(np.hstack([welt, plain])), material("acrylic")).sizes_mm
+    total = heights[..., 1].sum(axis=0)
+    assert total[0] < 0.95 * total[-1]
+
+
+def test_a_repeat_lies_straight_and_a_pure_fabric_as_before() -> None:
+    basket = StitchChart.parse("KKPP/KKPP/PPKK/PPKK").resized(32, 32)
+    lattice = resting_lattice(basket, material("acrylic"))
+    np.testing.assert_allclose(np.diff(lattice.centres_mm[..., 0], axis=0), 0, atol=1e-6)
+    seed = StitchChart.of_fabric("seed", 6, 9)
+    straight, drawn = (f(seed, material("acrylic")) for f in (flat_lattice, resting_lattice))
+    np.testing.assert_array_equal(straight.centres_mm, drawn.centres_mm)
