@@ -10,7 +10,7 @@ image, not as its repeat.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import product
 from typing import NamedTuple
 
@@ -19,9 +19,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from knitcore.answer.densities import densities_of
+from knitcore.answer.densities import Densities, densities_of
 from knitcore.answer.learned import packaged_model
+from knitcore.answer.mixture import present
 from knitcore.chart import StitchChart
+from knitcore.fabric import PHASES
 from knitcore.materials import Material
 
 Array = NDArray[np.float64]
@@ -53,21 +55,46 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
     >>> bool(sizes[2, 20, 0] < 0.8 * sizes[37, 20, 0])
     True
     """
+    return _seen(chart, lambda found: packaged_model().relaxed_mm(found, material))
+
+
+def neighbourhood_folds(chart: StitchChart, material: Material) -> Array:
+    """Those sizes over the flat mixture's of the same surroundings, (rows, columns, 2): 1 where a
+    pure fabric is far from others, less where the cloth folds.
+
+    Raises
+    ------
+    InputError
+        If the material lacks a pure fabric that the chart needs.
+    """
+
+    def folds(found: Densities) -> Array:
+        phases = present(found.shares)
+        records = [material.record(PHASES[phase]) for phase in phases]
+        flat = found.shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
+        return np.asarray(packaged_model().relaxed_mm(found, material) / flat)
+
+    return _seen(chart, folds)
+
+
+def _seen(chart: StitchChart, of: Callable[[Densities], Array]) -> Array:
+    """What a function of densities (windows, 2) gives for every stitch, (rows, columns, 2)."""
     counted = list(product(*(_windows(count) for count in chart.purl.shape)))
-    return np.asarray(sum(_sizes(chart, material, *each) for each in counted) / len(counted))
+    return np.asarray(sum(_interpolated(chart, of, *each) for each in counted) / len(counted))
 
 
-def _sizes(chart: StitchChart, material: Material, rows: Windows, columns: Windows) -> Array:
-    """The sizes that windows at these places give."""
+def _interpolated(
+    chart: StitchChart, of: Callable[[Densities], Array], rows: Windows, columns: Windows
+) -> Array:
+    """The values that windows at these places give."""
     around = chart.purl[np.ix_(rows.stitches, columns.stitches)]
     windows = sliding_window_view(around, (WINDOW, WINDOW))[::HALF, ::HALF]
     count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)
     packed = np.packbits(windows.reshape(len(windows), -1), axis=1)
     _, first, same = np.unique(packed, axis=0, return_index=True, return_inverse=True)
-    different = packaged_model().relaxed_mm(densities_of(windows[first]), material)
-    sizes = different[same].reshape(*count, 2)
+    values = of(densities_of(windows[first]))[same].reshape(*count, 2)
     at = np.meshgrid(rows.places, columns.places, indexing="ij")
-    return np.stack([map_coordinates(sizes[..., k], at, order=1) for k in range(2)], axis=-1)
+    return np.stack([map_coordinates(values[..., k], at, order=1) for k in range(2)], axis=-1)
 
 
 class Windows(NamedTuple):

@@ -9,7 +9,8 @@ the strain of a phase is half the patch's own and half the phase's part in the f
 and laws are fitted to that. Phases in series then add up to the answer, and the quarters that
 stretch most in the flat composite still do, by half as much: neighbours within a patch restrain
 each other (and neighbouring cells that differed as much as the pure fabrics would be crushed).
-Stitch sizes are scaled to the relaxed size. Poisson's ratios are the answer's, or less where one
+Stitch sizes are those of their surroundings (:mod:`knitcore.answer.neighbourhood`), scaled
+to the answer's relaxed size. Poisson's ratios are the answer's, or less where one
 energy for both directions requires it. A patch of one pure fabric keeps its own law.
 
 Finite elements larger than a stitch take even laws instead: one for all quarters of a patch, with
@@ -31,6 +32,7 @@ from scipy.optimize import nnls
 
 from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
+from knitcore.answer.neighbourhood import neighbourhood_folds
 from knitcore.answer.patches import patches_of
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
@@ -87,7 +89,6 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
         int(patches.columns[-1]),
     )  # of the repeat, if it has several patches
     number = np.zeros(extent, dtype=np.intp)
-    scale = np.ones((*extent, 2))
     spread = np.zeros((2, len(SPREAD_AT)))
     for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
         for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
@@ -100,14 +101,31 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
             laws += _fitted_laws(cells, answer, material, even)
             share = (above - below) * (right - left) / number.size
             for direction in Direction:
-                sizes = [_size(record, direction) for record in _records(cells, material)]
-                flat = float(_shares(cells) @ sizes)
-                scale[(*here, direction.axis)] = answer.along(direction).relaxed_mm / flat
                 spread[direction.axis] += share * _own_log_sd(cells, answer, material, direction)
     whole = np.ix_(
         *(np.arange(n) % period for n, period in zip(chart.purl.shape, extent, strict=True))
     )
-    return QuarterLaws(tuple(laws), number[whole], scale[whole], spread)
+    scale = _scale(chart, phases, patches.together(), material)
+    return QuarterLaws(tuple(laws), number[whole], scale, spread)
+
+
+def _scale(
+    chart: StitchChart, phases: NDArray[np.uint8], answer: Answer, material: Material
+) -> Array:
+    """Folded sizes of the stitches over those of their phases, such that the mean is the answer's.
+
+    Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
+    """
+    if pure_fabric(chart) is not None:
+        return np.ones((*chart.purl.shape, 2))
+    folds = neighbourhood_folds(chart, material)
+    records = _records(phases, material)
+    for direction in Direction:
+        flat = np.array([_size(record, direction) for record in records])[phases]
+        flat = flat.reshape(chart.rows, 2, chart.columns, 2).mean(axis=(1, 3))
+        mean = float((flat * folds[..., direction.axis]).mean())
+        folds[..., direction.axis] *= answer.along(direction).relaxed_mm / mean
+    return folds
 
 
 def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
