@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import quarter_laws
-from knitcore.chart import StitchChart
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.errors import InputError
 from knitcore.materials.material import Material
 from knitcore.piece.outline import CutPiece
 from knitcore.swatch.models import EnergyModel, SheetModel
@@ -76,6 +77,12 @@ def cloth_under(
     low, extent = corners.min(axis=0), np.ptp(corners, axis=0)
     columns, rows = chart.columns, chart.rows
     while True:
+        if max(columns, rows) > MAX_STITCHES_PER_SIDE:
+            raise InputError(
+                "size",
+                f"the piece is {columns} x {rows} stitches large.",
+                f"Use pieces of at most {MAX_STITCHES_PER_SIDE} stitches a side.",
+            )
         covering = chart.tile(rows // chart.rows, columns // chart.columns)
         laws = quarter_laws(covering, material, even=not quarters)
         sheet = chart_sheet(covering, material, model, shear_modulus, laws=laws)

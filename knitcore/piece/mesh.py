@@ -24,6 +24,8 @@ Indices = NDArray[np.int64]
 MAX_ELEMENTS = 20_000
 DEFAULT_ELEMENTS = 600
 """By which the mesh size is chosen if none is given."""
+MAX_EMPTY = 20
+"""The box around a piece over its area, at most, before elements become larger for it."""
 CLEARANCE = 0.55
 """Of inner points from the boundary, over the mesh size."""
 MAX_SPLITS = 12
@@ -45,14 +47,13 @@ def mesh_of(piece: CutPiece, size_mm: float | None = None) -> Any:
     """
     from skfem import MeshQuad, MeshTri
 
-    size = math.sqrt(piece.area_mm2 / DEFAULT_ELEMENTS) if size_mm is None else size_mm
+    size = size_for(piece, DEFAULT_ELEMENTS) if size_mm is None else size_mm
     if not (math.isfinite(size) and size > 0):
         raise InputError("mesh_mm", f"{size} mm is not a size.", "Give a number above 0 mm.")
-    elements = piece.area_mm2 / size**2
-    if elements > MAX_ELEMENTS:
-        least = math.sqrt(piece.area_mm2 / MAX_ELEMENTS)
+    least = size_for(piece, MAX_ELEMENTS)
+    if size < least:
         raise InputError(
-            "mesh_mm", f"{elements:.0f} elements are too many.", f"Use at least {least:.2g} mm."
+            "mesh_mm", f"{size:.3g} mm is too fine for this piece.", f"Use at least {least:.3g} mm."
         )
     if piece.is_upright_rectangle:
         left, bottom, right, top = piece.polygon.bounds
@@ -63,9 +64,19 @@ def mesh_of(piece: CutPiece, size_mm: float | None = None) -> Any:
     else:
         points, triangles = triangulation(piece, size)
         mesh = MeshTri(np.ascontiguousarray(points.T), np.ascontiguousarray(triangles.T))
+    facets = mesh.boundary_facets()
+    middles = mesh.p[:, mesh.facets[:, facets]].mean(axis=1).T
+    side = shapely.STRtree(shapely.linestrings(piece.sides)).nearest(shapely.points(middles))
     return mesh.with_boundaries(
-        {edge: on_sides(mesh, piece.sides[piece.sides_of(edge)]) for edge in piece.edges},
+        {edge: facets[np.isin(side, piece.sides_of(edge))] for edge in piece.edges}
     )
+
+
+def size_for(piece: CutPiece, elements: int) -> float:
+    """Size (mm) of elements at which a piece has about so many, and no more along its boundary."""
+    left, bottom, right, top = piece.polygon.bounds
+    covered = max(piece.area_mm2, (right - left) * (top - bottom) / MAX_EMPTY)
+    return max(math.sqrt(covered / elements), float(piece.polygon.length) / elements)
 
 
 def triangulation(piece: CutPiece, size_mm: float) -> tuple[Array, Indices]:
@@ -104,19 +115,6 @@ def triangulation(piece: CutPiece, size_mm: float) -> tuple[Array, Indices]:
         "no mesh fits it: sides come too close to each other.",
         "Use a smaller mesh_mm, or a simpler outline.",
     )
-
-
-def on_sides(mesh: Any, sides: Array) -> Indices:
-    """Boundary facets of a mesh whose midpoints lie on straight sides (sides, 2, 2)."""
-    facets = mesh.boundary_facets()
-    middles = mesh.p[:, mesh.facets[:, facets]].mean(axis=1).T
-    start, along = sides[:, 0], sides[:, 1] - sides[:, 0]
-    length = np.linalg.norm(along, axis=1)
-    share = np.einsum("psi,si->ps", middles[:, None] - start, along) / length**2
-    off = middles[:, None] - start - share.clip(0, 1)[..., None] * along
-    near = np.linalg.norm(off, axis=2) <= 1e-9 * np.abs(mesh.p).max()
-    found: Indices = facets[near.any(axis=1)]
-    return found
 
 
 def _rings(polygon: shapely.Polygon) -> list[shapely.LinearRing]:

@@ -15,6 +15,13 @@ from tests.knitcore.measure.synthetic import hanging_yarn, save_photo, write_csv
 from tests.knitcore.measure.test_compression import squeeze, write
 from tests.knitcore.swatch.synthetic import camera_arrays
 
+PIECE = {
+    "outline": [[0, 0], [40, 0], [50, 30], [0, 30]],
+    "grain_deg": 30,
+    "edges": {"left": [4], "right": [2]},
+    "conditions": [{"kind": "held", "edge": "left"}, {"kind": "pulled", "edge": "right", "x_n": 1}],
+}
+
 
 def job_requests(folder: Path) -> dict[str, dict[str, Any]]:
     """By kind; files are written to a folder first."""
@@ -33,6 +40,10 @@ def job_requests(folder: Path) -> dict[str, dict[str, Any]]:
     return {
         "stretch": chart | {"direction": "wale", "strain": 0.2, "steps": 2},
         "curve": chart | {"direction": "wale"},
+        "piece": chart | {"piece": PIECE, "steps": 1, "mesh_mm": 10},
+        "bias": chart | {"strain": 0.1, "steps": 1, "mesh_mm": 20},
+        "biaxial": chart | {"strain_x": 0.1, "strain_y": 0.1, "steps": 1, "mesh_mm": 50},
+        "trellis": chart | {"angle_deg": 10, "steps": 1, "mesh_mm": 50},
         "relax": chart,
         "bend": chart,
         "curl": chart,

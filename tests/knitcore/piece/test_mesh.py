@@ -10,7 +10,7 @@ from skfem import MeshQuad
 
 from knitcore.errors import InputError
 from knitcore.piece import CutPiece
-from knitcore.piece.mesh import MAX_ELEMENTS, mesh_of, triangulation
+from knitcore.piece.mesh import MAX_ELEMENTS, mesh_of, size_for, triangulation
 
 SLEEVE = CutPiece(
     [(0, 0), (60, 0), (80, 90), (40, 120), (-20, 90)],
@@ -65,6 +65,11 @@ def test_any_star_shaped_outline_has_a_mesh(radii: list[float], size: float) -> 
     assert areas(*triangulation(piece, size)).sum() == pytest.approx(piece.area_mm2, rel=1e-9)
 
 
+def test_a_sliver_gets_no_endless_mesh() -> None:
+    sliver = CutPiece([(0.0, 0.0), (1000.0, 999.99), (1000.0, 1000.01)])
+    assert len(triangulation(sliver, size_for(sliver, 600))[1]) < 2000
+
+
 @pytest.mark.parametrize(
     ("field", "make"),
     [
@@ -80,7 +85,7 @@ def test_any_star_shaped_outline_has_a_mesh(radii: list[float], size: float) -> 
         ("edges.hem", lambda: CutPiece([(0, 0), (9, 0), (9, 9)], edges={"hem": ()})),
         ("grain_deg", lambda: CutPiece([(0, 0), (9, 0), (9, 9)], grain_deg=np.inf)),
         ("width_mm", lambda: CutPiece.rectangle(0.0, 5.0)),
-        ("mesh_mm", lambda: mesh_of(SLEEVE, 0.9 * (SLEEVE.area_mm2 / MAX_ELEMENTS) ** 0.5)),
+        ("mesh_mm", lambda: mesh_of(SLEEVE, 0.99 * size_for(SLEEVE, MAX_ELEMENTS))),
         ("mesh_mm", lambda: mesh_of(SLEEVE, -1.0)),
         ("edge", lambda: SLEEVE.sides_of("hem")),
     ],

@@ -1,0 +1,200 @@
+"""Cut pieces, what is done to their edges, and tests of them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from app.models.base import Floats, RequestModel, ResultModel
+from app.models.charts import MaterialName, RepeatInput
+from app.models.laws import LawsRequest
+from app.operations.context import Context
+from knitcore.errors import InputError
+from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.piece import Condition, CutPiece, Held, PieceTest, Pulled, Sewn, Traction
+from knitcore.piece.mesh import DEFAULT_ELEMENTS, size_for
+from knitcore.piece.outline import MAX_CORNERS
+
+MAX_ELEMENT_STEPS = 40_000
+"""Most elements times steps over REST, about a minute; the command line takes more."""
+MAX_CONDITIONS = 50
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Millimetres = Annotated[float, Field(ge=-10_000, le=10_000, allow_inf_nan=False)]
+Size = Annotated[float, Field(ge=1, le=10_000, allow_inf_nan=False)]
+Corners = Annotated[
+    list[tuple[Millimetres, Millimetres]], Field(min_length=3, max_length=MAX_CORNERS)
+]
+EdgeName = Annotated[str, Field(min_length=1, max_length=100)]
+
+
+class HeldInput(RequestModel):
+    """An edge that is gripped, or sewn to something stiff, and moved as a whole."""
+
+    kind: Literal["held"]
+    edge: EdgeName
+    x_mm: Millimetres | None = Field(0.0, description="Moved so far; null lets it slide along x.")
+    y_mm: Millimetres | None = Field(0.0, description="Moved so far; null lets it slide along y.")
+
+    def condition(self) -> Condition:
+        """As the library has it."""
+        return Held(self.edge, self.x_mm, self.y_mm)
+
+
+class PulledInput(RequestModel):
+    """An edge in a clamp that does not turn and moves freely under a force."""
+
+    kind: Literal["pulled"]
+    edge: EdgeName
+    x_n: Number = 0.0
+    y_n: Number = 0.0
+
+    def condition(self) -> Condition:
+        """As the library has it."""
+        return Pulled(self.edge, self.x_n, self.y_n)
+
+
+class TractionInput(RequestModel):
+    """A load spread evenly along an edge, per length at rest."""
+
+    kind: Literal["traction"]
+    edge: EdgeName
+    x_n_per_mm: Number = 0.0
+    y_n_per_mm: Number = 0.0
+
+    def condition(self) -> Condition:
+        """As the library has it."""
+        return Traction(self.edge, self.x_n_per_mm, self.y_n_per_mm)
+
+
+class SewnInput(RequestModel):
+    """An edge with a tape or elastic sewn on, which resists stretching and bends freely."""
+
+    kind: Literal["sewn"]
+    edge: EdgeName
+    stiffness_n: float = Field(gt=0, allow_inf_nan=False, description="Its force over its strain.")
+
+    def condition(self) -> Condition:
+        """As the library has it."""
+        return Sewn(self.edge, self.stiffness_n)
+
+
+ConditionInput = Annotated[
+    HeldInput | PulledInput | TractionInput | SewnInput, Field(discriminator="kind")
+]
+
+
+class PieceInput(RequestModel):
+    """A piece cut from cloth, and what is done to its edges in the end."""
+
+    outline: Corners = Field(
+        description="Corners in mm; side 1 goes from the first to the second.",
+        examples=[[[0, 0], [50, 0], [50, 100], [0, 100]]],
+    )
+    holes: list[Corners] = Field([], max_length=100, description="Their sides are counted on.")
+    grain_deg: Number = Field(
+        0.0, description="From the x axis to the rows, counter-clockwise: 45 is on the bias."
+    )
+    edges: dict[EdgeName, Annotated[list[int], Field(max_length=MAX_CORNERS)]] = Field(
+        description="Names of parts of the boundary, by the numbers of their sides.",
+        examples=[{"bottom": [1], "top": [3]}],
+        max_length=MAX_CORNERS,
+    )
+    conditions: list[ConditionInput] = Field(min_length=1, max_length=MAX_CONDITIONS)
+
+    def piece(self) -> CutPiece:
+        """As the library has it."""
+        return CutPiece(self.outline, self.holes, self.grain_deg, self.edges)
+
+
+class PieceTestRequest(LawsRequest):
+    """Cloth of a chart, repeated over a piece, and how finely it is computed."""
+
+    chart: RepeatInput
+    material: MaterialName
+    steps: int = Field(10, ge=1, le=1000, description="Of the load.")
+    shear_modulus_n_per_mm: float | None = Field(
+        None, ge=1e-4, le=10, allow_inf_nan=False, description="C_xyxy; that of the laws otherwise."
+    )
+    mesh_mm: float | None = Field(
+        None,
+        gt=0,
+        le=10_000,
+        allow_inf_nan=False,
+        description="Length of an element's side; by default there are about 600 elements.",
+    )
+
+    def check(self, piece: CutPiece, context: Context) -> None:
+        """Refuse a test that takes longer than the service computes.
+
+        Raises
+        ------
+        InputError
+        """
+        least = size_for(piece, MAX_ELEMENT_STEPS // self.steps)
+        size = size_for(piece, DEFAULT_ELEMENTS) if self.mesh_mm is None else self.mesh_mm
+        if size < least and not context.local:
+            raise InputError(
+                "mesh_mm",
+                f"{size:.3g} mm is too fine here for {self.steps} steps.",
+                f"Use at least {least:.3g} mm, fewer steps, or the command line.",
+            )
+
+    def options(self, context: Context) -> dict[str, Any]:
+        """Of every test in the library."""
+        return {
+            "steps": self.steps,
+            "shear_modulus": self.shear_modulus_n_per_mm,
+            "mesh_mm": self.mesh_mm,
+            "progress": context.progress,
+            "cancelled": context.cancelled,
+        }
+
+
+class PieceTestResult(ResultModel):
+    """What a test of a piece has in common; lists have a value per step."""
+
+    energy_n_mm: Floats = Field(description="Stored in the cloth.")
+    converged: bool
+    seconds: float
+    nodes: int
+    elements: int
+    utilisation: float = Field(
+        description="Largest alpha * strain at the last step; 1 is the lock-up."
+    )
+    messages: list[str]
+
+
+def of_test(test: PieceTest) -> dict[str, Any]:
+    """Fields of every result."""
+    past = bool(test.found) and test.is_past_the_law()
+    told = (
+        "Some cloth is past 98 % of its lock-up. There the law is only continued, and forces are "
+        "not those of any fabric."
+    )
+    return {
+        "energy_n_mm": test.energy_n_mm,
+        "converged": test.converged,
+        "seconds": test.seconds,
+        "nodes": test.nodes_mm.shape[1],
+        "elements": test.mesh.nelements,
+        "utilisation": test.utilisation() if test.found else 0.0,
+        "messages": [*([test.problem] if test.problem else []), *([told] if past else [])],
+    }
+
+
+def interval(force: Any, log_sd: Any) -> tuple[Any, Any]:
+    """Ends of 90 % intervals of forces (arrays)."""
+    factor = np.exp(Z_SCORE * np.asarray(log_sd))
+    return force / factor, force * factor
+
+
+def table(columns: dict[str, list[float]], messages: list[str]) -> str:
+    """Lines of a table with a heading."""
+    lines = [" ".join(f"{name:>12}" for name in columns)]
+    lines += [
+        " ".join(f"{value:12.4f}" for value in row) for row in zip(*columns.values(), strict=True)
+    ]
+    return "\n".join([*lines, *messages])

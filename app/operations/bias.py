@@ -1,0 +1,89 @@
+"""A strip cut at an angle to its rows, pulled between clamps."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.models.base import Floats
+from app.models.charts import to_repeat
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.piece import CutPiece
+from knitcore.piece.standard import bias_test
+
+
+class BiasRequest(PieceTestRequest):
+    """A strip and how far it is pulled."""
+
+    strain: float = Field(
+        gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
+    )
+    width_mm: Size = Field(50.0, description="Between the free sides.")
+    length_mm: Size = Field(100.0, description="Between the clamps.")
+    angle_deg: float = Field(
+        45.0,
+        ge=-180,
+        le=180,
+        allow_inf_nan=False,
+        description="From the width to the rows: 0 pulls along columns, 90 along rows.",
+    )
+
+
+class BiasResult(PieceTestResult):
+    """A simulated strip test at an angle, not a certified one."""
+
+    strain: Floats
+    force_n: Floats = Field(description="Along the pull.")
+    force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
+    force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    sideways_n: Floats = Field(description="Across the pull: clamps hold cloth that would shear.")
+    stress_n_per_mm: Floats = Field(description="Force per width.")
+    waist_strain: Floats
+
+
+def bias(request: BiasRequest, context: Context) -> BiasResult:
+    """Force and waist of a strip cut at an angle, on the bias by default.
+
+    Raises
+    ------
+    InputError, CancelledError
+    """
+    request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
+    test = bias_test(
+        to_repeat(request.chart),
+        context.material(request.material),
+        request.strain,
+        width_mm=request.width_mm,
+        length_mm=request.length_mm,
+        angle_deg=request.angle_deg,
+        **request.options(context),
+    )
+    low, high = interval(test.force_n, test.force_log_sd)
+    return BiasResult.of(test, force_low_n=low, force_high_n=high, **of_test(test.test))
+
+
+def _text(r: BiasResult) -> str:
+    columns = {
+        "strain": r.strain,
+        "force N": r.force_n,
+        "low N": r.force_low_n,
+        "high N": r.force_high_n,
+        "sideways N": r.sideways_n,
+        "waist": r.waist_strain,
+    }
+    return table(columns, r.messages)
+
+
+OPERATION = Operation(
+    bias,
+    tag="pieces",
+    summary="Pull a strip cut at an angle",
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Pull a strip of CHART cut at an angle to its rows, on the bias by default.",
+        names={"shear_modulus_n_per_mm": "--shear-modulus"},
+    ),
+)

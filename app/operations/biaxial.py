@@ -1,0 +1,98 @@
+"""A rectangle of cloth pulled outwards at all four edges."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.models.base import Floats
+from app.models.charts import to_repeat
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.piece import CutPiece
+from knitcore.piece.standard import biaxial_test
+
+
+class BiaxialRequest(PieceTestRequest):
+    """A rectangle and how far its edges are pulled."""
+
+    strain_x: float = Field(ge=0, le=5, allow_inf_nan=False, description="Last strain along x.")
+    strain_y: float = Field(ge=0, le=5, allow_inf_nan=False, description="Last strain along y.")
+    width_mm: Size = Field(100.0, description="Along x.")
+    length_mm: Size = Field(100.0, description="Along y.")
+    grain_deg: float = Field(
+        0.0, ge=-180, le=180, allow_inf_nan=False, description="From the x axis to the rows."
+    )
+
+
+class BiaxialResult(PieceTestResult):
+    """A simulated biaxial test: edges stay straight and slide along themselves."""
+
+    strain_x: Floats
+    strain_y: Floats
+    force_x_n: Floats
+    force_x_low_n: Floats = Field(description="Lower end of the 90 % interval.")
+    force_x_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    force_y_n: Floats
+    force_y_low_n: Floats = Field(description="Lower end of the 90 % interval.")
+    force_y_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    stress_x_n_per_mm: Floats = Field(description="Force per length of the edge.")
+    stress_y_n_per_mm: Floats
+
+
+def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
+    """Forces on the edges of a rectangle that is pulled in both directions.
+
+    Raises
+    ------
+    InputError, CancelledError
+    """
+    request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
+    test = biaxial_test(
+        to_repeat(request.chart),
+        context.material(request.material),
+        request.strain_x,
+        request.strain_y,
+        width_mm=request.width_mm,
+        length_mm=request.length_mm,
+        grain_deg=request.grain_deg,
+        **request.options(context),
+    )
+    x_low, x_high = interval(test.force_x_n, test.force_x_log_sd)
+    y_low, y_high = interval(test.force_y_n, test.force_y_log_sd)
+    return BiaxialResult.of(
+        test,
+        force_x_low_n=x_low,
+        force_x_high_n=x_high,
+        force_y_low_n=y_low,
+        force_y_high_n=y_high,
+        **of_test(test.test),
+    )
+
+
+def _text(r: BiaxialResult) -> str:
+    columns = {
+        "strain x": r.strain_x,
+        "strain y": r.strain_y,
+        "force x N": r.force_x_n,
+        "low N": r.force_x_low_n,
+        "high N": r.force_x_high_n,
+        "force y N": r.force_y_n,
+        "low  N": r.force_y_low_n,
+        "high  N": r.force_y_high_n,
+    }
+    return table(columns, r.messages)
+
+
+OPERATION = Operation(
+    biaxial,
+    tag="pieces",
+    summary="Pull a rectangle in both directions",
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Pull all four edges of a rectangle of CHART outwards.",
+        names={"shear_modulus_n_per_mm": "--shear-modulus"},
+    ),
+)

@@ -1,0 +1,193 @@
+"""A piece of cloth cut along any outline and loaded at its edges."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from pydantic import Field
+
+from app.cli.options import out_option
+from app.models.base import Floats, ResultModel
+from app.models.charts import to_repeat
+from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.errors import InputError
+from knitcore.materials import Material
+from knitcore.materials.uncertainty import Z_SCORE
+from knitcore.piece import PieceTest, cloth_under, solve, write_piece_test
+from knitcore.piece.results import SUFFIXES
+from knitcore.piece.spread import piece_spread
+
+
+class PieceRequest(PieceTestRequest):
+    """Cloth, the piece that is cut from it, and what is done to its edges."""
+
+    piece: PieceInput
+    fields: bool = Field(False, description="Whether to tell the shape and strains at the end.")
+
+
+class EdgeResult(ResultModel):
+    """What was done to an edge, per step."""
+
+    edge: str
+    kind: str
+    force_x_n: Floats = Field(description="On the whole edge; 0 of a tape.")
+    force_y_n: Floats
+    moved_x_mm: Floats = Field(description="Mean of the edge.")
+    moved_y_mm: Floats
+    force_x_margin_n: float = Field(
+        description="The last step's 90 % interval is this much to either side."
+    )
+    force_y_margin_n: float
+    moved_x_margin_mm: float
+    moved_y_margin_mm: float
+
+
+class ShapeResult(ResultModel):
+    """The mesh after the last step."""
+
+    corners_mm: list[tuple[float, float]] = Field(description="At rest.")
+    moved_mm: list[tuple[float, float]] = Field(description="Displacement of each corner.")
+    elements: list[list[int]] = Field(description="Numbers of corners, from 0.")
+    strain_course: Floats = Field(description="Per element, as all that follow.")
+    strain_wale: Floats
+    shear_angle: Floats = Field(description="In radians.")
+    stress_course: Floats = Field(description="N/mm.")
+    stress_wale: Floats
+    stress_shear: Floats
+    utilisation: Floats = Field(description="alpha * strain; 1 is the lock-up.")
+
+
+class PieceResult(PieceTestResult):
+    """Equilibria of a piece under a growing load."""
+
+    share: Floats = Field(description="Of the load, per step.")
+    area_mm2: float
+    edges: list[EdgeResult] = Field(description="In the order of the conditions.")
+    shape: ShapeResult | None
+
+
+def piece(request: PieceRequest, context: Context) -> PieceResult:
+    """Forces, motions and strains of a piece of any outline whose edges are held, moved, pulled,
+    loaded or sewn to a tape.
+
+    Raises
+    ------
+    InputError, CancelledError
+    """
+    material = context.material(request.material)
+    return _result(request, _test(request, material, context), material)
+
+
+def _test(request: PieceRequest, material: Material, context: Context) -> PieceTest:
+    cut = request.piece.piece()
+    request.check(cut, context)
+    options = request.options(context)
+    cloth = cloth_under(
+        cut, to_repeat(request.chart), material, shear_modulus=options.pop("shear_modulus")
+    )
+    conditions = [given.condition() for given in request.piece.conditions]
+    return solve(cut, cloth, conditions, **options)
+
+
+def _result(request: PieceRequest, test: PieceTest, material: Material) -> PieceResult:
+    force, moved = test.force_n, test.moved_mm
+    margins = np.zeros((2, len(test.conditions), 2))
+    if test.found:
+        spread = piece_spread(test, material)
+        margins = Z_SCORE * np.array([spread.force_n, spread.moved_mm])
+    edges = []
+    for i, given in enumerate(request.piece.conditions):
+        found: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
+        for axis, letter in enumerate("xy"):
+            found |= {
+                f"force_{letter}_n": force[:, i, axis],
+                f"moved_{letter}_mm": moved[:, i, axis],
+                f"force_{letter}_margin_n": margins[0, i, axis],
+                f"moved_{letter}_margin_mm": margins[1, i, axis],
+            }
+        edges.append(found)
+    return PieceResult.of(
+        test,
+        test.piece,
+        edges=edges,
+        shape=_shape(test) if request.fields and test.found else None,
+        **of_test(test),
+    )
+
+
+def _shape(test: PieceTest) -> ShapeResult:
+    corners = test.mesh.p
+    return ShapeResult.of(
+        test.fields(),
+        corners_mm=corners.T.tolist(),
+        moved_mm=(test.corners_mm[-1] - corners).T.tolist(),
+        elements=test.mesh.t.T.tolist(),
+    )
+
+
+@click.option(
+    "--piece",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="FILE.json with outline, holes, grain_deg, edges and conditions.",
+)
+def _piece_file(piece: Path) -> dict[str, Any]:
+    try:
+        return {"piece": PieceInput.model_validate_json(piece.read_bytes())}
+    except OSError as error:
+        raise InputError("piece", f"{piece}: {error.strerror}.", "Name a JSON file.") from None
+    except ValueError as error:
+        raise InputError("piece", f"{piece.name}: {_first(error)}.", "See docs/piece.md.") from None
+
+
+def _first(error: ValueError) -> str:
+    """What is wrong first, and where."""
+    errors = getattr(error, "errors", None)
+    if errors is None:
+        return str(error)
+    found = errors()[0]
+    place = ".".join(str(part) for part in found["loc"])
+    return f"{place}: {found['msg']}" if place else str(found["msg"])
+
+
+@out_option("--out", help="Write FILE.npz, .csv or .vtu.", suffixes=SUFFIXES)
+def _command(request: PieceRequest, context: Context, out: Path | None) -> PieceResult:
+    material = context.material(request.material)
+    test = _test(request, material, context)
+    if out is not None:
+        write_piece_test(test, out)
+    return _result(request, test, material)
+
+
+def _text(r: PieceResult) -> str:
+    lines = [f"{len(r.share)} steps, {r.nodes} nodes"]
+    for e in r.edges if r.share else []:
+        lines += [
+            f"{e.edge} ({e.kind})",
+            f"  x {e.force_x_n[-1]:9.3f} ± {e.force_x_margin_n:.3f} N"
+            f" {e.moved_x_mm[-1]:9.3f} ± {e.moved_x_margin_mm:.3f} mm",
+            f"  y {e.force_y_n[-1]:9.3f} ± {e.force_y_margin_n:.3f} N"
+            f" {e.moved_y_mm[-1]:9.3f} ± {e.moved_y_margin_mm:.3f} mm",
+        ]
+    return "\n".join([*lines, *r.messages])
+
+
+OPERATION = Operation(
+    piece,
+    tag="pieces",
+    summary="Load a piece of any outline at its edges",
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Load a piece of any outline, cut from cloth of CHART, at its edges.",
+        names={"shear_modulus_n_per_mm": "--shear-modulus", "piece": None},
+        fields=_piece_file,
+        run=_command,
+    ),
+)

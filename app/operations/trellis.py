@@ -1,0 +1,91 @@
+"""A square of cloth sheared in a hinged frame."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pydantic import Field
+
+from app.models.base import Floats
+from app.models.charts import to_repeat
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.piece import CutPiece
+from knitcore.piece.standard import trellis_test
+
+
+class TrellisRequest(PieceTestRequest):
+    """A square and how far it is sheared."""
+
+    angle_deg: float = Field(
+        gt=0, le=68, allow_inf_nan=False, description="By which the frame's right angle closes."
+    )
+    side_mm: Size = Field(100.0, description="Of the square.")
+    grain_deg: float = Field(
+        0.0, ge=-180, le=180, allow_inf_nan=False, description="From a bar to the rows."
+    )
+
+
+class TrellisResult(PieceTestResult):
+    """A simulated trellis (picture frame) test."""
+
+    angle_deg: Floats
+    force_n: Floats = Field(description="That pulls two opposite corners of the frame apart.")
+    force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
+    force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    moment_n_mm: Floats = Field(description="Work of the frame per shear angle in radians.")
+    shear_stress_n_per_mm: Floats = Field(description="The moment over the area at rest.")
+
+
+def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
+    """Force of a hinged frame that shears a square.
+
+    Raises
+    ------
+    InputError, CancelledError
+    """
+    request.check(CutPiece.rectangle(request.side_mm, request.side_mm), context)
+    test = trellis_test(
+        to_repeat(request.chart),
+        context.material(request.material),
+        math.radians(request.angle_deg),
+        side_mm=request.side_mm,
+        grain_deg=request.grain_deg,
+        **request.options(context),
+    )
+    low, high = interval(test.force_n, test.force_log_sd)
+    return TrellisResult.of(
+        test,
+        angle_deg=np.degrees(test.shear_angle),
+        force_low_n=low,
+        force_high_n=high,
+        **of_test(test.test),
+    )
+
+
+def _text(r: TrellisResult) -> str:
+    columns = {
+        "angle °": r.angle_deg,
+        "force N": r.force_n,
+        "low N": r.force_low_n,
+        "high N": r.force_high_n,
+        "N·mm": r.moment_n_mm,
+        "N/mm": r.shear_stress_n_per_mm,
+    }
+    return table(columns, r.messages)
+
+
+OPERATION = Operation(
+    trellis,
+    tag="pieces",
+    summary="Shear a square in a hinged frame",
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Shear a square of CHART in a hinged frame (picture frame).",
+        names={"shear_modulus_n_per_mm": "--shear-modulus"},
+    ),
+)
