@@ -129,6 +129,107 @@ export interface BendingResult {
   notes: string[];
 }
 
+/** A strip and how far it is pulled. */
+export interface BiasRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Of the load. */
+  steps?: number;
+  /** C_xyxy; that of the laws otherwise. */
+  shear_modulus_n_per_mm?: number | null;
+  /** Length of an element's side; by default there are about 600 elements. */
+  mesh_mm?: number | null;
+  /** Last clamp-to-clamp strain: 0.5 is 50 %. */
+  strain: number;
+  /** Between the free sides. */
+  width_mm?: number;
+  /** Between the clamps. */
+  length_mm?: number;
+  /** From the width to the rows: 0 pulls along columns, 90 along rows. */
+  angle_deg?: number;
+}
+
+/** A simulated strip test at an angle, not a certified one. */
+export interface BiasResult {
+  /** Stored in the cloth. */
+  energy_n_mm: number[];
+  converged: boolean;
+  seconds: number;
+  nodes: number;
+  elements: number;
+  /** Largest alpha * strain at the last step; 1 is the lock-up. */
+  utilisation: number;
+  messages: string[];
+  strain: number[];
+  /** Along the pull. */
+  force_n: number[];
+  /** Lower end of the 90 % interval. */
+  force_low_n: number[];
+  /** Upper end of the 90 % interval. */
+  force_high_n: number[];
+  /** Across the pull: clamps hold cloth that would shear. */
+  sideways_n: number[];
+  /** Force per width. */
+  stress_n_per_mm: number[];
+  waist_strain: number[];
+}
+
+/** A rectangle and how far its edges are pulled. */
+export interface BiaxialRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Of the load. */
+  steps?: number;
+  /** C_xyxy; that of the laws otherwise. */
+  shear_modulus_n_per_mm?: number | null;
+  /** Length of an element's side; by default there are about 600 elements. */
+  mesh_mm?: number | null;
+  /** Last strain along x. */
+  strain_x: number;
+  /** Last strain along y. */
+  strain_y: number;
+  /** Along x. */
+  width_mm?: number;
+  /** Along y. */
+  length_mm?: number;
+  /** From the x axis to the rows. */
+  grain_deg?: number;
+}
+
+/** A simulated biaxial test: edges stay straight and slide along themselves. */
+export interface BiaxialResult {
+  /** Stored in the cloth. */
+  energy_n_mm: number[];
+  converged: boolean;
+  seconds: number;
+  nodes: number;
+  elements: number;
+  /** Largest alpha * strain at the last step; 1 is the lock-up. */
+  utilisation: number;
+  messages: string[];
+  strain_x: number[];
+  strain_y: number[];
+  force_x_n: number[];
+  /** Lower end of the 90 % interval. */
+  force_x_low_n: number[];
+  /** Upper end of the 90 % interval. */
+  force_x_high_n: number[];
+  force_y_n: number[];
+  /** Lower end of the 90 % interval. */
+  force_y_low_n: number[];
+  /** Upper end of the 90 % interval. */
+  force_y_high_n: number[];
+  /** Force per length of the edge. */
+  stress_x_n_per_mm: number[];
+  stress_y_n_per_mm: number[];
+}
+
 /** Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise. */
 export interface BoxInput {
   row0: number;
@@ -583,6 +684,23 @@ export interface DeviationDocument {
 /** A material direction: course = along rows (x), wale = along columns (y). */
 export type Direction = "course" | "wale";
 
+/** What was done to an edge, per step. */
+export interface EdgeResult {
+  edge: string;
+  kind: string;
+  /** On the whole edge; 0 of a tape. */
+  force_x_n: number[];
+  force_y_n: number[];
+  /** Mean of the edge. */
+  moved_x_mm: number[];
+  moved_y_mm: number[];
+  /** The last step's 90 % interval is this much to either side. */
+  force_x_margin_n: number;
+  force_y_margin_n: number;
+  moved_x_margin_mm: number;
+  moved_y_margin_mm: number;
+}
+
 /** Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps). */
 export type Edges = "measured" | "rigid";
 
@@ -1025,6 +1143,16 @@ export interface Glove {
 /** Groups of entry points, and what their functions return lists of. */
 export type Group = "knitcore.patterns" | "knitcore.materials" | "knitcore.exporters" | "knitcore.measures";
 
+/** An edge that is gripped, or sewn to something stiff, and moved as a whole. */
+export interface HeldInput {
+  kind: "held";
+  edge: string;
+  /** Moved so far; null lets it slide along x. */
+  x_mm?: number | null;
+  /** Moved so far; null lets it slide along y. */
+  y_mm?: number | null;
+}
+
 /** A file of any kind that holds a chart. */
 export interface ImportRequest {
   /** `.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) or `.k` (knitout). */
@@ -1358,6 +1486,56 @@ export interface Patterns {
   patterns: PatternResult[];
 }
 
+/** A piece cut from cloth, and what is done to its edges in the end. */
+export interface PieceInput {
+  /** Corners in mm; side 1 goes from the first to the second. */
+  outline: [number, number][];
+  /** Their sides are counted on. */
+  holes?: [number, number][][];
+  /** From the x axis to the rows, counter-clockwise: 45 is on the bias. */
+  grain_deg?: number;
+  /** Names of parts of the boundary, by the numbers of their sides. */
+  edges: Record<string, number[]>;
+  conditions: (HeldInput | PulledInput | TractionInput | SewnInput)[];
+}
+
+/** Cloth, the piece that is cut from it, and what is done to its edges. */
+export interface PieceRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Of the load. */
+  steps?: number;
+  /** C_xyxy; that of the laws otherwise. */
+  shear_modulus_n_per_mm?: number | null;
+  /** Length of an element's side; by default there are about 600 elements. */
+  mesh_mm?: number | null;
+  piece: PieceInput;
+  /** Whether to tell the shape and strains at the end. */
+  fields?: boolean;
+}
+
+/** Equilibria of a piece under a growing load. */
+export interface PieceResult {
+  /** Stored in the cloth. */
+  energy_n_mm: number[];
+  converged: boolean;
+  seconds: number;
+  nodes: number;
+  elements: number;
+  /** Largest alpha * strain at the last step; 1 is the lock-up. */
+  utilisation: number;
+  messages: string[];
+  /** Of the load, per step. */
+  share: number[];
+  area_mm2: number;
+  /** In the order of the conditions. */
+  edges: EdgeResult[];
+  shape: app__operations__piece__ShapeResult | null;
+}
+
 /** Where a linked repeat lies. */
 export interface Placement {
   row: number;
@@ -1477,6 +1655,14 @@ export interface Problem {
   most?: number | null;
   /** Of inputs that cannot be used: all that is wrong, at most 100; `field`, `detail` and `remedy` are those of the first. */
   errors?: Fault[];
+}
+
+/** An edge in a clamp that does not turn and moves freely under a force. */
+export interface PulledInput {
+  kind: "pulled";
+  edge: string;
+  x_n?: number;
+  y_n?: number;
 }
 
 /** A pure fabric by name and size. */
@@ -1632,6 +1818,14 @@ export interface SegmentCountsResult {
   odd: number;
 }
 
+/** An edge with a tape or elastic sewn on, which resists stretching and bends freely. */
+export interface SewnInput {
+  kind: "sewn";
+  edge: string;
+  /** Its force over its strain. */
+  stiffness_n: number;
+}
+
 /** A profile of widths under a stretch. */
 export interface ShapeRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
@@ -1651,25 +1845,6 @@ export interface ShapeRequest {
   smallest_band?: number;
   /** The same seed gives the same chart. */
   seed?: number;
-}
-
-/** A chart, and the outline of its swatch. */
-export interface ShapeResult {
-  kind: "shape";
-  rows: number;
-  columns: number;
-  chart: string;
-  bands: BandResult[];
-  /** Width in the finite swatch, for comparison with the wanted one. */
-  width: number[];
-  wanted: (number | null)[];
-  /** Of the differences, as parts of the width at rest. */
-  rms: number;
-  largest: number;
-  force_n: number;
-  /** Swatches that were pulled on the way. */
-  pulls: number;
-  messages: string[];
 }
 
 /** A link that was given away; its secret is shown only once, when it is made. */
@@ -1967,6 +2142,59 @@ export interface TargetInput {
   limb?: LimbInput | null;
 }
 
+/** A load spread evenly along an edge, per length at rest. */
+export interface TractionInput {
+  kind: "traction";
+  edge: string;
+  x_n_per_mm?: number;
+  y_n_per_mm?: number;
+}
+
+/** A square and how far it is sheared. */
+export interface TrellisRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  chart: string | PureFabricChart;
+  /** Id of the library. */
+  material: string;
+  /** Of the load. */
+  steps?: number;
+  /** C_xyxy; that of the laws otherwise. */
+  shear_modulus_n_per_mm?: number | null;
+  /** Length of an element's side; by default there are about 600 elements. */
+  mesh_mm?: number | null;
+  /** By which the frame's right angle closes. */
+  angle_deg: number;
+  /** Of the square. */
+  side_mm?: number;
+  /** From a bar to the rows. */
+  grain_deg?: number;
+}
+
+/** A simulated trellis (picture frame) test. */
+export interface TrellisResult {
+  /** Stored in the cloth. */
+  energy_n_mm: number[];
+  converged: boolean;
+  seconds: number;
+  nodes: number;
+  elements: number;
+  /** Largest alpha * strain at the last step; 1 is the lock-up. */
+  utilisation: number;
+  messages: string[];
+  angle_deg: number[];
+  /** That pulls two opposite corners of the frame apart. */
+  force_n: number[];
+  /** Lower end of the 90 % interval. */
+  force_low_n: number[];
+  /** Upper end of the 90 % interval. */
+  force_high_n: number[];
+  /** Work of the frame per shear angle in radians. */
+  moment_n_mm: number[];
+  /** The moment over the area at rest. */
+  shear_stress_n_per_mm: number[];
+}
+
 /** A file's name and its content. */
 export interface UploadedFile {
   name: string;
@@ -2111,4 +2339,44 @@ export interface YarnResult {
   core_radius_mm: number;
   provenance: string;
   estimated: boolean;
+}
+
+/** The mesh after the last step. */
+export interface app__operations__piece__ShapeResult {
+  /** At rest. */
+  corners_mm: [number, number][];
+  /** Displacement of each corner. */
+  moved_mm: [number, number][];
+  /** Numbers of corners, from 0. */
+  elements: number[][];
+  /** Per element, as all that follow. */
+  strain_course: number[];
+  strain_wale: number[];
+  /** In radians. */
+  shear_angle: number[];
+  /** N/mm. */
+  stress_course: number[];
+  stress_wale: number[];
+  stress_shear: number[];
+  /** alpha * strain; 1 is the lock-up. */
+  utilisation: number[];
+}
+
+/** A chart, and the outline of its swatch. */
+export interface app__operations__shape__ShapeResult {
+  kind: "shape";
+  rows: number;
+  columns: number;
+  chart: string;
+  bands: BandResult[];
+  /** Width in the finite swatch, for comparison with the wanted one. */
+  width: number[];
+  wanted: (number | null)[];
+  /** Of the differences, as parts of the width at rest. */
+  rms: number;
+  largest: number;
+  force_n: number;
+  /** Swatches that were pulled on the way. */
+  pulls: number;
+  messages: string[];
 }
