@@ -559,6 +559,27 @@ export interface CurveResult {
   provenance: string;
 }
 
+/** The mesh after the last step. */
+export interface DeformedPiece {
+  /** At rest. */
+  corners_mm: [number, number][];
+  /** Displacement of each corner. */
+  moved_mm: [number, number][];
+  /** Numbers of corners, from 0. */
+  elements: number[][];
+  /** Per element, as all that follow. */
+  strain_course: number[];
+  strain_wale: number[];
+  /** In radians. */
+  shear_angle: number[];
+  /** N/mm. */
+  stress_course: number[];
+  stress_wale: number[];
+  stress_shear: number[];
+  /** alpha * strain; 1 is the lock-up. */
+  utilisation: number[];
+}
+
 /** A design with its document. */
 export interface Design {
   id: string;
@@ -683,23 +704,6 @@ export interface DeviationDocument {
 
 /** A material direction: course = along rows (x), wale = along columns (y). */
 export type Direction = "course" | "wale";
-
-/** What was done to an edge, per step. */
-export interface EdgeResult {
-  edge: string;
-  kind: string;
-  /** On the whole edge; 0 of a tape. */
-  force_x_n: number[];
-  force_y_n: number[];
-  /** Mean of the edge. */
-  moved_x_mm: number[];
-  moved_y_mm: number[];
-  /** The last step's 90 % interval is this much to either side. */
-  force_x_margin_n: number;
-  force_y_margin_n: number;
-  moved_x_margin_mm: number;
-  moved_y_margin_mm: number;
-}
 
 /** Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps). */
 export type Edges = "measured" | "rigid";
@@ -1322,6 +1326,23 @@ export interface LimitsInput {
   curl?: number | null;
 }
 
+/** What was done to an edge, per step. */
+export interface LoadedEdge {
+  edge: string;
+  kind: string;
+  /** On the whole edge; 0 of a tape. */
+  force_x_n: number[];
+  force_y_n: number[];
+  /** Mean of the edge. */
+  moved_x_mm: number[];
+  moved_y_mm: number[];
+  /** The last step's 90 % interval is this much to either side. */
+  force_x_margin_n: number;
+  force_y_margin_n: number;
+  moved_x_margin_mm: number;
+  moved_y_margin_mm: number;
+}
+
 /** What to outline. */
 export interface MarkRequest {
   box?: BoxInput | null;
@@ -1532,8 +1553,8 @@ export interface PieceResult {
   share: number[];
   area_mm2: number;
   /** In the order of the conditions. */
-  edges: EdgeResult[];
-  shape: app__operations__piece__ShapeResult | null;
+  edges: LoadedEdge[];
+  shape: DeformedPiece | null;
 }
 
 /** Where a linked repeat lies. */
@@ -1845,6 +1866,25 @@ export interface ShapeRequest {
   smallest_band?: number;
   /** The same seed gives the same chart. */
   seed?: number;
+}
+
+/** A chart, and the outline of its swatch. */
+export interface ShapeResult {
+  kind: "shape";
+  rows: number;
+  columns: number;
+  chart: string;
+  bands: BandResult[];
+  /** Width in the finite swatch, for comparison with the wanted one. */
+  width: number[];
+  wanted: (number | null)[];
+  /** Of the differences, as parts of the width at rest. */
+  rms: number;
+  largest: number;
+  force_n: number;
+  /** Swatches that were pulled on the way. */
+  pulls: number;
+  messages: string[];
 }
 
 /** A link that was given away; its secret is shown only once, when it is made. */
@@ -2339,44 +2379,4 @@ export interface YarnResult {
   core_radius_mm: number;
   provenance: string;
   estimated: boolean;
-}
-
-/** The mesh after the last step. */
-export interface app__operations__piece__ShapeResult {
-  /** At rest. */
-  corners_mm: [number, number][];
-  /** Displacement of each corner. */
-  moved_mm: [number, number][];
-  /** Numbers of corners, from 0. */
-  elements: number[][];
-  /** Per element, as all that follow. */
-  strain_course: number[];
-  strain_wale: number[];
-  /** In radians. */
-  shear_angle: number[];
-  /** N/mm. */
-  stress_course: number[];
-  stress_wale: number[];
-  stress_shear: number[];
-  /** alpha * strain; 1 is the lock-up. */
-  utilisation: number[];
-}
-
-/** A chart, and the outline of its swatch. */
-export interface app__operations__shape__ShapeResult {
-  kind: "shape";
-  rows: number;
-  columns: number;
-  chart: string;
-  bands: BandResult[];
-  /** Width in the finite swatch, for comparison with the wanted one. */
-  width: number[];
-  wanted: (number | null)[];
-  /** Of the differences, as parts of the width at rest. */
-  rms: number;
-  largest: number;
-  force_n: number;
-  /** Swatches that were pulled on the way. */
-  pulls: number;
-  messages: string[];
 }

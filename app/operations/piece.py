@@ -30,7 +30,7 @@ class PieceRequest(PieceTestRequest):
     fields: bool = Field(False, description="Whether to tell the shape and strains at the end.")
 
 
-class EdgeResult(ResultModel):
+class LoadedEdge(ResultModel):
     """What was done to an edge, per step."""
 
     edge: str
@@ -47,7 +47,7 @@ class EdgeResult(ResultModel):
     moved_y_margin_mm: float
 
 
-class ShapeResult(ResultModel):
+class DeformedPiece(ResultModel):
     """The mesh after the last step."""
 
     corners_mm: list[tuple[float, float]] = Field(description="At rest.")
@@ -67,8 +67,8 @@ class PieceResult(PieceTestResult):
 
     share: Floats = Field(description="Of the load, per step.")
     area_mm2: float
-    edges: list[EdgeResult] = Field(description="In the order of the conditions.")
-    shape: ShapeResult | None
+    edges: list[LoadedEdge] = Field(description="In the order of the conditions.")
+    shape: DeformedPiece | None
 
 
 def piece(request: PieceRequest, context: Context) -> PieceResult:
@@ -120,9 +120,9 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
     )
 
 
-def _shape(test: PieceTest) -> ShapeResult:
+def _shape(test: PieceTest) -> DeformedPiece:
     corners = test.mesh.p
-    return ShapeResult.of(
+    return DeformedPiece.of(
         test.fields(),
         corners_mm=corners.T.tolist(),
         moved_mm=(test.corners_mm[-1] - corners).T.tolist(),
