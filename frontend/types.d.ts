@@ -163,6 +163,7 @@ export interface BiasResult {
   /** Largest alpha * strain at the last step; 1 is the lock-up. */
   utilisation: number;
   messages: string[];
+  kind: "bias";
   strain: number[];
   /** Along the pull. */
   force_n: number[];
@@ -213,6 +214,7 @@ export interface BiaxialResult {
   /** Largest alpha * strain at the last step; 1 is the lock-up. */
   utilisation: number;
   messages: string[];
+  kind: "biaxial";
   strain_x: number[];
   strain_y: number[];
   force_x_n: number[];
@@ -1549,6 +1551,7 @@ export interface PieceResult {
   /** Largest alpha * strain at the last step; 1 is the lock-up. */
   utilisation: number;
   messages: string[];
+  kind: "piece";
   /** Of the load, per step. */
   share: number[];
   area_mm2: number;
@@ -2222,6 +2225,7 @@ export interface TrellisResult {
   /** Largest alpha * strain at the last step; 1 is the lock-up. */
   utilisation: number;
   messages: string[];
+  kind: "trellis";
   angle_deg: number[];
   /** That pulls two opposite corners of the frame apart. */
   force_n: number[];

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.models.base import Floats
@@ -33,6 +35,7 @@ class BiasRequest(PieceTestRequest):
 class BiasResult(PieceTestResult):
     """A simulated strip test at an angle, not a certified one."""
 
+    kind: Literal["bias"] = "bias"
     strain: Floats
     force_n: Floats = Field(description="Along the pull.")
     force_low_n: Floats = Field(description="Lower end of the 90 % interval.")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from app.models.base import Floats
@@ -28,6 +30,7 @@ class BiaxialRequest(PieceTestRequest):
 class BiaxialResult(PieceTestResult):
     """A simulated biaxial test: edges stay straight and slide along themselves."""
 
+    kind: Literal["biaxial"] = "biaxial"
     strain_x: Floats
     strain_y: Floats
     force_x_n: Floats

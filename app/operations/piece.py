@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import click
 import numpy as np
@@ -65,6 +65,7 @@ class DeformedPiece(ResultModel):
 class PieceResult(PieceTestResult):
     """Equilibria of a piece under a growing load."""
 
+    kind: Literal["piece"] = "piece"
     share: Floats = Field(description="Of the load, per step.")
     area_mm2: float
     edges: list[LoadedEdge] = Field(description="In the order of the conditions.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -31,6 +32,7 @@ class TrellisRequest(PieceTestRequest):
 class TrellisResult(PieceTestResult):
     """A simulated trellis (picture frame) test."""
 
+    kind: Literal["trellis"] = "trellis"
     angle_deg: Floats
     force_n: Floats = Field(description="That pulls two opposite corners of the frame apart.")
     force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
