@@ -275,9 +275,5 @@ export const plainDesign = (name, chart, material) => ({
   name,
   material,
   note: "",
-  chart,
-  outline: null,
-  regions: [],
-  repeats: [],
-  shelf: [],
+  ...contentOf(chart),
 });

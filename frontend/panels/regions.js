@@ -19,7 +19,8 @@ import { loadShelf } from "../core/store.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { pencil } from "../tools/pencil.js";
-import { iconButton } from "../widgets/buttons.js";
+import { iconButton, textButton } from "../widgets/buttons.js";
+import { textLine } from "../widgets/fields.js";
 import { docked, refreshed } from "../widgets/dock.js";
 
 /**
@@ -31,27 +32,19 @@ export function create(studio, context) {
   const list = h("ol", { class: "part-list", reversed: true });
   let chosen = chart.regions.at(-1)?.id ?? "";
 
-  const fromSelection = h(
-    "button",
-    { class: "button", id: "region-from-selection", onclick: () => action("make-region").perform(context) },
-    icon("select"),
-    "From selection",
-  );
-  const empty = h(
-    "button",
-    {
-      class: "button",
-      id: "region-new",
-      title: "A new region, to be painted",
-      onclick: () => {
-        if (!hasRoom(studio, "regions", "regions")) return;
-        const name = `Region ${chart.regions.length + 1}`;
-        const region = chart.region(chart.addRegion({ name, colour: nextRegionColour(chart.regions) }));
-        if (region) paint(region);
-      },
-    },
-    icon("plus"),
+  const fromSelection = textButton("select", "From selection", () => action("make-region").perform(context), {
+    id: "region-from-selection",
+  });
+  const empty = textButton(
+    "plus",
     "New",
+    () => {
+      if (!hasRoom(studio, "regions", "regions")) return;
+      const name = `Region ${chart.regions.length + 1}`;
+      const region = chart.region(chart.addRegion({ name, colour: nextRegionColour(chart.regions) }));
+      if (region) paint(region);
+    },
+    { id: "region-new", title: "A new region, to be painted" },
   );
 
   /** @param {Region} region */
@@ -127,44 +120,14 @@ export function create(studio, context) {
         h(
           "div",
           { class: "part-body" },
-          h(
-            "label",
-            { class: "line-field" },
-            h("span", {}, "Name"),
-            h("input", {
-              type: "text",
-              class: "text",
-              id: `${id}-name`,
-              value: name,
-              maxLength: 80,
-              onchange: (/** @type {Event} */ { target }) =>
-                chart.changeRegion(
-                  id,
-                  { name: /** @type {HTMLInputElement} */ (target).value.trim() || name },
-                  "Rename a region",
-                ),
-            }),
-          ),
+          textLine("Name", name, (value) => chart.changeRegion(id, { name: value || name }, "Rename a region"), {
+            id: `${id}-name`,
+          }),
           h("label", { class: "line-field" }, h("span", {}, "Fill"), fills(region, filled)),
-          h(
-            "label",
-            { class: "line-field" },
-            h("span", {}, "Yarn"),
-            h("input", {
-              type: "text",
-              class: "text",
-              id: `${id}-yarn`,
-              value: yarn ?? "",
-              placeholder: "main yarn",
-              maxLength: 80,
-              onchange: (/** @type {Event} */ { target }) =>
-                chart.changeRegion(
-                  id,
-                  { yarn: /** @type {HTMLInputElement} */ (target).value.trim() || null },
-                  "Yarn of a region",
-                ),
-            }),
-          ),
+          textLine("Yarn", yarn ?? "", (value) => chart.changeRegion(id, { yarn: value || null }, "Yarn of a region"), {
+            id: `${id}-yarn`,
+            placeholder: "main yarn",
+          }),
           h(
             "div",
             { class: "part-buttons" },

@@ -14,9 +14,10 @@ import { MAX_ITEMS } from "../core/design.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { repeat as placeTool } from "../tools/repeat.js";
-import { iconButton } from "../widgets/buttons.js";
+import { iconButton, textButton } from "../widgets/buttons.js";
 import { docked, refreshed } from "../widgets/dock.js";
 import { thumbnail } from "../widgets/thumbnail.js";
+import { numberField, textLine } from "../widgets/fields.js";
 
 /**
  * @param {Studio} studio
@@ -25,12 +26,9 @@ import { thumbnail } from "../widgets/thumbnail.js";
 export function create(studio, context) {
   const { document: chart, selection, editing } = studio;
   const list = h("ol", { class: "part-list" });
-  const fromSelection = h(
-    "button",
-    { class: "button", id: "repeat-from-selection", onclick: () => action("make-repeat").perform(context) },
-    icon("select"),
-    "New from the selection",
-  );
+  const fromSelection = textButton("select", "New from the selection", () => action("make-repeat").perform(context), {
+    id: "repeat-from-selection",
+  });
   let closed = false;
 
   /** @param {Repeat} repeat */
@@ -46,9 +44,7 @@ export function create(studio, context) {
         "label",
         { class: "edge-field" },
         label,
-        h("input", {
-          type: "number",
-          class: "number figures",
+        numberField({
           id: `${id}-${field}`,
           min: 0,
           max: 400,
@@ -89,24 +85,9 @@ export function create(studio, context) {
         h(
           "div",
           { class: "part-body" },
-          h(
-            "label",
-            { class: "line-field" },
-            h("span", {}, "Name"),
-            h("input", {
-              type: "text",
-              class: "text",
-              id: `${id}-name`,
-              value: name,
-              maxLength: 80,
-              onchange: (/** @type {Event} */ { target }) =>
-                chart.changeRepeat(
-                  id,
-                  { name: /** @type {HTMLInputElement} */ (target).value.trim() || name },
-                  "Rename a repeat",
-                ),
-            }),
-          ),
+          textLine("Name", name, (value) => chart.changeRepeat(id, { name: value || name }, "Rename a repeat"), {
+            id: `${id}-name`,
+          }),
           h("p", { class: "muted figures" }, repeat.rule[0].toUpperCase() + repeat.rule.slice(1)),
           h(
             "div",

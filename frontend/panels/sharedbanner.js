@@ -8,6 +8,7 @@ import { ApiError } from "../api.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { designs } from "../keeping/designs.js";
+import { textButton } from "../widgets/buttons.js";
 
 /**
  * @param {HTMLElement} host
@@ -24,14 +25,7 @@ export function sharedBanner(host, { keeper, studio }) {
       h("span", { class: "spacer" }),
     );
     if (state.mode === "copy") {
-      host.append(
-        h(
-          "button",
-          { class: "button", id: "shared-copy", onclick: () => void copy(state.token) },
-          icon("copy"),
-          "Make my copy",
-        ),
-      );
+      host.append(textButton("copy", "Make my copy", () => void copy(state.token), { id: "shared-copy" }));
     }
   });
 

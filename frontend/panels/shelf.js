@@ -15,8 +15,7 @@ import { QUARTERS, surroundings } from "../core/segments.js";
 import { ownInk, ownPatterns } from "../core/shelf.js";
 import { loadShelf, saveShelf } from "../core/store.js";
 import { h } from "../dom.js";
-import { icon } from "../icons.js";
-import { iconButton } from "../widgets/buttons.js";
+import { iconButton, textButton } from "../widgets/buttons.js";
 
 const SIDE = 34;
 /** A thumbnail shows at most this many stitches a side. */
@@ -32,17 +31,10 @@ export function shelf(host, studio, context) {
   const { document: chart } = studio;
   const list = h("div", { class: "shelf-list" });
   const fill = action("fill-part");
-  const fillButton = h(
-    "button",
-    {
-      class: "button",
-      id: "fill-all",
-      title: "Fill the selection, or the whole chart, with this pattern (F)",
-      onclick: () => fill.perform(context),
-    },
-    icon("fill"),
-    h("span", {}, "Fill chart"),
-  );
+  const fillButton = textButton("fill", h("span", {}, "Fill chart"), () => fill.perform(context), {
+    id: "fill-all",
+    title: "Fill the selection, or the whole chart, with this pattern (F)",
+  });
   const removeLabel = "Take this pattern off the shelf";
   const removeButton = iconButton(
     "trash",

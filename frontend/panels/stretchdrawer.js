@@ -12,6 +12,7 @@ import { firstLock, most } from "../core/striptest.js";
 import { h } from "../dom.js";
 import { REST } from "../studio.js";
 import { icon } from "../icons.js";
+import { numberField } from "../widgets/fields.js";
 
 /** What the field says in each unit at first. */
 const DEFAULTS = { "%": "30", N: "2" };
@@ -47,10 +48,9 @@ export function stretchdrawer(host, studio, stretcher) {
   };
   choose("wale");
 
-  const amount = h("input", {
-    type: "number",
+  const amount = numberField({
     id: "stretch-amount",
-    class: "number figures",
+
     min: "1",
     max: "400",
     step: "1",
@@ -255,9 +255,7 @@ function stretchOptions() {
     ["full", "with lock-up"],
     ["published", "as published, without lock-up"],
   ]);
-  const shear = h("input", {
-    type: "number",
-    class: "number figures",
+  const shear = numberField({
     id: "stretch-shear",
     min: "0.0001",
     max: "10",

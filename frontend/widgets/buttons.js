@@ -1,5 +1,5 @@
 /**
- * Buttons with a sign in place of words.
+ * Buttons with a sign, with words or in place of them.
  *
  * @import {Action, ActionContext} from "../actions/action.js"
  * @import {IconName} from "../icons.js"
@@ -19,6 +19,18 @@ import { icon } from "../icons.js";
  */
 export function iconButton(sign, label, perform, more = {}) {
   return h("button", { class: "button quiet icon-only", "aria-label": label, onclick: perform, ...more }, icon(sign));
+}
+
+/**
+ * A button with a sign before its words.
+ *
+ * @param {IconName} sign
+ * @param {string | Node} label
+ * @param {() => unknown} perform
+ * @param {Record<string, unknown>} [more] properties
+ */
+export function textButton(sign, label, perform, more = {}) {
+  return h("button", { class: "button", onclick: perform, ...more }, icon(sign), label);
 }
 
 /**

@@ -1,8 +1,34 @@
-/** Fields of the garment planner. Lengths are kept in mm and shown in mm or inches. */
+/** Fields for numbers, names, choices, and lengths, which are kept in mm and shown in mm or inches. */
 
 import { h } from "../dom.js";
 
 const MM_PER_INCH = 25.4;
+
+/** @param {Record<string, unknown>} more its properties */
+export const numberField = (more) => h("input", { type: "number", class: "number figures", ...more });
+
+/**
+ * A field for a short text, with its label in the same line.
+ *
+ * @param {string} label
+ * @param {string} value
+ * @param {(value: string) => void} changed called with the new text, without blanks around it
+ * @param {Record<string, unknown>} more properties
+ */
+export const textLine = (label, value, changed, more) =>
+  h(
+    "label",
+    { class: "line-field" },
+    h("span", {}, label),
+    h("input", {
+      type: "text",
+      class: "text",
+      value,
+      maxLength: 80,
+      onchange: (/** @type {Event} */ { target }) => changed(/** @type {HTMLInputElement} */ (target).value.trim()),
+      ...more,
+    }),
+  );
 
 /** A field for a length that can change its unit. */
 export class LengthField {
@@ -14,9 +40,7 @@ export class LengthField {
   constructor(label, mm, changed) {
     this.mm = mm;
     this.unit = "mm";
-    this.input = h("input", {
-      type: "number",
-      class: "number figures",
+    this.input = numberField({
       min: "0",
       step: "any",
       required: true,

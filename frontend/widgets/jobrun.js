@@ -9,6 +9,7 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { runJob } from "../services/jobs.js";
 import { problemText } from "./problem.js";
+import { textButton } from "./buttons.js";
 
 export class Run {
   /** @type {AbortController | null} */ #running = null;
@@ -19,7 +20,7 @@ export class Run {
     { class: "inverse-run", hidden: true },
     this.#bar,
     this.#text,
-    h("button", { class: "button", onclick: () => this.cancel() }, icon("stop"), "Cancel"),
+    textButton("stop", "Cancel", () => this.cancel()),
   );
   #problem = h("div", { class: "problem", role: "alert", hidden: true });
   element = h("div", { class: "inverse-status", "aria-live": "polite" }, this.#busy, this.#problem);

@@ -9,7 +9,7 @@
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { designs } from "../../keeping/designs.js";
-import { iconButton } from "../../widgets/buttons.js";
+import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { attempt } from "../../widgets/attempt.js";
@@ -67,18 +67,11 @@ export function create(studio, context) {
       search,
       tabs,
       h("span", { class: "spacer" }),
-      h(
-        "button",
-        { class: "button", id: "designs-gallery", onclick: () => leave(() => context.open("gallery")) },
-        icon("gallery"),
-        "Examples",
-      ),
-      h(
-        "button",
-        { class: "button primary", id: "designs-new", onclick: () => leave(() => context.open("gallery")) },
-        icon("plus"),
-        "New",
-      ),
+      textButton("gallery", "Examples", () => leave(() => context.open("gallery")), { id: "designs-gallery" }),
+      textButton("plus", "New", () => leave(() => context.open("gallery")), {
+        class: "button primary",
+        id: "designs-new",
+      }),
     ),
     status,
     list,
@@ -175,7 +168,7 @@ export function create(studio, context) {
         "span",
         { class: "card-tools" },
         ...(deleted
-          ? [h("button", { class: "button", onclick: () => void recover(design, item) }, icon("undo"), "Bring back")]
+          ? [textButton("undo", "Bring back", () => void recover(design, item))]
           : [
               tool("pencil", "Rename", () => rename(design, name)),
               tool("copy", "Duplicate", () => void duplicate(design)),
@@ -238,12 +231,7 @@ export function create(studio, context) {
         "div",
         { class: "notice" },
         h("span", {}, `“${design.name}” was deleted. It stays under Deleted for 30 days.`),
-        h(
-          "button",
-          { class: "button", id: "designs-undo", onclick: () => void recover(design, null) },
-          icon("undo"),
-          "Undo",
-        ),
+        textButton("undo", "Undo", () => void recover(design, null), { id: "designs-undo" }),
       ),
     );
     /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button"))?.focus();

@@ -11,8 +11,10 @@ import { icon } from "../../icons.js";
 import { linkTo } from "../../keeping/address.js";
 import { designs } from "../../keeping/designs.js";
 import { dialog } from "../../widgets/dialog.js";
+import { keptName } from "./kept.js";
 import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
+import { textButton } from "../../widgets/buttons.js";
 
 /** @type {Record<ShareMode, [string, string]>} */
 const MODES = {
@@ -35,18 +37,14 @@ export function create(_studio, { keeper }) {
     "aria-label": "The link",
     onfocus: () => link.select(),
   });
-  const copy = h(
-    "button",
-    {
-      class: "button",
-      onclick: () =>
-        void navigator.clipboard?.writeText(link.value).then(
-          () => (copied.textContent = "The link is on the clipboard."),
-          () => link.select(),
-        ),
-    },
-    icon("copy"),
+  const copy = textButton(
+    "copy",
     "Copy",
+    () =>
+      void navigator.clipboard?.writeText(link.value).then(
+        () => (copied.textContent = "The link is on the clipboard."),
+        () => link.select(),
+      ),
   );
   const copied = h("p", { class: "muted" });
   const result = h(
@@ -75,24 +73,20 @@ export function create(_studio, { keeper }) {
       ),
     ),
   );
-  const make = h(
-    "button",
-    {
-      class: "button primary",
-      id: "share-make",
-      onclick: async () => {
-        const id = await remote();
-        const share = id && (await attempt(status, () => designs.share(id, mode)));
-        if (!share) return;
-        link.value = linkTo(share.token);
-        copied.textContent = "Copy it now: for safety, the link itself is shown only this once.";
-        result.hidden = false;
-        link.focus();
-        await load();
-      },
-    },
-    icon("share"),
+  const make = textButton(
+    "share",
     "Make a link",
+    async () => {
+      const id = await remote();
+      const share = id && (await attempt(status, () => designs.share(id, mode)));
+      if (!share) return;
+      link.value = linkTo(share.token);
+      copied.textContent = "Copy it now: for safety, the link itself is shown only this once.";
+      result.hidden = false;
+      link.focus();
+      await load();
+    },
+    { class: "button primary", id: "share-make" },
   );
   const element = dialog(
     "share-dialog",
@@ -104,18 +98,7 @@ export function create(_studio, { keeper }) {
     list,
   );
 
-  const remote = async () => {
-    if (await keeper.flush()) return keeper.remoteId;
-    status.replaceChildren(
-      h(
-        "div",
-        { class: "problem", role: "alert" },
-        icon("warning"),
-        "The design is not at the service yet, so it cannot be shared now.",
-      ),
-    );
-    return null;
-  };
+  const remote = () => keptName(keeper, status, ", so it cannot be shared now.");
   const load = async () => {
     const id = keeper.remoteId;
     const found = id ? await attempt(status, () => designs.shares(id)) : { shares: [] };

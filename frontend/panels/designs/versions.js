@@ -11,6 +11,7 @@ import { icon } from "../../icons.js";
 import { designs } from "../../keeping/designs.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
+import { keptName } from "./kept.js";
 import { attempt } from "../../widgets/attempt.js";
 import { ago } from "../../core/ago.js";
 
@@ -60,19 +61,7 @@ export function create(studio, { keeper }) {
     list,
   );
 
-  /** The service's name for the design; it gets the design now if it has not. */
-  const remote = async () => {
-    if (await keeper.flush()) return keeper.remoteId;
-    status.replaceChildren(
-      h(
-        "div",
-        { class: "problem", role: "alert" },
-        icon("warning"),
-        "The design is not at the service yet; versions are kept there.",
-      ),
-    );
-    return null;
-  };
+  const remote = () => keptName(keeper, status, "; versions are kept there.");
   const load = async () => {
     const id = keeper.remoteId;
     const found = id ? await attempt(status, () => designs.versions(id)) : { versions: [] };

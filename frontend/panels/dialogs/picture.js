@@ -13,6 +13,7 @@ import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/pictu
 import { h } from "../../dom.js";
 import { refusal } from "../../services/refusal.js";
 import { dialog } from "../../widgets/dialog.js";
+import { numberField } from "../../widgets/fields.js";
 
 /** Larger pictures are made smaller before they are looked at. */
 const MOST_PIXELS = 1600;
@@ -66,9 +67,7 @@ function pictureDialog({ studio, keeper }, name, bitmap, { values, width, height
 
   /** @param {string} label @param {string} id @param {number} value */
   const count = (label, id, value) => {
-    const input = h("input", {
-      type: "number",
-      class: "number figures",
+    const input = numberField({
       id,
       min: 1,
       max: MAX_SIDE,

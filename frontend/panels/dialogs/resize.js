@@ -8,6 +8,7 @@ import { Grid, MAX_SIDE } from "../../core/grid.js";
 import { resized } from "../../core/reshape.js";
 import { h } from "../../dom.js";
 import { dialog } from "../../widgets/dialog.js";
+import { numberField } from "../../widgets/fields.js";
 
 const UP = /** @type {const} */ ([
   [1, "top"],
@@ -25,9 +26,7 @@ export function create(studio) {
   const { document } = studio;
   /** @param {string} label @param {string} id */
   const field = (label, id) => {
-    const input = h("input", {
-      type: "number",
-      class: "number figures",
+    const input = numberField({
       id,
       min: "1",
       max: String(MAX_SIDE),

@@ -14,8 +14,9 @@ import { icon } from "../../icons.js";
 import { download } from "../../services/exporter.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
-import { choice, labelled } from "../../widgets/fields.js";
+import { choice, labelled, numberField } from "../../widgets/fields.js";
 import { KINDS, hindrance } from "./kinds.js";
+import { textButton } from "../../widgets/buttons.js";
 
 /** Characters of a text file that are shown. */
 const MOST_SHOWN = 6000;
@@ -24,9 +25,7 @@ const MOST_SHOWN = 6000;
 export function create(studio) {
   let kind = KINDS[0];
   const chosen = { construction: "flat", first_side: "RS", finish: "waste" };
-  const tex = h("input", {
-    type: "number",
-    class: "number figures",
+  const tex = numberField({
     min: "1",
     step: "any",
     placeholder: "–",
@@ -78,12 +77,7 @@ export function create(studio) {
   };
   const status = h("div", { class: "dialog-status", role: "status" });
   const outcome = h("div", { class: "exports-options", id: "export-outcome", "aria-live": "polite" });
-  const make = h(
-    "button",
-    { class: "button primary", id: "export-make", onclick: () => void run() },
-    icon("export"),
-    "Make the file",
-  );
+  const make = textButton("export", "Make the file", () => void run(), { class: "button primary", id: "export-make" });
 
   /** @param {ExportKind} one */
   const choose = (one) => {

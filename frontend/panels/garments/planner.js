@@ -21,10 +21,9 @@
 import { ApiError, call, isAbort } from "../../api.js";
 import { Latest } from "../../core/latest.js";
 import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
-import { iconButton } from "../../widgets/buttons.js";
+import { iconButton, textButton } from "../../widgets/buttons.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
-import { LengthField, choice, labelled } from "../../widgets/fields.js";
+import { LengthField, choice, labelled, numberField } from "../../widgets/fields.js";
 import { drawGarment } from "./preview.js";
 import { facts } from "./facts.js";
 import { DIGITS, TEMPLATES } from "./templates.js";
@@ -55,9 +54,7 @@ export function create(studio, { keeper }) {
   // --- what is asked ----------------------------------------------------------------------------
   const measures = h("div", { class: "planner-measures" });
   const about = h("p", { class: "muted" });
-  const ease = h("input", {
-    type: "number",
-    class: "number figures",
+  const ease = numberField({
     id: "planner-ease",
     min: "-60",
     max: "100",
@@ -65,9 +62,7 @@ export function create(studio, { keeper }) {
     "aria-label": "Ease in percent",
     oninput: changed,
   });
-  const target = h("input", {
-    type: "number",
-    class: "number figures",
+  const target = numberField({
     id: "planner-target",
     min: "1",
     max: "300",
@@ -94,9 +89,7 @@ export function create(studio, { keeper }) {
     },
   );
   const yarn = h("select", { class: "text-field", id: "planner-material", onchange: changed });
-  const tex = h("input", {
-    type: "number",
-    class: "number figures",
+  const tex = numberField({
     min: "1",
     step: "any",
     placeholder: "–",
@@ -114,9 +107,7 @@ export function create(studio, { keeper }) {
   });
   /** @param {string} label @param {string} value */
   const count = (label, value) =>
-    h("input", {
-      type: "number",
-      class: "number figures",
+    numberField({
       min: "1",
       step: "any",
       value,
@@ -337,19 +328,15 @@ export function create(studio, { keeper }) {
         h("thead", {}, h("tr", {}, h("th", {}, "Along the limb"), h("th", {}, "Around it"), h("th", {}, ""))),
         body,
       ),
-      h(
-        "button",
-        {
-          class: "button",
-          id: "planner-add",
-          onclick: () => {
-            const last = places[places.length - 1];
-            add([last.at.mm + 40, last.around.mm]);
-            changed();
-          },
-        },
-        icon("plus"),
+      textButton(
+        "plus",
         "Add a place",
+        () => {
+          const last = places[places.length - 1];
+          add([last.at.mm + 40, last.around.mm]);
+          changed();
+        },
+        { id: "planner-add" },
       ),
     );
     return { element, read: () => places.map(({ at, around }) => [at.mm, around.mm]) };

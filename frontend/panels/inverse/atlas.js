@@ -11,11 +11,11 @@ import { figure, percent, range } from "../../core/format.js";
 import { Ink } from "../../core/ink.js";
 import { motifGrid } from "../../core/motif.js";
 import { h } from "../../dom.js";
-import { icon } from "../../icons.js";
 import { pencil } from "../../tools/pencil.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { Run } from "../../widgets/jobrun.js";
 import { inWords, scatter } from "./scatter.js";
+import { textButton } from "../../widgets/buttons.js";
 
 const EXTENTS = [
   { id: "small", label: "Up to 3 × 3" },
@@ -133,13 +133,11 @@ export function atlasTab(studio, context) {
           h(
             "div",
             { class: "inverse-buttons" },
-            h(
-              "button",
-              { class: "button primary", id: "atlas-apply", onclick: apply },
-              icon("fill"),
-              studio.selection.value ? "Fill the selection" : "Fill the chart",
-            ),
-            h("button", { class: "button", onclick: () => paintWith(studio, key) }, icon("pencil"), "Paint with it"),
+            textButton("fill", studio.selection.value ? "Fill the selection" : "Fill the chart", apply, {
+              class: "button primary",
+              id: "atlas-apply",
+            }),
+            textButton("pencil", "Paint with it", () => paintWith(studio, key)),
           ),
         ),
       ),

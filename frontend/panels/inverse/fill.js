@@ -14,7 +14,7 @@ import { selectedCells } from "../../core/selection.js";
 import { outlineText } from "../../core/snapshot.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { iconButton } from "../../widgets/buttons.js";
+import { iconButton, textButton } from "../../widgets/buttons.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field } from "./find.js";
@@ -186,29 +186,25 @@ export function fillTab(studio) {
   const preview = (found, wished) => {
     const filled = Grid.fromText(found.chart);
     const cells = [...new Set(wished.flatMap((part) => part.cells))];
-    const use = h(
-      "button",
-      {
-        class: "button primary",
-        id: "fill-apply",
-        onclick: () => {
-          if (size !== sizeNow()) {
-            run.say({
-              title: "The chart has another size now",
-              detail: "The preview does not fit it any more.",
-              remedy: "Fill again.",
-            });
-            return;
-          }
-          chart.set(
-            cells.map((i) => [i, filled.purl[i]]),
-            "Fill from a wish",
-          );
-          studio.tell("The chart is filled. Undo with Ctrl+Z.");
-        },
-      },
-      icon("check"),
+    const use = textButton(
+      "check",
       "Apply",
+      () => {
+        if (size !== sizeNow()) {
+          run.say({
+            title: "The chart has another size now",
+            detail: "The preview does not fit it any more.",
+            remedy: "Fill again.",
+          });
+          return;
+        }
+        chart.set(
+          cells.map((i) => [i, filled.purl[i]]),
+          "Fill from a wish",
+        );
+        studio.tell("The chart is filled. Undo with Ctrl+Z.");
+      },
+      { class: "button primary", id: "fill-apply" },
     );
     const good = found.off_share <= 0.05;
     answer.replaceChildren(
@@ -242,12 +238,7 @@ export function fillTab(studio) {
   selection.listen(
     () => addButton.lastChild && (addButton.lastChild.textContent = selection.value ? "Selection" : "Whole chart"),
   );
-  const addButton = h(
-    "button",
-    { class: "button", id: "part-add", onclick: addSelection },
-    icon("plus"),
-    selection.value ? "Selection" : "Whole chart",
-  );
+  const addButton = textButton("plus", selection.value ? "Selection" : "Whole chart", addSelection, { id: "part-add" });
   show();
   const element = h(
     "div",
@@ -266,9 +257,9 @@ export function fillTab(studio) {
         "div",
         { class: "inverse-bar" },
         addButton,
-        h("button", { class: "button", id: "part-regions", onclick: addRegions }, icon("plus"), "Regions"),
+        textButton("plus", "Regions", addRegions, { id: "part-regions" }),
         h("label", { class: "check" }, "patches from", smallest, "sts"),
-        h("label", { class: "check", title: "Another number gives another chart, the same the same" }, "variant", seed),
+        h("label", { class: "check", title: "The same number gives the same chart again" }, "variant", seed),
         h(
           "label",
           { class: "check", title: "Choose from repeats up to 4 × 4; the first time takes up to a minute" },

@@ -9,10 +9,11 @@
 import { figure } from "../../core/format.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { iconButton } from "../../widgets/buttons.js";
+import { iconButton, textButton } from "../../widgets/buttons.js";
 import { carry, chosenPlace, fillWith, nameOf, repeatPicture } from "./apply.js";
 import { curlInWords, paintWith, sourceInWords } from "./atlas.js";
 import { Run } from "../../widgets/jobrun.js";
+import { numberField } from "../../widgets/fields.js";
 
 /**
  * @typedef {{id: string, label: string, short: string, unit: string, start: number, percent?: boolean,
@@ -312,16 +313,11 @@ export function findTab(studio, context) {
     h(
       "div",
       { class: "inverse-bar" },
-      h(
-        "button",
-        {
-          class: "button",
-          id: "wish-add",
-          onclick: () =>
-            addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]),
-        },
-        icon("plus"),
+      textButton(
+        "plus",
         "Wish",
+        () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]),
+        { id: "wish-add" },
       ),
       transfers.label,
       curl.label,
@@ -383,14 +379,7 @@ function valueOf(candidate, label) {
 
 /** @param {string} label @param {number} value @param {Record<string, unknown>} more */
 export function field(label, value, more = {}) {
-  return h("input", {
-    type: "number",
-    class: "number figures",
-    "aria-label": label,
-    value: String(value),
-    required: true,
-    ...more,
-  });
+  return numberField({ "aria-label": label, value: String(value), required: true, ...more });
 }
 
 /** @param {string} label @param {string[][]} options */

@@ -14,6 +14,7 @@ import { thumbnail } from "../../widgets/thumbnail.js";
 import { nameOf } from "./apply.js";
 import { field } from "./find.js";
 import { Run } from "../../widgets/jobrun.js";
+import { textButton } from "../../widgets/buttons.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const WIDTH = 480;
@@ -198,18 +199,14 @@ export function outlineTab(studio) {
           h(
             "div",
             { class: "inverse-buttons" },
-            h(
-              "button",
-              {
-                class: "button primary",
-                id: "outline-apply",
-                onclick: () => {
-                  studio.document.replace(filled, "Fill from an outline");
-                  studio.tell("The chart is filled. Stretch it below to see the outline.");
-                },
-              },
-              icon("check"),
+            textButton(
+              "check",
               "Apply",
+              () => {
+                studio.document.replace(filled, "Fill from an outline");
+                studio.tell("The chart is filled. Stretch it below to see the outline.");
+              },
+              { class: "button primary", id: "outline-apply" },
             ),
             h(
               "button",
@@ -279,7 +276,7 @@ export function outlineTab(studio) {
         pulls,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
         h("label", { class: "check" }, "bands from", band, "lines"),
-        h("label", { class: "check", title: "Another number gives another chart, the same the same" }, "variant", seed),
+        h("label", { class: "check", title: "The same number gives the same chart again" }, "variant", seed),
         h("span", { class: "spacer" }),
         h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"),
       ),
