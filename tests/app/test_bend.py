@@ -30,7 +30,7 @@ def test_the_bending_length_needs_the_weight_of_the_yarn() -> None:
     assert bent.bending_length_course_mm == pytest.approx(18.0, rel=0.02)
 
 
-def test_states_that_differ_much_are_told() -> None:
+def test_states_that_differ_much_are_noted() -> None:
     bent = bend(BendRequest(chart="P\nK", material="cotton"), Context(Path()))
     assert not bent.stable
     assert any("treat it as a range" in note for note in bent.notes)

@@ -99,7 +99,7 @@ def test_a_cluster_of_two_processes_gives_the_same(
     assert there == here
 
 
-def test_as_an_operation_it_tells_progress_and_stops(tmp_path: Path) -> None:
+def test_the_operation_reports_progress_and_stops(tmp_path: Path) -> None:
     request = CharacteriseRequest.model_validate(
         {"material": "cotton", "fabrics": ["stockinette"], "tensions": [1.0]}
     )
@@ -132,7 +132,7 @@ def test_one_yarn_has_to_be_named(body: dict[str, object]) -> None:
         (["cotton", "--scheduler", "somewhere"], "not an address"),
     ],
 )
-def test_what_cannot_work_is_refused(arguments: list[str], words: str, tmp_path: Path) -> None:
+def test_unusable_arguments_are_refused(arguments: list[str], words: str, tmp_path: Path) -> None:
     result = CliRunner().invoke(main, ["characterise", *arguments, "--out", str(tmp_path / "new")])
     assert result.exit_code == 2
     assert words in result.stderr

@@ -53,7 +53,7 @@ def test_malformed_json_is_told_as_such(client: TestClient) -> None:
     assert "not valid JSON" in response.json()["detail"]
 
 
-def test_what_is_not_there_is_a_problem_too(client: TestClient) -> None:
+def test_a_missing_page_is_a_problem(client: TestClient) -> None:
     response = client.get("/api/v1/nothing")
     assert response.status_code == 404
     assert response.json()["type"] == "/problems/http"

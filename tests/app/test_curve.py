@@ -73,7 +73,7 @@ def test_stresses_must_increase(client: TestClient) -> None:
     assert (problem["status"], problem["field"]) == (422, "stress")
 
 
-def test_a_curve_that_nobody_waits_for_is_not_computed(tmp_path: Path) -> None:
+def test_an_abandoned_curve_is_not_computed(tmp_path: Path) -> None:
     body = {"chart": "KKPP", "material": "acrylic", "direction": "course"}
     with pytest.raises(CancelledError):
         curve(CurveRequest.model_validate(body), Context(tmp_path, cancelled=lambda: True))

@@ -168,12 +168,12 @@ def test_an_outline_over_rest_and_on_the_command_line(
 
 
 @pytest.mark.parametrize("target", ["course", "course=x", "colour=1", "course=0.1~%"])
-def test_targets_that_cannot_be_read(target: str, tmp_path: Path) -> None:
+def test_unreadable_targets_are_refused(target: str, tmp_path: Path) -> None:
     refused = CliRunner().invoke(main, ["find", "--atlas", "none.npz", "--target", target])
     assert refused.exit_code == 2
 
 
-def test_there_must_be_something_to_search() -> None:
+def test_a_search_without_materials_is_refused() -> None:
     refused = CliRunner().invoke(main, ["find", "--target", "course=0.1"])
     assert refused.exit_code == 2
     assert "nothing to search" in refused.stderr
@@ -221,7 +221,7 @@ def test_the_values_of_a_chart_give_the_chart_back(
         ("row,column,modulus_wale_n_per_mm\n1,1,\n", "nothing is wanted"),
     ],
 )
-def test_maps_that_cannot_be_read(
+def test_unreadable_maps_are_refused(
     atlas: tuple[Path, dict[str, list[object]]], tmp_path: Path, text: str, says: str
 ) -> None:
     file = tmp_path / "v.csv"
@@ -244,7 +244,7 @@ def test_ragged_maps_are_refused(client: TestClient) -> None:
     assert refused.json()["field"] == "modulus_course_n_per_mm"
 
 
-def test_a_wrong_material_is_told_before_the_first_atlas_is_computed(
+def test_a_wrong_material_is_refused_before_any_atlas_is_computed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def never(*_: object) -> None:

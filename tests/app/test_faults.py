@@ -112,7 +112,7 @@ def test_a_full_disk_refuses_clearly_and_loses_nothing(small_disk: Path, tmp_pat
 
 @pytest.mark.postgres
 @pytest.mark.timeout(180 + 2 * OUTAGE_S)
-def test_a_database_that_is_away_loses_nothing(postgres_url: str, tmp_path: Path) -> None:
+def test_a_database_outage_loses_nothing(postgres_url: str, tmp_path: Path) -> None:
     service = Service(tmp_path, database_url=postgres_url)
     client = service.start()
     away = False

@@ -67,9 +67,7 @@ def test_a_calibrated_law_can_be_compared(field: Path, tmp_path: Path) -> None:
         (["calibrate", "FIELD", "x.h5", *FABRIC, "--out", "law.json"], "tests"),
     ],
 )
-def test_what_cannot_be_used_ends_with_code_2(
-    field: Path, arguments: list[str], message: str
-) -> None:
+def test_unusable_input_ends_with_code_2(field: Path, arguments: list[str], message: str) -> None:
     result = CliRunner().invoke(main, [str(field) if a == "FIELD" else a for a in arguments])
     assert result.exit_code == 2
     assert message in result.stderr

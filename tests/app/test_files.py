@@ -103,7 +103,7 @@ def test_the_command_line_keeps_what_a_design_holds(tmp_path: Path) -> None:
     assert kept["regions"][0]["yarn"] == "navy"
 
 
-def test_what_may_not_be_meant_is_said_on_import(tmp_path: Path) -> None:
+def test_an_import_notes_what_may_not_be_meant(tmp_path: Path) -> None:
     cover = {"id": "b", "name": "Cover", "colour": "#ffffff", "runs": [[0, 0, 4]]}
     regions = [*SHAPED["regions"], cover]
     design = tmp_path / "lost.json"
@@ -114,7 +114,7 @@ def test_what_may_not_be_meant_is_said_on_import(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "says"), [("none.png", "does not exist"), (".", "is a folder")])
-def test_a_missing_file_is_told(name: str, says: str, tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(name: str, says: str, tmp_path: Path) -> None:
     refused = CliRunner().invoke(main, ["import", str(tmp_path / name)])
     assert refused.exit_code == 2
     assert says in refused.stderr

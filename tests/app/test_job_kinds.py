@@ -59,7 +59,7 @@ def test_every_kind_is_tried(requests: dict[str, dict[str, Any]]) -> None:
 
 
 @pytest.mark.parametrize("kind", list(KINDS))
-def test_a_worker_killed_in_mid_job_costs_that_job_only(
+def test_a_killed_worker_loses_only_its_own_job(
     runner: JobRunner,
     requests: dict[str, dict[str, Any]],
     kind: str,

@@ -125,7 +125,7 @@ def test_a_job_that_is_sent_twice_runs_once(client: TestClient) -> None:
     assert (other.status_code, other.json()["field"]) == (422, "Idempotency-Key")
 
 
-def test_who_has_too_many_waiting_is_refused_at_once(
+def test_a_user_with_too_many_waiting_jobs_is_refused_at_once(
     database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> None:
@@ -203,7 +203,7 @@ def test_progress_and_cancel(database: Database, compute: Compute) -> None:
     ("what", "type_", "says"),
     [("die", "busy", "died"), ("fail", "internal", "did not expect"), ("wait", "busy", "0.3 s")],
 )
-def test_a_failure_costs_one_job(
+def test_an_unexpected_error_fails_only_its_own_job(
     database: Database, compute: Compute, what: str, type_: str, says: str
 ) -> None:
     async def scenario() -> None:
@@ -267,7 +267,7 @@ def test_a_service_that_stops_puts_its_jobs_back_in_line(
     asyncio.run(started_again(asyncio.run(stopped())))
 
 
-def test_a_database_that_is_away_costs_no_result(
+def test_a_result_outlives_a_database_outage(
     database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(runner_module, "STORE_RETRY_S", (0.01, 0.01, 0.01))

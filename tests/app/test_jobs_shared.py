@@ -102,7 +102,7 @@ def test_jobs_of_a_process_that_is_gone_are_taken_over(
     asyncio.run(scenario())
 
 
-def test_after_an_outage_nobody_is_taken_for_dead_at_once(
+def test_a_process_is_not_declared_dead_right_after_an_outage(
     database: Database, compute: Compute, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def scenario() -> list[str]:

@@ -97,7 +97,7 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
     assert "process_resident_memory_bytes" in families
 
 
-def test_ready_means_that_database_and_disk_are(
+def test_readyz_checks_database_and_disk(
     client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert client.get("/readyz").json() == {"status": "ok"}
@@ -108,7 +108,7 @@ def test_ready_means_that_database_and_disk_are(
     assert client.get("/healthz").status_code == 200
 
 
-def test_a_database_that_went_away_is_told_and_found_again(tmp_path: Path) -> None:
+def test_a_lost_database_is_reported_and_found_again(tmp_path: Path) -> None:
     app = create_app(Settings(workers=1, data_dir=tmp_path))
     design = {"name": "a", "material": "acrylic", "chart": "KP"}
     file, away = tmp_path / "knitcore.sqlite3", tmp_path / "away"
@@ -134,7 +134,7 @@ def test_a_database_that_went_away_is_told_and_found_again(tmp_path: Path) -> No
         assert client.post("/api/v1/designs", json=design).status_code == 201
 
 
-def test_settings_come_from_a_file_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_settings_come_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "knitcore.toml"
     monkeypatch.setenv("KNITCORE_CONFIG", str(file))
     with pytest.raises(InputError, match="not a TOML"):

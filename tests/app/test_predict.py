@@ -85,7 +85,9 @@ def test_a_chart_file_and_a_material_file_work(tmp_path: Path) -> None:
     assert told["modulus_course_n_per_mm"] == pytest.approx(own["modulus_course_n_per_mm"])
 
 
-def test_of_an_outline_the_largest_rectangle_counts(client: TestClient, tmp_path: Path) -> None:
+def test_a_prediction_is_of_the_largest_rectangle_in_the_outline(
+    client: TestClient, tmp_path: Path
+) -> None:
     chart, outline = "\n".join(["KKKK"] * 2 + ["PPPP"] * 4), ".xx.\n" * 2 + "xxxx\n" * 4
     asked = {"chart": chart, "material": "acrylic", "outline": outline}
     told = client.post("/api/v1/predict", json=asked).json()

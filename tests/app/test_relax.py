@@ -91,7 +91,7 @@ def test_what_is_held_is_the_same_on_the_command_line_and_over_rest(client: Test
         ({"cell_wale_mm": 90.0}, "cell_wale_mm"),
     ],
 )
-def test_what_cannot_be_held_is_refused(
+def test_an_impossible_held_size_is_refused(
     client: TestClient, asked: dict[str, Any], field: str
 ) -> None:
     chart = {"fabric": "stockinette", "columns": 1, "rows": 2}

@@ -64,7 +64,7 @@ def test_killed_it_leaves_no_worker_behind() -> None:
     assert not worker.exists()
 
 
-def test_a_port_in_use_is_told() -> None:
+def test_a_port_in_use_is_reported() -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -58,7 +58,7 @@ def test_a_scheduler_has_an_address() -> None:
     ("name", "value", "says"),
     [("ALLOWED_HOSTS", "knit.example", "as JSON"), ("DATA_DIR", "/proc/x", "cannot be made")],
 )
-def test_what_a_setting_cannot_be_is_told_in_a_line(
+def test_a_wrong_setting_is_reported_in_one_line(
     monkeypatch: pytest.MonkeyPatch, name: str, value: str, says: str
 ) -> None:
     monkeypatch.setenv(f"KNITCORE_{name}", value)

@@ -30,7 +30,7 @@ def test_the_service_pulls_a_swatch(client: TestClient) -> None:
     assert np.mean(answer["stitch_fields"]["strain_wale"][-1]) == pytest.approx(0.4, rel=0.1)
 
 
-def test_force_waist_and_every_stitch_have_an_interval(client: TestClient) -> None:
+def test_force_waist_and_stitches_have_intervals(client: TestClient) -> None:
     """Those of a pure fabric's force are as wide as those of its modulus; no other source of doubt
     matters as much.
     """
@@ -95,7 +95,7 @@ def test_the_command_line_gives_the_same_curve(client: TestClient, tmp_path: Pat
         ({"shear_modulus_n_per_mm": 1e-300}, "shear_modulus_n_per_mm"),
     ],
 )
-def test_what_cannot_be_pulled_names_field_and_remedy(
+def test_a_refused_test_names_field_and_remedy(
     client: TestClient, change: dict[str, object], field: str
 ) -> None:
     response = client.post("/api/v1/stretch", json=ASKED | change)
@@ -116,13 +116,13 @@ def test_beyond_the_lock_up_the_limit_is_named(client: TestClient) -> None:
     assert "Use at most 0.44" in result.stderr
 
 
-def test_the_published_model_says_when_it_leaves_the_cloth_behind(client: TestClient) -> None:
+def test_the_published_model_warns_beyond_the_lock_up(client: TestClient) -> None:
     body = ASKED | {"model": "published", "strain": 1.5}
     answer = client.post("/api/v1/stretch", json=body).json()
     assert any("the cloth locks at 1" in message for message in answer["messages"])
 
 
-def test_the_full_model_says_from_where_on_its_law_is_only_continued(client: TestClient) -> None:
+def test_the_full_model_says_where_its_law_is_extrapolated(client: TestClient) -> None:
     """Stockinette beside rib locks first; pulled on, the force is thousands of newtons."""
     chart = "\n".join(["KP" * 8 + "K" * 16] * 16 + ["K" * 16 + "KP" * 8] * 16)
     body = ASKED | {"chart": chart, "direction": "course", "strain": 1.2, "steps": 12}
@@ -136,7 +136,7 @@ def test_the_full_model_says_from_where_on_its_law_is_only_continued(client: Tes
     assert before["messages"] == []
 
 
-def test_a_lock_up_of_part_of_a_quarter_cell_is_told_too(client: TestClient) -> None:
+def test_a_lock_up_in_part_of_a_quarter_cell_is_reported(client: TestClient) -> None:
     """A piece that hangs on one stitch locks at the neck; the mean of a cell hides that."""
     body = ASKED | {
         "chart": "PPKKPKP\nKKKPPKK\nPKKKPKK",
@@ -150,7 +150,7 @@ def test_a_lock_up_of_part_of_a_quarter_cell_is_told_too(client: TestClient) -> 
 
 
 @pytest.mark.parametrize("out", ["nowhere/fields.npz", ".", "fields.doc"])
-def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, out: str) -> None:
+def test_an_unwritable_file_is_refused_before_the_work(tmp_path: Path, out: str) -> None:
     arguments = ["garter", "--size", "9x6", "--material", "acrylic", "--direction", "wale"]
     arguments += ["--strain", "0.2", "--out", str(tmp_path / out), "--json"]
     result = CliRunner().invoke(main, ["stretch", *arguments])
@@ -159,7 +159,7 @@ def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, out: str
     assert result.stdout == ""
 
 
-def test_a_shaped_piece_is_pulled_without_what_is_no_stitch(client: TestClient) -> None:
+def test_a_shaped_piece_is_pulled_without_its_empty_cells(client: TestClient) -> None:
     """Its stitches are those of the narrow rectangle, in whichever chart they stand."""
     shape = {"outline": "\n".join(["..xxxxx.."] * 6)}
     shaped = client.post("/api/v1/stretch", json=ASKED | shape).json()

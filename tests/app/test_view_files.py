@@ -77,7 +77,7 @@ def test_a_solid_is_the_yarn_in_metres_with_its_colours(client: TestClient) -> N
     )
 
 
-def test_no_stitch_is_neither_drawn_nor_clicked_nor_given_away(client: TestClient) -> None:
+def test_an_empty_cell_is_not_drawn_clicked_or_exported(client: TestClient) -> None:
     shaped = SMALL | {"outline": "xx..\nxxxx\nxxxx", "rectangles": True}
     answer = client.put(f"/api/v1/views/{DESIGN}", json=shaped).json()
     assert answer["stitches"] == 10
@@ -95,14 +95,14 @@ def test_no_stitch_is_neither_drawn_nor_clicked_nor_given_away(client: TestClien
     assert problem["field"] == "outline"
 
 
-def test_what_is_too_large_to_give_away_is_refused(client: TestClient) -> None:
+def test_a_view_too_large_to_share_is_refused(client: TestClient) -> None:
     large = {"chart": {"fabric": "rib", "columns": 120, "rows": 100}, "material": "acrylic"}
     problem = client.post("/api/v1/views/solid", json=large).json()
     assert problem["field"] == "chart"
     assert "at most 10000" in problem["remedy"]
 
 
-def test_a_picture_needs_somebody_who_looks(client: TestClient) -> None:
+def test_a_picture_needs_an_open_view(client: TestClient) -> None:
     design = "a-design-unseen"
     address = f"/api/v1/views/{design}/picture"
     assert client.get(address).status_code == 404
@@ -208,7 +208,7 @@ def test_a_huge_chart_is_drawn_around_its_focus() -> None:
     )
 
 
-def test_every_meaning_of_the_colours() -> None:
+def test_every_way_to_colour_the_stitches() -> None:
     regions = [
         {"id": "a", "name": "A", "colour": "#ff0000", "yarn": "red", "runs": [[0, 0, 2]]},
         {"id": "b", "name": "B", "colour": "#00ff00", "runs": [[0, 1, 2], [1, 0, 1]]},
@@ -245,7 +245,7 @@ def test_every_meaning_of_the_colours() -> None:
         ),
     ],
 )
-def test_colours_that_cannot_be_are_refused(
+def test_impossible_colours_are_refused(
     client: TestClient, change: dict[str, object], field: str
 ) -> None:
     problem = client.put(f"/api/v1/views/{DESIGN}", json=SMALL | change).json()

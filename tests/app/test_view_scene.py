@@ -37,7 +37,7 @@ def _show(view: View, request: dict[str, str]) -> None:
     view.show(build_scene(ViewRequest.model_validate(request), None, Context(Path())))
 
 
-def test_a_cloth_goes_only_when_the_next_one_is_there(
+def test_the_old_cloth_stays_until_the_new_one_is_drawn(
     view: View, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(scene_module, "BUILD_S", 0.01)

@@ -118,7 +118,7 @@ def test_views_make_room_and_leave_nothing_behind() -> None:
     assert len(views) == 0
 
 
-def test_colours_mean_what_the_maps_say() -> None:
+def test_colours_follow_their_maps() -> None:
     low, high = sequential([1.0, 100.0], 1.0, 100.0)
     middle = sequential([10.0], 1.0, 100.0, log=True)[0]
     assert low.tolist() == [0x01, 0x19, 0x59]

@@ -82,7 +82,7 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", 300)
 
 
-def test_change_after_a_stretch_marks_it_as_old_until_it_is_pulled_again(
+def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(
     flat_studio: Page,
 ) -> None:
     flat_studio.select_option("#stretch-unit", "N")

@@ -45,7 +45,7 @@ def test_bad_text_is_explained_and_changes_nothing(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == painted
 
 
-def test_dropped_nonsense_is_explained(flat_studio: Page) -> None:
+def test_a_dropped_file_without_a_chart_is_explained(flat_studio: Page) -> None:
     flat_studio.evaluate(
         """() => {
             const data = new DataTransfer();
@@ -67,7 +67,7 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == CHART
 
 
-def test_absent_service_is_told_and_painting_goes_on(flat_studio: Page) -> None:
+def test_painting_goes_on_while_the_service_is_unreachable(flat_studio: Page) -> None:
     for path in ("**/api/**", "**/healthz"):
         flat_studio.route(path, lambda route: route.abort())
     drag(flat_studio, 60, 30)

@@ -117,7 +117,7 @@ def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page)
     expect(names.filter(has_text="Theirs")).not_to_have_count(0)
 
 
-def test_a_deleted_design_comes_back(flat_studio: Page) -> None:
+def test_a_deleted_design_can_be_recovered(flat_studio: Page) -> None:
     painted(flat_studio)
     renamed(flat_studio, "Dispensable")
     saved(flat_studio)

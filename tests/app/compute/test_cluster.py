@@ -139,7 +139,7 @@ def test_an_abandoned_job_and_one_beyond_its_time_are_stopped(
     assert mark.read_text() == "stopped"
 
 
-def test_a_worker_killed_in_mid_job_costs_a_retry(compute: Compute, tmp_path: Path) -> None:
+def test_a_job_whose_worker_is_killed_is_retried(compute: Compute, tmp_path: Path) -> None:
     """The other worker goes on with its own job, and takes this one over."""
     mark, done = tmp_path / "mark", tmp_path / "done"
 
@@ -161,7 +161,7 @@ def test_a_job_that_kills_its_workers_fails_alone(compute: Compute) -> None:
     assert asyncio.run(compute.run(never, jobs.add, 20, 22)) == 42
 
 
-def test_a_stubborn_job_costs_its_process_only(
+def test_a_job_that_does_not_stop_loses_only_its_process(
     compute: Compute, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(compute_module, "GRACE_S", 0.2)
@@ -177,7 +177,7 @@ async def _two(compute: Compute) -> list[int]:
     return await asyncio.gather(*runs)
 
 
-def test_a_cluster_that_is_away_is_said_and_found_again(
+def test_a_lost_cluster_is_reported_and_found_again(
     address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.compute.cluster.CONNECT_S", 0.5)

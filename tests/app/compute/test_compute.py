@@ -58,7 +58,7 @@ def test_a_job_beyond_its_time_is_stopped(compute: Compute) -> None:
         asyncio.run(compute.run(never, jobs.until_cancelled, "/dev/null", timeout_s=0.1))
 
 
-def test_a_stubborn_job_costs_its_process_only(
+def test_a_job_that_does_not_stop_loses_only_its_process(
     compute: Compute, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(compute_module, "GRACE_S", 0.2)
@@ -67,7 +67,7 @@ def test_a_stubborn_job_costs_its_process_only(
     assert asyncio.run(compute.run(never, jobs.add, 4, 4)) == 8
 
 
-def test_a_job_may_not_eat_the_machine() -> None:
+def test_a_job_stays_within_its_memory() -> None:
     compute = Compute(processes(1, memory_bytes=1_000_000_000), timeout_s=30.0)
     try:
         with pytest.raises(MemoryLimitError, match="1 GB"):
@@ -77,7 +77,7 @@ def test_a_job_may_not_eat_the_machine() -> None:
         compute.close()
 
 
-def test_a_worker_that_dies_costs_its_own_job_only(tmp_path: Path) -> None:
+def test_a_worker_that_dies_loses_only_its_own_job(tmp_path: Path) -> None:
     compute = Compute(processes(2), timeout_s=30.0)
     mark = tmp_path / "mark"
 
@@ -95,7 +95,7 @@ def test_a_worker_that_dies_costs_its_own_job_only(tmp_path: Path) -> None:
         compute.close()
 
 
-def test_a_worker_that_is_killed_while_idle_costs_nothing() -> None:
+def test_a_worker_killed_while_idle_loses_nothing() -> None:
     place = ProcessPlace(4_000_000_000)
     compute = Compute([place], timeout_s=30.0)
     asyncio.run(compute.run(never, jobs.add, 1, 1))
@@ -139,7 +139,7 @@ def test_too_many_waiting_jobs_are_refused(compute: Compute, tmp_path: Path) -> 
 
 @pytest.mark.skipif(not hasattr(os, "SCHED_IDLE"), reason="only Linux knows idle processes")
 @pytest.mark.parametrize("idle", [True, False])
-def test_workers_stand_back(idle: bool) -> None:
+def test_workers_run_at_low_priority(idle: bool) -> None:
     compute = Compute(processes(1, idle=idle), timeout_s=30.0)
     try:
         policy, niceness = asyncio.run(compute.run(never, jobs.priority))

@@ -34,13 +34,13 @@ async def _order(turns: Turns[int], line: list[tuple[str, bool]]) -> list[str]:
     return order
 
 
-def test_nobody_waits_for_all_jobs_of_another() -> None:
+def test_users_take_turns() -> None:
     line = [("ada", True)] * 4 + [("bob", True)] * 2 + [("eve", True)]
     order = asyncio.run(_order(_turns(), line))
     assert order == ["ada", "bob", "eve", "ada", "bob", "ada", "ada"]
 
 
-def test_who_waits_at_a_page_comes_first() -> None:
+def test_requests_of_pages_come_first() -> None:
     line = [("ada", True), ("ada", True), ("bob", False)]
     assert asyncio.run(_order(_turns(), line)) == ["bob", "ada", "ada"]
 
@@ -58,7 +58,7 @@ def test_everybody_is_served_once_and_in_turn(line: list[tuple[str, bool]]) -> N
             assert served[owner] <= count + 1 or count == left[other]
 
 
-def test_background_work_leaves_a_place() -> None:
+def test_background_work_leaves_a_place_free() -> None:
     async def scenario() -> None:
         turns = _turns(places=3, background=2)
         background = [turns.enter("ada", background=True) for _ in range(4)]
@@ -71,7 +71,7 @@ def test_background_work_leaves_a_place() -> None:
     asyncio.run(scenario())
 
 
-def test_who_leaves_the_line_holds_nobody_up() -> None:
+def test_leaving_the_queue_holds_nobody_up() -> None:
     async def scenario() -> list[bool]:
         turns = _turns()
         holder: Ticket[int] = turns.enter("ada", background=False)
@@ -84,7 +84,7 @@ def test_who_leaves_the_line_holds_nobody_up() -> None:
     assert asyncio.run(scenario()) == [True, True]
 
 
-def test_the_line_has_an_end() -> None:
+def test_the_queue_is_bounded() -> None:
     async def scenario() -> None:
         turns: Turns[int] = Turns([0], most_background=1, most_waiting=1, most_waiting_each=1)
         for background in (False, True):
@@ -99,7 +99,7 @@ def test_the_line_has_an_end() -> None:
     asyncio.run(scenario())
 
 
-def test_nobody_fills_the_line_for_the_others() -> None:
+def test_one_user_cannot_fill_the_queue() -> None:
     async def line_up() -> None:
         turns = Turns([0], most_background=1, most_waiting=3, most_waiting_each=100)
         for _ in range(4):  # one has the place, three wait
@@ -113,7 +113,7 @@ def test_nobody_fills_the_line_for_the_others() -> None:
     asyncio.run(line_up())
 
 
-def test_nobody_holds_more_places_than_a_user_may() -> None:
+def test_a_user_holds_only_so_many_places() -> None:
     async def scenario() -> None:
         turns = Turns(
             [0, 1, 2], most_background=2, most_waiting=9, most_waiting_each=9, most_each=2

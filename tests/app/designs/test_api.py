@@ -48,7 +48,9 @@ def test_the_document_is_what_the_command_line_reads(
 
 
 @pytest.mark.parametrize("method", ["PUT", "PATCH"])
-def test_two_who_change_the_same_state(client: TestClient, made: str, method: str) -> None:
+def test_of_two_changes_of_one_state_one_is_refused(
+    client: TestClient, made: str, method: str
+) -> None:
     body = RIB | {"name": "Mine"} if method == "PUT" else {"name": "Mine"}
     address = f"{DESIGNS}/{made}"
     first = client.request(method, address, json=body, headers={"If-Match": '"1"'})
@@ -140,7 +142,7 @@ def test_links_over_rest(client: TestClient, made: str) -> None:
         ({"note": "a\u0000b"}, "note"),
     ],
 )
-def test_what_is_no_design_is_refused(
+def test_a_file_that_is_not_a_design_is_refused(
     client: TestClient, change: dict[str, object], field: str
 ) -> None:
     answer = client.post(DESIGNS, json=RIB | change)
@@ -150,6 +152,6 @@ def test_what_is_no_design_is_refused(
 @pytest.mark.parametrize(
     "address", ["designs/a", "designs/a/versions", "jobs/b", "shared/c", "designs/a/versions/1"]
 )
-def test_what_does_not_exist_is_not_found_however_short(client: TestClient, address: str) -> None:
+def test_unknown_names_are_not_found_however_short(client: TestClient, address: str) -> None:
     answer = client.get(f"/api/v1/{address}")
     assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")

@@ -27,7 +27,7 @@ def painted(draw: st.DrawFn) -> tuple[StitchChart, list[Run]]:
 
 
 @given(painted())
-def test_the_map_holds_every_stitch_that_looks_different(
+def test_the_map_holds_every_stitch_whose_kind_changed(
     example: tuple[StitchChart, list[Run]],
 ) -> None:
     chart, runs = example

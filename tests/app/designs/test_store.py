@@ -87,7 +87,7 @@ def test_a_change_on_an_old_state_is_refused(designs: DesignStore) -> None:
     assert (renamed.name, renamed.document.note) == ("Other", "soft")
 
 
-def test_of_many_changes_of_one_state_one_wins(designs: DesignStore) -> None:
+def test_of_many_concurrent_changes_one_wins(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
 
     def change(number: int) -> int | None:
@@ -118,7 +118,7 @@ def test_strokes_of_several_people_merge(designs: DesignStore) -> None:
     assert kept.revision == 1 + 128
 
 
-def test_strokes_know_their_place(designs: DesignStore) -> None:
+def test_strokes_are_painted_in_place_or_refused(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
     _paint(designs, "ada", made.id, _strokes((0, 1, "KK"), (1, 3, "K"), (0, 2, "P")))
     assert designs.get("ada", made.id).document.chart == "KPKK\nKKPP"
@@ -172,7 +172,7 @@ def test_versions_are_kept_and_a_restore_loses_nothing(designs: DesignStore) -> 
         designs.version("ada", made.id, 3)
 
 
-def test_a_copy_is_a_design_of_its_own(designs: DesignStore) -> None:
+def test_a_copy_is_an_independent_design(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
     copy = designs.duplicate("ada", made.id)
     assert copy.id != made.id
@@ -181,7 +181,7 @@ def test_a_copy_is_a_design_of_its_own(designs: DesignStore) -> None:
     assert designs.get("ada", made.id).document == RIB
 
 
-def test_there_is_a_bound_to_what_one_owner_keeps(
+def test_what_one_owner_keeps_is_bounded(
     designs: DesignStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(store_module, "BUDGETS", Budgets(designs=2, versions=1))

@@ -38,7 +38,7 @@ def test_the_same_inputs_are_computed_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("damage", [b"", b'{"value": 1', b'{"other": 1}', b"\xff\xfe"])
-def test_a_damaged_result_is_computed_again_and_told(
+def test_a_damaged_result_is_logged_and_computed_again(
     tmp_path: Path, damage: bytes, caplog: pytest.LogCaptureFixture
 ) -> None:
     kept, make = KeptResults(tmp_path), Counting()
@@ -51,7 +51,7 @@ def test_a_damaged_result_is_computed_again_and_told(
     assert kept.get_or_make(Answer, {}, make) == (Answer(value=2), True)
 
 
-def test_what_was_not_asked_for_longest_makes_room(tmp_path: Path) -> None:
+def test_the_longest_unused_result_makes_room(tmp_path: Path) -> None:
     size = len(Answer(value=1.0).model_dump_json())
     kept, make = KeptResults(tmp_path, max_bytes=2 * size), Counting()
     for name in ("first", "second"):
@@ -65,7 +65,7 @@ def test_what_was_not_asked_for_longest_makes_room(tmp_path: Path) -> None:
     assert not kept.get_or_make(Answer, {"name": "second"}, make)[1]
 
 
-def test_a_folder_that_cannot_be_written_costs_no_result(
+def test_a_read_only_folder_loses_no_result(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     file = tmp_path / "file"

@@ -54,7 +54,7 @@ def identifier(client: TestClient) -> str:
     return str(first["id"])
 
 
-def test_it_is_listed_first_with_its_measured_curve(own: TestClient) -> None:
+def test_an_own_material_is_listed_first_with_its_measured_curve(own: TestClient) -> None:
     mine = identifier(own)
     assert mine.startswith("own:mine.")
     detail = own.get(f"/api/v1/materials/{mine}").json()
@@ -98,7 +98,7 @@ def test_a_changed_file_is_another_material(folder: Path, own: TestClient) -> No
     assert "gone" in gone.json()["detail"]
 
 
-def test_a_file_that_is_none_is_left_out_and_told_in_the_log(
+def test_a_file_without_a_material_is_skipped_and_logged(
     folder: Path, own: TestClient, caplog: pytest.LogCaptureFixture
 ) -> None:
     (folder / "broken.json").write_text("{")
@@ -109,7 +109,7 @@ def test_a_file_that_is_none_is_left_out_and_told_in_the_log(
     assert "notes.txt" not in caplog.text
 
 
-def test_the_command_line_knows_it_too(folder: Path) -> None:
+def test_the_command_line_lists_it(folder: Path) -> None:
     save_mine(folder)
     told = CliRunner().invoke(main, ["materials"])
     assert told.output.startswith("own:mine.")

@@ -43,7 +43,7 @@ def filled(tmp_path: Path) -> Iterator[Database]:
     database.close()
 
 
-def test_everything_comes_back(filled: Database, tmp_path: Path) -> None:
+def test_a_restore_brings_everything_back(filled: Database, tmp_path: Path) -> None:
     bob = DesignStore(filled).page("bob", limit=9, cursor=None, deleted=False).designs[0]
     link = Sharing(filled).give("bob", bob.id, ShareMode.READ)
     file = tmp_path / "backup.gz"
@@ -63,7 +63,7 @@ def test_everything_comes_back(filled: Database, tmp_path: Path) -> None:
     other.close()
 
 
-def test_a_backup_never_replaces_anything(filled: Database, tmp_path: Path) -> None:
+def test_a_backup_never_overwrites_a_file(filled: Database, tmp_path: Path) -> None:
     file = tmp_path / "backup.gz"
     back_up(filled, file)
     with pytest.raises(InputError, match="exists"):
@@ -151,7 +151,7 @@ def test_the_commands(filled: Database, tmp_path: Path, monkeypatch: pytest.Monk
         {"end": 3},
     ],
 )
-def test_a_crafted_backup_is_refused_in_words(
+def test_a_crafted_backup_is_refused_with_a_message(
     filled: Database, tmp_path: Path, line: dict[str, object]
 ) -> None:
     whole, crafted = tmp_path / "whole.gz", tmp_path / "crafted.gz"
@@ -167,7 +167,9 @@ def test_a_crafted_backup_is_refused_in_words(
     other.close()
 
 
-def test_own_materials_go_along_and_lead_nowhere_else(filled: Database, tmp_path: Path) -> None:
+def test_own_materials_are_backed_up_and_restored_inside_their_folder(
+    filled: Database, tmp_path: Path
+) -> None:
     here, there = tmp_path / "here", tmp_path / "there" / "materials"
     here.mkdir()
     (here / "wool.yaml").write_text("name: Wool ä")

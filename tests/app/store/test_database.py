@@ -94,7 +94,7 @@ def test_waiting_changes_share_a_commit_and_fail_alone(database: Database) -> No
     assert len(commits) == 2
 
 
-def test_a_change_that_nobody_waits_for_any_more_is_left_out(database: Database) -> None:
+def test_a_change_whose_caller_has_gone_is_not_made(database: Database) -> None:
     _table(database)
     begun, go_on = threading.Event(), threading.Event()
 
@@ -116,7 +116,7 @@ def test_a_change_that_nobody_waits_for_any_more_is_left_out(database: Database)
     assert _values(database) == [1, 3]
 
 
-def test_a_full_disk_is_told_and_costs_only_what_did_not_fit(database: Database) -> None:
+def test_a_full_disk_refuses_only_what_does_not_fit(database: Database) -> None:
     """The file may not grow beyond some pages, as on a full disk."""
     database.write(lambda c: c.execute(text("CREATE TABLE big (v BLOB)")))
 
@@ -140,7 +140,7 @@ def test_a_full_disk_is_told_and_costs_only_what_did_not_fit(database: Database)
         assert connection.exec_driver_sql("PRAGMA integrity_check").scalar() == "ok"
 
 
-def test_reasons_tell_no_addresses() -> None:
+def test_reasons_reveal_no_addresses() -> None:
     database = Database("postgresql+psycopg://somebody:secret@127.0.0.1:9/none")
     with pytest.raises(StoreError) as told:
         database.write(lambda c: c.execute(text("SELECT 1")))
@@ -149,7 +149,7 @@ def test_reasons_tell_no_addresses() -> None:
     database.close()
 
 
-def test_what_waits_is_written_before_closing(tmp_path: Path) -> None:
+def test_pending_changes_are_written_before_closing(tmp_path: Path) -> None:
     url = f"sqlite:///{tmp_path / 'again.sqlite3'}"
     database = Database(url)
     _table(database)

@@ -78,7 +78,7 @@ def test_requests_for_a_public_tunnel_are_dropped() -> None:
         _render(_png(2, 2)),  # nobody asked for it
     ],
 )
-def test_everything_else_is_dropped(message: bytes | str) -> None:
+def test_other_messages_are_dropped(message: bytes | str) -> None:
     assert passed_on(message, None) is None
 
 
