@@ -50,7 +50,7 @@ async function problemOf(response) {
   try {
     return { ...plain, .../** @type {Partial<Problem>} */ (await response.json()) };
   } catch {
-    return plain; // not JSON: the status has to do
+    return plain; // not JSON: the status must be enough
   }
 }
 

@@ -3,5 +3,5 @@ try {
   const theme = JSON.parse(localStorage.getItem("knitcore.settings") ?? "{}").theme;
   if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
 } catch {
-  // No stored choice: the system's theme holds.
+  // Without a stored choice the system's theme applies.
 }

@@ -229,8 +229,8 @@ def _messages(test: StripTest) -> list[str]:
         first = next(step for step in range(test.steps) if test.is_past_the_law(step))
         messages.append(
             f"From a strain of {test.strain[first]:.3g} on some cloth is past "
-            f"{EXTENSION_START:.0%} of its lock-up. There the law is only continued: the force is "
-            "no fabric's."
+            f"{EXTENSION_START:.0%} of its lock-up. There the law is extrapolated: do not rely "
+            "on the force."
         )
     elif used >= 1:
         messages.append(

@@ -24,7 +24,7 @@ const some = ({ selection }) => selection.value !== null;
 function copyPart({ document, editing, selection }) {
   if (!selection.value) return;
   editing.clip = Clip.of(document.grid, selection.value);
-  // Also for other programs, where the browser lets us.
+  // For other programs, too, where the browser allows it.
   void navigator.clipboard?.writeText(editing.clip.part.text).catch(() => {});
 }
 

@@ -55,7 +55,7 @@ const stitches = {
   view: "fabric",
   available: always,
   colouring: (_, { knit, purl }) => byKind((_code, _quarter, p) => pixel(p ? purl : knit)),
-  legend: () => ({ kind: "swatches", items: [] }), // the key above the chart says it
+  legend: () => ({ kind: "swatches", items: [] }), // the key above the chart shows it
 };
 
 /** @type {Overlay} */

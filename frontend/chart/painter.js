@@ -77,7 +77,7 @@ export class Painter {
   #down(event) {
     const { studio, view } = this;
     if (event.button > 2) return;
-    // Only if need be: it makes the browser lay out the page.
+    // Only when needed: it makes the browser lay out the page.
     if (document.activeElement !== view.canvas) view.canvas.focus({ preventScroll: true });
     view.canvas.setPointerCapture(event.pointerId);
     const cell = view.cellAt(event);
@@ -267,7 +267,7 @@ export class Painter {
     studio.document.changeRepeat(repeat.id, { placements: [...repeat.placements, place] }, "Place a repeat");
   }
 
-  /** Move a copy of a repeat; what it leaves stays as it was, linked no more. @param {Placed} placed */
+  /** Move a copy of a repeat; the stitches it leaves stay and are no longer linked. @param {Placed} placed */
   #replace({ repeat, at }) {
     const { studio, view } = this;
     const box = view.preview.value;

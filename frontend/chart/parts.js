@@ -78,7 +78,7 @@ export function drawRepeats(context, view, { grid, repeats }, palette) {
     const fine = new Path2D();
     for (const { row, column, rows, columns } of placements) {
       const top = y + (grid.rows - row - rows) * h;
-      // Inside its stitches, so that these drawn anew wipe it out.
+      // Inside its stitches, so that redrawing them erases it.
       heavy.rect(x + column * w + 2.25, top + 2.25, columns * w - 4.5, rows * h - 4.5);
       if (motif.columns * w < 14 || motif.rows * h < 14) continue;
       for (let c = column + motif.columns; c < column + columns; c += motif.columns) {

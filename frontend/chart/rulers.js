@@ -50,7 +50,7 @@ export function drawRulers(context, view, grid, palette, round) {
     const x = view.x + at * view.cellWidth;
     if (x < MARGIN.left - 4 || x > view.width - MARGIN.right + 4) continue;
     const half = context.measureText(String(number)).width / 2;
-    if (x - half < left + 2 || x + half > right - 2) continue; // the sides' names stand there
+    if (x - half < left + 2 || x + half > right - 2) continue; // the names of the sides are there
     context.fillText(String(number), x, base);
   }
   const [start, end] = view.mirrored ? ["RS", "WS"] : ["WS", "RS"];

@@ -20,7 +20,7 @@ import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
 
 /**
- * Drawn by the processor: the strokes are small, and where there is no GPU its emulation would take
+ * Drawn by the processor: the strokes are small, and without a GPU the emulation would take
  * longer for them than a stroke may. (The option's name speaks of reading, its effect is this.)
  */
 const TOP_CONTEXT = { willReadFrequently: true };
@@ -164,7 +164,7 @@ export class ChartView {
     this.#frame ||= requestAnimationFrame(() => this.flush());
   }
 
-  /** Draw what is waiting, now: a stroke is on the canvas before its event ends. */
+  /** Draw everything pending at once: a stroke is on the canvas before its event ends. */
   flush() {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
@@ -296,7 +296,7 @@ export class ChartView {
     const { topContext: context, viewport, palette, studio } = this;
     const { grid } = studio.document;
     const nothing = !studio.selection.value && !this.preview.value && studio.symmetry.value === "none";
-    this.top.hidden = nothing; // an empty layer is mixed in with every frame, too
+    this.top.hidden = nothing; // even an empty layer would be blended into every frame
     if (nothing) return;
     const { x, y, cellWidth: w, cellHeight: h } = viewport;
     context.setTransform(viewport.dpr, 0, 0, viewport.dpr, 0, 0);

@@ -19,7 +19,7 @@ export class Viewport {
   aspect = 0.8;
   cellWidth = 10;
   cellHeight = 8;
-  /** What zooming has come to: cells are rounded, and small steps would be lost. */
+  /** The exact zoom: cells are rounded, and small steps would be lost. */
   #wanted = 10;
   /** Upper left corner of the chart. */
   x = 0;

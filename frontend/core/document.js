@@ -325,7 +325,7 @@ export class ChartDocument extends ChartState {
     this.#arrange(label, "repeats", next, lays ? next.find((repeat) => repeat.id === id) : null);
   }
 
-  /** Its copies stay as they are, linked no more. @param {string} id */
+  /** Its copies keep their stitches and are no longer linked. @param {string} id */
   removeRepeat(id) {
     this.#arrange(
       "Remove repeat",
@@ -426,7 +426,7 @@ export class ChartDocument extends ChartState {
     if (refused < 0) return;
     const locked = this.regions.filter((region) => region.locked);
     const here = locked.filter(({ cells }) => cells[refused]);
-    // A stitch may be kept by one that it is linked to.
+    // A stitch may be locked through one that it is linked to.
     const names = (here.length ? here : locked).map(({ name }) => name);
     for (const listener of this.#refused) listener(names);
   }

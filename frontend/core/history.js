@@ -73,7 +73,7 @@ export class History {
       const { done, undone } = JSON.parse(json ?? "");
       return new History(done.map(migrated), undone.map(migrated));
     } catch {
-      return new History(); // none kept, or spoilt: the chart itself is kept apart
+      return new History(); // nothing stored, or damaged: the chart itself is stored elsewhere
     }
   }
 }

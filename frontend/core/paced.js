@@ -1,5 +1,5 @@
 /**
- * For what need not keep up with the pointer: done at most once in so long, the last time after the
+ * For work that need not keep up with the pointer: done at most once per interval, the last time after the
  * last wish. So it stays out of the frame that shows a stroke.
  *
  * @param {() => void} act

@@ -29,7 +29,7 @@ export function bestThreshold(values) {
     counts[value]++;
     sum += value;
   }
-  // Between two clear peaks all thresholds part alike: the middle one is taken.
+  // Between two clear peaks all thresholds are equally good: take the middle one.
   let [best, first, last, below, sumBelow] = [-1, 128, 128, 0, 0];
   for (let t = 1; t < 256; t++) {
     below += counts[t - 1];

@@ -82,7 +82,7 @@ export function thick(path, size) {
 }
 
 /**
- * Connected stitches with the value of the first one.
+ * The connected stitches that have the value of the first one.
  *
  * @param {Grid} grid
  * @param {Uint8Array} values one for each stitch

@@ -38,7 +38,7 @@ export class Region {
     this.cells = cells;
   }
 
-  /** The same stitches, told apart otherwise. @param {Partial<RegionLook>} changes */
+  /** The same stitches with another name, colour, yarn, fill or lock. @param {Partial<RegionLook>} changes */
   with(changes) {
     return new Region(this.id, { ...this, ...changes }, this.cells);
   }

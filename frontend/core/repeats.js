@@ -1,5 +1,5 @@
 /**
- * Linked repeats: a motif, and places in the chart that follow it. Who paints one copy paints all.
+ * Linked repeats: a motif, and places in the chart that follow it. Painting one copy paints all.
  *
  * @import {PlacementItem, RepeatItem} from "./design.js"
  * @import {Region} from "./regions.js"
@@ -18,7 +18,7 @@ import { Brush } from "./stroke.js";
  * @property {readonly PlacementItem[]} placements later ones lie on top
  */
 
-/** Never changes, but for its motif while somebody paints. */
+/** Immutable, except for its motif during a stroke. */
 export class Repeat {
   /**
    * @param {string} id

@@ -74,7 +74,7 @@ export class ChartState {
     };
   }
 
-  /** A region as it is written, found anew only when it has changed. @param {Region} region */
+  /** A region as it is written; computed again only when it has changed. @param {Region} region */
   #item(region) {
     const edition = this.edition(region.cells);
     let known = this.#items.get(region);

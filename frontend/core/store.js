@@ -24,7 +24,7 @@ export function loadDesign() {
     const content = design && typeof design.id === "string" ? salvageContent(design) : null;
     return content && { ...design, ...content };
   } catch {
-    return null; // nothing kept, or storage is closed to us
+    return null; // nothing stored, or storage is not accessible
   }
 }
 
@@ -79,7 +79,7 @@ export function loadShelf() {
   try {
     return readContent({ chart: "K", shelf: JSON.parse(localStorage.getItem(SHELF) ?? "[]") }).shelf;
   } catch {
-    return []; // none kept, or spoilt: the designs have their own
+    return []; // nothing stored, or damaged: designs have their own patterns
   }
 }
 

@@ -5,7 +5,7 @@
  *   small to large strains; it begins at rest
  */
 
-/** Stitches that have used so much of their stretch are as good as taut. */
+/** Share of its stretch from which a stitch counts as taut. */
 export const TAUT = 0.95;
 /** A test that fell short is continued by at most this factor. */
 const FURTHER = 1.8;

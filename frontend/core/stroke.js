@@ -9,7 +9,7 @@ import { toRuns } from "./bits.js";
 /** A stitch that a brush does not touch. */
 export const UNTOUCHED = 2;
 
-/** Wanted values of stitches (or of groups of them): 0, 1 or untouched. */
+/** The values that stitches (or groups of them) shall have: 0, 1 or unchanged. */
 export class Brush {
   /** @type {Uint32Array} */ #list;
   count = 0;
@@ -50,7 +50,7 @@ export class Brush {
   }
 }
 
-/** One bitmap under a stroke: knows which of its stitches the stroke has flipped. */
+/** A bitmap during a stroke: knows which of its stitches the stroke has flipped. */
 export class Layer {
   /** @type {Uint8Array} */ #flipped;
   /** Holds all that was flipped. @type {Box | null} */ #reach = null;

@@ -1,5 +1,5 @@
 /**
- * Brings what was changed here to the service. It knows nothing of the page, so that every way in
+ * Delivers what was changed here to the service. It knows nothing of the page, so that every way in
  * which a delivery can go is tested without one.
  *
  * @import {DesignDocument} from "../types.js"
@@ -98,7 +98,7 @@ async function revive(parcel, id, service) {
     return combine(parcel, await service.recover(id));
   } catch (error) {
     if (!(error instanceof ApiError) || error.problem.status !== 404) throw error;
-    // Gone for good, as after a restore of an older backup: it is kept as a new one.
+    // Gone for good, as after restoring an older backup: store it as a new design.
     return create(parcel, `page-${parcel.id}-${id}`, parcel.document, service);
   }
 }

@@ -195,13 +195,13 @@ export class Keeper {
     }, delay);
   }
 
-  /** Until what was changed here is at the service, or that has failed. */
+  /** Resolves once the changes made here are at the service, or delivery has failed. */
   async flushChanges() {
     if (this.#change !== this.#sentChange) await this.flush();
   }
 
   /**
-   * Until the service has the design as it is now, even if nothing was changed in it yet.
+   * Resolves once the service has the design as it is now, even an unchanged one.
    *
    * @returns {Promise<boolean>} whether it has
    */
@@ -230,7 +230,7 @@ export class Keeper {
     this.state.value = { kind: "sending" };
     try {
       const outcome = await deliver(parcel, designs);
-      // What others did comes between two strokes, not into one.
+      // Changes of others are applied between strokes, never within one.
       while (this.studio.document.painting) await new Promise((done) => setTimeout(done, 50));
       if (this.#parcel.id !== parcel.id) return; // another design was opened meanwhile
       if (outcome.kind === "conflict") this.#clash(outcome);
@@ -356,7 +356,7 @@ export class Keeper {
           if (!parcel.remote) drafts.put({ ...parcel, posted: (parcel.posted ??= parcel.document) });
           const outcome = await deliver(parcel, designs);
           if (outcome.kind === "conflict") {
-            // Nobody looks at it now: both are kept.
+            // Nobody is looking at it now: keep both.
             const name = `${parcel.document.name.slice(0, 180)} (changed here)`;
             await designs.create({ ...parcel.document, name }, newIdentifier());
             break;
@@ -410,7 +410,7 @@ export class Keeper {
 
   // --- small things -----------------------------------------------------------------------------
 
-  /** Changes that come from the service are none of ours. @param {() => void} change */
+  /** Changes that come from the service are not delivered back to it. @param {() => void} change */
   #follow(change) {
     this.#following = true;
     try {

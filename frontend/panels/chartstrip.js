@@ -93,7 +93,7 @@ export function chartstrip(host, context) {
 }
 
 /**
- * Two choices beside each other.
+ * Two choices side by side.
  *
  * @param {string} label
  * @param {string} key

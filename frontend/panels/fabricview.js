@@ -22,7 +22,7 @@ import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
-/** How long news takes to reach the viewer and be drawn. */
+/** How long a change takes to reach the viewer and be drawn. */
 const DRAW_MS = 1500;
 const START_MS = 6000;
 /** After a stroke another one often follows. */
@@ -92,7 +92,7 @@ export function fabricview(host, studio, view) {
   );
 
   let problem = false;
-  /** There is a cloth to look at. */
+  /** A cloth is shown. */
   const knitted = () => {
     if (!problem) status.replaceChildren();
   };

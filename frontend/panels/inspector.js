@@ -121,12 +121,12 @@ export function inspector(host, studio) {
   const show = () => {
     const { value, busy, problem: wrong, scope } = studio.prediction.value;
     host.classList.toggle("busy", busy);
-    if (busy && shown === value) return; // asked anew: the old numbers stay, greyed, until the answer
+    if (busy && shown === value) return; // asked again: the old numbers stay, greyed, until the answer comes
     shown = value;
     const part = scopeOf(studio);
     title.replaceChildren(part.title, " ", h("span", { class: "muted figures unbroken" }, part.size));
     title.title = part.note;
-    // While the service is away the banner says so.
+    // While the service is unreachable the banner says so.
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     // Numbers of another scope would be mistaken for this one's.

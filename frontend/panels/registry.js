@@ -59,7 +59,7 @@ export function panelOpener(studio) {
       try {
         show = (await PANELS[name]()).create(studio, context);
       } catch (error) {
-        if (!(error instanceof TypeError)) throw error; // what import() says when it cannot load
+        if (!(error instanceof TypeError)) throw error; // import() throws it when a module cannot be loaded
         studio.tellProblem({
           type: "offline",
           status: 0,

@@ -93,7 +93,7 @@ export function topbar(host, studio, context) {
 }
 
 /**
- * On a first visit, in the bar's free middle, where it covers nothing.
+ * On a first visit, in the free middle of the bar, where it covers nothing.
  *
  * @param {HTMLElement} host
  * @param {ActionContext} context

@@ -1,5 +1,5 @@
 /**
- * The page in two minutes: what each part is for, one after the other. Arrow keys go on and back,
+ * A tour of two minutes: what each part of the page is for. Arrow keys go on and back,
  * Escape ends it.
  */
 
@@ -111,7 +111,7 @@ export function create() {
     next.focus();
   };
 
-  /** Put the ring around a part of the page and the box where most room is beside it. @param {DOMRect} part */
+  /** Put the ring around a part of the page, and the box beside it where there is most room. @param {DOMRect} part */
   const settle = (part) => {
     Object.assign(ring.style, {
       left: `${part.left}px`,

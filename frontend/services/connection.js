@@ -1,5 +1,5 @@
 /**
- * Notices when the service is back and has everything asked anew.
+ * Notices when the service is back, and has everything requested again.
  *
  * @import {Studio} from "../studio.js"
  */
@@ -18,13 +18,13 @@ export function watchConnection(studio, back) {
       const response = await fetch("/healthz", { cache: "no-store" });
       if (!response.ok) return;
     } catch {
-      return; // still away: the next look comes
+      return; // still unreachable: it is asked again later
     }
     studio.online.value = true;
   };
   studio.online.listen((online) => {
     clearInterval(timer);
-    // Whoever heard from the service first: all of the page has to catch up.
+    // Any part of the page may hear from the service first; then all of it catches up.
     if (online) back();
     else timer = setInterval(look, RETRY_MS);
   });

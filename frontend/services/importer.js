@@ -106,7 +106,7 @@ export function listenToImports(context, isTyping) {
     const picture = [...(event.clipboardData?.files ?? [])].find(({ type }) => type.startsWith("image/"));
     if (isTyping() || document.querySelector("dialog[open]")) return;
     const { clip } = studio.editing;
-    // Where a page may not write the clipboard, it holds something older than what was copied here.
+    // Where a page may not write the clipboard, the clipboard is older than what was copied here.
     const own = clip && (!navigator.clipboard || text === clip.part.text || (!text.trim() && !picture));
     if (!own && !picture && !text.trim()) return;
     event.preventDefault();

@@ -51,7 +51,7 @@ function followed(job, signal, onProgress, cancel) {
       resolve(status);
     });
     events.onerror = () => {
-      // While the service is away the browser tries again by itself; a refusal is final.
+      // While the service is unreachable the browser reconnects by itself; a refusal is final.
       if (events.readyState === EventSource.CLOSED) reject(new ApiError(interrupted(job)));
     };
   });

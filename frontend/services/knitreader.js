@@ -1,5 +1,5 @@
 /**
- * Files that knit: written rows, KnitSpeak and knitout. The service reads them, with their outline
+ * Files of instructions: written rows, KnitSpeak and knitout. The service reads them, with their outline
  * and yarns, and they are opened as a design of their own.
  *
  * @import {ActionContext} from "../actions/action.js"

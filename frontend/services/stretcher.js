@@ -17,11 +17,11 @@ import { runJob } from "./jobs.js";
 
 const STEPS = 20;
 const FRAME_MS = 140;
-/** Tests that may be needed to come to a force, and how near is near enough. */
+/** Most tests to find a force, and the tolerance. */
 const MOST_TRIES = 8;
 const NEAR = 0.005;
 const FIRST_STRAIN = 0.2;
-/** Tests that were this fast are run again by themselves when the chart has changed. */
+/** Tests that took no longer than this are repeated automatically after a change. */
 const FAST_S = 3;
 const AGAIN_MS = 900;
 
@@ -181,7 +181,7 @@ export class Stretcher {
     try {
       await api.stretch(this.#request);
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the view, asked again, says what is wrong
+      if (!(error instanceof ApiError)) throw error; // the next request for the view tells what is wrong
     }
     const { stretch } = studio;
     if (stretch.value.value?.id === id) stretch.value = { ...stretch.value };

@@ -13,7 +13,7 @@ export const wand = {
 };
 
 /**
- * What tells stitches apart: knit or purl or, by fabric, their surroundings; or none being there.
+ * What distinguishes stitches: knit or purl or, by fabric, their surroundings; or that there is none.
  *
  * @param {import("./tool.js").ToolContext} context
  * @param {boolean} byFabric

@@ -10,7 +10,7 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 
 /**
- * A quiet button; its label is there to hear and, where it is not plain to see, to hover.
+ * A button that shows only a sign; its label is for screen readers and, as a title, for the pointer.
  *
  * @param {IconName} sign
  * @param {string} label

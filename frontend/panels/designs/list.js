@@ -94,7 +94,7 @@ export function create(studio, context) {
   const picture = async (frame) => {
     const { id } = frame.dataset;
     if (!id || deleted) return;
-    // A picture that cannot be had is no news: the design's name is there.
+    // A missing picture is not reported: the design's name is enough.
     const kept = await designs.read(id).catch(() => null);
     if (kept) frame.replaceChildren(thumbnail(kept.document));
   };

@@ -41,7 +41,7 @@ export function create() {
   );
   return async () => {
     element.showModal();
-    const found = await api.version().catch(() => undefined); // not reached: nothing is said
+    const found = await api.version().catch(() => undefined); // unreachable: the line is left out
     if (found) version.replaceChildren(`Knitcore ${found.version} · `, h("a", { href: "/docs" }, "for programs"));
   };
 }

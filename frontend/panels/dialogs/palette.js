@@ -14,7 +14,7 @@ import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { dialog } from "../../widgets/dialog.js";
 
-/** What people look for that an action's name does not say. @type {Record<string, string>} */
+/** Search words that an action's name does not contain. @type {Record<string, string>} */
 const WORDS = {
   garments: "measure measurements pressure glove sock sleeve brace plan",
   "open-find": "pressure search wish stretch stiffness",
@@ -83,7 +83,7 @@ export function create(_studio, context) {
         next.ariaSelected = "true";
         next.scrollIntoView({ block: "nearest" });
       } else if (event.key === "Enter") {
-        event.preventDefault(); // or it presses what has the focus once this is closed
+        event.preventDefault(); // otherwise it would press whatever has the focus after closing
         items[at]?.click();
       }
     },

@@ -46,7 +46,7 @@ export class FrameGovernor {
     this.#request = own;
     viewer.requestAnimationFrame = (callback) => {
       if (this.#open()) return own((time) => this.#frame(callback, time));
-      // Numbers of our own lie far from the browser's.
+      // Our own numbers are far from the browser's, so the two never meet.
       const id = -this.#next++;
       this.#waiting.set(id, callback);
       return id;
@@ -61,7 +61,7 @@ export class FrameGovernor {
   }
 
   /**
-   * There is something new to draw.
+   * Something has to be drawn.
    *
    * @param {number} milliseconds for how long at least
    */
@@ -112,7 +112,7 @@ export class FrameGovernor {
    */
   #frame(callback, time) {
     const gap = time - this.#lastFrame;
-    // Several callbacks share a frame, and pauses of our own making are no measure.
+    // Several callbacks share a frame; pauses that we make ourselves do not count.
     if (gap > 0 && gap < 2000) this.#pace += 0.1 * (gap - this.#pace);
     this.#lastFrame = time;
     callback(time);

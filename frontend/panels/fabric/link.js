@@ -10,7 +10,7 @@
 import { ApiError, api } from "../../api.js";
 import { paced } from "../../core/paced.js";
 
-/** Outlines follow the pointer this often. */
+/** How often outlines follow the pointer. */
 const PERIOD_MS = 150;
 /** A view that is gone is looked for again after this time. */
 const RETRY_MS = 2500;
@@ -46,7 +46,7 @@ export class ViewLink {
       this.#find(row, column);
     });
     events.onerror = () => {
-      // While the service is away the browser tries again by itself; a refusal is final.
+      // While the service is unreachable the browser reconnects by itself; a refusal is final.
       if (events.readyState === EventSource.CLOSED) setTimeout(this.hooks.lost, RETRY_MS);
     };
   }

@@ -47,7 +47,7 @@ export function create(studio, { keeper }) {
   let garment = null;
   const latest = new Latest(TYPING_MS);
   const changed = () => {
-    make.disabled = true; // what is made is what is asked for now, not the plan before
+    make.disabled = true; // until the new plan is there, the old one must not be made
     latest.run(plan);
   };
 

@@ -82,7 +82,7 @@ export function fillWith(studio, key, place, material) {
 }
 
 /**
- * Carry a repeat onto the chart with the pointer, from a press on it.
+ * Drag a repeat onto the chart, from a press on it.
  *
  * @param {PointerEvent} down
  * @param {Studio} studio
