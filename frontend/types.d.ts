@@ -1322,7 +1322,9 @@ export interface LimbInput {
 
 /** Limits on the cost of knitting; null for no limit. */
 export interface LimitsInput {
+  /** Loops moved between the beds, per stitch. */
   transfers_per_stitch?: number | null;
+  /** Yarn between face and back, per stitch. */
   crossings_per_stitch?: number | null;
   /** Knits minus purls over all stitches, either way. */
   curl?: number | null;

@@ -10,6 +10,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from enum import Enum
+from inspect import signature
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -39,13 +40,12 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         raise TypeError(f"{operation.name} is not a command")
     options = _Options(operation.request, described)
 
-    def callback(as_json: bool, **given: Any) -> None:
+    def callback(**given: Any) -> None:
         context = Context(user_data_dir, local=True)
         request = options.request(given)
-        more = {option: given[option] for option in _parameters(described.run)}
         run: Callable[..., Any] = described.run or operation.run
-        result = run(request, context, **more)
-        emit(result, described.text(result), as_json=as_json)
+        result = run(request, context, **_taken(described.run, given))
+        emit(result, described.text(result), as_json=given["as_json"])
 
     help_text = described.help or f"{operation.summary}."
     made = json_option(click.command(name, help=help_text)(callback))
@@ -59,9 +59,9 @@ def _declared(function: Callable[..., Any] | None) -> list[click.Parameter]:
     return list(reversed(getattr(function, "__click_params__", [])))
 
 
-def _parameters(function: Callable[..., Any] | None) -> list[str]:
-    """Names of a function's own options."""
-    return [str(option.name) for option in _declared(function)]
+def _taken(function: Callable[..., Any] | None, given: dict[str, Any]) -> dict[str, Any]:
+    """The options that a function has parameters for."""
+    return {n: given[n] for n in signature(function).parameters if n in given} if function else {}
 
 
 class _Options:
@@ -105,8 +105,7 @@ class _Options:
             elif name != "chart" and (value := _value(given[name])) is not None:
                 asked[name] = value
         if self._described.fields is not None:
-            own = {name: given[name] for name in _parameters(self._described.fields)}
-            asked |= self._described.fields(**own)
+            asked |= self._described.fields(**_taken(self._described.fields, given))
         try:
             return self._model.model_validate(asked)
         except ValidationError as error:
@@ -169,7 +168,7 @@ class _Options:
             more: dict[str, Any] = {}
             if get_origin(_kinds(field)[0]) is list:
                 more = {"multiple": True}
-            elif isinstance(default, str | float) and default != "":
+            elif isinstance(default, str | float | int) and default != "":
                 more = {"show_default": str(default)}
             yield click.Option(
                 [f"--{self._named(name)}", name],

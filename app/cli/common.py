@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from app.store.database import Database
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-material_option = click.option(
-    "--material", required=True, help="Library id (see `knitcore materials`) or a material file."
-)
 
 
 def resolve_chart(chart: str, size: str | None) -> StitchChart:

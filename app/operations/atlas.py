@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import click
 from pydantic import BeforeValidator, Field
 
-from app.cli.common import emit, json_option, material_option, user_data_dir
 from app.cli.options import out_option
 from app.models.base import ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import LawsRequest
 from app.operations.context import Context
-from app.operations.registry import Operation
+from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import build_atlas
@@ -85,15 +84,9 @@ def _result(found: Atlas) -> AtlasResult:
     )
 
 
-@click.command("atlas")
-@material_option
 @out_option("-o", "--out", required=True, help="FILE.npz", suffixes=(".npz",))
 @click.option(
-    "--repeats",
-    type=click.Choice(["small", "all"]),
-    default="all",
-    show_default=True,
-    help=EXTENTS,
+    "--repeats", type=click.Choice(get_args(Extent)), default="all", show_default=True, help=EXTENTS
 )
 @click.option(
     "--yarn-level",
@@ -109,9 +102,9 @@ def _result(found: Atlas) -> AtlasResult:
 )
 @click.option("--workers", type=click.IntRange(1), help="Processes; all cores if left out.")
 @click.option("--scheduler", metavar="tcp://…", help="Address of a Dask cluster to work on.")
-@json_option
 def _command(
-    material: str,
+    request: AtlasRequest,
+    context: Context,
     out: Path,
     repeats: Extent,
     yarn_level: bool,
@@ -119,28 +112,15 @@ def _command(
     workers: int | None,
     scheduler: str | None,
     as_json: bool,
-) -> None:
-    """Predict all repeats of a material; stopped at any point, it goes on where it was."""
-    yarn = Context(user_data_dir, local=True).material(material)
-    found = build_atlas(
-        yarn,
-        repeats_of(repeats),
-        file=out,
-        workers=workers,
-        scheduler=scheduler,
-        progress=None if as_json else _teller("repeats"),
-    )
+) -> AtlasResult:
+    yarn = context.material(request.material)
+    place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    told = None if as_json else _teller("repeats")
+    found = build_atlas(yarn, repeats_of(repeats), file=out, progress=told, **place)
     if yarn_level:
-        found = improve_atlas(
-            yarn,
-            out,
-            most_stitches=most_stitches,
-            workers=workers,
-            scheduler=scheduler,
-            progress=None if as_json else _teller("repeats on the yarn level"),
-        )
-    result = _result(found)
-    emit(result, f"{out}: {_text(result)}", as_json=as_json)
+        told = None if as_json else _teller("repeats on the yarn level")
+        found = improve_atlas(yarn, out, most_stitches=most_stitches, progress=told, **place)
+    return _result(found)
 
 
 def _teller(what: str) -> Callable[[int, int], None]:
@@ -166,5 +146,10 @@ OPERATION = Operation(
     summary="Predicted constants of all small repeats of a material",
     heavy=True,
     job=True,
-    command=_command,
+    command=Command(
+        _text,
+        help="Predict all repeats of a material; stopped at any point, it goes on where it was.",
+        names={"repeats": None},
+        run=_command,
+    ),
 )

@@ -5,17 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import click
 from pydantic import Field
 
-from app.cli.common import emit, json_option, user_data_dir
 from app.models.base import Ends, Known, KnownEnds, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import LawsRequest
 from app.operations.context import Context
-from app.operations.registry import Operation
+from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.cost import CostLimits
@@ -61,8 +60,12 @@ class TargetInput(RequestModel):
 class LimitsInput(RequestModel):
     """Limits on the cost of knitting; null for no limit."""
 
-    transfers_per_stitch: float | None = Field(None, ge=0, le=1)
-    crossings_per_stitch: float | None = Field(None, ge=0, le=1)
+    transfers_per_stitch: float | None = Field(
+        None, ge=0, le=1, description="Loops moved between the beds, per stitch."
+    )
+    crossings_per_stitch: float | None = Field(
+        None, ge=0, le=1, description="Yarn between face and back, per stitch."
+    )
     curl: float | None = Field(
         None, ge=0, le=1, description="Knits minus purls over all stitches, either way."
     )
@@ -185,9 +188,7 @@ _SHORT = {
 }
 
 
-@click.command("find")
 @click.option("--material", "materials", multiple=True, help="Library id or file; repeatable.")
-@click.option("--atlas", "atlases", multiple=True, type=click.Path(path_type=Path))
 @click.option(
     "--target",
     "targets",
@@ -196,44 +197,29 @@ _SHORT = {
     metavar="QUANTITY[@LOAD|@REST/WORN]=VALUE[~TOLERANCE%][*WEIGHT]",
     help="Such as course=0.1~10%, stretch_wale@0.05=0.4 or pressure_course@180/240=20~15%*2.",
 )
-@click.option("--most-transfers", type=float, help="Loops moved between the beds, per stitch.")
-@click.option("--most-crossings", type=float, help="Yarn between face and back, per stitch.")
-@click.option("--most-curl", type=float, help="Knits minus purls over all stitches, either way.")
+def _asked(
+    materials: tuple[str, ...], targets: tuple[str, ...], atlases: tuple[Path, ...]
+) -> dict[str, Any]:
+    searched = [*(load_atlas(file).material for file in atlases), *materials]
+    if not searched:
+        raise InputError("material", "there is nothing to search.", "Add --material or --atlas.")
+    return {"materials": searched, "targets": [_target(text) for text in targets]}
+
+
+@click.option("--atlas", "atlases", multiple=True, type=click.Path(path_type=Path))
 @click.option(
     "--elsewhere", is_flag=True, help="If nothing reaches it, look into the library's other yarns."
 )
-@click.option("--count", type=click.IntRange(1, 100), default=10, show_default=True)
-@json_option
 def _command(
+    request: FindRequest,
+    context: Context,
     materials: tuple[str, ...],
     atlases: tuple[Path, ...],
-    targets: tuple[str, ...],
-    most_transfers: float | None,
-    most_crossings: float | None,
-    most_curl: float | None,
     elsewhere: bool,
-    count: int,
-    as_json: bool,
-) -> None:
-    """Rank the repeats of atlases (or of materials, up to 3x3) by how near they come."""
-    context = Context(user_data_dir, local=True)
-    tables = [load_atlas(file) for file in atlases] + _atlases(materials, "small", context)
-    if not tables:
-        raise InputError("material", "there is nothing to search.", "Add --material or --atlas.")
-    asked = [table.material for table in tables]
-    request = FindRequest(
-        materials=asked,
-        targets=[_target(text) for text in targets],
-        limits=LimitsInput(
-            transfers_per_stitch=most_transfers,
-            crossings_per_stitch=most_crossings,
-            curl=most_curl,
-        ),
-        count=count,
-    )
-    others = [name for name in load_library() if name not in asked] if elsewhere else []
-    result = _ranked(tables, request, others, context)
-    emit(result, _text(result), as_json=as_json)
+) -> FindResult:
+    tables = [*map(load_atlas, atlases), *_atlases(materials, request.repeats, context)]
+    others = [name for name in load_library() if name not in request.materials]
+    return _ranked(tables, request, others if elsewhere else [], context)
 
 
 def _target(text: str) -> TargetInput:
@@ -286,5 +272,16 @@ OPERATION = Operation(
     summary="Fabrics with wanted properties",
     heavy=True,
     job=True,
-    command=_command,
+    command=Command(
+        _text,
+        help="Rank the repeats of atlases (or of materials, up to 3x3) by how near they come.",
+        names=dict.fromkeys(("laws", "materials", "targets", "repeats", "elsewhere"))
+        | {
+            "transfers_per_stitch": "--most-transfers",
+            "crossings_per_stitch": "--most-crossings",
+            "curl": "--most-curl",
+        },
+        fields=_asked,
+        run=_command,
+    ),
 )

@@ -53,7 +53,8 @@ class Command:
     group : the command that it is a part of, such as ``measure``.
     names : options that are not named after their field; None leaves the field out.
     fields : makes fields of the request from options of its own (``click.option`` on it).
-    run : runs the operation where the command does more, with options of its own.
+    run : runs the operation where the command does more, with options of its own. Both take any
+        option of the command that they have a parameter for.
     """
 
     text: Callable[[Any], str]
