@@ -1,7 +1,7 @@
 """Relax and stretch the training charts: ``python -m knitcore.yarnlibrary.training_build``.
 
-Every finished task is kept in a folder, so an interrupted build can be resumed. ``--pack`` writes
-the tasks finished so far into ``data/training.json``.
+Every finished task is kept in a folder, so an interrupted build can be resumed. ``--pack`` adds
+the tasks finished so far to ``data/training.json``; the next build leaves those out.
 """
 
 from __future__ import annotations
@@ -74,9 +74,11 @@ def characterise(task: TrainingTask) -> Document:
     }
 
 
-def tasks() -> dict[str, TrainingTask]:
-    """All tasks by key, the most informative first."""
-    return {task.key: task for task in _ordered()}
+def tasks(packed: Path | None = None) -> dict[str, TrainingTask]:
+    """All tasks by key, the most informative first, without those in a packed file."""
+    done = set() if packed is None else {_name(entry) for entry in _entries(packed)}
+    ordered = (t for t in _ordered() if (t.yarn_name, t.repeat.chart) not in done)
+    return {task.key: task for task in ordered}
 
 
 def _ordered() -> Iterator[TrainingTask]:
@@ -112,12 +114,27 @@ def _task(name: str, repeat: RepeatTask, stretched: bool) -> TrainingTask:
 
 
 def pack(keep: Path, file: Path) -> int:
-    """Write the finished tasks into one file, the same bytes for the same tasks; their number."""
-    documents = (path.read_text(encoding="utf-8") for path in sorted(keep.glob("*.json")))
-    entries = [_packed(json.loads(document)) for document in documents]
-    lines = ",\n".join(json.dumps(entry) for entry in entries)
+    """Add the finished tasks to a file, in the place of earlier ones of the same chart and yarn.
+
+    The order does not depend on the order in which tasks end. Returns the number of entries.
+    """
+    found = {_name(entry): entry for entry in _entries(file)}
+    for path in keep.glob("*.json"):
+        entry = _packed(json.loads(path.read_text(encoding="utf-8")))
+        found[_name(entry)] = entry
+    lines = ",\n".join(json.dumps(found[name]) for name in sorted(found))
     file.write_text(f'{{"entries": [\n{lines}\n]}}\n', encoding="utf-8")
-    return len(entries)
+    return len(found)
+
+
+def _entries(file: Path) -> list[Document]:
+    if not file.exists():
+        return []
+    return list(json.loads(file.read_text(encoding="utf-8"))["entries"])
+
+
+def _name(entry: Document) -> tuple[str, str]:
+    return entry["yarn_name"], entry["chart"]
 
 
 def _packed(document: Document) -> Document:
@@ -163,12 +180,13 @@ def main() -> None:
     parser.add_argument("--workers", type=int, help="processes, all cores if left out")
     parser.add_argument("--pack", action="store_true", help="only pack finished tasks")
     arguments = parser.parse_args()
+    packed = Path(__file__).parent / "data" / "training.json"
     if arguments.pack:
-        count = pack(arguments.keep, Path(__file__).parent / "data" / "training.json")
+        count = pack(arguments.keep, packed)
         sys.stderr.write(f"{count} packed\n")
         return
     run_batch(
-        characterise, tasks(), scheduler=arguments.scheduler, workers=arguments.workers,
+        characterise, tasks(packed), scheduler=arguments.scheduler, workers=arguments.workers,
         keep=arguments.keep, on_progress=_tell,
     )  # fmt: skip
 

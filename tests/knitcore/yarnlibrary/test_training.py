@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from knitcore import StitchChart
 from knitcore.fabric import Direction
 from knitcore.yarnlibrary.training import YARN_POINTS, training_charts
-from knitcore.yarnlibrary.training_build import tasks
+from knitcore.yarnlibrary.training_build import characterise, pack, tasks
 from knitcore.yarnlibrary.training_data import RawCurve, training_entries
 
 
@@ -33,6 +37,23 @@ def test_tasks_name_yarn_and_chart() -> None:
     named = tasks()
     assert all(key.count(".") == 2 for key in named)
     assert {task.yarn_name for task in named.values()} >= {"acrylic", "cotton", "middle", "thick"}
+
+
+def test_packing_adds_to_what_is_packed_and_later_builds_leave_it_out(tmp_path: Path) -> None:
+    keep, packed = tmp_path / "keep", tmp_path / "packed.json"
+    keep.mkdir()
+    task = next(t for t in tasks().values() if t.repeat.chart == "KP")
+    kept = keep / f"{task.key}.json"
+    kept.write_text(json.dumps(characterise(replace(task, stretched=False))), encoding="utf-8")
+    assert pack(keep, packed) == 1
+    assert task.key not in tasks(packed)
+    assert len(tasks(packed)) == len(tasks()) - 1
+
+    again = json.loads(kept.read_text(encoding="utf-8"))
+    again["cell_course_mm"] = 9.0
+    kept.write_text(json.dumps(again), encoding="utf-8")
+    assert pack(keep, packed) == 1  # in the place of the earlier one
+    assert json.loads(packed.read_text(encoding="utf-8"))["entries"][0]["cell_course_mm"] == 9.0
 
 
 def test_every_packaged_entry_has_a_size_or_a_reason() -> None:
