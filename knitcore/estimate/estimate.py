@@ -27,7 +27,6 @@ from knitcore.estimate.model import (
     library_table,
     mask_of,
     predict_cells,
-    stiffening_constants,
 )
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -177,20 +176,18 @@ def _own_values(swatches: Sequence[MeasuredSwatch], bending: float) -> dict[str,
         i = FABRICS.index(swatch.fabric)
         for d in DIRECTIONS:
             # The floors only matter for a swatch that shows no stiffening at all.
-            alpha, beta = stiffening_constants(swatch.law, d)
             scale = bending / swatch.loop_length_mm**3
             own["modulus"][i, d.axis] = math.log(swatch.law.modulus(d) / scale)
-            own["alpha"][i, d.axis] = math.log(max(alpha, 0.05))
-            own["beta"][i, d.axis] = math.log(max(beta, 1e-4))
+            own["alpha"][i, d.axis] = math.log(max(swatch.law.alpha(d), 0.05))
+            own["beta"][i, d.axis] = math.log(max(swatch.law.beta(d), 1e-4))
     return own
 
 
 def _value(law: ConstitutiveLaw, direction: Direction, name: str) -> float:
     if name == "strain":
         return strain_at_stress(law, direction, LOAD_N_PER_MM)
-    if name == "modulus":
-        return law.modulus(direction)
-    return stiffening_constants(law, direction)[0 if name == "alpha" else 1]
+    constants = {"modulus": law.modulus, "alpha": law.alpha, "beta": law.beta}
+    return constants[name](direction)
 
 
 def _intervals(

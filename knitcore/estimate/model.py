@@ -111,16 +111,15 @@ def table_of(materials: Sequence[Material]) -> LibraryTable:
             for direction in DIRECTIONS:
                 scale = math.log(bending / record.loop_length_mm**3)
                 modulus = math.log(record.law.modulus(direction))
-                alpha, beta = stiffening_constants(record.law, direction)
                 strain = strain_at_stress(record.law, direction, LOAD_N_PER_MM)
                 rows.append(
                     (
                         modulus - scale,
-                        math.log(alpha),
-                        math.log(beta),
+                        math.log(record.law.alpha(direction)),
+                        math.log(record.law.beta(direction)),
                         math.log(strain),
                         scale,
-                        _poisson(record.law, direction),
+                        record.law.poisson(direction),
                         math.log(record.stitch_size_mm(direction) / record.loop_length_mm),
                     )
                 )
@@ -260,13 +259,3 @@ def mask_of(measured: Sequence[Fabric]) -> Mask:
     for fabric in measured:
         mask[FABRICS.index(fabric)] = True
     return mask
-
-
-def stiffening_constants(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float]:
-    """(alpha, beta in N/mm) of a direction."""
-    course = direction is Direction.COURSE
-    return (law.alpha_xx, law.beta_xx) if course else (law.alpha_yy, law.beta_yy)
-
-
-def _poisson(law: ConstitutiveLaw, direction: Direction) -> float:
-    return law.poisson_yx if direction is Direction.COURSE else law.poisson_xy

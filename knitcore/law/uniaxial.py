@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,8 +60,7 @@ def uniaxial_response(
         if transverse is Transverse.FIXED
         else free_transverse_strains(law, direction, axial, form)
     )
-    pair = (axial, across) if direction is Direction.COURSE else (across, axial)
-    stress = law.stress(pair[0], pair[1], form)[direction.axis]
+    stress = law.stress(*_pair(direction, axial, across), form)[direction.axis]
     return UniaxialCurve(strain=axial, transverse_strain=across, stress=stress)
 
 
@@ -78,23 +78,8 @@ def strain_at_stress(
     InputError
         If the stress is negative or not a number.
     """
-    if not (np.isfinite(stress) and stress >= 0):
-        raise InputError("stress", f"{stress} N/mm cannot be used.", "Give 0 N/mm or more.")
-    if transverse is Transverse.FREE:
-        return float(free_strains_at_stress(law, direction, stress))
-
-    def excess(e: float) -> float:
-        curve = uniaxial_response(law, direction, e, transverse=transverse)
-        return float(curve.stress[0]) - stress
-
-    # At a held width the linear part alone bounds the strain.
-    held = law.stiffness[direction.axis, direction.axis]
-    upper = min(stress / held, law.lock_up_strain(direction) * (1 - 1e-12))
-    if excess(upper) <= 0:
-        return float(upper)
-    from scipy.optimize import brentq  # takes a fifth of a second to load
-
-    return float(brentq(excess, 0.0, upper, xtol=1e-12))
+    solve = free_strains_at_stress if transverse is Transverse.FREE else held_strains_at_stress
+    return float(solve(law, direction, stress))
 
 
 def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
@@ -107,26 +92,14 @@ def free_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
     InputError
         If a stress is negative or not a number.
     """
-    wanted = np.asarray(stress, dtype=float)
-    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
-        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+    wanted = _checked(stress)
     # The linear part alone bounds the strain; free contraction only softens it.
     low, high = np.zeros_like(wanted), wanted / law.modulus(direction)
     if min(law.poisson_yx, law.poisson_xy) < 0 or law.kappa_xx > 0 or law.kappa_yy > 0:
         return _by_newton(law, direction, wanted, low, high)
-    modulus, course = law.modulus(direction), direction is Direction.COURSE
-    alpha, beta = (law.alpha_xx, law.beta_xx) if course else (law.alpha_yy, law.beta_yy)
+    modulus, alpha, beta = law.modulus(direction), law.alpha(direction), law.beta(direction)
     high = np.minimum(high, law.lock_up_strain(direction))
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        _, slope, _ = stiffening(alpha * middle)
-        carried = modulus * middle + beta * slope
-        low, high = (
-            np.where(carried < wanted, middle, low),
-            np.where(carried < wanted, high, middle),
-        )
-    result: Array = (low + high) / 2
-    return result
+    return _by_halving(lambda e: modulus * e + beta * stiffening(alpha * e)[1], wanted, low, high)
 
 
 def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: ArrayLike) -> Array:
@@ -139,19 +112,33 @@ def held_strains_at_stress(law: ConstitutiveLaw, direction: Direction, stress: A
     InputError
         If a stress is negative or not a number.
     """
-    wanted = np.asarray(stress, dtype=float)
-    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
-        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+    wanted = _checked(stress)
     axis = direction.axis
     low, high = np.zeros_like(wanted), wanted / law.stiffness[axis, axis]
     high = np.minimum(high, law.lock_up_strain(direction))
+    return _by_halving(
+        lambda e: law.stress(*_pair(direction, e, np.zeros_like(e)))[axis], wanted, low, high
+    )
+
+
+def _checked(stress: ArrayLike) -> Array:
+    wanted = np.asarray(stress, dtype=float)
+    if not np.all(np.isfinite(wanted)) or np.any(wanted < 0):
+        raise InputError("stress", "has values that cannot be used.", "Give 0 N/mm or more.")
+    return wanted
+
+
+def _pair(direction: Direction, along: Array, across: Array) -> tuple[Array, Array]:
+    """Strains course-wise and wale-wise."""
+    return (along, across) if direction is Direction.COURSE else (across, along)
+
+
+def _by_halving(carried: Callable[[Array], Array], wanted: Array, low: Array, high: Array) -> Array:
+    """Where a stress that grows with the strain is the wanted one."""
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        carried = law.stress(*((middle, 0.0) if axis == 0 else (0.0, middle)))[axis]
-        low, high = (
-            np.where(carried < wanted, middle, low),
-            np.where(carried < wanted, high, middle),
-        )
+        less = carried(middle) < wanted
+        low, high = np.where(less, middle, low), np.where(less, high, middle)
     return np.asarray((low + high) / 2)
 
 
@@ -163,7 +150,7 @@ def _by_newton(
     strain = np.minimum(high, 0.5 * law.lock_up_strain(direction))
     for _ in range(_NEWTON_STEPS):
         other = free_transverse_strains(law, direction, strain)
-        pair = (strain, other) if along == 0 else (other, strain)
+        pair = _pair(direction, strain, other)
         excess = law.stress(*pair)[along] - stress
         tangent = law.tangent(*pair)
         slope = tangent[..., along, along] - (
@@ -207,8 +194,7 @@ def free_transverse_strains(
     form: StiffeningForm = StiffeningForm.FULL,
 ) -> Array:
     """Transverse strains at which the transverse stress vanishes, at axial strains that exist."""
-    ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
-    linear = -ratio * axial
+    linear = -law.poisson(direction) * axial
     if form is StiffeningForm.PUBLISHED:
         return np.array([_published_free_strain(law, direction, e) for e in axial])
     if law.kappa_xx == 0 and law.kappa_yy == 0 and np.all(linear <= 0):
@@ -217,7 +203,7 @@ def free_transverse_strains(
     # Newton's method comes down to the root from one side.
     axis, across = direction.other.axis, np.zeros_like(axial)
     for _ in range(_NEWTON_STEPS):
-        pair = (axial, across) if direction is Direction.COURSE else (across, axial)
+        pair = _pair(direction, axial, across)
         step = law.stress(*pair)[axis] / law.tangent(*pair)[..., axis, axis]
         across = across - step
         if np.all(np.abs(step) <= 1e-14 * (1 + np.abs(across))):
@@ -226,11 +212,10 @@ def free_transverse_strains(
 
 
 def _published_free_strain(law: ConstitutiveLaw, direction: Direction, axial: float) -> float:
-    ratio = law.poisson_yx if direction is Direction.COURSE else law.poisson_xy
-    form, linear = StiffeningForm.PUBLISHED, -ratio * axial
+    form, linear = StiffeningForm.PUBLISHED, -law.poisson(direction) * axial
 
     def residual(across: float) -> float:
-        pair = (axial, across) if direction is Direction.COURSE else (across, axial)
+        pair = _pair(direction, np.asarray(axial), np.asarray(across))
         return float(law.stress(*pair, form=form)[direction.other.axis])
 
     from scipy.optimize import brentq

@@ -39,10 +39,14 @@ QUIET_STRESS_N_PER_MM = 0.03
 
 @dataclass(frozen=True)
 class Interval:
-    """A 90 % interval, in the unit of the value it belongs to."""
+    """A range, in the unit of the value it belongs to; of 90 % unless said."""
 
     low: float
     high: float
+
+    def scaled(self, factor: float) -> Interval:
+        """In another unit."""
+        return Interval(self.low * factor, self.high * factor)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.uniaxial import uniaxial_response
+from knitcore.materials.uncertainty import Interval
 
 MMHG_PER_KPA = 760.0 / 101.325
 NEAR_LOCK_UP = 0.8
@@ -35,20 +36,8 @@ LEAST_LENGTH = 0.05
 
 
 @dataclass(frozen=True)
-class Interval:
-    """From axially free to axially fixed, whichever is lower first."""
-
-    low: float
-    high: float
-
-    def scaled(self, factor: float) -> Interval:
-        """In another unit."""
-        return Interval(self.low * factor, self.high * factor)
-
-
-@dataclass(frozen=True)
 class LimbPressure:
-    """Mean pressure of a tube on a limb.
+    """Mean pressure of a tube on a limb; intervals go from axially free to fixed, or back.
 
     Attributes
     ----------

@@ -13,7 +13,6 @@ from knitcore.formats.knitout_reader import verified
 from knitcore.formats.layout import layout_notes
 from knitcore.formats.written import write_rows
 from knitcore.formats.written_reader import read_piece_rows
-from knitcore.garment.fit import fit_tube
 from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import CROTCH_ROWS, Hand, glove
 from knitcore.garment.piece import Piece
@@ -29,7 +28,7 @@ from knitcore.garment.regions import (
 from knitcore.garment.shaped import ShapedChart
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worked_piece import piece_rows
-from knitcore.garment.worn import Fit
+from knitcore.garment.worn import Fit, worn
 from knitcore.materials import material
 
 WOOL = material("glove-wool:published")
@@ -236,14 +235,13 @@ def test_numbers_of_a_pure_region_are_its_fabrics() -> None:
 
 
 def test_a_tube_is_sized_for_a_pressure() -> None:
-    fit = fit_tube(WOOL, Fabric.STOCKINETTE, Direction.WALE, 170, 20, multiple=2)
-    assert fit.count % 2 == 0
-    assert fit.ease == pytest.approx(fit.rest_mm / 170 - 1)
-    low, high = fit.pressure.mmhg.low, fit.pressure.mmhg.high
-    assert low < 21
-    assert high > 19
-    softer = fit_tube(WOOL, Fabric.GARTER, Direction.WALE, 170, 20)
-    assert softer.rest_mm < fit.rest_mm
+    fit = Fit(mmhg=20)
+    rest_mm = fit.rest_mm(170, WOOL, Fabric.STOCKINETTE, Direction.WALE)
+    tube = worn(WOOL, Fabric.STOCKINETTE, Direction.WALE, rest_mm, 170)
+    assert tube.ease == pytest.approx(rest_mm / 170 - 1)
+    assert tube.pressure is not None
+    assert tube.pressure.mmhg.low < 20 < tube.pressure.mmhg.high
+    assert fit.rest_mm(170, WOOL, Fabric.GARTER, Direction.WALE) < rest_mm
 
 
 @pytest.mark.parametrize(
