@@ -15,7 +15,7 @@ FLOORS = (
     {"fabric"},
     {"chart"},
     {"segments", "patterns", "worked"},
-    {"phases"},
+    {"phases", "repeats"},
     {"law", "gridsolver"},
     {"materials"},
     {"mechanics", "measure", "estimate"},

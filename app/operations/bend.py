@@ -16,12 +16,12 @@ from app.operations.registry import Command, Operation
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.bending import (
     MAX_STITCHES,
-    BendingResponse,
     Curl,
     FabricBending,
     bending,
     bending_length_mm,
 )
+from knitcore.yarnlevel.bent_cell import BendingResponse
 from knitcore.yarnlevel.relax import Branch, OnSplines, RelaxedRepeat, relax
 from knitcore.yarnlibrary.yarns import yarn_for
 

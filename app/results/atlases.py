@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Literal
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint
-from knitcore.design.repeats import known_larger_repeats, repeats_up_to, striped_repeats
 from knitcore.errors import InputError
+from knitcore.repeats import known_larger_repeats, repeats_up_to, striped_repeats
 from knitcore.yarnlibrary.fingerprint import code_version
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ log = logging.getLogger("knitcore.atlas")
 
 FOLDER = "atlases"
 """Of the data folder; it may be emptied at any time."""
-DECIDING = ("knitcore.design.atlas_build", "knitcore.design.repeats")
+DECIDING = ("knitcore.design.atlas_build", "knitcore.repeats")
 """Modules whose code and data decide an atlas."""
 
 Extent = Literal["small", "all"]

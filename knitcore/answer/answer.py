@@ -13,21 +13,8 @@ from knitcore import showing
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.response import (
-    HeldLawResponse,
-    LawResponse,
-    Response,
-    Stiffened,
-    stress_at_strain,
-)
-from knitcore.materials.uncertainty import (
-    Z_SCORE,
-    Interval,
-    LawUncertainty,
-    log_interval,
-    normal_interval,
-)
+from knitcore.law.response import Response, stress_at_strain
+from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
 
 Array = NDArray[np.float64]
 
@@ -155,51 +142,6 @@ class Answer:
     method: str
     relaxed_source: str
     notes: tuple[str, ...] = ()
-
-    @classmethod
-    def of_law(
-        cls,
-        law: ConstitutiveLaw,
-        relaxed: RelaxedSize,
-        *,
-        spread: LawUncertainty,
-        provenance: Source,
-        method: str,
-        relaxed_source: str,
-        notes: tuple[str, ...],
-    ) -> Answer:
-        """Answer for a sheet with one constitutive law.
-
-        ``spread`` is that of the stress at each strain: the lock-up strain, which tests fix best,
-        stays where it is.
-        """
-        ratios, ratio_sds = (
-            (law.poisson_yx, law.poisson_xy),
-            (spread.poisson_yx, spread.poisson_xy),
-        )
-
-        def stiffened(direction: Direction, deviations: float) -> Stiffened:
-            return Stiffened(
-                LawResponse(law, direction),
-                lambda stress: deviations * spread.log_stress(direction, stress),
-            )
-
-        course, wale = (
-            Along(
-                LawResponse(law, d),
-                stiffened(d, Z_SCORE),
-                stiffened(d, -Z_SCORE),
-                LawResponse(law, d).across,
-                HeldLawResponse(law, d),
-                poisson=ratios[d.axis],
-                poisson_sd=ratio_sds[d.axis],
-                relaxed_mm=relaxed.extent_mm(d),
-                relaxed_log_sd=relaxed.log_sd,
-                bounds_n_per_mm=Interval(law.modulus(d), law.modulus(d)),
-            )
-            for d in Direction
-        )
-        return cls(course, wale, law.shear_modulus, provenance, method, relaxed_source, notes)
 
     def along(self, direction: Direction) -> Along:
         """The answer for a pull in a direction."""

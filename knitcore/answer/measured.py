@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from knitcore.answer.answer import Answer, Source
-from knitcore.answer.relaxed import RelaxedSize
-from knitcore.fabric import Fabric
-from knitcore.materials import Material, Origin
+from knitcore.answer.answer import Along, Answer, Source
+from knitcore.fabric import Direction, Fabric
+from knitcore.law.response import HeldLawResponse, LawResponse, Stiffened
+from knitcore.materials import FabricRecord, Interval, Material, Origin
+from knitcore.materials.uncertainty import Z_SCORE
 
 CURL = (
     "Stockinette curls: its sides roll to the back, its top and bottom edges to the face. The "
@@ -29,14 +30,32 @@ def measured(fabric: Fabric, material: Material) -> Answer:
     """
     record = material.record(fabric)
     spread = record.uncertainty
-    size = RelaxedSize(record.stitch_course_mm, record.stitch_wale_mm, GAUGE_LOG_SD)
     notes = [CURL] if fabric is Fabric.STOCKINETTE else []
-    return Answer.of_law(
-        record.law,
-        size,
-        spread=spread,
-        provenance=_SOURCES.get(record.origin, Source.MEASURED),
-        method=f"law of {fabric}, {record.origin}; uncertainty: {spread.source}",
-        relaxed_source="gauge of the pure fabric",
-        notes=(*notes, *([material.note] if material.note else [])),
+    course, wale = (_along(record, direction) for direction in Direction)
+    return Answer(
+        course,
+        wale,
+        record.law.shear_modulus,
+        _SOURCES.get(record.origin, Source.MEASURED),
+        f"law of {fabric}, {record.origin}; uncertainty: {spread.source}",
+        "gauge of the pure fabric",
+        (*notes, *([material.note] if material.note else [])),
+    )
+
+
+def _along(record: FabricRecord, direction: Direction) -> Along:
+    law, spread = record.law, record.uncertainty
+    response, modulus = LawResponse(law, direction), law.modulus(direction)
+    # the stress at each strain is uncertain; the lock-up strain, which tests fix best, is kept
+    return Along(
+        response,
+        Stiffened(response, lambda stress: Z_SCORE * spread.log_stress(direction, stress)),
+        Stiffened(response, lambda stress: -Z_SCORE * spread.log_stress(direction, stress)),
+        response.across,
+        HeldLawResponse(law, direction),
+        poisson=law.poisson(direction),
+        poisson_sd=spread.poisson(direction),
+        relaxed_mm=record.stitch_size_mm(direction),
+        relaxed_log_sd=GAUGE_LOG_SD,
+        bounds_n_per_mm=Interval(modulus, modulus),
     )

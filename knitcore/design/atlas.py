@@ -25,7 +25,7 @@ from knitcore.fabric import Direction
 
 Array = NDArray[np.float64]
 
-FORMAT = 4
+FORMAT = 5
 MAXIMUM_BYTES = 50_000_000
 
 STRESS_N_PER_MM: Array = np.array(
@@ -35,6 +35,8 @@ STRESS_N_PER_MM: Array = np.array(
     ]
 )
 """Stresses at which an atlas keeps the strains."""
+CURVES = (3, 2, len(STRESS_N_PER_MM))
+"""Shape of the curves of a repeat."""
 
 VALUES = (
     "modulus_course_n_per_mm",
@@ -63,16 +65,12 @@ class Entry:
     Attributes
     ----------
     values : one of each of :data:`VALUES`.
-    strains : course-wise and then wale-wise strains at ``STRESS_N_PER_MM``.
-    across : strains across those pulls.
-    held : strains at the same stresses while the width is held.
+    curves : all of an atlas's curves, one after the other.
     provenance : where the law comes from.
     """
 
     values: tuple[float, ...]
-    strains: tuple[float, ...]
-    across: tuple[float, ...]
-    held: tuple[float, ...]
+    curves: tuple[float, ...]
     provenance: str
 
 
@@ -86,9 +84,8 @@ class Atlas:
     fingerprint : of the material's laws and sizes; an atlas of other laws is not continued.
     keys : the repeats (see :attr:`~knitcore.chart.StitchChart.key`).
     values : (repeats, len(VALUES)).
-    strains : (repeats, 2, stresses), course-wise and wale-wise, at ``STRESS_N_PER_MM``.
-    across : strains across those pulls, of the same shape.
-    held : strains at the same stresses while the width is held, of the same shape.
+    curves : (repeats, 3, 2, stresses), strains at ``STRESS_N_PER_MM``: along a free pull, across
+        it, and along a pull with the width held; each course-wise and wale-wise.
     provenance : where each repeat's law comes from.
     """
 
@@ -96,23 +93,19 @@ class Atlas:
     fingerprint: str
     keys: tuple[str, ...]
     values: Array
-    strains: Array
-    across: Array
-    held: Array
+    curves: Array
     provenance: tuple[str, ...]
 
     @classmethod
     def of_entries(cls, material: str, fingerprint: str, entries: Mapping[str, Entry]) -> Atlas:
         """A table of entries by key."""
-        found, shape = entries.values(), (-1, 2, len(STRESS_N_PER_MM))
+        found = entries.values()
         return cls(
             material=material,
             fingerprint=fingerprint,
             keys=tuple(entries),
             values=np.array([e.values for e in found]).reshape(-1, len(VALUES)),
-            strains=np.array([e.strains for e in found]).reshape(shape),
-            across=np.array([e.across for e in found]).reshape(shape),
-            held=np.array([e.held for e in found]).reshape(shape),
+            curves=np.array([e.curves for e in found]).reshape(-1, *CURVES),
             provenance=tuple(e.provenance for e in found),
         )
 
@@ -132,13 +125,22 @@ class Atlas:
         """Contraction across a pull along a direction, over the strain along it."""
         return self.column("poisson_yx" if direction is Direction.COURSE else "poisson_xy")
 
+    @cached_property
+    def log_moduli(self) -> Array:
+        """(repeats, 2) logarithms of Young's moduli, course-wise and wale-wise."""
+        return np.log(np.stack([self.modulus(d) for d in Direction], axis=1))
+
+    def strains(self, direction: Direction) -> Array:
+        """(repeats, stresses) strains along a free pull, at ``STRESS_N_PER_MM``."""
+        return np.asarray(self.curves[:, 0, direction.axis])
+
     def strain_at(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Strain of every repeat at a stress (N/mm), one for all or one each.
 
         NaN beyond the last stress of the table, 2 N/mm.
         """
         wanted = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
-        curves = self.strains[:, direction.axis]
+        curves = self.strains(direction)
         if np.ptp(wanted) == 0 and len(self):
             shape = PchipInterpolator(STRESS_N_PER_MM, curves, axis=1, extrapolate=False)
             found: Array = shape(float(wanted[0]))
@@ -147,15 +149,15 @@ class Atlas:
 
     def stress_at(self, direction: Direction, strain: float) -> Array:
         """Stress (N/mm) of every repeat at a strain, free across; NaN beyond the table."""
-        return _stresses(self.strains[:, direction.axis], strain)
+        return _stresses(self.strains(direction), strain)
 
     def held_stress_at(self, direction: Direction, strain: float) -> Array:
         """Stress (N/mm) of every repeat at a strain, the width held; NaN beyond the table."""
-        return _stresses(self.held[:, direction.axis], strain)
+        return _stresses(self.curves[:, 2, direction.axis], strain)
 
     def across_at(self, direction: Direction, stress_n_per_mm: Array) -> Array:
         """Strain across a pull by stresses (N/mm), one of each repeat; NaN beyond the table."""
-        return _each(self.across[:, direction.axis], stress_n_per_mm)
+        return _each(self.curves[:, 1, direction.axis], stress_n_per_mm)
 
     def index_of(self, repeat: StitchChart) -> int | None:
         """Where a repeat stands, whichever of its images is given; None if it is not here."""
@@ -177,20 +179,9 @@ class Atlas:
 
     def entries(self) -> dict[str, Entry]:
         """The rows by key."""
-        rows = zip(
-            self.keys,
-            self.values.tolist(),
-            *(
-                curves.reshape(len(self), -1).tolist()
-                for curves in (self.strains, self.across, self.held)
-            ),
-            self.provenance,
-            strict=True,
-        )
-        return {
-            key: Entry(tuple(values), tuple(strains), tuple(across), tuple(held), source)
-            for key, values, strains, across, held, source in rows
-        }
+        curves = self.curves.reshape(len(self), -1).tolist()
+        rows = zip(self.keys, self.values.tolist(), curves, self.provenance, strict=True)
+        return {key: Entry(tuple(values), tuple(c), source) for key, values, c, source in rows}
 
     def only(self, keys: tuple[str, ...]) -> Atlas:
         """The atlas of some of the repeats, in that order."""
@@ -236,9 +227,7 @@ def save_atlas(atlas: Atlas, file: Path) -> None:
                 fingerprint=np.array(atlas.fingerprint),
                 keys=np.array(atlas.keys, dtype=np.str_),
                 values=atlas.values,
-                strains=atlas.strains.astype(np.float32),
-                across=atlas.across.astype(np.float32),
-                held=atlas.held.astype(np.float32),
+                curves=atlas.curves.astype(np.float32),
                 provenance=np.array(atlas.provenance, dtype=np.str_),
             )
         Path(name).replace(file)
@@ -267,9 +256,7 @@ def load_atlas(file: Path) -> Atlas:
                 fingerprint=str(data["fingerprint"]),
                 keys=tuple(data["keys"].tolist()),
                 values=data["values"],
-                strains=data["strains"].astype(float),
-                across=data["across"].astype(float),
-                held=data["held"].astype(float),
+                curves=data["curves"].astype(float),
                 provenance=tuple(data["provenance"].tolist()),
             )
     except Exception:  # a damaged archive fails in many ways: zlib, zipfile, numpy's own header
@@ -279,10 +266,9 @@ def load_atlas(file: Path) -> Atlas:
             ) from None
         raise InputError("atlas", f"{file.name} holds no atlas.", "Build it again.") from None
     rows = len(atlas.keys)
-    curves = {atlas.strains.shape, atlas.across.shape, atlas.held.shape}
     if (
         atlas.values.shape != (rows, len(VALUES))
-        or curves != {(rows, 2, len(STRESS_N_PER_MM))}
+        or atlas.curves.shape != (rows, *CURVES)
         or len(atlas.provenance) != rows
     ):
         raise InputError("atlas", f"{file.name} is damaged.", "Build it again.")

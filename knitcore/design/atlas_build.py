@@ -95,7 +95,10 @@ def build_atlas(
     if found.failures:
         raise KnitcoreError(next(iter(found.failures.values())))
     for document in found.results.values():
-        known |= {key: _entry(row) for key, row in document["entries"].items()}
+        known |= {
+            key: Entry(tuple(row["values"]), tuple(row["curves"]), row["provenance"])
+            for key, row in document["entries"].items()
+        }
     if file is not None and tasks:
         save_atlas(Atlas.of_entries(material.identifier, fingerprint, known), file)
         shutil.rmtree(parts_folder(file))
@@ -131,15 +134,21 @@ def entry_of(answer: Answer) -> Entry:
         course.relaxed_mm,
         wale.relaxed_mm,
     )
-    strains, across, held = (
-        tuple(np.concatenate(both).astype(np.float32).tolist())  # as a file keeps them
-        for both in (
-            [along.strain(STRESS_N_PER_MM) for along in (course, wale)],
-            [along.across_strain(STRESS_N_PER_MM) for along in (course, wale)],
-            [along.held_strain(STRESS_N_PER_MM) for along in (course, wale)],
-        )
+    curves = np.concatenate(
+        [
+            strains(STRESS_N_PER_MM)
+            for strains in (
+                course.strain,
+                wale.strain,
+                course.across_strain,
+                wale.across_strain,
+                course.held_strain,
+                wale.held_strain,
+            )
+        ]
     )
-    return Entry(values, strains, across, held, answer.provenance.value)
+    as_kept = tuple(curves.astype(np.float32).tolist())
+    return Entry(values, as_kept, answer.provenance.value)
 
 
 def material_fingerprint(material: Material) -> str:
@@ -183,14 +192,6 @@ def known_entries(file: Path | None, fingerprint: str) -> dict[str, Entry]:
 def parts_folder(file: Path) -> Path:
     """Where finished parts of an atlas wait until it is written."""
     return file.with_name(f"{file.stem}.parts")
-
-
-def _entry(document: dict[str, Any]) -> Entry:
-    """A row from JSON."""
-    values, strains, across, held = (
-        tuple(document[name]) for name in ("values", "strains", "across", "held")
-    )
-    return Entry(values, strains, across, held, document["provenance"])
 
 
 def _three(value: float, interval: Interval) -> tuple[float, float, float]:

@@ -27,7 +27,6 @@ from knitcore.design.placing import placed
 from knitcore.design.progress import Progress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.errors import InputError
-from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
 from knitcore.swatch.grid import check_cloth
@@ -178,7 +177,6 @@ class _Fill:
         self._has_wish = ~no_wish
         self._seed, self._progress = seed, progress
         self._table = stitch_table(material)
-        self._have = np.log(np.stack([atlas.modulus(d) for d in Direction], axis=1))
         self._mixer: Mixer | None = None
 
     def run(self, smallest_patch: int, *, check: bool) -> FilledField:
@@ -190,7 +188,7 @@ class _Fill:
         uneven = unevenness(self._atlas, self._table)
         chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
         labels = smooth(cost, smallest_patch)
-        effective = self._have[chosen[labels]].transpose(2, 0, 1)
+        effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
         patches = patches_of(np.where(self._fixed, len(chosen), labels))
         count = len(np.unique(patches[~self._fixed]))
         patches[self._fixed] = count  # labels come in order, so these were the last ones
@@ -218,7 +216,7 @@ class _Fill:
         return self._filled(patches, best, check=check)
 
     def _of_atlas(self, entry: int) -> _Choice:
-        return _Choice(self._atlas.chart(entry), self._have[entry])
+        return _Choice(self._atlas.chart(entry), self._atlas.log_moduli[entry])
 
     def _mixed(self, patches: Labels, choices: list[_Choice]) -> list[_Choice]:
         """Mixtures where they come nearer than the atlas."""
@@ -258,7 +256,7 @@ class _Fill:
             return None
         found = list(last.choices)
         for patch, choice in enumerate(last.choices):
-            off = np.nan_to_num(np.abs(self._have - wishes[patch])).max(axis=1)
+            off = np.nan_to_num(np.abs(self._atlas.log_moduli - wishes[patch])).max(axis=1)
             entry = int(off.argmin())
             own = float(np.nan_to_num(np.abs(choice.log_moduli - wishes[patch])).max())
             if own > CLOSE and off[entry] < 0.8 * own:
@@ -340,7 +338,7 @@ class _Fill:
             tuple(regions),
             local_moduli(trial.chart, self._material),
             self._off_share(_spread(judged, patches) - self._wanted),
-            tuple(unreached(regions, wishes, np.expm1(judged - wishes), self._have)),
+            tuple(unreached(regions, wishes, np.expm1(judged - wishes), self._atlas.log_moduli)),
         )
 
     def _beside_kept(self, chart: StitchChart) -> StitchChart:

@@ -126,8 +126,7 @@ class Mixer:
     ) -> Mixture | None:
         """The best of mixtures and atlas with a stitch, row or column turned, again and again."""
         rng = np.random.default_rng(0)
-        have = np.log(np.stack([self._atlas.modulus(d) for d in Direction], axis=1))
-        near = np.argsort(np.nan_to_num(np.abs(have - wish)).max(axis=1))[:4]
+        near = np.argsort(np.nan_to_num(np.abs(self._atlas.log_moduli - wish)).max(axis=1))[:4]
         starts = [self._atlas.chart(int(k)) for k in near]
         starts = [chart for chart in starts if chart.rows <= most[0] and chart.columns <= most[1]]
         pool = [] if best is None else [best]

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from knitcore.design.atlas import Atlas
-from knitcore.fabric import Direction
 from knitcore.mechanics.local import StitchTable
 from knitcore.phases import surroundings
 
@@ -28,18 +27,12 @@ def unevenness(atlas: Atlas, table: StitchTable) -> Array:
 
     Mean squares of logarithms: 0 for pure fabrics, large where unlike stitches alternate.
     """
-    local = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
-    own = _log_moduli(atlas)
+    local, own = table.log_moduli, atlas.log_moduli.T
     squares = [
         float(((local[:, surroundings(atlas.chart(k), periodic=True)].T - own[:, k]) ** 2).mean())
         for k in range(len(atlas))
     ]
     return np.minimum(squares, 1.0)
-
-
-def _log_moduli(atlas: Atlas) -> Array:
-    names = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
-    return np.log(np.stack([atlas.column(name) for name in names]))
 
 
 def wanted_labels(
@@ -57,7 +50,7 @@ def wanted_labels(
     -------
     indices into the atlas (labels,), and (labels, rows, columns) squared deviations.
     """
-    have, price = _log_moduli(atlas), _EVENNESS * uneven
+    have, price = atlas.log_moduli.T, _EVENNESS * uneven
     binned = np.stack([np.round(log_course / _BIN), np.round(log_wale / _BIN)]).reshape(2, -1)
     kinds, counts = np.unique(np.nan_to_num(binned, nan=1e9), axis=1, return_counts=True)
     kinds = np.where(kinds == 1e9, np.nan, kinds) * _BIN

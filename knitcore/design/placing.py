@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
-from knitcore.mechanics.local import StitchTable
+from knitcore.mechanics.local import StitchTable, windows_of
 from knitcore.phases import surroundings
 
 Array = NDArray[np.float64]
@@ -64,13 +63,13 @@ class _LocalCost:
 
     def __init__(self, wanted: Array, table: StitchTable, stitch: Grid) -> None:
         self._stitch = stitch
-        have = np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)
-        self._cost = np.nansum((have[:, None, None, :] - wanted[..., None]) ** 2, axis=0)
+        have = table.log_moduli[:, None, None]
+        self._cost = np.nansum((have - wanted[..., None]) ** 2, axis=0)
 
     def around(self, purl: Grid, rows: slice, columns: slice) -> float:
         """Cost of all stitches whose surroundings a change inside the window can alter."""
         (row, far_row), (column, far_column) = (
-            _window(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
+            windows_of(s, n) for s, n in zip((rows, columns), purl.shape, strict=True)
         )
         far = far_row, far_column
         codes = surroundings(StitchChart(purl[far]), stitch=self._stitch[far])[
@@ -79,12 +78,6 @@ class _LocalCost:
         ]
         costs = self._cost[row, column]
         return float(np.take_along_axis(costs, codes[..., None].astype(np.intp), axis=2).sum())
-
-
-def _window(touched: slice, size: int) -> tuple[slice, slice]:
-    """Stitches whose codes change, and those that decide them (an edge borrows from inside)."""
-    changed = slice(max(touched.start - 1, 0), min(touched.stop + 1, size))
-    return changed, slice(max(changed.start - 2, 0), min(changed.stop + 2, size))
 
 
 def _shift(

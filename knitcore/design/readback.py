@@ -19,7 +19,6 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
 from knitcore.mechanics.local import StitchTable
 from knitcore.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
 
@@ -39,7 +38,7 @@ def nearest_chart(wanted: Array, table: StitchTable) -> StitchChart:
     wanted : (2, rows, columns) logarithms; NaN where there is no wish.
     table : of the material.
     """
-    have = _log_moduli(table)
+    have = table.log_moduli
     cost = np.nansum((wanted[..., None] - have[:, None, None]) ** 2, axis=0)  # (rows, columns, 16)
     rows, columns = cost.shape[:2]
     by_bit = cost.reshape(rows, columns, 2, 2, 2, 2)  # above, below, right, left
@@ -130,9 +129,5 @@ def _integrated(course: Odd, wale: Odd, cost: Array) -> StitchChart:
 
 def deviation(chart: StitchChart, wanted: Array, table: StitchTable) -> Array:
     """(2, rows, columns) logarithms of a chart's local moduli over the wanted ones."""
-    off: Array = _log_moduli(table)[:, surroundings(chart)] - wanted
+    off: Array = table.log_moduli[:, surroundings(chart)] - wanted
     return off
-
-
-def _log_moduli(table: StitchTable) -> Array:
-    return np.log(np.stack([table.modulus_n_per_mm(d) for d in Direction]))  # (2, 16)

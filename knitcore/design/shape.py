@@ -158,7 +158,7 @@ class _Run:
         count = max(len(wanted) // smallest_band, 1)
         self._edges = np.linspace(0, len(wanted), count + 1).round().astype(int)
         self._palette = _palette(atlas, direction, strain, across)
-        self._curves = atlas.strains[self._palette, direction.axis]
+        self._curves = atlas.strains(direction)[self._palette]
         self._poisson = atlas.poisson(direction)[self._palette]
         self._pulls = 0
 

@@ -91,6 +91,10 @@ class LawUncertainty:
         course = direction is Direction.COURSE
         return self.log_modulus_course if course else self.log_modulus_wale
 
+    def poisson(self, direction: Direction) -> float:
+        """Standard deviation of the contraction across a pull in a direction."""
+        return self.poisson_yx if direction is Direction.COURSE else self.poisson_xy
+
     def curve(self, direction: Direction) -> CurveUncertainty:
         """Of the stress-strain curve in a direction."""
         known = self.curve_course if direction is Direction.COURSE else self.curve_wale

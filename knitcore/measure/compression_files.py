@@ -22,6 +22,7 @@ import xlrd
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
+from knitcore.measure.tables import numbers, read_csv
 
 Array = NDArray[np.float64]
 
@@ -145,19 +146,10 @@ def _xls_test(
 
 
 def _cells(where: str, column: str, values: list[Any], first: int) -> Array:
-    """Numbers; empty cells at the end of the sheet become NaN, anything else is refused."""
+    """Numbers, without empty cells at the end of the sheet."""
     while values and str(values[-1]).strip() == "":
         values = values[:-1]
-    numbers = pd.to_numeric(pd.Series(values, dtype=object), errors="coerce").to_numpy(dtype=float)
-    bad = np.flatnonzero(~np.isfinite(numbers))
-    if bad.size:
-        row = int(bad[0])
-        raise InputError(
-            f"{where}, column {column!r}",
-            f"row {row + first + 1} holds {values[row]!r}, which is not a number.",
-            "Remove the row or give a number.",
-        )
-    return numbers
+    return numbers(f"{where}, column {column!r}", values, first + 1)
 
 
 def _diameters(sheets: dict[str, Any]) -> dict[tuple[str, int], float]:
@@ -187,14 +179,7 @@ def _diameter_of(diameters: dict[tuple[str, int], float], yarn: str, number: int
 
 
 def _read_csv(path: Path) -> list[CompressionTest]:
-    try:
-        table = pd.read_csv(path, skipinitialspace=True, dtype=str)
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        raise InputError(
-            path.name,
-            f"cannot be read as CSV ({str(error).strip()}).",
-            "Give a header line depth_mm,force_n and comma-separated numbers.",
-        ) from None
+    table = read_csv(path, "depth_mm, force_n")
     table.columns = [str(c).strip().lower() for c in table.columns]
     missing = [c for c in ("depth_mm", "force_n") if c not in table.columns]
     if missing or table.empty:
@@ -204,7 +189,7 @@ def _read_csv(path: Path) -> list[CompressionTest]:
             "Give a header line depth_mm,force_n and one row per reading.",
         )
     columns = {
-        name: _csv_numbers(path.name, name, table[name])
+        name: numbers(f"{path.name}, column {name}", table[name])
         for name in ("depth_mm", "force_n", "diameter_mm")
         if name in table
     }
@@ -227,16 +212,3 @@ def _read_csv(path: Path) -> list[CompressionTest]:
             )
         )
     return tests
-
-
-def _csv_numbers(name: str, column: str, texts: pd.Series) -> Array:
-    numbers = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
-    bad = np.flatnonzero(~np.isfinite(numbers))
-    if bad.size:
-        row = int(bad[0])
-        raise InputError(
-            f"{name}, column {column}",
-            f"row {row + 2} holds {texts.iloc[row]!r}, which is not a number.",
-            "Remove the row or give a number with a decimal point.",
-        )
-    return numbers

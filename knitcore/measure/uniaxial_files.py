@@ -21,7 +21,6 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
@@ -33,6 +32,7 @@ from knitcore.measure.stretch_test import (
     misread_forces,
     until_unloaded,
 )
+from knitcore.measure.tables import numbers, read_csv
 
 Array = NDArray[np.float64]
 
@@ -308,18 +308,11 @@ def _text(value: object) -> str:
 def _read_csv(path: Path) -> StretchTest:
     if path.stat().st_size > MAXIMUM_CSV_BYTES:
         raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
-    try:
-        table = pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        raise InputError(
-            path.name,
-            f"cannot be read as CSV ({str(error).strip()}).",
-            f"Give a header line {', '.join(CSV_COLUMNS)} and comma-separated numbers.",
-        ) from None
+    table = read_csv(path, ", ".join(CSV_COLUMNS))
     table.columns = [_column_name(str(c)) for c in table.columns]
     _check_header(path.name, list(table.columns))
     given = [*CSV_COLUMNS, *(["length_mm"] if "length_mm" in table else [])]
-    values = {column: _column(path.name, column, table[column]) for column in given}
+    values = {name: numbers(f"{path.name}, column {name}", table[name]) for name in given}
     labels = (
         table["run"].fillna("").str.strip().to_numpy(dtype=str)
         if "run" in table
@@ -370,20 +363,6 @@ def _check_header(name: str, columns: list[str]) -> None:
             f"has no column {', '.join(missing)} (it has {', '.join(columns[:8])}).",
             f"The header line must name {', '.join(CSV_COLUMNS)}.",
         )
-
-
-def _column(name: str, column: str, texts: pd.Series) -> Array:
-    numbers = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
-    bad = np.flatnonzero(~np.isfinite(numbers))
-    if bad.size:
-        row = int(bad[0])
-        raise InputError(
-            f"{name}, column {column}",
-            f"row {row + 2} holds {texts.iloc[row]!r}, which is not a number"
-            f" ({bad.size} such rows).",
-            "Remove the row or give a number with a decimal point.",
-        )
-    return numbers
 
 
 def _csv_run(

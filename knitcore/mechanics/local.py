@@ -50,6 +50,11 @@ class StitchTable:
         course = direction is Direction.COURSE
         return self.modulus_course_n_per_mm if course else self.modulus_wale_n_per_mm
 
+    @cached_property
+    def log_moduli(self) -> Array:
+        """(2, 16) logarithms of the moduli, course-wise and wale-wise."""
+        return np.log([self.modulus_course_n_per_mm, self.modulus_wale_n_per_mm])
+
     def extensibility_mm_per_n(self, direction: Direction) -> Array:
         """Inverse of the modulus: the sides of the extensibility rectangles (Fig. 4d), mm/N."""
         extensibility: Array = 1.0 / self.modulus_n_per_mm(direction)
@@ -178,8 +183,8 @@ class LocalModuli:
                 "Compute the maps anew after a change of size.",
             )
         (row, row_grown), (column, column_grown) = (
-            _windows(rows, chart.rows),
-            _windows(columns, chart.columns),
+            windows_of(rows, chart.rows),
+            windows_of(columns, chart.columns),
         )
         codes = self.codes.copy()
         fresh = surroundings(chart.region(row_grown, column_grown))
@@ -212,8 +217,8 @@ def local_moduli(chart: StitchChart, material: Material, *, periodic: bool = Fal
     return LocalModuli(codes, stitch_table(material))
 
 
-def _windows(touched: slice, size: int) -> tuple[slice, slice]:
-    """The stitches whose codes can change, and those that determine them."""
+def windows_of(touched: slice, size: int) -> tuple[slice, slice]:
+    """The stitches whose codes a change can alter, and those that determine them."""
     start, stop, _ = touched.indices(size)
     changed = slice(max(start - 1, 0), min(stop + 1, size))
     # Two more on each side: an edge stitch borrows the segment of its other side, so a window

@@ -21,8 +21,9 @@ from knitcore.batch import BatchProgress, BatchResult, run_batch
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import material
+from knitcore.repeats import primitive_repeats, repeats_up_to
 from knitcore.yarnlevel.relax import Branch
-from knitcore.yarnlibrary.catalogue import COMMON, distinct_repeats
+from knitcore.yarnlibrary.catalogue import COMMON
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.store import MATERIALS
 from knitcore.yarnlibrary.yarns import yarn_for
@@ -35,8 +36,9 @@ SQUARE = 3
 def charts_of_the_store(most_stitches: int = MOST_STITCHES) -> dict[StitchChart, str]:
     """The repeats to make, representatives of their fabrics, with the names of known ones."""
     names = {StitchChart.parse(text).canonical(): name for name, text in COMMON.items()}
-    square = [c for c in distinct_repeats(SQUARE**2) if (c.rows, c.columns) == (SQUARE, SQUARE)]
-    some = [*names, *distinct_repeats(most_stitches), *(square if most_stitches >= 8 else [])]
+    square = primitive_repeats(SQUARE, SQUARE) if most_stitches >= MOST_STITCHES else ()
+    small = repeats_up_to(most_stitches, most_stitches, stitches=most_stitches)
+    some = [*names, *small, *square]
     return {chart: names.get(chart, "") for chart in some}
 
 

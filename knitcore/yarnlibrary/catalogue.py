@@ -65,20 +65,3 @@ def placement(chart: StitchChart, representative: StitchChart) -> Placement | No
     return next(
         (p for p, grid in placements(representative.purl) if np.array_equal(grid, wanted)), None
     )
-
-
-def distinct_repeats(most_stitches: int) -> list[StitchChart]:
-    """Every fabric whose smallest repeat has at most so many stitches, small ones first."""
-    found: dict[StitchChart, None] = {}
-    shapes = [
-        (rows, columns)
-        for rows in range(1, most_stitches + 1)
-        for columns in range(1, most_stitches // rows + 1)
-    ]
-    for rows, columns in sorted(shapes, key=lambda s: (s[0] * s[1], s[0])):
-        for code in range(2 ** (rows * columns - 1)):
-            bits = [(code >> k) & 1 == 1 for k in range(rows * columns)]
-            chart = StitchChart(np.array(bits).reshape(rows, columns))
-            if chart.repeat() == chart:
-                found.setdefault(chart.canonical())
-    return list(found)

@@ -33,7 +33,7 @@ def code_version(*modules: str) -> str:
     """
     digest = hashlib.sha256()
     data: set[Path] = set()
-    for name, tree in sorted(_reached(modules).items()):
+    for name, tree in sorted(reached(modules).items()):
         data.update(_named_data(name, tree))
         digest.update(f"{name}\0{ast.dump(_without_docstrings(tree))}\0".encode())
     for file in sorted(data):
@@ -53,7 +53,7 @@ def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) 
     return hashlib.sha256(f"{code_version(*modules)}\0{text}".encode()).hexdigest()[:32]
 
 
-def _reached(modules: tuple[str, ...]) -> dict[str, ast.Module]:
+def reached(modules: tuple[str, ...]) -> dict[str, ast.Module]:
     """Syntax trees of modules and of all that they import, by name."""
     packages = {name.partition(".")[0] for name in modules}
     packages.add("knitcore")

@@ -16,12 +16,12 @@ from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, VALUES, Atlas, load_a
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
 from knitcore.design.cost import CostLimits, knitting_cost
 from knitcore.design.find import Limb, Quantity, Target, find_fabric
-from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
 from knitcore.mechanics.pressure import limb_pressure
+from knitcore.repeats import repeats_up_to
 
 ACRYLIC = material("acrylic")
 REPEATS = repeats_up_to(2, 3)

@@ -16,9 +16,9 @@ from knitcore.design.atlas_yarn import (
     yarn_level_folder,
     yarn_level_tasks,
 )
-from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.materials import material
+from knitcore.repeats import repeats_up_to
 from knitcore.yarnlibrary.characterise import RepeatTask
 from knitcore.yarnlibrary.store import stored_stitch
 

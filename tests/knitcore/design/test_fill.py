@@ -8,11 +8,11 @@ from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import patches_of
-from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
 from knitcore.mechanics.local import local_moduli
+from knitcore.repeats import repeats_up_to
 from tests.knitcore.charts import stitch_charts
 
 ACRYLIC = material("acrylic")

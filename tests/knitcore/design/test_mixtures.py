@@ -7,10 +7,10 @@ import pytest
 from knitcore import StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.mixtures import Mixer
-from knitcore.design.repeats import repeats_up_to
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
+from knitcore.repeats import repeats_up_to
 
 ACRYLIC = material("acrylic")
 ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 2))

@@ -7,11 +7,11 @@ import pytest
 
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas
-from knitcore.design.repeats import repeats_up_to
 from knitcore.design.shape import ShapedSwatch, fill_shape
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
+from knitcore.repeats import repeats_up_to
 from knitcore.swatch import strip_test
 
 ACRYLIC = material("acrylic")

@@ -10,7 +10,8 @@ import pytest
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.yarnlevel.bending import FabricBending, _Cell, _Deformation, _settled, bending
+from knitcore.yarnlevel.bending import FabricBending, bending
+from knitcore.yarnlevel.bent_cell import BentCell, Deformation, settled
 from knitcore.yarnlevel.relax import RelaxedRepeat, relax
 from knitcore.yarnlevel.samples import load_samples
 
@@ -32,8 +33,8 @@ def _bending(repeat: str, fabric: str = "stockinette") -> FabricBending:
 
 
 @cache
-def _cell() -> _Cell:
-    return _settled(_relaxed("K"))
+def _cell() -> BentCell:
+    return settled(_relaxed("K"))
 
 
 # Moments (N) and rigidities (N·mm) of an independent implementation, acrylic samples
@@ -73,25 +74,25 @@ def test_a_purl_curls_as_a_knit_seen_from_the_back() -> None:
 @pytest.mark.parametrize(
     "deformation",
     [
-        _Deformation(),
-        _Deformation(0.0, 0.07),
-        _Deformation(np.pi / 2, -0.05),
-        _Deformation(0.6, 0.1, 0.2),
+        Deformation(),
+        Deformation(0.0, 0.07),
+        Deformation(np.pi / 2, -0.05),
+        Deformation(0.6, 0.1, 0.2),
     ],
     ids=["flat", "along rows", "along columns", "oblique and skewed"],
 )
 def test_gradient_of_the_bent_cell_is_the_derivative_of_its_energy(
-    deformation: _Deformation,
+    deformation: Deformation,
 ) -> None:
     cell = _cell()
-    gradient = cell._lagrangian(deformation).gradient
+    gradient = cell.lagrangian(deformation).gradient
     direction = np.random.default_rng(1).standard_normal(len(cell.state))
     direction[-2:] *= 3.0
     at, h = cell.state.copy(), 1e-6
     values = []
     for sign in (1.0, -1.0):
-        moved = _Cell(cell.energy, at + sign * h * direction, cell.tension)
-        values.append(moved._lagrangian(deformation).value)
+        moved = BentCell(cell.energy, at + sign * h * direction, cell.tension)
+        values.append(moved.lagrangian(deformation).value)
     found = (values[0] - values[1]) / (2 * h)
     assert found == pytest.approx(gradient @ direction, rel=1e-5, abs=1e-4)
 
@@ -101,19 +102,19 @@ def test_the_cell_that_is_bent_by_nothing_is_the_flat_cell() -> None:
     pairs, _ = cell.energy.pairs(cell.curve, cell.state, 2.0 * cell.energy.yarn.radius_mm)
     terms = cell.energy.value(cell.state, cell.curve, pairs)
     expected = cell.energy.merit(terms, cell.tension)
-    assert cell._lagrangian(_Deformation()).value == pytest.approx(expected, rel=1e-12)
+    assert cell.lagrangian(Deformation()).value == pytest.approx(expected, rel=1e-12)
 
 
 def test_linear_response_is_the_second_derivative_of_the_relaxed_energy() -> None:
     """A Newton step in a skewed cell: E(γ) - E(0) = G A γ² / 2."""
     cell, skew = _cell(), 2e-5
-    first = cell._lagrangian(_Deformation(skew=skew))
-    off = np.zeros(len(cell._rows))
+    first = cell.lagrangian(Deformation(skew=skew))
+    off = np.zeros(len(cell.rows))
     off[: len(first.excess_mm)] = first.excess_mm
-    step, _ = cell._solve(first.gradient, off, None)
-    relaxed = _Cell(cell.energy, cell.state + step, cell.tension)
-    rise = relaxed._lagrangian(_Deformation(skew=skew)).value
-    rise -= cell._lagrangian(_Deformation()).value
+    step, _ = cell.solve(first.gradient, off, None)
+    relaxed = BentCell(cell.energy, cell.state + step, cell.tension)
+    rise = relaxed.lagrangian(Deformation(skew=skew)).value
+    rise -= cell.lagrangian(Deformation()).value
     shear = _bending("K").shear_modulus_n_per_mm
     assert shear is not None
     assert rise == pytest.approx(0.5 * shear * cell.area_mm2 * skew**2, rel=0.01)

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from knitcore.chart import StitchChart
-from knitcore.yarnlibrary.catalogue import COMMON, distinct_repeats, placement, placements
+from knitcore.repeats import primitive_repeats, repeats_up_to
+from knitcore.yarnlibrary.catalogue import COMMON, placement, placements
 
 charts = arrays(bool, st.tuples(st.integers(1, 3), st.integers(1, 4))).map(StitchChart)
 
@@ -24,13 +25,12 @@ def test_no_fabric_is_missing_or_counted_twice(shape):
         if chart.repeat() == chart
         for _, turned in placements(chart.purl)
     )
-    found = [c for c in distinct_repeats(rows * columns) if (c.rows, c.columns) == shape]
-    assert len(found) == alone / (4 * rows * columns)
+    assert len(primitive_repeats(rows, columns)) == alone / (4 * rows * columns)
 
 
 def test_the_counts_are_those_of_the_composite_study():
     """36 repeats up to 3x3, 53 of at most 8 stitches and four a side."""
-    repeats = distinct_repeats(9)
+    repeats = repeats_up_to(9, 9, stitches=9)
     assert sum(c.rows <= 3 and c.columns <= 3 for c in repeats) == 36
     assert sum(max(c.rows, c.columns) <= 4 and c.purl.size <= 8 for c in repeats) == 53
 

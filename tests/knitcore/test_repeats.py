@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import InputError, StitchChart
-from knitcore.design.repeats import (
+from knitcore.repeats import (
     known_larger_repeats,
     primitive_repeats,
     repeats_up_to,

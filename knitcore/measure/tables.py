@@ -1,0 +1,63 @@
+"""Columns of numbers in tables that users give."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from knitcore.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+def read_csv(path: Path, header: str) -> pd.DataFrame:
+    """A CSV file as texts.
+
+    Parameters
+    ----------
+    header : the columns that it should have, for the message.
+
+    Raises
+    ------
+    InputError
+        If it is no such file.
+    """
+    try:
+        return pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
+        raise InputError(
+            path.name,
+            f"cannot be read as CSV ({str(error).strip()}).",
+            f"Give a header line {header} and comma-separated numbers.",
+        ) from None
+
+
+def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2) -> Array:
+    """A column of finite numbers.
+
+    Parameters
+    ----------
+    where : file and column, for the message.
+    first_row : of the values in the file, from 1.
+
+    Raises
+    ------
+    InputError
+        Naming the first row that holds something else.
+    """
+    texts = pd.Series(values, dtype=object)
+    found = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
+    bad = np.flatnonzero(~np.isfinite(found))
+    if bad.size:
+        row = int(bad[0])
+        raise InputError(
+            where,
+            f"row {row + first_row} holds {texts.iloc[row]!r}, which is not a number"
+            f" ({bad.size} such rows).",
+            "Remove the row or give a number with a decimal point.",
+        )
+    return found
