@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict, fields
 from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -74,19 +75,8 @@ class LawDocument(_Model):
         xxxx, yyyy, xxyy, yyxx = self._stiffnesses()
         if xxxx is None or yyyy is None or xxyy is None or yyxx is None:
             xxxx, yyyy, xxyy, yyxx = self._from_engineering()
-        law = ConstitutiveLaw(
-            stiffness_xxxx=xxxx,
-            stiffness_yyyy=yyyy,
-            stiffness_xxyy=xxyy,
-            stiffness_yyxx=yyxx,
-            alpha_xx=self.alpha_xx,
-            alpha_yy=self.alpha_yy,
-            beta_xx=self.beta_xx,
-            beta_yy=self.beta_yy,
-            shear_modulus=self.shear_modulus,
-            kappa_xx=self.kappa_xx,
-            kappa_yy=self.kappa_yy,
-        )
+        others = {f.name: getattr(self, f.name) for f in fields(ConstitutiveLaw)[4:]}
+        law = ConstitutiveLaw(xxxx, yyyy, xxyy, yyxx, **others)
         check_stated_constants(
             law,
             modulus_course=self.modulus_course,
@@ -110,7 +100,7 @@ class LawDocument(_Model):
     @classmethod
     def from_law(cls, law: ConstitutiveLaw) -> LawDocument:
         """The document of a law, as stiffnesses."""
-        return cls(**{name: getattr(law, name) for name in ConstitutiveLaw.__dataclass_fields__})
+        return cls(**asdict(law))
 
 
 class DeviationDocument(_Model):
@@ -136,11 +126,7 @@ class CurveDocument(_Model):
     @classmethod
     def from_curve(cls, curve: MeasuredCurve) -> CurveDocument:
         """The document of a curve."""
-        return cls(
-            strain=list(curve.strain),
-            stress_n_per_mm=list(curve.stress_n_per_mm),
-            pulls=curve.pulls,
-        )
+        return cls.model_validate(asdict(curve))
 
 
 class FabricDocument(_Model):
@@ -170,14 +156,8 @@ class FabricDocument(_Model):
         return FabricRecord(
             fabric=fabric,
             law=law,
-            stitch_course_mm=self.stitch_course_mm,
-            stitch_wale_mm=self.stitch_wale_mm,
-            stitch_size_source=self.stitch_size_source,
             uncertainty=self._uncertainty(law),
-            origin=self.origin,
-            loop_length_mm=self.loop_length_mm,
-            yarn_diameter_mm=self.yarn_diameter_mm,
-            setting=self.setting,
+            **{name: getattr(self, name) for name in _SHARED},
             measured={d: curve.to_curve() for d, curve in self.measured.items()},
         )
 
@@ -209,13 +189,7 @@ class FabricDocument(_Model):
         law, spread = record.law, record.uncertainty
         return cls(
             law=LawDocument.from_law(law),
-            stitch_course_mm=record.stitch_course_mm,
-            stitch_wale_mm=record.stitch_wale_mm,
-            stitch_size_source=record.stitch_size_source,
-            loop_length_mm=record.loop_length_mm,
-            yarn_diameter_mm=record.yarn_diameter_mm,
-            setting=record.setting,
-            origin=record.origin,
+            **{name: getattr(record, name) for name in _SHARED},
             standard_deviation=DeviationDocument(
                 modulus_course=law.modulus_course * _coefficient(spread.log_modulus_course),
                 modulus_wale=law.modulus_wale * _coefficient(spread.log_modulus_wale),
@@ -224,6 +198,18 @@ class FabricDocument(_Model):
             ),
             measured={d: CurveDocument.from_curve(c) for d, c in record.measured.items()},
         )
+
+
+_SHARED = (
+    "stitch_course_mm",
+    "stitch_wale_mm",
+    "stitch_size_source",
+    "origin",
+    "loop_length_mm",
+    "yarn_diameter_mm",
+    "setting",
+)
+"""Fields that a record has, too."""
 
 
 class YarnDocument(_Model):

@@ -74,25 +74,17 @@ class FigureTable:
         """The figure of that description, or None if no table has it."""
         return self._by_key.get((material, variant, fabric, direction, quantity))
 
-    def get(
-        self,
-        material: str,
-        quantity: str,
-        *,
-        variant: str = "",
-        fabric: str = "",
-        direction: str = "",
-    ) -> Figure:
-        """The figure of that description.
+    def get(self, material: str, quantity: str, **place: str) -> Figure:
+        """The figure of that description, placed as in :meth:`find`.
 
         Raises
         ------
         InputError
             If no table of the paper has it.
         """
-        figure = self.find(material, quantity, variant=variant, fabric=fabric, direction=direction)
+        figure = self.find(material, quantity, **place)
         if figure is None:
-            what = " ".join(word for word in (material, variant, fabric, direction) if word)
+            what = " ".join(word for word in (material, *place.values()) if word)
             raise InputError(
                 "quantity", f"the paper has no {quantity} for {what}.", "Look at paper_figures()."
             )
@@ -125,16 +117,10 @@ def read_packaged(name: str) -> tuple[Mapping[str, str], ...]:
 
 
 def _figure(row: Mapping[str, str]) -> Figure:
+    texts = ("material", "variant", "fabric", "direction", "quantity", "unit", "printed", "reason")
     return Figure(
         table=int(row["table"]),
-        material=row["material"],
-        variant=row["variant"],
-        fabric=row["fabric"],
-        direction=row["direction"],
-        quantity=row["quantity"],
-        unit=row["unit"],
-        printed=row["printed"],
         corrected=float(row["corrected"]),
         standard_deviation=float(row["sd"]) if row["sd"] else None,
-        reason=row["reason"],
+        **{name: row[name] for name in texts},
     )
