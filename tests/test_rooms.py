@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
-    {"errors", "threads", "showing"},
+    {"arrays", "errors", "threads", "showing"},
     {"choice", "batch", "extensions"},
     {"fabric"},
     {"chart"},

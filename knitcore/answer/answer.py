@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from knitcore import showing
 from knitcore.answer.relaxed import RelaxedSize
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.response import Response, stress_at_strain
 from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
-
-Array = NDArray[np.float64]
-
 
 GAUGE = "gauge"
 """Source of a relaxed size that the caller gave."""

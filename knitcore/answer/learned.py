@@ -22,17 +22,16 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from knitcore.answer.densities import Densities, densities
 from knitcore.answer.kernel import KernelModel, KernelSettings, Samples
 from knitcore.answer.mixture import Mixture, present, pure_numbers
 from knitcore.answer.relaxed import RelaxedSize
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material, Origin
-
-Array = NDArray[np.float64]
 
 STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
 """Stresses over B / L³ at which strains are learned: about .01 to .3 N/mm."""

@@ -22,6 +22,7 @@ from knitcore.answer.kernel import KernelModel, KernelSettings, Samples, noisy_c
 from knitcore.answer.learned import STRESS_GRID, follows
 from knitcore.answer.mixture import Mixture, yarn_numbers
 from knitcore.answer.swept import STRESS, of_law, over_mixture, simulated_record
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction, Fabric
 from knitcore.materials import FabricRecord, Material, Yarn
@@ -29,8 +30,6 @@ from knitcore.materials.uncertainty import COVERAGE, Z_SCORE
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.store import MATERIALS, stored_charts, stored_stitch
 from knitcore.yarnlibrary.training_data import TrainingEntry, training_entries
-
-Array = NDArray[np.float64]
 
 NUMBER_CENTRE = np.array([np.log(0.056), np.log(0.0255), np.log(0.25), 2.65])
 NUMBER_SCALE = np.array([0.15, 0.12, 1.0, 0.25])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from knitcore.answer.answer import GAUGE, Along, Answer, Source
 from knitcore.answer.densities import Densities
@@ -15,12 +15,11 @@ from knitcore.answer.learned import LearnedAnswer, SweptChart, packaged_model
 from knitcore.answer.measured import CURL
 from knitcore.answer.mixture import Mixture
 from knitcore.answer.relaxed import RelaxedSize
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Interval, Material
 from knitcore.materials.uncertainty import Z_SCORE
-
-Array = NDArray[np.float64]
 
 LEARNED = (
     "Learned from yarn-level simulations, which have no friction or set: the initial stretch and "

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
@@ -25,8 +26,6 @@ from knitcore.law.uniaxial import (
 from knitcore.materials import FabricRecord, Material, Origin
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.yarns import yarn_for
-
-Array = NDArray[np.float64]
 
 USUAL_STRESS_N_PER_MM = 2e-5
 """B / L³ of a yarn that is not known well enough: about the middle of the library."""

@@ -22,11 +22,10 @@ from scipy.ndimage import map_coordinates
 from knitcore.answer.densities import Densities, densities_of
 from knitcore.answer.learned import packaged_model
 from knitcore.answer.mixture import present
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
 from knitcore.materials import Material
-
-Array = NDArray[np.float64]
 
 WINDOW = 16
 """Rows and columns of a window."""

@@ -34,6 +34,7 @@ from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
 from knitcore.answer.neighbourhood import neighbourhood_folds
 from knitcore.answer.patches import patches_of
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -41,8 +42,6 @@ from knitcore.law.stiffening import stiffening
 from knitcore.materials import FabricRecord, Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.phases import pure_fabric, quarter_phases
-
-Array = NDArray[np.float64]
 
 STRESSES: Array = np.geomspace(0.003, 0.5, 24)
 """Stresses (N/mm) at which laws are fitted."""

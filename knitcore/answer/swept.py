@@ -12,19 +12,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.answer.densities import densities
 from knitcore.answer.learned import STRESS_GRID, SweptChart, follows, packaged_model
 from knitcore.answer.mixture import Mixture
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress
 from knitcore.materials import FabricRecord, Material, Origin
 from knitcore.materials.uncertainty import LawUncertainty
-
-Array = NDArray[np.float64]
 
 STRESS = np.geomspace(0.005, 0.33, 24)
 """Stresses (N/mm) at which curves are compared."""

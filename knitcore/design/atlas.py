@@ -18,12 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-
-Array = NDArray[np.float64]
 
 FORMAT = 5
 MAXIMUM_BYTES = 50_000_000

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.fabric import Direction
-
-Array = NDArray[np.float64]
 
 OFF = 0.10
 """Relative deviation above which a stitch counts as off."""

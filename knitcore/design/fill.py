@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
 from knitcore.design.explain import OFF, Patch, unreached
@@ -31,7 +32,6 @@ from knitcore.materials import Material
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
 from knitcore.swatch.grid import check_cloth
 
-Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
 
 CLOSE = 0.03

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.cost import CostLimits, KnittingCost
@@ -19,8 +20,6 @@ from knitcore.materials import Interval, Laws
 from knitcore.materials.library import INCONSISTENT
 
 __all__ = ["Candidate", "FoundFabrics", "Limb", "Quantity", "Target", "find_fabric"]
-
-Array = NDArray[np.float64]
 
 _LONG = 24
 """Keys longer than this are not spelt out in sentences."""

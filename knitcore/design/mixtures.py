@@ -15,14 +15,13 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.phases import quarter_phases
-
-Array = NDArray[np.float64]
 
 CLOSE = 0.02
 """A mixture that is nearer than this (in logarithms) is taken at once."""

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import flat_laws
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.homogenisation import homogenise
 from knitcore.swatch import Fields, strip_test
-
-Array = NDArray[np.float64]
 
 SMALL_STRAIN = 0.005
 

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from knitcore.arrays import Array
 from knitcore.design.atlas import Atlas
 from knitcore.mechanics.local import StitchTable
 from knitcore.phases import surroundings
 
-Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
 
 MOST_LABELS = 48

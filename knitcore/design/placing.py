@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.mechanics.local import StitchTable, windows_of
 from knitcore.phases import surroundings
 
-Array = NDArray[np.float64]
 Grid = NDArray[np.bool_]
 Look = Callable[[float], None]
 

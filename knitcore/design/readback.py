@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.mechanics.local import StitchTable
 from knitcore.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
 
-Array = NDArray[np.float64]
 Odd = NDArray[np.bool_]
 
 EXACT = 0.01

@@ -18,14 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
 from knitcore.swatch import strip_test
-
-Array = NDArray[np.float64]
 
 FORCES_N_PER_MM = (0.01, 0.05, 0.2)
 """First guesses of the common force: soft bands and stiff ones can narrow alike."""

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.design.atlas import Atlas
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.mechanics.pressure import LEAST_LENGTH, MMHG_PER_KPA
-
-Array = NDArray[np.float64]
 
 USUAL_LOAD_N_PER_MM = 0.1
 MOST_LOAD_N_PER_MM = 0.5

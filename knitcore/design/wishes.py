@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import check_size
 from knitcore.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.estimate.mixed_model import Mask
 from knitcore.estimate.model import (
@@ -32,8 +32,6 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials.measured import MeasuredCurve
-
-Array = NDArray[np.float64]
 
 LOOP_LENGTH_TOLERANCE = 0.1
 """A swatch whose loops differ by more is of another tightness."""

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _SIGNS = np.tile([1.0, -1.0], 4)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.estimate.mixed_model import Mask, MixedModel, interval_factor
 from knitcore.fabric import Direction, Fabric
@@ -22,8 +22,6 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import Material, load_library
 from knitcore.materials.uncertainty import COVERAGE
-
-Array = NDArray[np.float64]
 
 LOAD_N_PER_MM = 0.1
 """Load at which the extension is shown: a garment pulled on by hand."""

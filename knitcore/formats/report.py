@@ -24,8 +24,6 @@ from knitcore.materials import Interval, Material
 from knitcore.mechanics.local import local_moduli
 from knitcore.segments import segment_map
 
-Array = NDArray[np.float64]
-
 # Cividis at five points: perceptually uniform, and the same for colour-blind readers.
 _CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108], [255, 234, 70]])
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}

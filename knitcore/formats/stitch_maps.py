@@ -6,12 +6,10 @@ import csv
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import MAX_STITCHES_PER_SIDE, check_size
 from knitcore.errors import InputError
-
-Array = NDArray[np.float64]
 
 MAXIMUM_BYTES = 80_000_000
 WANTED = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")

@@ -11,16 +11,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Fabric
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.materials import Material
 from knitcore.yarnlevel.spline import SUPPORT, quintic_basis
 from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
-
-Array = NDArray[np.float64]
 
 POINTS = 49
 """Points of a centre line over one stitch, both ends included."""

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from knitcore.arrays import Array
 from knitcore.geometry.placing import Placement, mean_sizes_mm
 from knitcore.geometry.stitches import StitchShapes
 from knitcore.geometry.tubes import tube_faces, tube_vertices
 
-Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 
 LEVELS = ((1_500, 48, 8), (10_000, 16, 6), (40_000, 10, 4))

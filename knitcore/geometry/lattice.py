@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dctn, idctn
 
 from knitcore.answer.neighbourhood import neighbourhood_sizes
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials.material import Material
 from knitcore.phases import QUARTERS_OF_CODE, pure_fabric, quarter_phases, surroundings
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

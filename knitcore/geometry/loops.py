@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-
-Array = NDArray[np.float64]
 
 SELF, LEFT, RIGHT, ABOVE = 1, 2, 4, 8
 """Bits of a kind of loop: that stitch is a purl."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.geometry.lattice import Lattice, course_angles, stretched_sizes_mm
 from knitcore.geometry.stitches import StitchShapes
-
-Array = NDArray[np.float64]
 
 DEPTH = (0.55, 1.4)
 """Bounds of the change of thickness: strands cannot pass through each other."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.geometry.placing import Placement
@@ -16,7 +17,6 @@ from knitcore.materials import Material
 from knitcore.mechanics.local import stitch_table
 from knitcore.phases import surroundings
 
-Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
 
 FILL = 0.94

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES
 from knitcore.geometry.fabrics import (
@@ -43,8 +44,6 @@ from knitcore.phases import (
     surroundings,
 )
 from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
-
-Array = NDArray[np.float64]
 
 MOST_STORED = 36
 """Larger repeats are not looked for in the store."""

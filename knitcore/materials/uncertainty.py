@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from statistics import NormalDist
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from knitcore.arrays import Array
 from knitcore.fabric import Direction
-
-Array = NDArray[np.float64]
 
 COVERAGE = 0.90
 """Probability content of all intervals."""

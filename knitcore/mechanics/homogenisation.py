@@ -21,14 +21,13 @@ import skfem
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.mechanics.lamination import SheetGrid, coarsened
 from knitcore.mechanics.periodic_mesh import PeriodicMesh
 from knitcore.phases import quarter_phases
-
-Array = NDArray[np.float64]
 
 MOST_CELLS = 1024
 """Quarter cells solved as they are: a repeat of 16 x 16. Larger grids are first coarsened."""

@@ -16,14 +16,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.phases import QUARTERS_OF_CODE, surroundings
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

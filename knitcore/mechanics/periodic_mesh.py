@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 import skfem
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
 
 
 class PeriodicMesh:

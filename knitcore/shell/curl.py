@@ -6,16 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore import showing
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.materials import Material
 from knitcore.shell.relax import settle
 from knitcore.shell.sheet import Sheet, sheet_of
-
-Array = NDArray[np.float64]
 
 MAX_STITCHES = 10_000
 """Largest piece that is calculated."""

@@ -25,7 +25,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
+
 Ints = NDArray[np.int64]
 RealOrComplex = NDArray[Any]
 

@@ -17,11 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import SuperLU, splu
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError
 from knitcore.shell.sheet import Sheet
 from knitcore.shell.tangent import Tangent
-
-Array = NDArray[np.float64]
 
 MEMORY = 16
 _STRIDE = 0.3

@@ -21,6 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Fabric
 from knitcore.materials import Material
@@ -28,7 +29,6 @@ from knitcore.phases import quarter_phases
 from knitcore.shell import kernels
 from knitcore.shell.bends import Bend, bends_of
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 TWIST = 0.4

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
 
 
 class Surface:

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bsr_matrix, csc_matrix
 
+from knitcore.arrays import Array
 from knitcore.shell.kernels import bent, metric_energy, placed, turn_slope, width_slope
 from knitcore.shell.sheet import Sheet
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _TINY = 1e-30

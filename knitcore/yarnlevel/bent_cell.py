@@ -30,9 +30,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, lu_factor, lu_solve
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError
 from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel import kernels
@@ -41,8 +41,6 @@ from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.splines import RelaxedRepeat
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
-
-Array = NDArray[np.float64]
 
 _STEP = 1e-3
 """Curvature times loop length of the central differences."""

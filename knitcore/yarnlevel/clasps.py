@@ -23,13 +23,13 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.yarnlevel.cell import YarnCell, plain_cell
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.start import start_state
 from knitcore.yarnlevel.tiling import centre_lines
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _TILT = np.array([0.0137, 0.0071])

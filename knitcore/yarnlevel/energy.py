@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
@@ -17,7 +18,6 @@ from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs
 from knitcore.yarnlevel.slides import SlideConstraint
 from knitcore.yarnlevel.yarn import YarnModel
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 GAUGE_PER_BENDING = 100.0

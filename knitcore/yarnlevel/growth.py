@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import Convention
@@ -21,8 +21,6 @@ from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.start import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
 from knitcore.yarnlevel.topology import Guard
 from knitcore.yarnlevel.yarn import YarnModel
-
-Array = NDArray[np.float64]
 
 _FIRST_OPENING = 0.2
 """Opening of the nearest contact (in shells) with the first core: enough room for smooth steps."""

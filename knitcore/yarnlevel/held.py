@@ -10,12 +10,10 @@ Rules that symmetry already keeps are left out.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.spline import SUPPORT, quintic_basis
-
-Array = NDArray[np.float64]
 
 _Y, _Z = 1, 2
 _SMALL = 1e-9

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from knitcore.yarnlevel.results import FloatArray
+from knitcore.arrays import Array
 
 _JUMP = 4.0
 """A step whose shape changes this much more than the steps around it is a jump."""
@@ -14,7 +14,7 @@ _JUMP_FLOOR = 0.004
 """The change is also at least this much, root mean square over the stitch, in loop lengths."""
 
 
-def find_jumps(centre_lines: list[FloatArray], loop_length_mm: float) -> tuple[int, ...]:
+def find_jumps(centre_lines: list[Array], loop_length_mm: float) -> tuple[int, ...]:
     """Steps i at which the shape changes far more than at the steps around them.
 
     The change is that of the centre lines (root mean square, their mean and their affine part left
@@ -38,7 +38,7 @@ def find_jumps(centre_lines: list[FloatArray], loop_length_mm: float) -> tuple[i
     return tuple(jumps)
 
 
-def _change(before: FloatArray, after: FloatArray) -> float:
+def _change(before: Array, after: Array) -> float:
     a, b = before.reshape(-1, 3), after.reshape(-1, 3)
     a, b = a - a.mean(axis=0), b - b.mean(axis=0)
     affine = np.linalg.lstsq(a, b, rcond=None)[0]

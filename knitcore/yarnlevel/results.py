@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from knitcore import showing
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.yarn import YarnModel
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Branch(Choice):
@@ -77,7 +75,7 @@ class RelaxedCell:
     convention: Convention
     chart: StitchChart
     yarn: YarnModel
-    loop_lengths_mm: FloatArray
+    loop_lengths_mm: Array
     cell_course_mm: float
     cell_wale_mm: float
     energy_n_mm: float
@@ -89,8 +87,8 @@ class RelaxedCell:
     converged: bool
     force_n: tuple[float, float]
     min_distance_mm: float
-    centre_lines: FloatArray
-    state: FloatArray
+    centre_lines: Array
+    state: Array
     notes: tuple[str, ...] = ()
     starts: tuple[StartReport, ...] = ()
 
@@ -107,7 +105,7 @@ class RelaxedCell:
         contact = f"{self.contact_share:.0%} contact; branch {self.branch}"
         return showing.figure(picture, f"{size}, {energy}, {contact}", *self.notes)
 
-    def tiled_lines(self, least: int = 4) -> list[FloatArray]:
+    def tiled_lines(self, least: int = 4) -> list[Array]:
         """The centre lines of as many repeats as make ``least`` stitches each way, (points, 3)."""
         rows, columns = self.chart.rows, self.chart.columns
         shift = np.array([columns * self.cell_course_mm, rows * self.cell_wale_mm, 0.0])
@@ -136,32 +134,32 @@ class Sweep:
     direction: Direction
     zero: RelaxedCell
     cells: tuple[RelaxedCell, ...]
-    stress_n_per_mm: FloatArray
+    stress_n_per_mm: Array
     jumps: tuple[int, ...] = ()
     notes: tuple[str, ...] = field(default=())
 
     @property
-    def strain(self) -> FloatArray:
+    def strain(self) -> Array:
         """Strain along the stretch."""
         return self._strain(self.direction)
 
     @property
-    def transverse_strain(self) -> FloatArray:
+    def transverse_strain(self) -> Array:
         """Strain across the stretch (negative where the fabric narrows)."""
         return self._strain(self.direction.other)
 
     @property
-    def energy_n_mm(self) -> FloatArray:
+    def energy_n_mm(self) -> Array:
         """Energy of one stitch at each cell, N·mm."""
         return np.array([cell.energy_n_mm for cell in self.cells])
 
     @property
-    def bending_share(self) -> FloatArray:
+    def bending_share(self) -> Array:
         """Share of bending (with regularisation) in the energy at each cell (paper, Fig. S7)."""
         return np.array([cell.bending_share for cell in self.cells])
 
     @property
-    def contact_share(self) -> FloatArray:
+    def contact_share(self) -> Array:
         """Share of contact in the energy at each cell."""
         return np.array([cell.contact_share for cell in self.cells])
 
@@ -177,14 +175,14 @@ class Sweep:
         pair = slice(max(above[0] - 1, 0), above[0] + 1)
         return float(np.interp(0.5, self.contact_share[pair], self.strain[pair]))
 
-    def stress_from_energies(self) -> tuple[FloatArray, FloatArray]:
+    def stress_from_energies(self) -> tuple[Array, Array]:
         """Strain and stress (N/mm) between the points, by the paper's midpoint rule.
 
         It differs from ``stress_n_per_mm`` at jumps, and in the published branch where pairs of
         points enter or leave the exclusion along the yarn (the energy as published steps there).
         """
         size, width = self.zero.cell_mm(self.direction), self.zero.cell_mm(self.direction.other)
-        middle: FloatArray = 0.5 * (self.strain[1:] + self.strain[:-1])
+        middle: Array = 0.5 * (self.strain[1:] + self.strain[:-1])
         return middle, np.diff(self.energy_n_mm) / (np.diff(self.strain) * size * width)
 
     @property
@@ -203,6 +201,6 @@ class Sweep:
         picture = showing.curves(drawn, "strain", "stress, N/mm")
         return showing.figure(picture, told, *self.notes)
 
-    def _strain(self, direction: Direction) -> FloatArray:
+    def _strain(self, direction: Direction) -> Array:
         rest = self.zero.cell_mm(direction)
         return np.array([cell.cell_mm(direction) / rest - 1.0 for cell in self.cells])

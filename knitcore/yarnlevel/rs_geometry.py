@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.mechanics.elastica import Parity
@@ -26,8 +26,6 @@ from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.splines import RelaxedRepeat
 from knitcore.yarnlevel.tiling import centre_lines
 from knitcore.yarnlevel.yarn import YarnModel
-
-Array = NDArray[np.float64]
 
 
 def segment_geometry(relaxed: RelaxedRepeat) -> Mapping[Direction, SegmentGeometry]:

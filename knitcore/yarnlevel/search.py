@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.energy import CellEnergy
@@ -18,7 +18,6 @@ from knitcore.yarnlevel.solver import Minimum, Options, minimise
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Guard
 
-Array = NDArray[np.float64]
 Cancel = Callable[[], bool]
 
 SAME_ENERGY = 1e-3

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.held import is_independent
 from knitcore.yarnlevel.kernels import control_of
 from knitcore.yarnlevel.kernels.structures import Pairs
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 

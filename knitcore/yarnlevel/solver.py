@@ -22,12 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError, UnravelledError
 from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 COURSE, WALE = -2, -1
 """Places of the two cell sizes among the unknowns."""

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
@@ -30,8 +31,6 @@ from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import centre_lines
 from knitcore.yarnlevel.yarn import YarnModel
-
-Array = NDArray[np.float64]
 
 MAX_STITCHES = 100
 """Largest cell that is solved; the unknowns fill a dense matrix."""

@@ -16,12 +16,13 @@ from typing import Protocol
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.jumps import find_jumps
 from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_stretch
 from knitcore.yarnlevel.published.stretch import PublishedStretch
-from knitcore.yarnlevel.results import FloatArray, RelaxedCell, Sweep
+from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.search import SAME_ENERGY
 from knitcore.yarnlevel.spline_stretch import SplineStretch
 from knitcore.yarnlevel.splines import RelaxedRepeat
@@ -101,7 +102,7 @@ def sweep(
 
 
 def follow(
-    stretch: Stretch, zero: RelaxedCell, along: Direction, strain: FloatArray, *,
+    stretch: Stretch, zero: RelaxedCell, along: Direction, strain: Array, *,
     max_stress_n_per_mm: float | None = None, back: bool = True, cancel: Cancel | None = None,
 ) -> Sweep:  # fmt: skip
     """The sweep of a relaxed state at given strains (see :func:`sweep`)."""

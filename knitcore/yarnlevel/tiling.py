@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.cell import YarnCell
-
-Array = NDArray[np.float64]
 
 
 def tiled_controls(cell: YarnCell, state: Array, rows: int, wales: int) -> Array:

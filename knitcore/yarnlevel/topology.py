@@ -15,13 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.kernels.structures import Pairs
 from knitcore.yarnlevel.neighbours import pair_changes
-
-Array = NDArray[np.float64]
 
 CROSSING = 0.75
 """Two polylines that meet have samples within h / sqrt(2) of each other; the rest is for the bend

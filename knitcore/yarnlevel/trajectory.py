@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from knitcore.arrays import Array
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.topology import Guard
-
-Array = NDArray[np.float64]
 
 SKIN = 0.9
 """How much farther than 2r the list of near pairs reaches when it is made, in radii."""

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch, RelaxedRepeat, relax
-from knitcore.yarnlevel.results import FloatArray, RelaxedCell, Sweep
+from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.tiling import tiled_controls
 from knitcore.yarnlevel.yarn import YarnModel
@@ -151,5 +152,5 @@ def _round(value: float) -> float:
     return float(f"{value:.7g}")
 
 
-def _rounded(values: FloatArray) -> list[float]:
+def _rounded(values: Array) -> list[float]:
     return [_round(float(value)) for value in values]

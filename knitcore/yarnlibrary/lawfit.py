@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.measure.law_fit import LINEAR_FLOOR, DirectionFit, fit_direction
-from knitcore.yarnlevel.results import FloatArray, Sweep
+from knitcore.yarnlevel.results import Sweep
 
 MAX_STRESS_N_PER_MM = 0.3
 """Upper end of the range that is fitted unless another is asked for."""
@@ -90,7 +91,7 @@ def fit_law(
     return SimulatedLaw(law, top, x.largest_strain, y.largest_strain, x.rms, y.rms)
 
 
-def _in_range(sweep: Sweep, max_stress: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _in_range(sweep: Sweep, max_stress: float) -> tuple[Array, Array, Array]:
     inside = sweep.stress_n_per_mm <= max_stress
     beyond = np.flatnonzero(~inside)
     if len(beyond):  # the first excess ends the range, whatever a jump brings back
@@ -105,13 +106,11 @@ def _in_range(sweep: Sweep, max_stress: float) -> tuple[FloatArray, FloatArray, 
     return sweep.strain[inside], sweep.transverse_strain[inside], sweep.stress_n_per_mm[inside]
 
 
-def _slope(along: FloatArray, across: FloatArray) -> float:
+def _slope(along: Array, across: Array) -> float:
     return -float(np.polyfit(along, across, 1)[0])
 
 
-def _fit(
-    direction: Direction, points: tuple[FloatArray, FloatArray, FloatArray], coupling: float
-) -> DirectionFit:
+def _fit(direction: Direction, points: tuple[Array, Array, Array], coupling: float) -> DirectionFit:
     along, across, stress = points
     found = fit_direction(along, across, stress, np.ones_like(stress), coupling)
     floor = LINEAR_FLOOR * float(stress.max()) / found.largest_strain

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.conventions import Convention
@@ -23,8 +24,6 @@ from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.catalogue import placement
-
-Array = NDArray[np.float64]
 
 MATERIALS = ("acrylic", "cotton")
 _DATA = "knitcore.yarnlibrary"

@@ -13,14 +13,12 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.yarn import YarnModel
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

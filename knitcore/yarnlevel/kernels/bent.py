@@ -5,8 +5,9 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.kernels.curve import laid_out
-from knitcore.yarnlevel.kernels.structures import Array, ContactLaw, Layout, Pairs
+from knitcore.yarnlevel.kernels.structures import ContactLaw, Layout, Pairs
 from knitcore.yarnlevel.potential import potential_and_derivatives
 
 

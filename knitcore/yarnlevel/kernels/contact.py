@@ -5,8 +5,9 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.kernels.curve import control_of, laid_out
-from knitcore.yarnlevel.kernels.structures import Array, ContactLaw, Ints, Layout, Pairs
+from knitcore.yarnlevel.kernels.structures import ContactLaw, Ints, Layout, Pairs
 from knitcore.yarnlevel.potential import potential, potential_and_derivatives
 
 

@@ -15,7 +15,8 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from knitcore.yarnlevel.kernels.structures import Array, RodLaw
+from knitcore.arrays import Array
+from knitcore.yarnlevel.kernels.structures import RodLaw
 
 
 @numba.njit(cache=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.kernels.curve import control_of
-from knitcore.yarnlevel.kernels.structures import Array, Layout
+from knitcore.yarnlevel.kernels.structures import Layout
 
 
 @numba.njit(cache=True)

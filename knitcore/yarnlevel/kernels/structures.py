@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
+
 Ints = NDArray[np.int64]
 Pairs = NDArray[np.int32]
 """(n, 5): sample i, sample j, image across, image up, sign of z of that image; each pair once."""

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.clasps import is_knitted
 from knitcore.yarnlevel.neighbours import EXCLUSION_RADII, neighbour_pairs, pair_changes
 from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
-from knitcore.yarnlevel.results import FloatArray
 from knitcore.yarnlevel.topology import CROSSING, SAFETY
 
 _POINTS = 20
@@ -21,12 +21,12 @@ _REACH_RADII = 3.0
 _HALVINGS = 7
 
 
-def is_certified(stitch: Stitch, start: FloatArray, end: FloatArray) -> bool:
+def is_certified(stitch: Stitch, start: Array, end: Array) -> bool:
     """Whether the yarn can go from one shape to another without meeting itself."""
     return _certified(stitch, start, end, _HALVINGS)
 
 
-def is_clasped(stitch: Stitch, unknowns: FloatArray) -> bool:
+def is_clasped(stitch: Stitch, unknowns: Array) -> bool:
     """Whether the yarn of the repeat is knotted as its fabric is."""
     fabric = stitch.fabric
     chart = shown_chart(fabric)
@@ -42,7 +42,7 @@ def is_clasped(stitch: Stitch, unknowns: FloatArray) -> bool:
     return is_knitted(chart, np.array(lines), course, wale)
 
 
-def _certified(stitch: Stitch, start: FloatArray, end: FloatArray, halvings: int) -> bool:
+def _certified(stitch: Stitch, start: Array, end: Array, halvings: int) -> bool:
     first, last = (stitch.centre_line(x, _POINTS)[:-1] for x in (start, end))
     steps = [np.linalg.norm(np.diff(line, axis=0), axis=1) for line in (first, last)]
     spacing = max(float(s.max()) for s in steps)
@@ -72,7 +72,7 @@ def _certified(stitch: Stitch, start: FloatArray, end: FloatArray, halvings: int
     )
 
 
-def _without_drift(line: FloatArray, place: FloatArray, unknowns: FloatArray) -> FloatArray:
+def _without_drift(line: Array, place: Array, unknowns: Array) -> Array:
     """Samples as the pair list takes them: (n, 4, 3), x without the drift of the cell."""
     curve = np.zeros((len(line), 4, 3))
     curve[:, 0] = line

@@ -12,13 +12,11 @@ from functools import cache
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
+from knitcore.arrays import Array
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.potential import potential_and_derivatives
 from knitcore.yarnlevel.published.elastic import bernstein
-
-FloatArray = npt.NDArray[np.float64]
 
 POINTS_A_CURVE = 10
 EXCLUSION = 2.1
@@ -32,16 +30,14 @@ def course_images(fabric: Fabric) -> int:
 
 
 @cache
-def midpoint_tables() -> tuple[FloatArray, FloatArray]:
+def midpoint_tables() -> tuple[Array, Array]:
     """Bernstein weights (10, 6) of position and of its derivative at the contact points."""
     t = (np.arange(POINTS_A_CURVE) + 0.5) / POINTS_A_CURVE
     return bernstein(t), bernstein(t, 1)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def sample(
-    controls: FloatArray, places: FloatArray, slopes: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def sample(controls: Array, places: Array, slopes: Array) -> tuple[Array, Array, Array, Array]:
     """Contact points (N, 3), unit tangents (N, 3), lengths and arclengths (N,)."""
     per = places.shape[0]
     count = controls.shape[0] * per
@@ -66,7 +62,7 @@ def sample(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _boxes(points: FloatArray, curves: int) -> FloatArray:
+def _boxes(points: Array, curves: int) -> Array:
     """Extent of each curve's points in the plane, mm: shape (curves, low or high, x or y)."""
     out = np.empty((curves, 2, 2))
     for c, own in enumerate(points.reshape(curves, -1, 3)):
@@ -76,7 +72,7 @@ def _boxes(points: FloatArray, curves: int) -> FloatArray:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _apart(box: FloatArray, other: FloatArray, x: float, y: float, reach: float) -> bool:
+def _apart(box: Array, other: Array, x: float, y: float, reach: float) -> bool:
     """Whether a box and another one, shifted by (x, y), are farther apart than the reach."""
     return bool(
         other[0, 0] + x - box[1, 0] > reach
@@ -88,7 +84,7 @@ def _apart(box: FloatArray, other: FloatArray, x: float, y: float, reach: float)
 
 @numba.njit(cache=True, error_model="numpy")
 def contact_energy(
-    controls: FloatArray,
+    controls: Array,
     cell_course: float,
     cell_wale: float,
     course_odd: bool,
@@ -99,10 +95,10 @@ def contact_energy(
     p: float,
     radius: float,
     core: float,
-    places: FloatArray,
-    slopes: FloatArray,
-    gradient: FloatArray,
-    cell_gradient: FloatArray,
+    places: Array,
+    slopes: Array,
+    gradient: Array,
+    cell_gradient: Array,
 ) -> tuple[float, float]:
     """Contact energy, N·mm, and the smallest distance (mm) of two points that interact.
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.yarnlevel.published.certificate import is_certified, is_clasped
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.results import FloatArray
 
 SEGMENT_FLOOR = 0.014
 """Shortest curve, in loop lengths: .15 mm in the paper's acrylic garter; others stay longer."""
@@ -53,12 +53,10 @@ class Continuation:
 
     stitch: Stitch
     loop_length_mm: float
-    held: FloatArray = field(default_factory=lambda: np.empty((0, 8)))
-    held_mm: FloatArray = field(default_factory=lambda: np.empty(0))
+    held: Array = field(default_factory=lambda: np.empty((0, 8)))
+    held_mm: Array = field(default_factory=lambda: np.empty(0))
 
-    def minimise_at(
-        self, course_mm: float | None, wale_mm: float | None, start: FloatArray
-    ) -> Minimum:
+    def minimise_at(self, course_mm: float | None, wale_mm: float | None, start: Array) -> Minimum:
         """Minimise at given sizes (None: free) from a start, whose sizes are replaced."""
         free = free_constraints(self.loop_length_mm, course_mm, wale_mm)
         rules = replace(free, held=self.held, held_mm=self.held_mm)
@@ -66,7 +64,7 @@ class Continuation:
         return minimise(self.stitch, first, self.loop_length_mm, rules, near=True)
 
     def go(
-        self, path: Sequence[FloatArray], course_mm: float | None, wale_mm: float | None
+        self, path: Sequence[Array], course_mm: float | None, wale_mm: float | None
     ) -> tuple[Minimum, int] | None:
         """Go from the last unknowns of a path to given sizes (None: free).
 
@@ -102,7 +100,7 @@ class Continuation:
                 return step, evaluations
 
     def _step(
-        self, known: list[FloatArray], course_mm: float | None, wale_mm: float | None
+        self, known: list[Array], course_mm: float | None, wale_mm: float | None
     ) -> Minimum | None:
         """One minimisation, started on the line through the last two states if there are two."""
         last = known[-1]
@@ -126,7 +124,7 @@ class Continuation:
         return None
 
 
-def _resized(start: FloatArray, course_mm: float | None, wale_mm: float | None) -> FloatArray:
+def _resized(start: Array, course_mm: float | None, wale_mm: float | None) -> Array:
     out = start.copy()
     for i, size in ((-2, course_mm), (-1, wale_mm)):
         if size is not None:

@@ -11,16 +11,15 @@ from math import comb
 
 import numba
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from knitcore.arrays import Array
 
 ORDER = 5
 QUADRATURE_POINTS = 24
 """Gauss points a curve: enough for 1e-6 of the energy of the paper's stitches."""
 
 
-def bernstein(t: FloatArray, derivative: int = 0) -> FloatArray:
+def bernstein(t: Array, derivative: int = 0) -> Array:
     """Weights of the six control points for a derivative of the curve, shape (len(t), 6)."""
     lower = ORDER - derivative
     basis = np.array([comb(lower, i) * t**i * (1.0 - t) ** (lower - i) for i in range(lower + 1)]).T
@@ -33,7 +32,7 @@ def bernstein(t: FloatArray, derivative: int = 0) -> FloatArray:
 
 
 @cache
-def gauss_tables() -> tuple[FloatArray, FloatArray]:
+def gauss_tables() -> tuple[Array, Array]:
     """Gauss weights on [0, 1], and Bernstein weights (3 derivatives, points, 6)."""
     nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE_POINTS)
     t = (nodes + 1.0) / 2.0
@@ -42,14 +41,14 @@ def gauss_tables() -> tuple[FloatArray, FloatArray]:
 
 @numba.njit(cache=True, error_model="numpy")
 def elastic_energy(  # noqa: PLR0915 - one derivation, forward and back
-    controls: FloatArray,
+    controls: Array,
     bending: float,
     regularisation: float,
-    weights: FloatArray,
-    tables: FloatArray,
-    gradient: FloatArray,
-    lengths: FloatArray,
-    length_gradient: FloatArray,
+    weights: Array,
+    tables: Array,
+    gradient: Array,
+    lengths: Array,
+    length_gradient: Array,
 ) -> float:
     """Energy, N·mm, of curves with control points ``controls`` (curves, 6, 3), mm.
 

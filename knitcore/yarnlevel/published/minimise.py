@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
+from knitcore.arrays import Array
 from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.published.certificate import is_certified
 from knitcore.yarnlevel.published.shape import PARAMETERS, unknown_names
 from knitcore.yarnlevel.published.stitch import Evaluation, Stitch
-from knitcore.yarnlevel.results import FloatArray
 
 MAX_TWIST = float(np.arccos(0.9))
 """Largest twist of a crossover's frame between its ends (authors' constraint cos >= 0.9)."""
@@ -72,8 +72,8 @@ class Constraints:
     cell_course_mm: float | None = None
     cell_wale_mm: float | None = None
     segment_floor_mm: float = 0.15
-    held: FloatArray | None = None
-    held_mm: FloatArray | None = None
+    held: Array | None = None
+    held_mm: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +91,9 @@ class Minimum:
     certified : whether the yarn can go there from the start without meeting itself.
     """
 
-    unknowns: FloatArray
+    unknowns: Array
     evaluation: Evaluation
-    force_n: FloatArray
+    force_n: Array
     residual: float
     evaluations: int
     converged: bool
@@ -105,7 +105,7 @@ class Minimum:
         return self.evaluation.energy_n_mm
 
 
-def length_powers(stitch: Stitch) -> FloatArray:
+def length_powers(stitch: Stitch) -> Array:
     """Power of length in each unknown's dimension: 1, 0 (angles) or -1 (curvatures)."""
     powers = []
     for name in unknown_names(stitch.fabric):
@@ -117,7 +117,7 @@ def length_powers(stitch: Stitch) -> FloatArray:
 
 def minimise(
     stitch: Stitch,
-    start: FloatArray,
+    start: Array,
     loop_length_mm: float,
     constraints: Constraints,
     *,
@@ -180,7 +180,7 @@ def minimise(
     return problem.report(x, converged, certified)
 
 
-def _even_rows(stitch: Stitch) -> FloatArray:
+def _even_rows(stitch: Stitch) -> Array:
     """Weights of the unknowns in the constraints that keep c11 even, shape (2, unknowns)."""
     alpha = stitch.ties[PARAMETERS.index("c11_alpha")]
     beta = stitch.ties[PARAMETERS.index("c11_beta")]
@@ -209,7 +209,7 @@ class _Problem:
             values.extend(constraints.held_mm)
         self.rows, self.values = np.array(rows), np.array(values)
 
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
+    def bounds(self) -> tuple[Array, Array]:
         lower = np.full(self.stitch.size, -np.inf)
         upper = np.full(self.stitch.size, np.inf)
         for i, name in enumerate(unknown_names(self.stitch.fabric)):
@@ -224,7 +224,7 @@ class _Problem:
                 lower[i] = upper[i] = size / self.loop_length_mm
         return lower, upper
 
-    def evaluate(self, x: FloatArray) -> Evaluation:
+    def evaluate(self, x: Array) -> Evaluation:
         key = x.tobytes()
         if self._last is None or key != self._at:
             self._last = self.stitch.evaluate(x * self.scale)
@@ -232,39 +232,39 @@ class _Problem:
             self.evaluations += 1
         return self._last
 
-    def energy(self, x: FloatArray) -> float:
+    def energy(self, x: Array) -> float:
         """Energy over 60 B/L; its logarithm far above a stitch's, so that no step is thrown far."""
         energy = self.evaluate(x).energy_n_mm / self.energy_scale
         if not np.isfinite(energy):
             return 1e6
         return energy if energy < _HIGH else _HIGH * (1.0 + np.log(energy / _HIGH))
 
-    def gradient(self, x: FloatArray) -> FloatArray:
+    def gradient(self, x: Array) -> Array:
         evaluation = self.evaluate(x)
         gradient = evaluation.gradient * self.scale / self.energy_scale
         high = evaluation.energy_n_mm / self.energy_scale / _HIGH
         return np.nan_to_num(gradient / max(high, 1.0), nan=0.0, posinf=0.0, neginf=0.0)
 
-    def equal(self, x: FloatArray) -> FloatArray:
-        held: FloatArray = self.rows @ self.evaluate(x).lengths_mm - self.values
+    def equal(self, x: Array) -> Array:
+        held: Array = self.rows @ self.evaluate(x).lengths_mm - self.values
         return held / self.loop_length_mm
 
-    def equal_jacobian(self, x: FloatArray) -> FloatArray:
-        jacobian: FloatArray = self.rows @ self.evaluate(x).length_gradient
+    def equal_jacobian(self, x: Array) -> Array:
+        jacobian: Array = self.rows @ self.evaluate(x).length_gradient
         return jacobian * self.scale / self.loop_length_mm
 
-    def above(self, x: FloatArray) -> FloatArray:
+    def above(self, x: Array) -> Array:
         lengths = self.evaluate(x).lengths_mm
         floors = lengths[_DISTINCT] - self.constraints.segment_floor_mm
         even = _EVEN_BY_LENGTH * lengths[_EVEN_CURVE] + self.even @ (x * self.scale)
         return np.concatenate([floors, even]) / self.loop_length_mm
 
-    def above_jacobian(self, x: FloatArray) -> FloatArray:
+    def above_jacobian(self, x: Array) -> Array:
         lengths = self.evaluate(x).length_gradient
         even = _EVEN_BY_LENGTH[:, None] * lengths[_EVEN_CURVE] + self.even
         return np.vstack([lengths[_DISTINCT], even]) * self.scale / self.loop_length_mm
 
-    def report(self, x: FloatArray, converged: bool, certified: bool) -> Minimum:
+    def report(self, x: Array, converged: bool, certified: bool) -> Minimum:
         """Multipliers by least squares give the force along a held size of the cell."""
         lower, upper = self.bounds()
         at_bound = (x - lower < 1e-9) | (upper - x < 1e-9)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
@@ -22,7 +23,7 @@ from knitcore.yarnlevel.published.continuation import (
 from knitcore.yarnlevel.published.minimise import Constraints, Minimum, minimise
 from knitcore.yarnlevel.published.starts import first_shapes
 from knitcore.yarnlevel.published.stitch import Stitch, shown_chart
-from knitcore.yarnlevel.results import Branch, FloatArray, RelaxedCell, StartReport
+from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
 from knitcore.yarnlevel.yarn import YarnModel
 
 STARTS = 4
@@ -176,7 +177,7 @@ def _report(stitch: Stitch, number: int, minimum: Minimum) -> StartReport:
 
 
 def _settle(
-    stitch: Stitch, start: FloatArray, loop_length_mm: float, constraints: Constraints
+    stitch: Stitch, start: Array, loop_length_mm: float, constraints: Constraints
 ) -> Minimum:
     """Minimise from a start whose yarns may overlap: grow the core, then the rest."""
     certified = is_clasped(stitch, start)

@@ -20,9 +20,9 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from knitcore.arrays import Array
 from knitcore.fabric import Fabric
 
-FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 _END = ("polar", "azimuth", "alpha", "kappa", "normal", "beta")
@@ -47,7 +47,7 @@ SEGMENTS = ("B1", "c11", "A1", "c12", "A2", "c22", "B2", "c21")
 """Names of the curves, in yarn order."""
 
 
-def ties(fabric: Fabric) -> FloatArray:
+def ties(fabric: Fabric) -> Array:
     """Matrix that makes the 34 parameters from a fabric's own unknowns.
 
     Stockinette and garter put the crossovers at a quarter of the cell and have equal connectors c12
@@ -208,8 +208,8 @@ def control_points(p: ComplexArray, course_odd: bool, wale_odd: bool) -> Complex
 
 @numba.njit(cache=True, error_model="numpy")
 def control_points_and_jacobian(
-    parameters: FloatArray, course_odd: bool, wale_odd: bool
-) -> tuple[FloatArray, FloatArray]:
+    parameters: Array, course_odd: bool, wale_odd: bool
+) -> tuple[Array, Array]:
     """Control points (8, 6, 3) and their derivatives (34, 8, 6, 3) by the complex step."""
     count = parameters.size
     p = parameters.astype(np.complex128)

@@ -11,8 +11,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.fabric import Direction, Fabric
-from knitcore.yarnlevel.results import FloatArray
 
 
 class SlideQuenching(StrEnum):
@@ -23,7 +23,7 @@ class SlideQuenching(StrEnum):
     AS_CODED = "as-coded"
 
     @property
-    def weights(self) -> FloatArray:
+    def weights(self) -> Array:
         """Weights of the eight curves (yarn order) in the lengths held, shape (rows, 8)."""
         return _WEIGHTS[self]
 

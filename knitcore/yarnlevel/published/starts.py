@@ -12,18 +12,18 @@ from importlib.resources import files
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.published.minimise import length_powers
 from knitcore.yarnlevel.published.shape import unknown_names
 from knitcore.yarnlevel.published.stitch import Stitch
-from knitcore.yarnlevel.results import FloatArray
 
 _SPREAD = 0.03
 """Relative spread of the random starts."""
 
 
 @cache
-def _packaged() -> dict[Fabric, tuple[FloatArray, ...]]:
+def _packaged() -> dict[Fabric, tuple[Array, ...]]:
     shapes: dict[tuple[Fabric, str], dict[str, float]] = {}
     path = files("knitcore.yarnlevel") / "data" / "published_starts.csv"
     with path.open(encoding="utf-8") as stream:
@@ -40,7 +40,7 @@ def _packaged() -> dict[Fabric, tuple[FloatArray, ...]]:
     }
 
 
-def first_shapes(stitch: Stitch, loop_length_mm: float, count: int) -> list[FloatArray]:
+def first_shapes(stitch: Stitch, loop_length_mm: float, count: int) -> list[Array]:
     """Starts for a minimisation: the packaged shapes, then random ones near them.
 
     Parameters

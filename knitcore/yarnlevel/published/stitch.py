@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import REGULARISATION_N_MM4, Convention
 from knitcore.yarnlevel.published import contact, elastic, shape
-from knitcore.yarnlevel.results import FloatArray
 from knitcore.yarnlevel.yarn import YarnModel
 
 
@@ -54,9 +54,9 @@ class Evaluation:
 
     bending_n_mm: float
     contact_n_mm: float
-    gradient: FloatArray
-    lengths_mm: FloatArray
-    length_gradient: FloatArray
+    gradient: Array
+    lengths_mm: Array
+    length_gradient: Array
     closest_mm: float
 
     @property
@@ -79,7 +79,7 @@ class Stitch:
     fabric: Fabric
     yarn: YarnModel
     convention: Convention = Convention.PUBLISHED
-    ties: FloatArray = field(init=False, repr=False)
+    ties: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "ties", shape.ties(self.fabric))
@@ -89,20 +89,20 @@ class Stitch:
         """Number of unknowns; the last two are the cell's sizes, mm."""
         return int(self.ties.shape[1])
 
-    def controls(self, unknowns: FloatArray) -> FloatArray:
+    def controls(self, unknowns: Array) -> Array:
         """Control points, mm, shape (8, 6, 3), in yarn order."""
         p = (self.ties @ unknowns).astype(np.complex128)
         points = shape.control_points(p, self.fabric.course_odd, self.fabric.wale_odd)
         return np.ascontiguousarray(points.real)
 
-    def centre_line(self, unknowns: FloatArray, points_a_curve: int = 12) -> FloatArray:
+    def centre_line(self, unknowns: Array, points_a_curve: int = 12) -> Array:
         """Centre line of the stitch, mm, shape (8 * points_a_curve + 1, 3)."""
         t = np.arange(points_a_curve) / points_a_curve
         controls = self.controls(unknowns)
         line = np.einsum("tk,ckd->ctd", elastic.bernstein(t), controls).reshape(-1, 3)
         return np.vstack([line, controls[-1, -1]])
 
-    def centre_lines(self, unknowns: FloatArray) -> FloatArray:
+    def centre_lines(self, unknowns: Array) -> Array:
         """Centre lines of the fabric's repeat, mm, shape (courses, points, 3), bottom first."""
         course_odd, wale_odd = self.fabric.course_odd, self.fabric.wale_odd
         line = self.centre_line(unknowns)
@@ -113,7 +113,7 @@ class Stitch:
             return course[None]
         return np.stack([course, course * (1.0, 1.0, -1.0) + (0.0, unknowns[-1], 0.0)])
 
-    def evaluate(self, unknowns: FloatArray) -> Evaluation:
+    def evaluate(self, unknowns: Array) -> Evaluation:
         """Energy, lengths and their gradients."""
         course_odd, wale_odd = self.fabric.course_odd, self.fabric.wale_odd
         parameters = self.ties @ unknowns

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart, predict
 from knitcore.batch import run_batch
-from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, VALUES, Atlas, load_atlas, save_atlas
+from knitcore.design.atlas import CURVES, FORMAT, VALUES, Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
 from knitcore.design.cost import CostLimits, knitting_cost
 from knitcore.design.find import Limb, Quantity, Target, find_fabric
@@ -96,8 +96,7 @@ def test_a_stopped_build_goes_on_where_it_was(
 def test_two_processes_make_the_same_atlas(tmp_path: Path) -> None:
     atlas = build_atlas(ACRYLIC, REPEATS, file=tmp_path / "a.npz", workers=2)
     assert atlas.keys == ATLAS.keys
-    for name in ("strains", "across", "held"):
-        assert np.array_equal(getattr(atlas, name), getattr(ATLAS, name))
+    assert np.array_equal(atlas.curves, ATLAS.curves)
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
@@ -275,12 +274,12 @@ def test_wishes_that_each_can_be_had_but_not_together() -> None:
 
 
 def test_within_all_tolerances_comes_before_better_on_the_average() -> None:
-    values, strains = np.ones((2, len(VALUES))), np.zeros((2, 2, len(STRESS_N_PER_MM)))
+    values, curves = np.ones((2, len(VALUES))), np.zeros((2, *CURVES))
     values[0, VALUES.index("modulus_course_n_per_mm")] = 1.12  # beyond 10 %, wale exact
     values[1, VALUES.index("modulus_course_n_per_mm")] = 1.09
     values[1, VALUES.index("modulus_wale_n_per_mm")] = 1.09
     sources = "measured", "measured"
-    atlas = Atlas("made", "", ("K", "KP"), values, strains, strains, strains, sources)
+    atlas = Atlas("made", "", ("K", "KP"), values, curves, sources)
     targets = [Target(Quantity.MODULUS_COURSE, 1.0), Target(Quantity.MODULUS_WALE, 1.0)]
     found = find_fabric([atlas], targets)
     assert [candidate.repeat for candidate in found.candidates] == ["KP", "K"]
