@@ -42,8 +42,8 @@ frontend/dist/index.html: $(PAGE_SOURCES)
 
 page: frontend/dist/index.html ## Bundle the page
 
-wheel: page      ## Build dist/knitcore-….whl with the page in it
-	$(PYTHON) -m pip wheel --quiet --no-deps --wheel-dir dist .
+wheel: page $(VENV)/.installed ## Build wheel and sdist with the page in them, and the client's, into dist
+	$(BIN)/uv build --quiet --out-dir dist . && $(BIN)/uv build --quiet --wheel --out-dir dist client
 
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
@@ -109,8 +109,9 @@ docs: $(VENV)/.installed-dev ## Run every example of the documentation
 examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API shows as examples
 	PYTHONPATH=. $(BIN)/python scripts/api_examples.py
 
-types: $(VENV)/.installed-dev ## Make the page's types from the service's models again
+types: $(VENV)/.installed-dev ## Make the page's types and the client from the service's models again
 	PYTHONPATH=. $(BIN)/python scripts/page_types.py
+	PYTHONPATH=. $(BIN)/python scripts/client_code.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m knitcore.yarnlibrary.build $(OPTIONS)

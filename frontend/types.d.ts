@@ -1844,6 +1844,14 @@ export interface SegmentCountsResult {
   odd: number;
 }
 
+/** A browser that is signed in. */
+export interface SessionSummary {
+  id: string;
+  created_at: string;
+  /** Whether it is the one that asks. */
+  is_this: boolean;
+}
+
 /** An edge with a tape or elastic sewn on, which resists stretching and bends freely. */
 export interface SewnInput {
   kind: "sewn";
@@ -1957,6 +1965,15 @@ export interface ShelfPattern {
 
 /** Which side faces the knitter. */
 export type Side = "RS" | "WS";
+
+/** The user of this request, with all sessions, and what is used of the limits of one user. */
+export interface SignedIn {
+  user: string;
+  /** Latest first; scripts have none. */
+  sessions: SessionSummary[];
+  /** By the name that a refusal has in `field`; of this process, if there are several, except for what is kept. */
+  use: Record<string, Use>;
+}
 
 /** The leg of a sock. */
 export interface SockLeg {
@@ -2246,6 +2263,12 @@ export interface UploadedFile {
   name: string;
   /** The file, base64. */
   content: string;
+}
+
+/** How much of a limit is used. */
+export interface Use {
+  used: number;
+  most: number;
 }
 
 /** A kept state with its document. */

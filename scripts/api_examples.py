@@ -17,6 +17,7 @@ from fastapi.testclient import TestClient
 from app.http.identity import LOCAL_USER
 from app.http.schema import EXAMPLES, operations
 from app.http.sessions import Sessions
+from app.jobs.store import OPEN
 from app.main import create_app
 from app.settings import Settings
 from tests.app.job_requests import job_requests
@@ -77,7 +78,7 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
             continue
         body = files.get(FILES.get(path.rsplit("/", 1)[-1], ""), requests.get(name))
         if path.startswith("/api/v1/jobs/") and method == "GET":
-            while client.get(f"/api/v1/jobs/{place['job']}").json()["state"] != "done":
+            while client.get(f"/api/v1/jobs/{place['job']}").json()["state"] in OPEN:
                 time.sleep(0.1)
         headers = {}
         if "design" in place and method in ("PUT", "PATCH", "POST"):

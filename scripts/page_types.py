@@ -17,6 +17,7 @@ from pydantic.json_schema import models_json_schema
 from app.api.views import CameraRequest, MarkRequest
 from app.designs import document as designs
 from app.http.problems import Problem
+from app.http.sessions import SignedIn
 from app.jobs.document import JobPage
 from app.operations.registry import operations
 from app.viewer.design_view import ViewRequest, ViewResult
@@ -27,6 +28,8 @@ FILE = Path(__file__).resolve().parent.parent / "frontend" / "types.d.ts"
 HEAD = (
     "// Made from the service's models by scripts/page_types.py: change those, then `make types`."
 )
+
+Schema = dict[str, Any]
 
 ASKED: tuple[type[BaseModel], ...] = (
     ViewRequest,
@@ -42,6 +45,7 @@ ANSWERED: tuple[type[BaseModel], ...] = (
     DesignLayout,
     Problem,
     JobPage,
+    SignedIn,
     ViewResult,
     designs.Design,
     designs.DesignPage,
@@ -67,20 +71,20 @@ def page_types() -> str:
     made = operations().values()
     asked = [*(operation.request for operation in made), *ASKED]
     answered = [*(operation.result for operation in made), *ANSWERED]
-    shapes = _shapes(asked, "validation")
-    for name, shape in _shapes(answered, "serialization").items():
+    found = shapes(asked, "validation")
+    for name, shape in shapes(answered, "serialization").items():
         required = shape.get("required") if name == "Problem" else list(shape.get("properties", ()))
-        shapes[name] = shape | {"required": required}
-    parts = [_declared(name, shape) for name, shape in sorted(shapes.items())]
+        found[name] = shape | {"required": required}
+    parts = [_declared(name, shape) for name, shape in sorted(found.items())]
     return "\n\n".join([HEAD, *parts]) + "\n"
 
 
-def _shapes(
+def shapes(
     models: Sequence[type[BaseModel]], mode: Literal["validation", "serialization"]
-) -> dict[str, dict[str, Any]]:
+) -> dict[str, Schema]:
     """JSON schemas of models and of the models in their fields, by name."""
     _, schema = models_json_schema([(model, mode) for model in models])
-    found: dict[str, dict[str, Any]] = schema["$defs"]
+    found: dict[str, Schema] = schema["$defs"]
     return found
 
 

@@ -2,7 +2,7 @@
 
 A module holds one ``OPERATION``. Routes (:mod:`app.api.operations`), commands
 (:mod:`app.cli.commands`), jobs (:mod:`app.jobs.kinds`), the client's methods
-(:mod:`app.client`) and the page's types (``scripts/page_types.py``) are made from it, so a new
+(``scripts/client_code.py``) and the page's types (``scripts/page_types.py``) are made from it, so a new
 operation is one file here and its test.
 """
 

@@ -1,85 +1,45 @@
-"""A typed client of the REST API, for scripts and notebooks.
-
-It is part of the service and not of ``knitcore``, which has no network code. Every operation is a
-method by its name, made from :mod:`app.operations.registry`; it takes the fields of the request
-(files as paths) and returns the result's model.
-
-Examples
---------
-::
-
-    from app.client import Client
-
-    with Client("http://127.0.0.1:8737", token="…") as knit:
-        print(knit.predict(chart="KPKP", material="acrylic").modulus_course_n_per_mm)
-        law = knit.fit(test_course=Path("course.csv"), test_wale=Path("wale.csv"))
-        design = knit.create("Cuff", "acrylic", "KPKP\\nKPKP")
-        design = knit.save(design.id, design.document, design.revision)
-        job = knit.submit("stretch", chart=design.document.chart, material="acrylic",
-                          direction="wale", strain=0.3)
-        for status in knit.follow(job.id):
-            print(status.state, status.progress)
-        curve = knit.result(job.id)
-"""
+"""The client that waits (made by scripts/client_code.py)."""
 
 from __future__ import annotations
 
 import secrets
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
 import httpx2 as httpx
-from pydantic import BaseModel
+from pydantic import BaseModel, TypeAdapter
 
-from app.designs.document import (
+from knitcore_client.models import (
     Design,
     DesignDocument,
     DesignPage,
     DesignPatch,
     DesignSummary,
+    JobPage,
+    JobResult,
+    JobStatus,
     NewShare,
     Painted,
     Run,
     SharedDesign,
     ShareMode,
     Shares,
-    Strokes,
+    SignedIn,
     Version,
     Versions,
     VersionSummary,
 )
-from app.http.problems import Problem
-from app.jobs.document import JobPage, JobStatus
-from app.models.uploads import UploadedFile
-from app.operations.registry import Operation, operations
-
-ATTEMPTS = 4
-LONGEST_WAIT_S = 60.0
-"""Longest wait that is accepted before a request is repeated."""
+from knitcore_client.operations import Operations
+from knitcore_client.wire import ATTEMPTS, sent, wait_s
 
 Model = TypeVar("Model", bound=BaseModel)
-Request = TypeVar("Request", bound=BaseModel)
-Result = TypeVar("Result", bound=BaseModel)
+_JOB_RESULT: TypeAdapter[JobResult] = TypeAdapter(JobResult)
 
 
-class ProblemError(Exception):
-    """The service refused or failed.
-
-    Attributes
-    ----------
-    problem : the service's answer.
-    """
-
-    def __init__(self, problem: Problem) -> None:
-        super().__init__(f"{problem.title}: {problem.detail} {problem.remedy or ''}".strip())
-        self.problem = problem
-
-
-class Client:
+class Client(Operations):
     """The service at an address.
 
     A request whose answer is lost is sent again, as is one that the service asks to repeat later
@@ -91,6 +51,11 @@ class Client:
     token : of the user, where the service asks for one.
     timeout_s : longest wait for an answer.
     transport : replaces the network, for tests.
+
+    Raises
+    ------
+    ProblemError
+        In every method, if the service refuses or fails.
     """
 
     def __init__(
@@ -122,28 +87,17 @@ class Client:
         """Close the connections."""
         self._http.close()
 
-    # operations
-
-    def __getattr__(self, name: str) -> Callable[..., Any]:
-        """The operation of that name, as a function of its request's fields."""
-        operation = operations().get(name.removesuffix("_"))
-        if operation is None or operation.path is None:
-            raise AttributeError(f"there is no operation {name}")
-        return lambda **fields: self.ask(operation, _request(operation, fields))
-
-    def ask(self, operation: Operation[Request, Result], request: Request) -> Result:
-        """The answer of an operation to a request."""
-        fields = _sent(request)
-        if operation.method == "GET":
-            return self._get(operation.result, operation.address.format(**fields))
-        return self._post(operation.result, operation.address, fields)
+    def signed_in(self) -> SignedIn:
+        """Who you are, where you are signed in, and how much of your limits you use."""
+        return self._get(SignedIn, "/session")
 
     # designs
 
     def designs(self, *, deleted: bool = False) -> Iterator[DesignSummary]:
         """All designs, the latest changes first; or those that can be recovered."""
         for page in self._pages(DesignPage, "/designs", deleted=deleted):
-            yield from page.designs
+            for design in page.designs:
+                yield design
 
     def create(self, name: str, material: str, chart: str, note: str = "") -> Design:
         """Keep a new design."""
@@ -155,18 +109,17 @@ class Client:
         return self._get(Design, f"/designs/{design}")
 
     def save(self, design: str, document: DesignDocument, revision: int) -> Design:
-        """Replace a design that was at ``revision``; a ProblemError of type ``stale`` otherwise."""
-        return self._change(Design, "PUT", f"/designs/{design}", revision, _sent(document))
+        """Replace a design that was at ``revision``; refused as stale if it is at another."""
+        return self._change(Design, "PUT", f"/designs/{design}", revision, document)
 
-    def patch(self, design: str, revision: int, **fields: str) -> Design:
+    def patch(self, design: str, revision: int, fields: DesignPatch) -> Design:
         """Change its name, material or note."""
-        body = _sent(DesignPatch.model_validate(fields))
-        return self._change(Design, "PATCH", f"/designs/{design}", revision, body)
+        return self._change(Design, "PATCH", f"/designs/{design}", revision, fields)
 
     def paint(self, design: str, rows: int, columns: int, runs: list[Run]) -> Painted:
         """Merge strokes into a design."""
-        strokes = Strokes(rows=rows, columns=columns, runs=runs)
-        return self._post(Painted, f"/designs/{design}/strokes", _sent(strokes))
+        strokes = {"rows": rows, "columns": columns, "runs": runs}
+        return self._post(Painted, f"/designs/{design}/strokes", strokes)
 
     def duplicate(self, design: str) -> Design:
         """A new design with the same content."""
@@ -182,9 +135,9 @@ class Client:
 
     def versions(self, design: str) -> list[VersionSummary]:
         """Kept states of a design, oldest first."""
-        return self._get(Versions, f"/designs/{design}/versions").versions
+        return (self._get(Versions, f"/designs/{design}/versions")).versions
 
-    def version(self, design: str, number: int) -> Version:
+    def kept(self, design: str, number: int) -> Version:
         """A kept state."""
         return self._get(Version, f"/designs/{design}/versions/{number}")
 
@@ -201,7 +154,7 @@ class Client:
         """Links to a design."""
         return self._get(Shares, f"/designs/{design}/shares")
 
-    def share(self, design: str, mode: ShareMode = ShareMode.READ) -> NewShare:
+    def share(self, design: str, mode: ShareMode = "read") -> NewShare:
         """A link for reading, or for copying; its token is shown only here."""
         return self._post(NewShare, f"/designs/{design}/shares", {"mode": mode})
 
@@ -219,15 +172,11 @@ class Client:
 
     # jobs
 
-    def submit(self, kind: str, **fields: Any) -> JobStatus:
-        """Run an operation in the background."""
-        request = _request(operations()[kind], fields)
-        return self._make(JobStatus, "/jobs", {"kind": kind, "request": _sent(request)})
-
     def jobs(self) -> Iterator[JobStatus]:
         """All jobs, latest first."""
         for page in self._pages(JobPage, "/jobs"):
-            yield from page.jobs
+            for job in page.jobs:
+                yield job
 
     def job(self, job: str) -> JobStatus:
         """Where a job stands."""
@@ -235,22 +184,33 @@ class Client:
 
     def follow(self, job: str) -> Iterator[JobStatus]:
         """A job's states and progress until it ends."""
-        with self._http.stream("GET", f"/jobs/{job}/events", timeout=None) as stream:
-            if stream.is_error:
-                stream.read()
-                raise _problem(stream)
-            for line in stream.iter_lines():
-                if line.startswith("data: "):
-                    yield JobStatus.model_validate_json(line.removeprefix("data: "))
+        attempt = 1
+        while True:
+            try:
+                with self._http.stream("GET", f"/jobs/{job}/events", timeout=None) as stream:
+                    if stream.is_error:
+                        stream.read()
+                        time.sleep(wait_s(stream, attempt))
+                    for line in stream.iter_lines():
+                        if line.startswith("data: "):
+                            status = JobStatus.model_validate_json(line.removeprefix("data: "))
+                            yield status
+                            attempt = 0
+                            if status.state not in ("waiting", "running"):
+                                return
+            except httpx.TransportError:
+                if attempt == ATTEMPTS:
+                    raise
+            attempt += 1
 
-    def result(self, job: str) -> Any:
-        """The result of a job, as the model of its operation."""
-        operation = operations()[self.job(job).kind]
-        return self._get(operation.result, f"/jobs/{job}/result")
+    def result(self, job: str) -> JobResult:
+        """The result of a job; its ``kind`` says which."""
+        answer = self._send("GET", f"/jobs/{job}/result")
+        return _JOB_RESULT.validate_json(answer.content)
 
     def cancel(self, job: str) -> JobStatus:
         """Stop a job."""
-        return JobStatus.model_validate_json(self._send("DELETE", f"/jobs/{job}").content)
+        return JobStatus.model_validate_json((self._send("DELETE", f"/jobs/{job}")).content)
 
     def again(self, job: str) -> JobStatus:
         """Run a job again."""
@@ -258,8 +218,28 @@ class Client:
 
     # on the wire
 
+    def _ask(self, result: type[Model], method: str, path: str, request: Any) -> Model:
+        if method == "GET":
+            return self._get(result, path.format(**request))
+        return self._post(result, path, request)
+
+    def _submit(self, kind: str, request: Any) -> JobStatus:
+        return self._make(JobStatus, "/jobs", {"kind": kind, "request": request})
+
+    def _run(self, kind: str, request: Any) -> JobResult:
+        job = (self._submit(kind, request)).id
+        ended = False
+        try:
+            for _ in self.follow(job):
+                pass
+            ended = True
+        finally:
+            if not ended:
+                self.cancel(job)
+        return self.result(job)
+
     def _get(self, model: type[Model], path: str, **query: Any) -> Model:
-        return model.model_validate_json(self._send("GET", path, params=query).content)
+        return model.model_validate_json((self._send("GET", path, params=query)).content)
 
     def _pages(self, model: type[Model], path: str, **query: Any) -> Iterator[Model]:
         while True:
@@ -270,19 +250,19 @@ class Client:
                 return
 
     def _post(self, model: type[Model], path: str, body: Any = None, **more: Any) -> Model:
-        return model.model_validate_json(self._send("POST", path, json=body, **more).content)
+        answer = self._send("POST", path, json=sent(body), **more)
+        return model.model_validate_json(answer.content)
 
     def _make(self, model: type[Model], path: str, body: Any = None) -> Model:
-        sent = _sent(body) if isinstance(body, BaseModel) else body
-        return self._post(model, path, sent, headers={"Idempotency-Key": secrets.token_urlsafe(16)})
+        key = {"Idempotency-Key": secrets.token_urlsafe(16)}
+        return self._post(model, path, body, headers=key)
 
     def _change(
         self, model: type[Model], method: str, path: str, revision: int, body: Any = None
     ) -> Model:
-        headers = {"If-Match": f'"{revision}"'}
-        return model.model_validate_json(
-            self._send(method, path, json=body, headers=headers).content
-        )
+        state = {"If-Match": f'"{revision}"'}
+        answer = self._send(method, path, json=sent(body), headers=state)
+        return model.model_validate_json(answer.content)
 
     def _send(self, method: str, path: str, **options: Any) -> httpx.Response:
         send = partial(self._http.request, method, path, **options)
@@ -295,32 +275,5 @@ class Client:
                 continue
             if not answer.is_error:
                 return answer
-            wait = float(answer.headers.get("Retry-After", "inf"))
-            if attempt == ATTEMPTS or wait > LONGEST_WAIT_S:
-                raise _problem(answer)
-            time.sleep(wait)
+            time.sleep(wait_s(answer, attempt))
         raise AssertionError("unreachable")
-
-
-def _request(operation: Operation[Request, Any], fields: dict[str, Any]) -> Request:
-    return operation.request.model_validate({name: _file(of) for name, of in fields.items()})
-
-
-def _file(value: Any) -> Any:
-    """Paths as files to send."""
-    if isinstance(value, Path):
-        return UploadedFile.model_construct(name=value.name, content=value.read_bytes())
-    return [_file(one) for one in value] if isinstance(value, list) else value
-
-
-def _sent(request: BaseModel) -> dict[str, Any]:
-    return request.model_dump(mode="json", exclude_unset=True)
-
-
-def _problem(answer: httpx.Response) -> ProblemError:
-    try:
-        return ProblemError(Problem.model_validate_json(answer.content))
-    except ValueError:
-        detail = f"The answer {answer.status_code} does not come from this service."
-        problem = Problem(type="http", title="No answer", status=answer.status_code, detail=detail)
-        return ProblemError(problem)

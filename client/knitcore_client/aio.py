@@ -1,0 +1,279 @@
+"""The asynchronous client. ``scripts/client_code.py`` makes the one that waits from it."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import AsyncIterator
+from functools import partial
+from types import TracebackType
+from typing import Any, Self, TypeVar
+
+import httpx2 as httpx
+from pydantic import BaseModel, TypeAdapter
+
+from knitcore_client.models import (
+    Design,
+    DesignDocument,
+    DesignPage,
+    DesignPatch,
+    DesignSummary,
+    JobPage,
+    JobResult,
+    JobStatus,
+    NewShare,
+    Painted,
+    Run,
+    SharedDesign,
+    ShareMode,
+    Shares,
+    SignedIn,
+    Version,
+    Versions,
+    VersionSummary,
+)
+from knitcore_client.operations import AsyncOperations
+from knitcore_client.wire import ATTEMPTS, sent, wait_s
+
+Model = TypeVar("Model", bound=BaseModel)
+_JOB_RESULT: TypeAdapter[JobResult] = TypeAdapter(JobResult)
+
+
+class AsyncClient(AsyncOperations):
+    """The service at an address.
+
+    A request whose answer is lost is sent again, as is one that the service asks to repeat later
+    (``Retry-After``); requests that create something carry a key, so that it is created once.
+
+    Parameters
+    ----------
+    address : where it is, such as ``http://127.0.0.1:8737``.
+    token : of the user, where the service asks for one.
+    timeout_s : longest wait for an answer.
+    transport : replaces the network, for tests.
+
+    Raises
+    ------
+    ProblemError
+        In every method, if the service refuses or fails.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        token: str | None = None,
+        timeout_s: float = 60.0,
+        transport: httpx.AsyncBaseTransport | None = None,
+    ) -> None:
+        self._http = httpx.AsyncClient(
+            base_url=f"{address.rstrip('/')}/api/v1",
+            headers={"Authorization": f"Bearer {token}"} if token else {},
+            timeout=timeout_s,
+            transport=transport,
+        )
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        await self.aclose()
+
+    async def aclose(self) -> None:
+        """Close the connections."""
+        await self._http.aclose()
+
+    async def signed_in(self) -> SignedIn:
+        """Who you are, where you are signed in, and how much of your limits you use."""
+        return await self._get(SignedIn, "/session")
+
+    # designs
+
+    async def designs(self, *, deleted: bool = False) -> AsyncIterator[DesignSummary]:
+        """All designs, the latest changes first; or those that can be recovered."""
+        async for page in self._pages(DesignPage, "/designs", deleted=deleted):
+            for design in page.designs:
+                yield design
+
+    async def create(self, name: str, material: str, chart: str, note: str = "") -> Design:
+        """Keep a new design."""
+        document = DesignDocument(name=name, material=material, chart=chart, note=note)
+        return await self._make(Design, "/designs", document)
+
+    async def design(self, design: str) -> Design:
+        """A design."""
+        return await self._get(Design, f"/designs/{design}")
+
+    async def save(self, design: str, document: DesignDocument, revision: int) -> Design:
+        """Replace a design that was at ``revision``; refused as stale if it is at another."""
+        return await self._change(Design, "PUT", f"/designs/{design}", revision, document)
+
+    async def patch(self, design: str, revision: int, fields: DesignPatch) -> Design:
+        """Change its name, material or note."""
+        return await self._change(Design, "PATCH", f"/designs/{design}", revision, fields)
+
+    async def paint(self, design: str, rows: int, columns: int, runs: list[Run]) -> Painted:
+        """Merge strokes into a design."""
+        strokes = {"rows": rows, "columns": columns, "runs": runs}
+        return await self._post(Painted, f"/designs/{design}/strokes", strokes)
+
+    async def duplicate(self, design: str) -> Design:
+        """A new design with the same content."""
+        return await self._make(Design, f"/designs/{design}/duplicate")
+
+    async def delete(self, design: str) -> None:
+        """Delete a design; it can be recovered for 30 days."""
+        await self._send("DELETE", f"/designs/{design}")
+
+    async def recover(self, design: str) -> Design:
+        """Bring a deleted design back."""
+        return await self._post(Design, f"/designs/{design}/recover")
+
+    async def versions(self, design: str) -> list[VersionSummary]:
+        """Kept states of a design, oldest first."""
+        return (await self._get(Versions, f"/designs/{design}/versions")).versions
+
+    async def kept(self, design: str, number: int) -> Version:
+        """A kept state."""
+        return await self._get(Version, f"/designs/{design}/versions/{number}")
+
+    async def keep(self, design: str, name: str) -> VersionSummary:
+        """Keep the present state under a name."""
+        return await self._make(VersionSummary, f"/designs/{design}/versions", {"name": name})
+
+    async def restore(self, design: str, number: int, revision: int) -> Design:
+        """Go back to a kept state; the present one, at ``revision``, is kept first."""
+        path = f"/designs/{design}/versions/{number}/restore"
+        return await self._change(Design, "POST", path, revision)
+
+    async def shares(self, design: str) -> Shares:
+        """Links to a design."""
+        return await self._get(Shares, f"/designs/{design}/shares")
+
+    async def share(self, design: str, mode: ShareMode = "read") -> NewShare:
+        """A link for reading, or for copying; its token is shown only here."""
+        return await self._post(NewShare, f"/designs/{design}/shares", {"mode": mode})
+
+    async def unshare(self, design: str, share: str) -> None:
+        """Take a link back."""
+        await self._send("DELETE", f"/designs/{design}/shares/{share}")
+
+    async def shared(self, token: str) -> SharedDesign:
+        """The design that a link shows."""
+        return await self._get(SharedDesign, f"/shared/{token}")
+
+    async def copy(self, token: str) -> Design:
+        """Copy the design that a link shows."""
+        return await self._make(Design, f"/shared/{token}/copy")
+
+    # jobs
+
+    async def jobs(self) -> AsyncIterator[JobStatus]:
+        """All jobs, latest first."""
+        async for page in self._pages(JobPage, "/jobs"):
+            for job in page.jobs:
+                yield job
+
+    async def job(self, job: str) -> JobStatus:
+        """Where a job stands."""
+        return await self._get(JobStatus, f"/jobs/{job}")
+
+    async def follow(self, job: str) -> AsyncIterator[JobStatus]:
+        """A job's states and progress until it ends."""
+        attempt = 1
+        while True:
+            try:
+                async with self._http.stream("GET", f"/jobs/{job}/events", timeout=None) as stream:
+                    if stream.is_error:
+                        await stream.aread()
+                        await asyncio.sleep(wait_s(stream, attempt))
+                    async for line in stream.aiter_lines():
+                        if line.startswith("data: "):
+                            status = JobStatus.model_validate_json(line.removeprefix("data: "))
+                            yield status
+                            attempt = 0
+                            if status.state not in ("waiting", "running"):
+                                return
+            except httpx.TransportError:
+                if attempt == ATTEMPTS:
+                    raise
+            attempt += 1
+
+    async def result(self, job: str) -> JobResult:
+        """The result of a job; its ``kind`` says which."""
+        answer = await self._send("GET", f"/jobs/{job}/result")
+        return _JOB_RESULT.validate_json(answer.content)
+
+    async def cancel(self, job: str) -> JobStatus:
+        """Stop a job."""
+        return JobStatus.model_validate_json((await self._send("DELETE", f"/jobs/{job}")).content)
+
+    async def again(self, job: str) -> JobStatus:
+        """Run a job again."""
+        return await self._post(JobStatus, f"/jobs/{job}/again")
+
+    # on the wire
+
+    async def _ask(self, result: type[Model], method: str, path: str, request: Any) -> Model:
+        if method == "GET":
+            return await self._get(result, path.format(**request))
+        return await self._post(result, path, request)
+
+    async def _submit(self, kind: str, request: Any) -> JobStatus:
+        return await self._make(JobStatus, "/jobs", {"kind": kind, "request": request})
+
+    async def _run(self, kind: str, request: Any) -> JobResult:
+        job = (await self._submit(kind, request)).id
+        ended = False
+        try:
+            async for _ in self.follow(job):
+                pass
+            ended = True
+        finally:
+            if not ended:
+                await self.cancel(job)
+        return await self.result(job)
+
+    async def _get(self, model: type[Model], path: str, **query: Any) -> Model:
+        return model.model_validate_json((await self._send("GET", path, params=query)).content)
+
+    async def _pages(self, model: type[Model], path: str, **query: Any) -> AsyncIterator[Model]:
+        while True:
+            page = await self._get(model, path, limit=200, **query)
+            yield page
+            query["cursor"] = getattr(page, "next_cursor", None)
+            if query["cursor"] is None:
+                return
+
+    async def _post(self, model: type[Model], path: str, body: Any = None, **more: Any) -> Model:
+        answer = await self._send("POST", path, json=sent(body), **more)
+        return model.model_validate_json(answer.content)
+
+    async def _make(self, model: type[Model], path: str, body: Any = None) -> Model:
+        key = {"Idempotency-Key": secrets.token_urlsafe(16)}
+        return await self._post(model, path, body, headers=key)
+
+    async def _change(
+        self, model: type[Model], method: str, path: str, revision: int, body: Any = None
+    ) -> Model:
+        state = {"If-Match": f'"{revision}"'}
+        answer = await self._send(method, path, json=sent(body), headers=state)
+        return model.model_validate_json(answer.content)
+
+    async def _send(self, method: str, path: str, **options: Any) -> httpx.Response:
+        send = partial(self._http.request, method, path, **options)
+        for attempt in range(1, ATTEMPTS + 1):
+            try:
+                answer = await send()
+            except httpx.TransportError:
+                if attempt == ATTEMPTS:  # repeat until then: the key lets it take effect only once
+                    raise
+                continue
+            if not answer.is_error:
+                return answer
+            await asyncio.sleep(wait_s(answer, attempt))
+        raise AssertionError("unreachable")

@@ -1,0 +1,2644 @@
+"""Requests and answers of the service (made by scripts/client_code.py)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal, NotRequired, TypedDict
+
+from pydantic import AwareDatetime, BaseModel, RootModel
+
+VERSION = "0.1.0"
+"""Of the program that it was made from."""
+
+Branch = Literal["published", "mirrored", "free"]
+
+CameraSide = Literal["face", "back", "edge", "angle"]
+
+Clamps = Literal["clamped", "sliding"]
+
+Colour = Literal[
+    "yarn",
+    "region",
+    "fabric",
+    "phase",
+    "course",
+    "wale",
+    "anisotropy",
+    "strain",
+    "utilisation",
+    "field",
+]
+
+Construction = Literal["flat", "round"]
+
+Convention = Literal["published", "paper", "authors-code"]
+
+Direction = Literal["course", "wale"]
+
+Edges = Literal["measured", "rigid"]
+
+EnergyModel = Literal["published", "full"]
+
+ExportKind = Literal[
+    "knitout",
+    "knitspeak",
+    "png",
+    "svg",
+    "pdf",
+    "report",
+    "text",
+    "written",
+    "design",
+    "glb",
+    "stl",
+    "vtu",
+    "csv",
+]
+
+Fabric = Literal["stockinette", "garter", "rib", "seed"]
+
+Finish = Literal["waste", "bind-off"]
+
+Laws = Literal["refitted", "published"]
+
+Quantity = Literal[
+    "modulus_course_n_per_mm",
+    "modulus_wale_n_per_mm",
+    "extensibility_course_mm_per_n",
+    "extensibility_wale_mm_per_n",
+    "anisotropy",
+    "poisson_yx",
+    "poisson_xy",
+    "stretch_course",
+    "stretch_wale",
+    "pressure_course_mmhg",
+    "pressure_wale_mmhg",
+]
+
+RectangleGroups = Literal["stitch", "block", "region"]
+
+Reduction = Literal["published", "uniform", "recommended"]
+
+ShareMode = Literal["read", "copy"]
+
+Side = Literal["RS", "WS"]
+
+Curl = Literal["flat", "front", "back"]
+
+Group = Literal[
+    "knitcore.patterns", "knitcore.materials", "knitcore.exporters", "knitcore.measures"
+]
+
+JobState = Literal["waiting", "running", "done", "failed", "cancelled", "interrupted"]
+
+Origin = Literal["measured", "simulated", "fitted", "estimated"]
+
+Parity = Literal["even", "odd"]
+
+
+class AtlasRequest(TypedDict):
+    """Which atlas."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    material: str
+    """Id of the library."""
+    repeats: NotRequired[Literal["small", "all"]]
+    """small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics."""
+
+
+class BendRequest(TypedDict):
+    """A repeat and its yarn."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's."""
+    linear_density_g_per_m: NotRequired[float | None]
+    """Of the yarn; gives bending lengths."""
+
+
+class BendingRequest(TypedDict):
+    """Photos of hanging yarn, and facts that they do not show."""
+
+    images: list[UploadedFile | Path]
+    linear_density_g_per_m: float
+    """Mass per length: weigh some metres; 0.5 g/m is 500 tex."""
+    length_mm: NotRequired[list[float] | float | None]
+    """Hanging length, clamp to free end; one for all photos or one per photo."""
+    px_per_mm: NotRequired[float | None]
+    """Scale, if it is known."""
+
+
+class BiasRequest(TypedDict):
+    """A strip and how far it is pulled."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    steps: NotRequired[int]
+    """Of the load."""
+    shear_modulus_n_per_mm: NotRequired[float | None]
+    """C_xyxy; that of the laws otherwise."""
+    mesh_mm: NotRequired[float | None]
+    """Length of an element's side; by default there are about 600 elements."""
+    strain: float
+    """Last clamp-to-clamp strain: 0.5 is 50 %."""
+    width_mm: NotRequired[float]
+    """Between the free sides."""
+    length_mm: NotRequired[float]
+    """Between the clamps."""
+    angle_deg: NotRequired[float]
+    """From the width to the rows: 0 pulls along columns, 90 along rows."""
+
+
+class BiaxialRequest(TypedDict):
+    """A rectangle and how far its edges are pulled."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    steps: NotRequired[int]
+    """Of the load."""
+    shear_modulus_n_per_mm: NotRequired[float | None]
+    """C_xyxy; that of the laws otherwise."""
+    mesh_mm: NotRequired[float | None]
+    """Length of an element's side; by default there are about 600 elements."""
+    strain_x: float
+    """Last strain along x."""
+    strain_y: float
+    """Last strain along y."""
+    width_mm: NotRequired[float]
+    """Along x."""
+    length_mm: NotRequired[float]
+    """Along y."""
+    grain_deg: NotRequired[float]
+    """From the x axis to the rows."""
+
+
+class BoxInput(TypedDict):
+    """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
+
+    row0: int
+    column0: int
+    row1: int
+    column1: int
+
+
+class CalibrateRequest(TypedDict):
+    """Where to start from, and tests whose forces the law should keep."""
+
+    field: UploadedFile | Path
+    """.npz: displacement (frames, 2, rows, columns), frame."""
+    direction: Direction
+    """In which the fabric was pulled."""
+    frames: NotRequired[list[int] | None]
+    """Pictures to use; all otherwise."""
+    material: str
+    """Id of the library."""
+    fabric: Fabric
+    tests: NotRequired[list[UploadedFile | Path]]
+    """Stretch tests: of the direction (forces), or course and wale (forces and start)."""
+
+
+class CameraRequest(TypedDict):
+    """From where to look."""
+
+    side: CameraSide
+
+
+class CharacteriseRequest(TypedDict):
+    """A yarn, of a material or by its parameters."""
+
+    fabrics: NotRequired[list[Fabric]]
+    loop_lengths_mm: NotRequired[list[float]]
+    """Yarn per stitch, for all fabrics; `tensions` is not used then."""
+    tensions: NotRequired[list[float]]
+    """Loop lengths as parts of the material's own."""
+    branch: NotRequired[Branch]
+    convention: NotRequired[Convention]
+    max_stress_n_per_mm: NotRequired[float]
+    """Laws end here."""
+    material: NotRequired[str | None]
+    yarn: NotRequired[YarnInput | None]
+
+
+class CompareRequest(TypedDict):
+    """A law, or a fabric of a material, and a field to compare it with."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    field: UploadedFile | Path
+    """.npz: displacement (frames, 2, rows, columns), frame."""
+    direction: Direction
+    """In which the fabric was pulled."""
+    frames: NotRequired[list[int] | None]
+    """Pictures to use; all otherwise."""
+    material: NotRequired[str | None]
+    fabric: NotRequired[Fabric | None]
+    """Of the material."""
+    law: NotRequired[UploadedFile | Path | None]
+    """LAW.json, instead of material and fabric."""
+    edges: NotRequired[Edges]
+    model: NotRequired[EnergyModel]
+
+
+class CompressionRequest(TypedDict):
+    """Compression tests of yarns."""
+
+    file: UploadedFile | Path
+    yarn: NotRequired[str | None]
+    """Only the samples of this yarn (sheets named yarn-number)."""
+    diameter_mm: NotRequired[float | None]
+    """The yarn's, if the file does not say."""
+    probe_width_mm: NotRequired[float]
+
+
+class CurlRequest(TypedDict):
+    """A whole piece with free edges."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    corners: NotRequired[bool]
+    """Give the corners of all stitches as well."""
+    time_limit_s: NotRequired[float]
+    """CPU time after which the shape is given as it is then, unconverged."""
+
+
+class Curled(TypedDict):
+    """The shape of a piece that was computed before."""
+
+    id: str
+    """The id that `curl` returned."""
+
+
+class CurveRequest(TypedDict):
+    """A chart, a direction and the stresses to ask for."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    direction: Direction
+    """Along rows, or along columns."""
+    stress_n_per_mm: NotRequired[list[float]]
+    """Increasing."""
+    gauge: NotRequired[GaugeInput | None]
+
+
+class DesignDocument(BaseModel):
+    """A design as a file holds it; ``knitcore`` reads the same on the command line."""
+
+    outline: str | None = None
+    """Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out."""
+    regions: list[DesignRegion] = []
+    repeats: list[DesignRepeat] = []
+    shelf: list[ShelfPattern] = []
+    format: Literal["knitcore-design"] = "knitcore-design"
+    version: Literal[2] = 2
+    name: str
+    material: str
+    chart: str
+    """K/P lines, the top row first, as seen from the face."""
+    note: str = ""
+
+
+class DesignPatch(TypedDict):
+    """Fields to change; the others stay."""
+
+    name: NotRequired[str | None]
+    material: NotRequired[str | None]
+    note: NotRequired[str | None]
+
+
+class DesignRegion(BaseModel):
+    """A part of the chart with a fill or a yarn of its own; later regions lie on top."""
+
+    id: str
+    name: str
+    colour: str
+    yarn: str | None = None
+    """Intarsia yarn; None leaves the yarn beneath."""
+    fill: str | None = None
+    """Repeat that fills it, from the chart's corner."""
+    runs: list[tuple[int, int, int]]
+    """[row, column, length] of adjacent stitches; row 0 is the bottom."""
+    locked: bool = False
+    hidden: bool = False
+
+
+class DesignRepeat(BaseModel):
+    """A motif whose placements all follow it; "multiple of n + m" has m ``edge_columns``."""
+
+    id: str
+    name: str
+    motif: str
+    """A repeat; its rows from the top, separated by /."""
+    edge_columns: int = 0
+    edge_rows: int = 0
+    placements: list[Placement] = []
+
+
+class EstimateRequest(TypedDict):
+    """Known facts of the yarn and the product."""
+
+    bending_modulus_n_mm2: float
+    """B of the yarn (`measure bending`)."""
+    loop_length_mm: float | dict[Fabric, float]
+    """Yarn per stitch."""
+    swatches: NotRequired[list[SwatchInput]]
+    product_setting: NotRequired[str]
+    """Needle or stitch setting of the product."""
+
+
+class ExportRequest(TypedDict):
+    """A chart and the format that it shall become."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out."""
+    regions: NotRequired[list[DesignRegion]]
+    repeats: NotRequired[list[DesignRepeat]]
+    shelf: NotRequired[list[ShelfPattern]]
+    chart: str | PureFabricChart
+    to: ExportKind | str
+    """knitout, knitspeak, png, svg, pdf, report, text, written, design, glb, stl, vtu, csv; or a
+    format of an installed extension."""
+    material: NotRequired[str]
+    """For sizes and values."""
+    construction: NotRequired[Construction]
+    first_side: NotRequired[Side]
+    """Side of row 1 in flat knitting."""
+    finish: NotRequired[Finish]
+    """How a knitout program ends."""
+    name: NotRequired[str]
+    note: NotRequired[str]
+    """Printed."""
+    linear_density_tex: NotRequired[float | None]
+    """Of the yarns, for their mass."""
+
+
+class FieldColours(TypedDict):
+    """Any value of each stitch on a colour map."""
+
+    values: list[float]
+    """Row by row from the bottom, each from the left."""
+    low: float
+    high: float
+    log: NotRequired[bool]
+    map: NotRequired[Literal["batlow", "vik"]]
+
+
+class FillRequest(TypedDict):
+    """Wanted moduli, stitch by stitch or part by part."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    material: str
+    """Id of the library."""
+    modulus_course_n_per_mm: NotRequired[list[list[float | None]] | None]
+    """[row][column], the bottom row first; null for no wish."""
+    modulus_wale_n_per_mm: NotRequired[list[list[float | None]] | None]
+    rows: NotRequired[int | None]
+    """Of the chart, with wishes."""
+    columns: NotRequired[int | None]
+    wishes: NotRequired[list[WishInput] | None]
+    """Instead of the two maps."""
+    chart: NotRequired[str | None]
+    """Stitches without a wish stay as they are here; filled, too, otherwise."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
+    repeats: NotRequired[Literal["small", "all"]]
+    smallest_patch: NotRequired[int]
+    """Smallest side of a patch."""
+    seed: NotRequired[int]
+    """The same seed gives the same chart."""
+    check: NotRequired[bool]
+    """Pull the chart in the finite swatch, and choose again what departs there."""
+
+
+class FindRequest(TypedDict):
+    """Wishes, and the yarns to search."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    materials: list[str]
+    targets: list[TargetInput]
+    limits: NotRequired[LimitsInput | None]
+    repeats: NotRequired[Literal["small", "all"]]
+    """small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics."""
+    count: NotRequired[int]
+    elsewhere: NotRequired[bool]
+    """Where nothing reaches the wishes, look into the other yarns too."""
+
+
+class FingerSize(TypedDict):
+    """Of one finger."""
+
+    length_mm: float
+    circumference_mm: float
+
+
+class FitRequest(TypedDict):
+    """Two stretch tests of one fabric."""
+
+    test_course: UploadedFile | Path
+    """Pulled along the rows; HDF5 or CSV."""
+    test_wale: UploadedFile | Path
+    """Pulled along the columns."""
+    format: NotRequired[Literal["csv", "h5"] | None]
+    """Found out from the content if not given."""
+    reduction: NotRequired[Reduction]
+    """recommended: force and waist of the simulated test, clamp to clamp; uniform: clamp to
+    clamp, as if the cloth strained evenly; published: as in the paper."""
+    width_course_mm: NotRequired[float | None]
+    """Clamped width, in place of the course-wise test's."""
+    width_wale_mm: NotRequired[float | None]
+    """The same, wale-wise."""
+    residuals: NotRequired[bool]
+    """Whether to return residuals at each point."""
+
+
+class Focus(TypedDict):
+    """A stitch; row 0 is the bottom one."""
+
+    row: int
+    column: int
+
+
+class GarmentRequest(TypedDict):
+    """A template with measurements, and the yarn."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    garment: WristBrace | SockLeg | Limb | Glove
+    material: str
+    """Id of the library."""
+    gauge: NotRequired[GaugeCount | None]
+    """The knitter's; else the material's."""
+    linear_density_tex: NotRequired[float | None]
+    """Linear density of the yarn (g/km), for its mass."""
+    intarsia: NotRequired[bool]
+    """Give each fabric a yarn of its own."""
+
+
+class GaugeCount(TypedDict):
+    """A swatch's gauge, as it is counted."""
+
+    stitches: float
+    rows: float
+    per: NotRequired[Literal["10 cm", "4 in", "5 cm"]]
+    fabric: NotRequired[Fabric]
+    """Of the swatch."""
+
+
+class GaugeInput(TypedDict):
+    """A swatch's gauge: what you counted on your own relaxed cloth."""
+
+    stitches_per_10_cm: float
+    """Counted on your own relaxed swatch; give stitches and rows, or neither."""
+    rows_per_10_cm: float
+    """Counted on your own relaxed swatch; give stitches and rows, or neither."""
+
+
+class Glove(TypedDict):
+    """The therapeutic glove; an adult's hand unless measured."""
+
+    ease: NotRequired[float]
+    target_mmhg: NotRequired[float | None]
+    """Wanted pressure; before the ease."""
+    template: Literal["glove"]
+    cuff_mm: NotRequired[float]
+    wrist_mm: NotRequired[float]
+    wrist_circumference_mm: NotRequired[float]
+    palm_mm: NotRequired[float]
+    thumb_crotch_mm: NotRequired[float]
+    palm_circumference_mm: NotRequired[float]
+    gusset_mm: NotRequired[float]
+    gusset_girth_mm: NotRequired[float]
+    thumb: NotRequired[FingerSize | None]
+    fingers: NotRequired[list[FingerSize] | None]
+
+
+class HeldInput(TypedDict):
+    """An edge that is gripped, or sewn to something stiff, and moved as a whole."""
+
+    kind: Literal["held"]
+    edge: str
+    x_mm: NotRequired[float | None]
+    """Moved so far; null lets it slide along x."""
+    y_mm: NotRequired[float | None]
+    """Moved so far; null lets it slide along y."""
+
+
+class ImportRequest(TypedDict):
+    """A file of any kind that holds a chart."""
+
+    file: UploadedFile | Path
+    """`.txt` (K/P lines, written rows, KnitSpeak), `.ks`, `.png`, `.json` (design) or `.k`
+    (knitout)."""
+
+
+class Limb(TypedDict):
+    """A sleeve along any limb."""
+
+    ease: NotRequired[float]
+    target_mmhg: NotRequired[float | None]
+    """Wanted pressure; before the ease."""
+    template: Literal["limb"]
+    profile: list[tuple[float, float]]
+    """[position_mm, circumference_mm] along the limb."""
+    body: NotRequired[Fabric]
+    hem: NotRequired[Fabric]
+    hem_mm: NotRequired[float]
+
+
+class LimbInput(TypedDict):
+    """A tube on a limb."""
+
+    rest_mm: float
+    """Of the unworn tube."""
+    worn_mm: float
+    """Of the limb."""
+
+
+class LimitsInput(TypedDict):
+    """Limits on the cost of knitting; null for no limit."""
+
+    transfers_per_stitch: NotRequired[float | None]
+    """Loops moved between the beds, per stitch."""
+    crossings_per_stitch: NotRequired[float | None]
+    """Yarn between face and back, per stitch."""
+    curl: NotRequired[float | None]
+    """Knits minus purls over all stitches, either way."""
+
+
+class MarkRequest(TypedDict):
+    """What to outline."""
+
+    box: NotRequired[BoxInput | None]
+
+
+class MaterialRequest(TypedDict):
+    """A material by its id."""
+
+    identifier: str
+    """Id of the library."""
+
+
+class NoRequest(TypedDict):
+    """The request of an operation that needs none."""
+
+
+class Palette(TypedDict):
+    """Colours that carry a meaning; the page sends those of its theme."""
+
+    yarn: NotRequired[str]
+    stockinette: NotRequired[str]
+    garter: NotRequired[str]
+    rib: NotRequired[str]
+    seed: NotRequired[str]
+
+
+class ParseRequest(TypedDict):
+    """A chart as typed text."""
+
+    text: str
+    """K/P lines, the top row first, as seen from the face."""
+
+
+class PieceInput(TypedDict):
+    """A piece cut from cloth, and what is done to its edges in the end."""
+
+    outline: list[tuple[float, float]]
+    """Corners in mm; side 1 goes from the first to the second."""
+    holes: NotRequired[list[list[tuple[float, float]]]]
+    """Their sides are counted on."""
+    grain_deg: NotRequired[float]
+    """From the x axis to the rows, counter-clockwise: 45 is on the bias."""
+    edges: dict[str, list[int]]
+    """Names of parts of the boundary, by the numbers of their sides."""
+    conditions: list[HeldInput | PulledInput | TractionInput | SewnInput]
+
+
+class PieceRequest(TypedDict):
+    """Cloth, the piece that is cut from it, and what is done to its edges."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    steps: NotRequired[int]
+    """Of the load."""
+    shear_modulus_n_per_mm: NotRequired[float | None]
+    """C_xyxy; that of the laws otherwise."""
+    mesh_mm: NotRequired[float | None]
+    """Length of an element's side; by default there are about 600 elements."""
+    piece: PieceInput
+    fields: NotRequired[bool]
+    """Whether to tell the shape and strains at the end."""
+
+
+class Placement(BaseModel):
+    """Where a linked repeat lies."""
+
+    row: int
+    column: int
+    rows: int
+    columns: int
+
+
+class PredictRequest(TypedDict):
+    """A chart and its material; of a shaped piece, the largest rectangle inside counts."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
+    gauge: NotRequired[GaugeInput | None]
+    """Relaxed size of the mean stitch; estimated if left out."""
+    measures: NotRequired[list[str]]
+    """Further numbers, by the names of installed extensions."""
+
+
+class PressureRequest(TypedDict):
+    """A fabric of a material, or a law, as a tube on a limb."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    direction: Direction
+    """The material direction around the limb."""
+    rest_mm: NotRequired[float | None]
+    """Circumference of the unworn tube."""
+    worn_mm: float
+    """Circumference of the limb."""
+    target_mmhg: NotRequired[float | None]
+    """Instead of rest_mm: the pressure wanted, for which to size the tube."""
+    material: NotRequired[str | None]
+    fabric: NotRequired[Fabric | None]
+    """Of the material."""
+    law: NotRequired[dict[str, float] | None]
+    """Constants of a law, by name."""
+
+
+class PulledInput(TypedDict):
+    """An edge in a clamp that does not turn and moves freely under a force."""
+
+    kind: Literal["pulled"]
+    edge: str
+    x_n: NotRequired[float]
+    y_n: NotRequired[float]
+
+
+class PureFabricChart(TypedDict):
+    """A pure fabric by name and size."""
+
+    fabric: Fabric
+    columns: int
+    rows: int
+
+
+class RSRequest(TypedDict):
+    """A yarn whose shape the paper has: acrylic or cotton."""
+
+    material: str
+    """Id of the library."""
+
+
+class RelaxRequest(TypedDict):
+    """A repeat, its yarn, and what may be held while it relaxes."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's."""
+    loop_lengths_mm: NotRequired[list[list[float]] | None]
+    """Instead of one length: a list for every row of the chart, the bottom row first, of one
+    length for all its stitches or one for each."""
+    flat: NotRequired[bool]
+    """Hold the stitches in one plane, as a fabric laid flat; not published."""
+    branch: NotRequired[Branch]
+    convention: NotRequired[Convention]
+    fresh: NotRequired[bool]
+    """Compute it even if the result is known."""
+    cell_course_mm: NotRequired[float | None]
+    """Hold a stitch at this width."""
+    cell_wale_mm: NotRequired[float | None]
+    """Hold a stitch at this height."""
+    centre_lines: NotRequired[bool]
+    """Return the centre lines of the yarn too."""
+
+
+class Run(TypedDict):
+    """Adjacent stitches of one kind in a row."""
+
+    row: int
+    """0 is the bottom row."""
+    column: int
+    """First stitch, 0 at the left."""
+    stitches: str
+
+
+class SewnInput(TypedDict):
+    """An edge with a tape or elastic sewn on, which resists stretching and bends freely."""
+
+    kind: Literal["sewn"]
+    edge: str
+    stiffness_n: float
+    """Its force over its strain."""
+
+
+class ShapeRequest(TypedDict):
+    """A profile of widths under a stretch."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    material: str
+    """Id of the library."""
+    direction: NotRequired[Direction]
+    """Of the pull."""
+    strain: float
+    """From clamp to clamp: 0.3 is 30 %."""
+    width: list[float | None]
+    """Stretched width over width at rest, line by line across the pull, from the bottom (wale-
+    wise) or the left (course-wise); null for no wish."""
+    across: int
+    """Stitches of a line."""
+    repeats: NotRequired[Literal["small", "all"]]
+    smallest_band: NotRequired[int]
+    """Lines of the narrowest band."""
+    seed: NotRequired[int]
+    """The same seed gives the same chart."""
+
+
+class ShareRequest(TypedDict):
+    """A link to give away."""
+
+    mode: NotRequired[ShareMode]
+
+
+class SharedViewRequest(TypedDict):
+    """A design, as it lies or with its stretch test as an animation."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
+    colour: NotRequired[Colour]
+    field: NotRequired[FieldColours | None]
+    """Values for the colour `field`."""
+    regions: NotRequired[list[DesignRegion]]
+    """Of the design; coloured by `yarn` and `region`."""
+    palette: NotRequired[Palette]
+    rectangles: NotRequired[bool]
+    rectangle_groups: NotRequired[RectangleGroups]
+    rectangle_block: NotRequired[int]
+    """Stitches on a side of a block."""
+    stretch: NotRequired[StretchStep | None]
+    curl: NotRequired[Curled | None]
+    """Show it as it lies; not while it is stretched."""
+    focus: NotRequired[Focus | None]
+    """Around it a chart is drawn as yarn that is too large to be drawn whole."""
+    animated: NotRequired[bool]
+    """All steps of the stretch test, not only the one."""
+    dark: NotRequired[bool]
+    """Dark background of a page."""
+
+
+class ShelfPattern(BaseModel):
+    """A pattern of the user's."""
+
+    name: str
+    motif: str
+    """A repeat; its rows from the top, separated by /."""
+
+
+class SockLeg(TypedDict):
+    """The leg of a sock."""
+
+    ease: NotRequired[float]
+    target_mmhg: NotRequired[float | None]
+    """Wanted pressure; before the ease."""
+    template: Literal["sock-leg"]
+    ankle_mm: float
+    calf_mm: float
+    length_mm: float
+
+
+class StretchRequest(TypedDict):
+    """A chart between two clamps, which hold the outermost stitches, and how it is pulled."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
+    direction: Direction
+    """Along rows, or along columns."""
+    strain: float
+    """Last clamp-to-clamp strain: 0.5 is 50 %."""
+    steps: NotRequired[int]
+    clamps: NotRequired[Clamps]
+    """Ends gripped, or free to slide along the clamps."""
+    model: NotRequired[EnergyModel]
+    shear_modulus_n_per_mm: NotRequired[float | None]
+    """C_xyxy in N/mm (an assumption otherwise)."""
+    width_mm: NotRequired[float | None]
+    """Size course-wise; from the gauge otherwise."""
+    length_mm: NotRequired[float | None]
+    """Size wale-wise; from the gauge otherwise."""
+
+
+class StretchStep(TypedDict):
+    """A state of a stretch test that was run before."""
+
+    id: str
+    """The id that the stretch test returned."""
+    step: int
+
+
+class Strokes(TypedDict):
+    """Paint: new values of stitches, so that strokes of several people merge."""
+
+    rows: int
+    """Size of the chart that was painted on."""
+    columns: int
+    runs: list[Run]
+
+
+class SwatchInput(TypedDict):
+    """A measured swatch of the yarn."""
+
+    fabric: Fabric
+    law: dict[str, float]
+    """Constants of its law, by name."""
+    loop_length_mm: float
+    setting: NotRequired[str]
+    """Needle or stitch setting."""
+
+
+class SweepRequest(TypedDict):
+    """A repeat, its yarn and the stretch."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's."""
+    loop_lengths_mm: NotRequired[list[list[float]] | None]
+    """Instead of one length: a list for every row of the chart, the bottom row first, of one
+    length for all its stitches or one for each."""
+    flat: NotRequired[bool]
+    """Hold the stitches in one plane, as a fabric laid flat; not published."""
+    branch: NotRequired[Branch]
+    convention: NotRequired[Convention]
+    fresh: NotRequired[bool]
+    """Compute it even if the result is known."""
+    direction: Direction
+    """Along rows, or along columns."""
+    max_strain: float
+    """Largest strain: 0.5 is 50 %."""
+    points: NotRequired[int]
+    slide_quenching: NotRequired[bool]
+    """Keep the yarn from sliding where it touches at rest. The published branch does so for seed
+    along the course, as the paper did, and has no other setting."""
+
+
+class TargetInput(TypedDict):
+    """One wish for a fabric."""
+
+    quantity: Quantity
+    value: float
+    """Stretch as a strain: 0.5 is 50 %."""
+    tolerance: NotRequired[float]
+    """Relative (0.1 is 10 %); a difference for Poisson's ratios."""
+    weight: NotRequired[float]
+    load_n_per_mm: NotRequired[float]
+    """For a stretch, per width of the cloth."""
+    limb: NotRequired[LimbInput | None]
+    """For a pressure."""
+
+
+class TractionInput(TypedDict):
+    """A load spread evenly along an edge, per length at rest."""
+
+    kind: Literal["traction"]
+    edge: str
+    x_n_per_mm: NotRequired[float]
+    y_n_per_mm: NotRequired[float]
+
+
+class TrellisRequest(TypedDict):
+    """A square and how far it is sheared."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    steps: NotRequired[int]
+    """Of the load."""
+    shear_modulus_n_per_mm: NotRequired[float | None]
+    """C_xyxy; that of the laws otherwise."""
+    mesh_mm: NotRequired[float | None]
+    """Length of an element's side; by default there are about 600 elements."""
+    angle_deg: float
+    """By which the frame's right angle closes."""
+    side_mm: NotRequired[float]
+    """Of the square."""
+    grain_deg: NotRequired[float]
+    """From a bar to the rows."""
+
+
+class UploadedFile(TypedDict):
+    """A file's name and its content."""
+
+    name: str
+    content: str
+    """The file, base64."""
+
+
+class VersionRequest(TypedDict):
+    """A name for the design's present state."""
+
+    name: str
+
+
+class ViewRequest(TypedDict):
+    """A design and how to show it."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Id of the library."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
+    colour: NotRequired[Colour]
+    field: NotRequired[FieldColours | None]
+    """Values for the colour `field`."""
+    regions: NotRequired[list[DesignRegion]]
+    """Of the design; coloured by `yarn` and `region`."""
+    palette: NotRequired[Palette]
+    rectangles: NotRequired[bool]
+    rectangle_groups: NotRequired[RectangleGroups]
+    rectangle_block: NotRequired[int]
+    """Stitches on a side of a block."""
+    stretch: NotRequired[StretchStep | None]
+    curl: NotRequired[Curled | None]
+    """Show it as it lies; not while it is stretched."""
+    focus: NotRequired[Focus | None]
+    """Around it a chart is drawn as yarn that is too large to be drawn whole."""
+
+
+class WishInput(TypedDict):
+    """Stiffness wanted in one part of the chart."""
+
+    name: NotRequired[str]
+    runs: list[tuple[int, int, int]]
+    """[row, first column, length] of its stitches, row 0 at the bottom."""
+    modulus_course_n_per_mm: NotRequired[float | None]
+    modulus_wale_n_per_mm: NotRequired[float | None]
+
+
+class WristBrace(TypedDict):
+    """A brace knitted sideways and grafted."""
+
+    ease: NotRequired[float]
+    target_mmhg: NotRequired[float | None]
+    """Wanted pressure; before the ease."""
+    template: Literal["wrist-brace"]
+    wrist_mm: float
+    length_mm: float
+    edge_mm: NotRequired[float]
+
+
+class YarnInput(TypedDict):
+    """A yarn by its parameters."""
+
+    name: str
+    bending_modulus_n_mm2: float
+    contact_stiffness_n_per_mm3: float
+    contact_exponent: float
+    radius_mm: float
+    core_radius_mm: float
+
+
+class AtlasResult(BaseModel):
+    """An atlas as columns, for the rigidity-rigidity scatter."""
+
+    kind: Literal["atlas"] = "atlas"
+    material: str
+    repeats: list[str]
+    """Rows from the top, separated by /."""
+    modulus_course_n_per_mm: list[float]
+    modulus_course_low: list[float]
+    """Low and high: ends of 90 % intervals."""
+    modulus_course_high: list[float]
+    modulus_wale_n_per_mm: list[float]
+    modulus_wale_low: list[float]
+    modulus_wale_high: list[float]
+    poisson_yx: list[float]
+    poisson_xy: list[float]
+    stretch_course: list[float]
+    """Strain at 0.1 N/mm."""
+    stretch_wale: list[float]
+    relaxed_course_mm: list[float]
+    """Width of the mean stitch at rest."""
+    relaxed_wale_mm: list[float]
+    """Height of the mean stitch at rest."""
+    transfers_per_stitch: list[float]
+    crossings_per_stitch: list[float]
+    curl: list[float]
+    provenance: list[str]
+
+
+class BandResult(BaseModel):
+    """Lines of one repeat."""
+
+    repeat: str
+    first: int
+    """From 1, at the bottom or the left."""
+    lines: int
+
+
+class BendResult(BaseModel):
+    """Linear response of the relaxed repeat; course: bent along the rows."""
+
+    kind: Literal["bend"] = "bend"
+    moment_course_n: float
+    """Derivative of the energy per area by the curvature, N·mm per mm of width. Negative: left
+    alone, the fabric curves with its face outside."""
+    moment_wale_n: float
+    bending_course_n_mm: float
+    """Bending rigidity, the other size free."""
+    bending_wale_n_mm: float
+    bending_held_course_n_mm: float
+    """The same, the other size held."""
+    bending_held_wale_n_mm: float
+    strain_across_course_mm: float
+    """Strain across per curvature, bent along the rows."""
+    strain_across_wale_mm: float
+    shear_modulus_n_per_mm: float | None
+    """Null where no stable state was found."""
+    twist_n_mm: float | None
+    """D1 + 2 D66, from bending at 45°."""
+    thickness_mm: float
+    curl: str
+    """What free edges do."""
+    curl_course: Curl
+    """Where the sides go."""
+    curl_wale: Curl
+    """Where top and bottom go."""
+    bending_length_course_mm: float | None
+    """Peirce's, of a strip cut along the rows; null where the weight is not known."""
+    bending_length_wale_mm: float | None
+    stable: bool
+    """Whether the state is a minimum without its symmetries."""
+    provenance: str
+    yarn: YarnResult
+    notes: list[str]
+
+
+class BendingPhotoResult(BaseModel):
+    """What one photo gave."""
+
+    name: str
+    bending_modulus_n_mm2: float
+    length_mm: float
+    px_per_mm: float
+    yarn_width_mm: float
+    rms_mm: float
+    """Distance of the traced line from the elastica."""
+
+
+class BendingResult(BaseModel):
+    """Mean over photos; proportional to the linear density given."""
+
+    kind: Literal["bending"] = "bending"
+    bending_modulus_n_mm2: float
+    standard_deviation: float | None
+    """Of one photo, N·mm²; None for one."""
+    standard_error: float | None
+    """Of the mean, N·mm²."""
+    photos: list[BendingPhotoResult]
+    notes: list[str]
+
+
+class BiasResult(BaseModel):
+    """A simulated strip test at an angle, not a certified one."""
+
+    energy_n_mm: list[float]
+    """Stored in the cloth."""
+    converged: bool
+    seconds: float
+    nodes: int
+    elements: int
+    utilisation: float
+    """Largest alpha * strain at the last step; 1 is the lock-up."""
+    messages: list[str]
+    kind: Literal["bias"] = "bias"
+    strain: list[float]
+    force_n: list[float]
+    """Along the pull."""
+    force_low_n: list[float]
+    """Lower end of the 90 % interval."""
+    force_high_n: list[float]
+    """Upper end of the 90 % interval."""
+    sideways_n: list[float]
+    """Across the pull: clamps hold cloth that would shear."""
+    stress_n_per_mm: list[float]
+    """Force per width."""
+    waist_strain: list[float]
+
+
+class BiaxialResult(BaseModel):
+    """A simulated biaxial test: edges stay straight and slide along themselves."""
+
+    energy_n_mm: list[float]
+    """Stored in the cloth."""
+    converged: bool
+    seconds: float
+    nodes: int
+    elements: int
+    utilisation: float
+    """Largest alpha * strain at the last step; 1 is the lock-up."""
+    messages: list[str]
+    kind: Literal["biaxial"] = "biaxial"
+    strain_x: list[float]
+    strain_y: list[float]
+    force_x_n: list[float]
+    force_x_low_n: list[float]
+    """Lower end of the 90 % interval."""
+    force_x_high_n: list[float]
+    """Upper end of the 90 % interval."""
+    force_y_n: list[float]
+    force_y_low_n: list[float]
+    """Lower end of the 90 % interval."""
+    force_y_high_n: list[float]
+    """Upper end of the 90 % interval."""
+    stress_x_n_per_mm: list[float]
+    """Force per length of the edge."""
+    stress_y_n_per_mm: list[float]
+
+
+class CalibrateResult(BaseModel):
+    """The calibrated law; its shear modulus is calibrated, too."""
+
+    stiffness_xxxx_n_per_mm: float
+    stiffness_yyyy_n_per_mm: float
+    stiffness_xxyy_n_per_mm: float
+    stiffness_yyxx_n_per_mm: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx_n_per_mm: float
+    beta_yy_n_per_mm: float
+    shear_modulus_n_per_mm: float
+    """An assumption unless it was fitted or calibrated."""
+    kappa_xx: float
+    """Share of the strain across in the stiffening."""
+    kappa_yy: float
+    kind: Literal["calibrate"] = "calibrate"
+    parameters: dict[str, float]
+    standard_errors: dict[str, float]
+    frames: list[int]
+    """Pictures that were used."""
+    comparison: list[FrameErrorResult]
+    """All pictures, measured edges."""
+    force_strain: list[float]
+    force_ratio: list[float]
+    """Simulated over measured force."""
+    evaluations: int
+
+
+class CandidateResult(BaseModel):
+    """A repeat and how near it comes."""
+
+    material: str
+    chart: str
+    """K/P lines of one repeat, the top row first."""
+    values: dict[str, float | None]
+    """By quantity, with @load or @rest/worn; null beyond the lock-up."""
+    intervals: dict[str, tuple[float | None, float | None]]
+    """90 % intervals; null where an end lies beyond the computed curve."""
+    deviations: dict[str, float | None]
+    """Predicted over wanted, minus one; the difference for Poisson's ratios."""
+    misfit: float | None
+    """Weighted rms of deviations in units of their tolerances."""
+    reached: bool
+    provenance: str
+    transfers_per_stitch: float
+    crossings_per_stitch: float
+    """Between face and back, or beds."""
+    curl: float
+    """Knits minus purls over all stitches; far from 0 it curls."""
+
+
+class CharacteriseResult(BaseModel):
+    """The table of a yarn; `material` holds its laws at the reference setting."""
+
+    kind: Literal["characterise"] = "characterise"
+    identifier: str
+    provenance: str
+    estimated: bool
+    """Whether contact data were estimated."""
+    branch: Branch
+    convention: Convention
+    reference: str
+    """The setting that `material` was made at."""
+    rows: list[CharacterisedFabric]
+    material: MaterialDocument | None
+    """A material file; null if no fabric has a law at the reference."""
+    materials: dict[str, MaterialDocument]
+    """The same at every setting."""
+
+
+class CharacterisedFabric(BaseModel):
+    """With its stress-strain curves."""
+
+    fabric: Fabric
+    setting: str
+    loop_length_mm: float
+    stitch_course_mm: float | None
+    stitch_wale_mm: float | None
+    stitches_per_cm2: float | None
+    energy_n_mm: float | None
+    bending_share: float | None
+    contact_share: float | None
+    contact_overtakes_at_strain_course: float | None
+    jumps_course: int | None
+    contact_overtakes_at_strain_wale: float | None
+    jumps_wale: int | None
+    modulus_course_n_per_mm: float | None
+    modulus_wale_n_per_mm: float | None
+    poisson_yx: float | None
+    poisson_xy: float | None
+    alpha_xx: float | None
+    alpha_yy: float | None
+    beta_xx_n_per_mm: float | None
+    beta_yy_n_per_mm: float | None
+    max_stress_n_per_mm: float | None
+    largest_strain_course: float | None
+    largest_strain_wale: float | None
+    rms_course_n_per_mm: float | None
+    rms_wale_n_per_mm: float | None
+    converged: bool | None
+    remark: str
+    """Why something is missing, or what to know."""
+    curves: dict[Direction, FabricCurve]
+
+
+class ChartResult(BaseModel):
+    """A chart, read and written again in the canonical form."""
+
+    rows: int
+    columns: int
+    text: str
+
+
+class CompareResult(BaseModel):
+    """Errors per picture, in the order of the stretch."""
+
+    kind: Literal["compare"] = "compare"
+    frames: list[FrameErrorResult]
+    edges: Edges
+    model: EnergyModel
+    messages: list[str]
+
+
+class CompressionMeanResult(BaseModel):
+    """Mean over the samples of one yarn."""
+
+    yarn: str
+    samples: int
+    k_n_per_mm3: float
+    k_standard_deviation_n_per_mm3: float | None
+    p: float
+    p_standard_deviation: float | None
+
+
+class CompressionResult(BaseModel):
+    """Constants of the contact law, per sample and mean."""
+
+    kind: Literal["compression"] = "compression"
+    k_n_per_mm3: float | None
+    """Mean of the yarn; null if there are several, which have one each in `mean`."""
+    p: float | None
+    """The same."""
+    mean: dict[str, CompressionMeanResult]
+    """By yarn."""
+    samples: list[CompressionSampleResult]
+    notes: list[str]
+
+
+class CompressionSampleResult(BaseModel):
+    """What one test gave; the errors are those of the fit."""
+
+    name: str
+    yarn: str
+    k_n_per_mm3: float
+    k_error_n_per_mm3: float
+    p: float
+    p_error: float
+    thickness_mm: float
+    diameter_mm: float
+    rms_n: float
+
+
+class CurlResult(BaseModel):
+    """The piece as it lies; heights are positive towards the face (the front)."""
+
+    kind: Literal["curl"] = "curl"
+    id: str
+    """The shape, for views."""
+    rows: int
+    columns: int
+    width_mm: float
+    """Extent along the rows of the piece as a whole."""
+    height_mm: float
+    depth_mm: float
+    curl_course_mm: float
+    """Height of the sides above the fabric next to them; negative to the back."""
+    curl_wale_mm: float
+    """The same of top and bottom."""
+    flat_width_mm: float
+    """Extent if it lay flat."""
+    flat_height_mm: float
+    thickness_mm: float
+    converged: bool
+    """Where it is false, the shape is a preview."""
+    seconds: float
+    """CPU time."""
+    corners_mm: list[list[tuple[float, float, float]]] | None = None
+    """Corners of the stitches, the lowest row first."""
+    notes: list[str]
+
+
+class CurveDocument(BaseModel):
+    """A measured stress–strain curve."""
+
+    strain: list[float]
+    stress_n_per_mm: list[float]
+    pulls: int = 1
+
+
+class CurveResult(BaseModel):
+    """Strain at each stress, transverse direction free."""
+
+    kind: Literal["curve"] = "curve"
+    stress_n_per_mm: list[float]
+    strain: list[float]
+    strain_low: list[float]
+    """Lower end of the 90 % interval."""
+    strain_high: list[float]
+    """Upper end of the 90 % interval."""
+    stress_low: list[float]
+    """Lower end of the 90 % interval of the stress at each strain, N/mm."""
+    stress_high: list[float]
+    """Upper end of it, at most 10 N/mm."""
+    provenance: str
+
+
+class DeformedPiece(BaseModel):
+    """The mesh after the last step."""
+
+    corners_mm: list[tuple[float, float]]
+    """At rest."""
+    moved_mm: list[tuple[float, float]]
+    """Displacement of each corner."""
+    elements: list[list[int]]
+    """Numbers of corners, from 0."""
+    strain_course: list[float]
+    """Per element, as all that follow."""
+    strain_wale: list[float]
+    shear_angle: list[float]
+    """In radians."""
+    stress_course: list[float]
+    """N/mm."""
+    stress_wale: list[float]
+    stress_shear: list[float]
+    utilisation: list[float]
+    """alpha * strain; 1 is the lock-up."""
+
+
+class Design(BaseModel):
+    """A design with its document."""
+
+    id: str
+    name: str
+    material: str
+    rows: int
+    columns: int
+    revision: int
+    """Grows with every change; the ETag is made of it."""
+    created_at: AwareDatetime
+    changed_at: AwareDatetime
+    deleted_at: AwareDatetime | None = None
+    document: DesignDocument
+
+
+class DesignFile(BaseModel):
+    """A design as a file holds it."""
+
+    outline: str | None = None
+    """Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out."""
+    regions: list[DesignRegion] = []
+    repeats: list[DesignRepeat] = []
+    shelf: list[ShelfPattern] = []
+    format: Literal["knitcore-design"] = "knitcore-design"
+    version: Literal[2] = 2
+    name: str = "Untitled"
+    material: str | None = None
+    """Library id or name of a material file."""
+    chart: str
+    """K/P lines, the top row first, face side."""
+    note: str = ""
+
+
+class DesignLayout(BaseModel):
+    """Everything of a design but its chart and its names."""
+
+    outline: str | None = None
+    """Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out."""
+    regions: list[DesignRegion] = []
+    repeats: list[DesignRepeat] = []
+    shelf: list[ShelfPattern] = []
+
+
+class DesignPage(BaseModel):
+    """A part of a list, latest changes first."""
+
+    designs: list[DesignSummary]
+    next_cursor: str | None
+    """Ask with it for what follows; None at the end."""
+
+
+class DesignSchema(RootModel[dict[str, Any]]):
+    """A JSON schema."""
+
+
+class DesignSummary(BaseModel):
+    """A design in a list."""
+
+    id: str
+    name: str
+    material: str
+    rows: int
+    columns: int
+    revision: int
+    """Grows with every change; the ETag is made of it."""
+    created_at: AwareDatetime
+    changed_at: AwareDatetime
+    deleted_at: AwareDatetime | None = None
+
+
+class DeviationDocument(BaseModel):
+    """Standard deviations of the linear constants, in their units."""
+
+    modulus_course: float | None = None
+    modulus_wale: float | None = None
+    poisson_yx: float | None = None
+    poisson_xy: float | None = None
+
+
+class EstimateInterval(BaseModel):
+    """A value and its 90 % interval (of no width where it is measured)."""
+
+    low: float
+    high: float
+    value: float
+
+
+class EstimateResult(BaseModel):
+    """All four fabrics of the yarn."""
+
+    fabrics: dict[Fabric, FabricEstimateResult]
+    left_out: LeftOutResult | None
+    """None if all fabrics are measured."""
+    warnings: list[str]
+
+
+class ExportResult(BaseModel):
+    """A file inside JSON."""
+
+    kind: str
+    rows: int
+    columns: int
+    bytes: int
+    transfers: int | None = None
+    """Of a knitout program, without finishing."""
+    carriers: int | None = None
+    """Of a knitout program, without waste."""
+    notes: list[str]
+    name: str
+    media_type: str
+    content: str
+    """The file, base64."""
+
+
+class ExtensionResult(BaseModel):
+    """An extension of an installed package."""
+
+    name: str
+    group: Group
+    package: str
+    """Its name and version."""
+    offers: list[str]
+    """Identifiers."""
+    problem: str | None
+    """Why it cannot be used; null if it can."""
+
+
+class Extensions(BaseModel):
+    """All extensions."""
+
+    extensions: list[ExtensionResult]
+
+
+class FabricCurve(BaseModel):
+    """A stretch, free across."""
+
+    strain: list[float]
+    transverse_strain: list[float]
+    stress_n_per_mm: list[float]
+    bending_share: list[float]
+    contact_share: list[float]
+    contact_overtakes_at_strain: float | None
+    """Where contact first holds half of the energy."""
+    jumps: list[int]
+    notes: list[str]
+
+
+class FabricDetail(BaseModel):
+    """A pure fabric of a material, with everything that is known of it."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    stitch_course_mm: float
+    """Relaxed width of one stitch."""
+    stitch_wale_mm: float
+    """Relaxed height of one stitch."""
+    loop_length_mm: float | None
+    poisson_yx: float
+    """Contraction wale-wise when pulled course-wise."""
+    poisson_xy: float
+    """Contraction course-wise when pulled wale-wise."""
+    law: LawResult
+    lock_up_strain_course: float
+    lock_up_strain_wale: float
+    setting: str
+    origin: str
+    stitch_size_source: str
+    uncertainty_source: str
+    figures: list[FigureResult]
+
+
+class FabricDocument(BaseModel):
+    """One pure fabric of a user's material."""
+
+    law: LawDocument
+    stitch_course_mm: float
+    """mm"""
+    stitch_wale_mm: float
+    """mm"""
+    stitch_size_source: str = "given by the user"
+    loop_length_mm: float | None = None
+    yarn_diameter_mm: float | None = None
+    setting: str = ""
+    origin: Origin = "fitted"
+    standard_deviation: DeviationDocument | None = None
+    measured: dict[Direction, CurveDocument] | None = None
+
+
+class FabricEstimateResult(BaseModel):
+    """One fabric: extension under load first, because it is predicted best."""
+
+    strain_at_0_1_n_per_mm: dict[Direction, EstimateInterval]
+    modulus_n_per_mm: dict[Direction, EstimateInterval]
+    alpha: dict[Direction, EstimateInterval]
+    beta_n_per_mm: dict[Direction, EstimateInterval]
+    law: LawResult
+    loop_length_mm: float
+    measured: bool
+
+
+class FabricSummary(BaseModel):
+    """A pure fabric of a material, in short."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    stitch_course_mm: float
+    """Relaxed width of one stitch."""
+    stitch_wale_mm: float
+    """Relaxed height of one stitch."""
+    loop_length_mm: float | None
+
+
+class Fault(BaseModel):
+    """One thing that is wrong with a request."""
+
+    detail: str
+    """What is wrong, in words."""
+    field: str | None = None
+    """The input that is to blame."""
+    remedy: str | None = None
+    """What would be accepted."""
+
+
+class FigureResult(BaseModel):
+    """A figure of the paper: as printed, as used, and why they differ."""
+
+    table: int
+    quantity: str
+    unit: str
+    printed: str
+    used: float
+    standard_deviation: float | None
+    reason: str
+
+
+class FillResult(BaseModel):
+    """A chart, and how near it comes."""
+
+    kind: Literal["fill"] = "fill"
+    rows: int
+    columns: int
+    chart: str
+    off_share: float
+    """Share of the stitches with a wish that are off by more than 10 %."""
+    patches: list[PatchResult]
+    messages: list[str]
+
+
+class FindResult(BaseModel):
+    """Ranked repeats; the best first."""
+
+    kind: Literal["find"] = "find"
+    reached: bool
+    message: str
+    searched: int
+    ranges: dict[str, tuple[float, float]]
+    """What all repeats span."""
+    candidates: list[CandidateResult]
+    elsewhere: list[CandidateResult]
+    """Nearest in yarns that were not asked for, if those asked for reach nothing."""
+
+
+class FitResult(BaseModel):
+    """The constants of a law with their uncertainty."""
+
+    stiffness_xxxx_n_per_mm: float
+    stiffness_yyyy_n_per_mm: float
+    stiffness_xxyy_n_per_mm: float
+    stiffness_yyxx_n_per_mm: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx_n_per_mm: float
+    beta_yy_n_per_mm: float
+    shear_modulus_n_per_mm: float
+    """An assumption unless it was fitted or calibrated."""
+    kappa_xx: float
+    """Share of the strain across in the stiffening."""
+    kappa_yy: float
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    poisson_yx: float
+    """Contraction wale-wise when pulled course-wise."""
+    poisson_xy: float
+    """Contraction course-wise when pulled wale-wise."""
+    kind: Literal["fit"] = "fit"
+    standard_errors: LawErrors
+    rms_n_per_mm: float
+    """Of all residuals."""
+    rms_course_n_per_mm: float
+    rms_wale_n_per_mm: float
+    largest_strain: dict[Direction, float]
+    """Up to where the law was fitted."""
+    runs: dict[Direction, int]
+    """Pulls used."""
+    reduction: Reduction
+    error_method: str
+    notes: list[str]
+    waist_rms: dict[Direction, float] | None = None
+    """Simulated minus measured strain of the waist (recommended reduction)."""
+    residuals: dict[Direction, ResidualPoints] | None = None
+    curves: dict[Direction, CurveDocument]
+    """Median curve of the pulls in each direction; kept with the law in a file."""
+
+
+class FrameErrorResult(BaseModel):
+    """Simulated minus measured displacement of one picture, in percent of the width."""
+
+    frame: int
+    applied_stretch: float
+    ux_rms_percent_width: float
+    ux_max_percent_width: float
+    uy_rms_percent_width: float
+    uy_max_percent_width: float
+
+
+class GarmentResult(BaseModel):
+    """A garment as a chart with an outline."""
+
+    name: str
+    rows: int
+    columns: int
+    chart: str
+    outline: str
+    """Lines of x (stitch) and . (no stitch), the top row first."""
+    stitches: int
+    around: Direction
+    """The material direction around the limb."""
+    closing: str
+    regions: list[RegionResult]
+    gauges: list[GaugeResult]
+    worn: list[WornResult]
+    yarn_m: float
+    yarn_g: float | None
+    notes: list[str]
+    warnings: list[str]
+    """Where regions of unlike gauge meet."""
+    design: DesignFile
+    """The same as a project file, ready to be edited."""
+
+
+class GaugeResult(BaseModel):
+    """The gauge of a fabric."""
+
+    fabric: Fabric
+    stitches_per_10_cm: float
+    rows_per_10_cm: float
+    stitches_per_4_in: float
+    rows_per_4_in: float
+    stitches_per_5_cm: float
+    rows_per_5_cm: float
+    source: str
+
+
+class ImportResult(BaseModel):
+    """The content of a file."""
+
+    outline: str | None = None
+    """Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out."""
+    regions: list[DesignRegion] = []
+    repeats: list[DesignRepeat] = []
+    shelf: list[ShelfPattern] = []
+    chart: str
+    """K/P lines, the top row first."""
+    name: str | None = None
+    """Of a design."""
+    material: str | None = None
+    note: str | None = None
+    rows: int
+    columns: int
+    repeat: ChartResult
+    notes: list[str] = []
+    """What may not be as meant, such as a lost region."""
+
+
+class IntervalResult(BaseModel):
+    """An interval by its ends."""
+
+    low: float
+    high: float
+
+
+class JobPage(BaseModel):
+    """A part of a list of jobs, latest first."""
+
+    jobs: list[JobStatus]
+    next_cursor: str | None
+    """Ask with it for what follows; None at the end."""
+
+
+class JobStatus(BaseModel):
+    """A job as its owner sees it."""
+
+    id: str
+    kind: str
+    state: JobState
+    progress: float
+    """Share done, where the computation reports it."""
+    problem: Problem | None = None
+    """Why it failed or was interrupted."""
+    created_at: AwareDatetime
+    started_at: AwareDatetime | None = None
+    finished_at: AwareDatetime | None = None
+
+
+class LawCurve(BaseModel):
+    """A stress-strain curve, transverse direction free."""
+
+    strain: list[float]
+    stress_n_per_mm: list[float]
+
+
+class LawDocument(BaseModel):
+    """A law as its stiffnesses, as its moduli and Poisson ratios, or as both if they agree."""
+
+    stiffness_xxxx: float | None = None
+    stiffness_yyyy: float | None = None
+    stiffness_xxyy: float | None = None
+    stiffness_yyxx: float | None = None
+    modulus_course: float | None = None
+    modulus_wale: float | None = None
+    poisson_yx: float | None = None
+    poisson_xy: float | None = None
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx: float
+    beta_yy: float
+    shear_modulus: float = 0.01
+    """N/mm"""
+    kappa_xx: float = 0.0
+    kappa_yy: float = 0.0
+
+
+class LawErrors(BaseModel):
+    """Standard errors of a law's constants."""
+
+    stiffness_xxxx_n_per_mm: float
+    stiffness_yyyy_n_per_mm: float
+    stiffness_xxyy_n_per_mm: float
+    stiffness_yyxx_n_per_mm: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx_n_per_mm: float
+    beta_yy_n_per_mm: float
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    poisson_yx: float
+    """Contraction wale-wise when pulled course-wise."""
+    poisson_xy: float
+    """Contraction course-wise when pulled wale-wise."""
+    shear_modulus_n_per_mm: float | None = None
+    """Recommended reduction only, and mostly its prior's: a factor of 1.5."""
+    kappa_xx: float | None = None
+    kappa_yy: float | None = None
+
+
+class LawResult(BaseModel):
+    """The constants of a constitutive law."""
+
+    stiffness_xxxx_n_per_mm: float
+    stiffness_yyyy_n_per_mm: float
+    stiffness_xxyy_n_per_mm: float
+    stiffness_yyxx_n_per_mm: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx_n_per_mm: float
+    beta_yy_n_per_mm: float
+    shear_modulus_n_per_mm: float
+    """An assumption unless it was fitted or calibrated."""
+    kappa_xx: float
+    """Share of the strain across in the stiffening."""
+    kappa_yy: float
+
+
+class LeftOutResult(BaseModel):
+    """How well the library's yarns are predicted when they are left out; factors of the rms."""
+
+    measured: list[Fabric]
+    values: int
+    strain_rms_factor: float
+    modulus_rms_factor: float
+    modulus_median_factor: float
+    modulus_within_two: float
+    """Share predicted within a factor of two."""
+    alpha_rms_factor: float
+    beta_rms_factor: float
+    modulus_coverage: float
+    """Of the 90 % intervals."""
+    strain_coverage: float
+
+
+class LoadedEdge(BaseModel):
+    """What was done to an edge, per step."""
+
+    edge: str
+    kind: str
+    force_x_n: list[float]
+    """On the whole edge; 0 of a tape."""
+    force_y_n: list[float]
+    moved_x_mm: list[float]
+    """Mean of the edge."""
+    moved_y_mm: list[float]
+    force_x_margin_n: float
+    """The last step's 90 % interval is this much to either side."""
+    force_y_margin_n: float
+    moved_x_margin_mm: float
+    moved_y_margin_mm: float
+
+
+class MaterialDetail(BaseModel):
+    """A material, with everything that is known of it."""
+
+    id: str
+    name: str
+    description: str
+    notes: list[str]
+    bending_modulus_n_mm2: float | None
+    bending_modulus_sd_n_mm2: float | None
+    compression_stiffness_n_per_mm3: float | None
+    compression_exponent: float | None
+    fabrics: dict[Fabric, FabricDetail]
+    stitch_table: StitchTableResult | None
+    """None for a material that lacks one of the four fabrics."""
+    curves: dict[Fabric, dict[Direction, LawCurve]]
+    """Of the laws."""
+    measured: dict[Fabric, dict[Direction, CurveDocument]]
+    """Of the stretch tests, where they are kept with the material."""
+
+
+class MaterialDocument(BaseModel):
+    """A material file."""
+
+    format: Literal["knitcore-material"] = "knitcore-material"
+    version: Literal[1] = 1
+    identifier: str
+    name: str
+    yarn: YarnDocument | None = None
+    fabrics: dict[Fabric, FabricDocument]
+    note: str = ""
+
+
+class MaterialSummary(BaseModel):
+    """A material, in short."""
+
+    id: str
+    name: str
+    description: str
+    fabrics: dict[Fabric, FabricSummary]
+
+
+class Materials(BaseModel):
+    """The library."""
+
+    materials: list[MaterialSummary]
+
+
+class MeasureResult(BaseModel):
+    """A number that an extension adds."""
+
+    identifier: str
+    value: float | None
+    """Null where it has no finite value."""
+    unit: str
+    description: str
+
+
+class ModelReport(BaseModel):
+    """The model refitted from the packaged tables, and its leave-one-yarn-out figures."""
+
+    yarns: int
+    modulus_constant: dict[Fabric, dict[Direction, float]]
+    """K in Y = K B / L³, geometric mean."""
+    alpha: dict[Fabric, dict[Direction, float]]
+    beta_n_per_mm: dict[Fabric, dict[Direction, float]]
+    left_out: list[LeftOutResult]
+
+
+class NearestLockUp(BaseModel):
+    """Where the swatch is nearest to its lock-up at the last step."""
+
+    utilisation: float
+    row: int
+    """From 1, bottom row first."""
+    column: int
+    """From 1, left wale first."""
+    direction: Direction
+    fabric: str
+
+
+class NewShare(BaseModel):
+    """A new link with its secret."""
+
+    id: str
+    mode: ShareMode
+    created_at: AwareDatetime
+    token: str
+    """The design is at /api/v1/shared/{token} for who has this."""
+
+
+class Painted(BaseModel):
+    """The design's state after strokes were kept."""
+
+    revision: int
+    changed_at: AwareDatetime
+    map: StitchKinds
+    """What looks different now: the strokes and one around."""
+
+
+class ParsedChart(BaseModel):
+    """A chart and its smallest repeat."""
+
+    rows: int
+    columns: int
+    text: str
+    repeat: ChartResult
+
+
+class PatchResult(BaseModel):
+    """A region of one repeat."""
+
+    repeat: str
+    stitches: int
+    row: int
+    """Of its first stitch, from 1 at the bottom left."""
+    column: int
+    deviation_course: float | None
+    """Of the repeat; null without a wish."""
+    deviation_wale: float | None
+    swatch_course: float | None
+    """The same of the patch as the finite swatch has it; null if it was not pulled."""
+    swatch_wale: float | None
+
+
+class PatternResult(BaseModel):
+    """A repeat with a name."""
+
+    id: str
+    name: str
+    chart: str
+    """K/P lines of one repeat, the top row first."""
+    note: str
+
+
+class Patterns(BaseModel):
+    """All named patterns."""
+
+    patterns: list[PatternResult]
+
+
+class PieceResult(BaseModel):
+    """Equilibria of a piece under a growing load."""
+
+    energy_n_mm: list[float]
+    """Stored in the cloth."""
+    converged: bool
+    seconds: float
+    nodes: int
+    elements: int
+    utilisation: float
+    """Largest alpha * strain at the last step; 1 is the lock-up."""
+    messages: list[str]
+    kind: Literal["piece"] = "piece"
+    share: list[float]
+    """Of the load, per step."""
+    area_mm2: float
+    edges: list[LoadedEdge]
+    """In the order of the conditions."""
+    shape: DeformedPiece | None
+
+
+class PredictResult(BaseModel):
+    """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
+
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    poisson_yx: float
+    """Contraction wale-wise when pulled course-wise."""
+    poisson_xy: float
+    """Contraction course-wise when pulled wale-wise."""
+    rows: int
+    """Of the stitches that the constants are of."""
+    columns: int
+    segments: dict[Direction, SegmentCountsResult]
+    modulus_course_interval_n_per_mm: tuple[float, float]
+    modulus_wale_interval_n_per_mm: tuple[float, float]
+    poisson_yx_interval: tuple[float, float]
+    poisson_xy_interval: tuple[float, float]
+    modulus_course_bounds_n_per_mm: tuple[float, float]
+    """Reuss and Voigt; wider where folds need it."""
+    modulus_wale_bounds_n_per_mm: tuple[float, float]
+    shear_modulus_n_per_mm: float
+    """An assumption unless it was calibrated."""
+    relaxed_course_mm: float
+    """Mean width of a stitch at rest."""
+    relaxed_wale_mm: float
+    """Mean height of a stitch at rest."""
+    relaxed_course_interval_mm: tuple[float, float]
+    relaxed_wale_interval_mm: tuple[float, float]
+    relaxed_source: str
+    provenance: str
+    """measured; estimated; swept; learned; or learned with known size"""
+    method: str
+    notes: list[str]
+    measures: list[MeasureResult] = []
+    """Those that were asked for."""
+
+
+class PressureResult(BaseModel):
+    """Mean pressure; no medical class."""
+
+    mmhg: IntervalResult
+    """From axially free to axially fixed."""
+    kpa: IntervalResult
+    mmhg_with_law_spread: IntervalResult | None
+    """The same, widened by the 90 % interval of the fabric's stress, where known."""
+    strain: float
+    """Around the limb."""
+    rest_mm: float
+    worn_mm: float
+    tension_n_per_mm: IntervalResult
+    """Hoop tension per worn length."""
+    axial_strain_free: float
+    lock_up_share: float
+    """Strain over lock-up strain."""
+    rest_mm_for_target: IntervalResult | None
+    """Sizes that press by the target: axially free to axially fixed."""
+    warnings: list[str]
+    law_source: str
+    """Where the law comes from; empty if unknown."""
+
+
+class Problem(BaseModel):
+    """What every error response looks like."""
+
+    type: str
+    """The kind of problem: the address of a page about it."""
+    title: str
+    status: int
+    detail: str
+    """What is wrong, in words."""
+    field: str | None = None
+    """The input that is to blame."""
+    remedy: str | None = None
+    """What would be accepted."""
+    most: float | None = None
+    """The largest number that the field would accept, where that is known."""
+    errors: list[Fault] = []
+    """Of inputs that cannot be used: all that is wrong, at most 100; `field`, `detail` and
+    `remedy` are those of the first."""
+
+
+class RSFabricResult(BaseModel):
+    """A pure fabric in the model."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    segments: dict[Direction, RSSegment]
+
+
+class RSResult(BaseModel):
+    """The four fabrics of a yarn."""
+
+    material: str
+    fabrics: dict[Fabric, RSFabricResult]
+
+
+class RSSegment(BaseModel):
+    """The connecting segments of one direction."""
+
+    parity: Parity
+    separation_mm: float
+    """lambda, distance of the segment's ends."""
+    length_mm: float
+    """L, yarn between them."""
+    slope: float
+    """v, the ends' tangent across the line between them."""
+    angle_rad: float | None
+    """phi, tilt out of the cloth; odd segments only."""
+    delta: float
+    rigidity_n_per_mm: float
+    modulus_n_per_mm: float
+    published_n_per_mm: float | None
+    """The paper's value for this modulus."""
+
+
+class RegionResult(BaseModel):
+    """One region: the fabric's repeat, its colour, its size, and means over its stitches."""
+
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    name: str
+    fill: str
+    colour: str
+    stitches: int
+    columns: int
+    """Stitches of its longest row."""
+    rows: int
+    """Rows of its longest column."""
+    width_mm: float
+    """Of that many stitches at rest."""
+    height_mm: float
+    yarn_m: float
+    yarn_g: float | None
+    cells: str
+    """Lines of x (in the region) and ., the top row first."""
+
+
+class RelaxResult(BaseModel):
+    """The shape of least energy, free of force or held; sizes and energies of one stitch."""
+
+    kind: Literal["relax"] = "relax"
+    branch: Branch
+    convention: Convention
+    repeat_rows: int
+    """At least 2 in the free branch, as are the columns."""
+    repeat_columns: int
+    cell_course_mm: float
+    cell_wale_mm: float
+    energy_n_mm: float
+    bending_share: float
+    contact_share: float
+    yarn_length_mm: float
+    force_course_n: float | None
+    """What holds a prescribed width, per stitch; null in the published branch."""
+    force_wale_n: float | None
+    min_distance_mm: float | None
+    seconds: float
+    """CPU time of the solve, whenever it was."""
+    known: bool = False
+    """Whether it had been computed before."""
+    evaluations: int
+    converged: bool
+    yarn: YarnResult
+    starts: list[StartResult]
+    notes: list[str]
+    centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
+    """Bottom course first; each runs once across the repeat."""
+
+
+class ResidualPoints(BaseModel):
+    """Measured points and the fitted stress there."""
+
+    strain_along: list[float]
+    strain_across: list[float]
+    stress_n_per_mm: list[float]
+    fitted_n_per_mm: list[float]
+
+
+class SegmentCountsResult(BaseModel):
+    """Segments of one direction by their symmetry."""
+
+    even: int
+    odd: int
+
+
+class SessionSummary(BaseModel):
+    """A browser that is signed in."""
+
+    id: str
+    created_at: AwareDatetime
+    is_this: bool
+    """Whether it is the one that asks."""
+
+
+class ShapeResult(BaseModel):
+    """A chart, and the outline of its swatch."""
+
+    kind: Literal["shape"] = "shape"
+    rows: int
+    columns: int
+    chart: str
+    bands: list[BandResult]
+    width: list[float]
+    """Width in the finite swatch, for comparison with the wanted one."""
+    wanted: list[float | None]
+    rms: float
+    """Of the differences, as parts of the width at rest."""
+    largest: float
+    force_n: float
+    pulls: int
+    """Swatches that were pulled on the way."""
+    messages: list[str]
+
+
+class Share(BaseModel):
+    """A link that was given away; its secret is shown only once, when it is made."""
+
+    id: str
+    mode: ShareMode
+    created_at: AwareDatetime
+
+
+class SharedDesign(BaseModel):
+    """The design behind a link."""
+
+    mode: ShareMode
+    document: DesignDocument
+    revision: int
+    changed_at: AwareDatetime
+
+
+class Shares(BaseModel):
+    """The links of a design that are not revoked."""
+
+    shares: list[Share]
+
+
+class SignedIn(BaseModel):
+    """The user of this request, with all sessions, and what is used of the limits of one user."""
+
+    user: str
+    sessions: list[SessionSummary]
+    """Latest first; scripts have none."""
+    use: dict[str, Use]
+    """By the name that a refusal has in `field`; of this process, if there are several, except
+    for what is kept."""
+
+
+class StartResult(BaseModel):
+    """What became of one start; null where it failed."""
+
+    name: str
+    outcome: str
+    energy_n_mm: float | None
+    cell_course_mm: float | None
+    cell_wale_mm: float | None
+
+
+class StitchFields(BaseModel):
+    """Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is
+    no stitch."""
+
+    strain_course: list[list[float]]
+    strain_wale: list[list[float]]
+    utilisation: list[list[float]]
+    """alpha * strain; 1 is the lock-up."""
+    strain_margin: list[list[float]]
+    """Of the strain along the pull: its 90 % interval is this much to either side."""
+    utilisation_margin: list[list[float]]
+    """The same of the utilisation."""
+
+
+class StitchKind(BaseModel):
+    """One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8."""
+
+    extensibility_course_mm_per_n: float
+    extensibility_wale_mm_per_n: float
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    code: int
+    modulus_course_interval: tuple[float, float]
+    modulus_wale_interval: tuple[float, float]
+    fractions: dict[Fabric, float]
+    """Shares of the four phases."""
+
+
+class StitchKinds(BaseModel):
+    """Kinds of the stitches in a box; a material's `stitches` table says what each kind does."""
+
+    row: int
+    """Bottom row of the box, from 0."""
+    column: int
+    """Left column of the box, from 0."""
+    kinds: list[str]
+    """A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15."""
+
+
+class StitchTableResult(BaseModel):
+    """Values of all kinds of stitch."""
+
+    codes: list[StitchKind]
+
+
+class StretchResult(BaseModel):
+    """The curve of a test and the fields at its stitches."""
+
+    strain: list[float]
+    force_n: list[float]
+    force_low_n: list[float]
+    """Lower end of the 90 % interval."""
+    force_high_n: list[float]
+    """Upper end of the 90 % interval."""
+    stress_n_per_mm: list[float]
+    """Force per width, and as sure as the force."""
+    waist_strain: list[float]
+    waist_margin: list[float]
+    """90 % interval, to either side."""
+    iterations: list[int]
+    converged: bool
+    seconds: float
+    dofs: int
+    width_mm: float
+    length_mm: float
+    shear_modulus_assumed: bool
+    """Whether C_xyxy is the paper's assumption rather than measured."""
+    nearest_lock_up: NearestLockUp | None
+    messages: list[str]
+    kind: Literal["stretch"] = "stretch"
+    id: str
+    """Names this test for the 3D view."""
+    rows: int
+    columns: int
+    stitch_fields: StitchFields
+
+
+class SweepResult(BaseModel):
+    """A stretch, free across; sizes and energies of one stitch."""
+
+    kind: Literal["sweep"] = "sweep"
+    direction: Direction
+    branch: Branch
+    strain: list[float]
+    transverse_strain: list[float]
+    stress_n_per_mm: list[float]
+    energy_n_mm: list[float]
+    bending_share: list[float]
+    contact_share: list[float]
+    jumps: list[int]
+    """Points at which the shape changes abruptly."""
+    cell_course_mm: float
+    """Relaxed size of one stitch."""
+    cell_wale_mm: float
+    law: SweptLaw | None
+    converged: bool
+    seconds: float
+    """CPU time of the solves, whenever they were."""
+    known: bool = False
+    """Whether it had been computed before."""
+    yarn: YarnResult
+    notes: list[str]
+
+
+class SweptLaw(BaseModel):
+    """Constitutive law fitted to the stretches along and across (N/mm)."""
+
+    modulus_course_n_per_mm: float
+    modulus_wale_n_per_mm: float
+    poisson_yx: float
+    """Contraction wale-wise when pulled course-wise."""
+    poisson_xy: float
+    """Contraction course-wise when pulled wale-wise."""
+    stiffness_xxxx: float
+    stiffness_yyyy: float
+    stiffness_xxyy: float
+    stiffness_yyxx: float
+    alpha_xx: float
+    alpha_yy: float
+    beta_xx: float
+    beta_yy: float
+    max_stress_n_per_mm: float
+    """Upper end of the fitted range of stress."""
+    largest_strain_course: float
+    largest_strain_wale: float
+    rms_course_n_per_mm: float
+    rms_wale_n_per_mm: float
+
+
+class TrellisResult(BaseModel):
+    """A simulated trellis (picture frame) test."""
+
+    energy_n_mm: list[float]
+    """Stored in the cloth."""
+    converged: bool
+    seconds: float
+    nodes: int
+    elements: int
+    utilisation: float
+    """Largest alpha * strain at the last step; 1 is the lock-up."""
+    messages: list[str]
+    kind: Literal["trellis"] = "trellis"
+    angle_deg: list[float]
+    force_n: list[float]
+    """That pulls two opposite corners of the frame apart."""
+    force_low_n: list[float]
+    """Lower end of the 90 % interval."""
+    force_high_n: list[float]
+    """Upper end of the 90 % interval."""
+    moment_n_mm: list[float]
+    """Work of the frame per shear angle in radians."""
+    shear_stress_n_per_mm: list[float]
+    """The moment over the area at rest."""
+
+
+class Use(BaseModel):
+    """How much of a limit is used."""
+
+    used: float
+    most: float
+
+
+class Version(BaseModel):
+    """A kept state with its document."""
+
+    number: int
+    """From 1, oldest first."""
+    name: str
+    automatic: bool
+    """Kept by the service before a restore replaced it."""
+    revision: int
+    created_at: AwareDatetime
+    document: DesignDocument
+
+
+class VersionResult(BaseModel):
+    """The program behind the address."""
+
+    version: str
+    """Of the program, as `knitcore --version` says."""
+    api: str
+    """Of the REST API: the part of its addresses after /api/."""
+
+
+class VersionSummary(BaseModel):
+    """A kept state of a design."""
+
+    number: int
+    """From 1, oldest first."""
+    name: str
+    automatic: bool
+    """Kept by the service before a restore replaced it."""
+    revision: int
+    created_at: AwareDatetime
+
+
+class Versions(BaseModel):
+    """All kept states of a design."""
+
+    versions: list[VersionSummary]
+
+
+class ViewResult(BaseModel):
+    """The view of a design and its address."""
+
+    stitches: int
+    """Stitches drawn as yarn."""
+    source: str
+    """Where the shapes of the stitches come from."""
+    url: str
+
+
+class WornResult(BaseModel):
+    """Pressure at one place along the limb."""
+
+    at_mm: float
+    part: str
+    rest_mm: float
+    worn_mm: float
+    ease: float
+    strain: float | None
+    mmhg: IntervalResult | None
+    kpa: IntervalResult | None
+    warnings: list[str]
+
+
+class YarnDocument(BaseModel):
+    """The yarn of a material; every field is optional."""
+
+    fibre: str = ""
+    product: str = ""
+    bending_modulus_n_mm2: float | None = None
+    bending_modulus_sd_n_mm2: float | None = None
+    compression_stiffness_n_per_mm3: float | None = None
+    compression_exponent: float | None = None
+    diameter_mm: float | None = None
+
+
+class YarnResult(BaseModel):
+    """The yarn that was used and where its numbers come from."""
+
+    bending_modulus_n_mm2: float
+    contact_stiffness_n_per_mm3: float
+    contact_exponent: float
+    radius_mm: float
+    core_radius_mm: float
+    provenance: str
+    estimated: bool
+
+
+JobResult = (
+    AtlasResult
+    | BendResult
+    | BendingResult
+    | BiasResult
+    | BiaxialResult
+    | CalibrateResult
+    | CharacteriseResult
+    | CompareResult
+    | CompressionResult
+    | CurlResult
+    | CurveResult
+    | FillResult
+    | FindResult
+    | FitResult
+    | PieceResult
+    | RelaxResult
+    | ShapeResult
+    | StretchResult
+    | SweepResult
+    | TrellisResult
+)
+"""The result of a job; its ``kind`` says which."""

@@ -1,0 +1,182 @@
+"""The typed clients against the real service."""
+
+from __future__ import annotations
+
+import asyncio
+import subprocess
+import sys
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+
+import httpx2 as httpx
+import pytest
+from knitcore_client import AsyncClient, Client, ProblemError
+from knitcore_client.aio import AsyncClient as Awaited
+from knitcore_client.models import JobStatus
+
+from app.operations.registry import operations
+from scripts.client_code import FOLDER, code
+from tests.app.service import Service
+
+TOKEN = "a-token-of-this-test"
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    found = Service(tmp_path_factory.mktemp("client"), token=TOKEN)
+    found.start().close()
+    yield found
+    found.kill()
+
+
+@pytest.fixture(scope="module")
+def knit(service: Service) -> Iterator[Client]:
+    with Client(service.url, token=TOKEN) as client:
+        yield client
+
+
+def test_a_design_from_a_script(knit: Client) -> None:
+    made = knit.create("Cuff", "acrylic", "KPKP\nKPKP")
+    painted = knit.paint(made.id, 2, 4, [{"row": 0, "column": 0, "stitches": "PP"}])
+    assert painted.revision == 2
+    found = knit.design(made.id)
+    assert found.document.chart == "KPKP\nPPKP"
+    wide = found.document.model_copy(update={"name": "Wide"})
+    assert knit.save(made.id, wide, found.revision).name == "Wide"
+    with pytest.raises(ProblemError, match="changed in the meantime") as refused:
+        knit.save(made.id, wide, found.revision)
+    assert refused.value.problem.type == "/problems/stale"
+    assert made.id in [d.id for d in knit.designs()]
+    kept = knit.keep(made.id, "first")
+    assert [version.number for version in knit.versions(made.id)] == [kept.number]
+    link = knit.share(made.id, "copy")
+    assert knit.shared(link.token).document.name == "Wide"
+    assert knit.copy(link.token).id != made.id
+    knit.unshare(made.id, link.id)
+    assert knit.shares(made.id).shares == []
+    back = knit.restore(made.id, kept.number, knit.design(made.id).revision)
+    assert knit.patch(made.id, back.revision, {"name": "Narrow"}).name == "Narrow"
+    knit.delete(made.id)
+    assert made.id in [d.id for d in knit.designs(deleted=True)]
+    assert knit.recover(made.id).name == "Narrow"
+
+
+def test_every_operation_is_a_method(knit: Client, tmp_path: Path) -> None:
+    for name, operation in operations().items():
+        assert hasattr(knit, name) or hasattr(knit, f"{name}_") or operation.path is None
+    assert knit.predict(chart="KPKP\nKPKP", material="acrylic").columns == 4
+    assert knit.material(identifier="acrylic").name
+    assert knit.version().api == "v1"
+    assert knit.signed_in().user
+    file = tmp_path / "chart.txt"
+    file.write_text("KP")
+    read = knit.import_(file=file)
+    assert read == knit.import_(file={"name": "chart.txt", "content": "S1A="})
+    with pytest.raises(ProblemError, match="material") as refused:
+        knit.predict(chart="KP")  # type: ignore[call-arg]
+    assert [fault.field for fault in refused.value.problem.errors] == ["material"]
+
+
+def test_a_job_from_a_script(knit: Client) -> None:
+    job = knit.submit(
+        "stretch", chart="KP\nPK", material="acrylic", direction="wale", strain=0.1, steps=2
+    )
+    states = [status.state for status in knit.follow(job.id)]
+    assert states[-1] == "done"
+    found = knit.result(job.id)
+    assert found.kind == "stretch"
+    assert len(found.strain) == 2
+    again = knit.run(
+        "stretch", chart="KP\nPK", material="acrylic", direction="wale", strain=0.1, steps=2
+    )
+    assert again == found
+    assert knit.cancel(job.id).state == "done"
+    with pytest.raises(ProblemError, match="no job"):
+        list(knit.follow("no-such-job"))
+
+
+def test_the_same_awaited(service: Service) -> None:
+    async def script() -> None:
+        async with AsyncClient(service.url, token=TOKEN) as knit:
+            both = await asyncio.gather(
+                knit.predict(chart="KP", material="acrylic"),
+                knit.predict(chart="KKPP", material="acrylic"),
+            )
+            assert [one.columns for one in both] == [2, 4]
+            made = await knit.create("Awaited", "acrylic", "K")
+            assert made.id in [design.id async for design in knit.designs()]
+            found = await knit.run(
+                "curve", chart="KP", material="acrylic", direction="wale", stress_n_per_mm=[0.1]
+            )
+            assert len(found.strain) == 1
+            with pytest.raises(ProblemError, match="no design"):
+                await knit.design("no-such-design")
+
+    asyncio.run(script())
+
+
+def test_a_job_given_up_is_cancelled() -> None:
+    cancelled = []
+
+    class Endless(Awaited):
+        async def _submit(self, kind: str, request: object) -> JobStatus:
+            return JobStatus.model_construct(id="a-job")
+
+        async def follow(self, job: str) -> AsyncIterator[JobStatus]:
+            while True:
+                await asyncio.sleep(0)
+                yield JobStatus.model_construct(id=job)
+
+        async def cancel(self, job: str) -> JobStatus:
+            cancelled.append(job)
+            return JobStatus.model_construct(id=job)
+
+    async def script() -> None:
+        async with Endless("http://127.0.0.1:9") as knit:
+            with pytest.raises(TimeoutError):
+                async with asyncio.timeout(0.01):
+                    await knit.run("bend", chart="K", material="acrylic")
+
+    asyncio.run(script())
+    assert cancelled == ["a-job"]
+
+
+def test_it_needs_neither_numpy_nor_the_service() -> None:
+    script = "import sys, knitcore_client; print(*sys.modules)"
+    path = {"PYTHONPATH": str(FOLDER.parent)}
+    told = subprocess.run(
+        [sys.executable, "-c", script], env=path, capture_output=True, text=True, check=True
+    )
+    loaded = {name.partition(".")[0] for name in told.stdout.split()}
+    assert "knitcore_client" in loaded
+    assert not loaded & {"numpy", "scipy", "fastapi", "starlette", "app", "knitcore"}
+
+
+def test_it_is_made_from_this_service() -> None:
+    for name, text in code().items():
+        assert (FOLDER / name).read_text(encoding="utf-8") == text, f"make types: {name}"
+
+
+class Unsteady(httpx.HTTPTransport):
+    """A network that loses the first answer, and a service that is busy the second time."""
+
+    asked = 0
+
+    def handle_request(self, request: httpx.Request) -> httpx.Response:
+        self.asked += 1
+        answer = super().handle_request(request)
+        if self.asked == 1:
+            answer.read()
+            raise httpx.ReadError("the answer was lost")
+        if self.asked == 2:
+            answer.read()
+            return httpx.Response(429, headers={"Retry-After": "0"})
+        return answer
+
+
+def test_what_is_sent_again_takes_effect_once(service: Service, knit: Client) -> None:
+    unsteady = Unsteady()
+    with Client(service.url, token=TOKEN, transport=unsteady) as client:
+        made = client.create("Once", "acrylic", "K")
+    assert unsteady.asked == 3
+    assert [d.id for d in knit.designs() if d.name == "Once"] == [made.id]
