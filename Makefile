@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults fuzz lint audit format types frontend-check bench bench-service docs examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -85,12 +85,15 @@ lint: $(VENV)/.installed-dev frontend/node_modules/.installed ## ruff, mypy --st
 
 .audit/.installed:
 	$(PYTHON) -m venv .audit
-	.audit/bin/pip install --quiet --disable-pip-version-check pip-audit bandit
+	.audit/bin/pip install --quiet --disable-pip-version-check pip-audit bandit cyclonedx-bom
 	touch $@
 
 audit: .audit/.installed ## Risky code (bandit) and known holes in pinned packages (pip-audit, asks PyPI)
 	.audit/bin/bandit --quiet -c pyproject.toml -r app knitcore
 	.audit/bin/pip-audit --strict --disable-pip --require-hashes -r requirements.lock
+
+sbom: .audit/.installed ## List the packages of the service in sbom.json (CycloneDX)
+	.audit/bin/cyclonedx-py requirements --output-reproducible --of JSON -o sbom.json requirements.lock
 
 format: $(VENV)/.installed-dev frontend/node_modules/.installed ## Format the code
 	$(BIN)/ruff check --fix .

@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import resource
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, Field
 
@@ -15,6 +17,9 @@ from app.settings import Settings
 from app.store.database import Database, check_not_lost
 from app.store.schema import check_schema
 from knitcore.errors import InputError
+
+if TYPE_CHECKING:
+    from app.compute.cluster import Cluster
 
 LEAST_FREE_BYTES = 100_000_000
 LEAST_HANDLES = 4_096
@@ -42,18 +47,32 @@ class Checks(BaseModel):
 
 def examine(settings: Settings) -> Checks:
     """Look at settings, folder, database, limits and cluster; changes nothing."""
-    return Checks(checks=list(_examined(settings)))
+
+    def cluster() -> None:
+        check_cluster(settings.scheduler or "")
+
+    return _examine(settings, partial(_check_database, settings), cluster)
 
 
-def _examined(settings: Settings) -> Iterator[Check]:
-    yield _checked("settings", settings.check)
-    yield _checked("data folder", lambda: check_folder(settings.folder))
-    yield _checked("file modes", lambda: check_modes(settings.folder))
-    yield _checked("free space", lambda: check_space(settings.folder))
-    yield _checked("database", lambda: _check_database(settings))
-    yield _checked("file handles", check_handles)
-    if settings.scheduler is not None:
-        yield _checked("cluster", lambda: check_cluster(settings.scheduler or ""))
+def examine_running(settings: Settings, database: Database, cluster: Cluster | None) -> Checks:
+    """The same while the service runs, without a look at every page of the database."""
+    return _examine(settings, database.check, cluster.check if cluster is not None else None)
+
+
+def _examine(
+    settings: Settings, database: Callable[[], object], cluster: Callable[[], object] | None
+) -> Checks:
+    checks: dict[str, Callable[[], object]] = {
+        "settings": settings.check,
+        "data folder": partial(check_folder, settings.folder),
+        "file modes": partial(check_modes, settings.folder),
+        "free space": partial(check_space, settings.folder),
+        "database": database,
+        "file handles": check_handles,
+    }
+    if settings.scheduler is not None and cluster is not None:
+        checks["cluster"] = cluster
+    return Checks(checks=[_checked(name, check) for name, check in checks.items()])
 
 
 def _checked(name: str, check: Callable[[], object]) -> Check:

@@ -7,6 +7,7 @@ import contextlib
 import logging
 import os
 from collections.abc import AsyncIterator, Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
@@ -22,7 +23,7 @@ from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
 from app.http import health
 from app.http.kinds import serve_kinds
-from app.http.observing import Metrics, Observer
+from app.http.observing import Metrics, Observer, configure_logging
 from app.http.page import serve_page
 from app.http.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.http.reference import serve_reference
@@ -164,7 +165,10 @@ def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
 
         return [ClusterPlace(cluster) for _ in range(settings.workers)]
     workers = processes(
-        settings.workers, settings.worker_memory_bytes, idle=settings.worker_priority == "idle"
+        settings.workers,
+        settings.worker_memory_bytes,
+        idle=settings.worker_priority == "idle",
+        begin=partial(configure_logging, settings.log_format),
     )
     for worker in workers:
         worker.warm_up(warm_up)

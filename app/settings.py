@@ -224,7 +224,7 @@ class Settings(BaseSettings):
                 "Set KNITCORE_TOKEN to a long random text, or KNITCORE_REQUIRE_LOGIN=true and make "
                 "tokens with `knitcore token create`, or listen on 127.0.0.1.",
             )
-        if self.token is not None and len(self.token.get_secret_value()) < 16:
+        if self.token is not None and len(self.token.get_secret_value().strip()) < 16:
             raise InputError("token", "is too short.", "Use at least 16 characters.")
         return self
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
+import socket
+import subprocess
 from pathlib import Path
 from typing import Any
 
+import pathspec
 import pytest
 import yaml
 
@@ -78,21 +82,72 @@ def test_the_service_has_no_more_rights_than_it_needs() -> None:
     assert [name for name, service in services.items() if "ports" in service] == ["app"]
 
 
-def test_the_image_runs_as_a_plain_user_from_debian_packages() -> None:
-    lines = DOCKERFILE.splitlines()
-    bases = [line for line in lines if line.startswith("FROM ")]
-    assert "ARG BASE=debian:bookworm-slim" in lines
-    assert all(line.startswith("FROM ${BASE}") for line in bases)
-    user = next(i for i, line in enumerate(lines) if line.startswith("USER "))
-    assert lines[user] != "USER root"
-    assert user < next(i for i, line in enumerate(lines) if line.startswith("RUN make install"))
-    for file in re.findall(r"^COPY (?:--chown=\S+ )?([^-\s]\S*) ", DOCKERFILE, re.MULTILINE):
-        assert (ROOT / file).exists()
+def _instructions() -> list[tuple[str, str]]:
+    """Instructions of the Dockerfile with their arguments, continued lines joined."""
+    text = re.sub(r"^#.*\n", "", DOCKERFILE, flags=re.MULTILINE)
+    lines = re.sub(r"\s*\\\n\s*", " ", text).splitlines()
+    found = [line.partition(" ") for line in lines if line.strip()]
+    return [(name, rest) for name, _, rest in found]
+
+
+def _all(name: str) -> list[str]:
+    return [rest for instruction, rest in _instructions() if instruction == name]
+
+
+def test_base_images_have_a_tag_and_perhaps_a_digest() -> None:
+    """`scripts/image pin` adds the digests where an image registry can be reached."""
+    pinned = r"[a-z0-9./-]+:(?!latest)[\w.-]+(@sha256:[0-9a-f]{64})?"
+    (base,) = _all("ARG")
+    assert re.fullmatch(f"BASE={pinned}", base)
+    assert all(image.split()[0] == "${BASE}" for image in _all("FROM"))
+    assert re.fullmatch(pinned, COMPOSE["services"]["database"]["image"])
+
+
+def test_the_image_is_small_and_made_of_known_packages() -> None:
+    for step in _all("RUN"):
+        if "apt-get install" in step:
+            assert step.startswith("apt-get update && apt-get install -y --no-install-recommends ")
+            assert "rm -rf /var/lib/apt/lists/*" in step
+        for install in re.findall(r"pip install [^&]*", step):
+            assert "--require-hashes" in install or "--no-deps" in install
+        assert not re.search(r"sudo|curl|wget|--trusted-host|chmod 777", step)
+    assert not _all("ADD")
+    last = [rest for name, rest in _instructions()][-1]
+    last_stage = DOCKERFILE.rpartition("FROM ")[2]
+    assert re.findall(r"^COPY (.*)$", last_stage, re.MULTILINE) == [
+        "--from=program /opt/knitcore /opt/knitcore"  # no sources, tests or caches
+    ]
+    assert last == '["knitcore", "serve"]'
+
+
+def test_the_image_runs_as_a_plain_user() -> None:
+    names = [name for name, _ in _instructions()]
+    assert _all("USER") == ["knit"]
+    assert "RUN" not in names[names.index("USER") :]
+    assert names.count("HEALTHCHECK") == names.count("CMD") == 1
     folder = COMPOSE["services"]["app"]["volumes"][0].split(":")[1]
-    assert f"mkdir -p {folder}" in DOCKERFILE
-    for line in re.findall(r"ENV (.*)", DOCKERFILE):
-        for name in re.findall(r"KNITCORE_(\w+)=", line):
-            assert name.lower() in Settings.model_fields
+    assert any(f"mkdir -p {folder} && chown knit:knit {folder}" in step for step in _all("RUN"))
+    for setting in re.findall(r"KNITCORE_(\w+)=", " ".join(_all("ENV"))):
+        assert setting.lower() in Settings.model_fields
+    assert not re.search("TOKEN|PASSWORD|SECRET", " ".join(_all("ENV") + _all("ARG")))
+
+
+def test_nothing_but_the_program_is_sent_to_the_engine() -> None:
+    rules = (ROOT / ".dockerignore").read_text()
+    ignored = pathspec.GitIgnoreSpec.from_lines(rules.splitlines())
+    kept = "app/main.py app/store/migrations/env.py knitcore/__init__.py frontend/build.mjs"
+    for file in f"{kept} pyproject.toml setup.py README.md LICENSE requirements.lock".split():
+        assert (ROOT / file).exists(), file
+        assert not ignored.match_file(file), file
+    secret = ".env .env.production app/.env frontend/.env.local knitcore.sqlite3 app/x.sqlite3-wal"
+    other = "tests/conftest.py docs/serving.md .git/config .venv/bin/python var/data backup.gz"
+    made = "frontend/node_modules/x.js frontend/dist/x.js app/__pycache__/main.pyc"
+    for file in f"{secret} {other} {made}".split():
+        assert ignored.match_file(file), file
+    for source in _all("COPY"):
+        for file in source.split()[:-1]:
+            if not file.startswith("--") and "--from" not in source and file != ".":
+                assert not ignored.match_file(file), file
 
 
 def test_workers_find_own_materials_and_nothing_grows_without_end() -> None:
@@ -100,13 +155,37 @@ def test_workers_find_own_materials_and_nothing_grows_without_end() -> None:
     app, worker = services["app"], services["worker"]
     assert app["environment"]["KNITCORE_DATA_DIR"] == worker["environment"]["KNITCORE_DATA_DIR"]
     assert app["volumes"] == worker["volumes"]
-    for name in ("app", "scheduler", "worker"):
-        assert services[name]["mem_limit"]
-        assert services[name]["pids_limit"]
-        assert services[name]["init"]
+    for name, service in services.items():
+        assert service["mem_limit"]
+        assert service["pids_limit"]
+        assert service["logging"]["options"]["max-size"]
+        assert name == "database" or service["init"]
+
+
+def test_a_worker_is_healthy_while_it_is_connected_to_the_scheduler() -> None:
+    _, grep, option, pattern, *tables = COMPOSE["services"]["worker"]["healthcheck"]["test"]
+    address = COMPOSE["services"]["app"]["environment"]["KNITCORE_SCHEDULER"]
+    assert pattern == f":{int(address.rpartition(':')[2]):04X} 01 "
+    with socket.create_server(("127.0.0.1", 0)) as scheduler:
+        port = scheduler.getsockname()[1]
+        check = [grep, option, f":{port:04X} 01 ", tables[0]]
+        assert subprocess.run(check, check=False).returncode == 1
+        with socket.create_connection(("127.0.0.1", port)), scheduler.accept()[0]:
+            assert subprocess.run(check, check=False).returncode == 0
 
 
 def test_secrets_stay_out_of_image_and_repository() -> None:
     """compose.yaml asks for an .env file beside it."""
-    for name in (".dockerignore", ".gitignore"):
-        assert ".env" in (ROOT / name).read_text().splitlines(), name
+    assert ".env" in (ROOT / ".gitignore").read_text().splitlines()
+
+
+def test_the_script_checks_the_files_where_no_engine_answers(tmp_path: Path) -> None:
+    python = tmp_path / "python"
+    python.write_text('#!/bin/sh\necho "$@"\n')
+    python.chmod(0o755)
+    environment = os.environ | {"ENGINE": "false", "PYTHON": str(python)}
+    told = subprocess.run(
+        [ROOT / "scripts/image"], env=environment, capture_output=True, text=True, check=True
+    )
+    assert "No container engine answers" in told.stdout
+    assert "tests/test_deployment.py" in told.stdout

@@ -264,8 +264,11 @@ def get_shares(design: DesignId, links: Links, owner: Owner) -> Shares:
 
 
 @router.post("/designs/{design}/shares", status_code=201, summary="Share a design")
-def post_share(design: DesignId, body: ShareRequest, links: Links, owner: Owner) -> NewShare:
+def post_share(
+    design: DesignId, body: ShareRequest, links: Links, owner: Owner, response: Response
+) -> NewShare:
     """A link for reading, or for copying; its token is told this once."""
+    response.headers["Cache-Control"] = "no-store"
     return links.give(owner, design, body.mode)
 
 

@@ -7,12 +7,15 @@ import contextlib
 import multiprocessing
 import os
 import resource
+import shutil
+import tempfile
 import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from enum import IntEnum
+from pathlib import Path
 from typing import Any, TypeVar
 
 from app.compute.places import call
@@ -22,6 +25,14 @@ T = TypeVar("T")
 MEMORY_BYTES = 4_000_000_000
 NICENESS = 10
 """Nice value; leaves about a tenth of a busy core."""
+
+
+SCRATCH = "knitcore-worker-"
+"""Folders of workers' temporary files begin so, and go on with the service's process."""
+
+
+def _nothing() -> None:
+    """Nothing to begin with."""
 
 
 class Cell(IntEnum):
@@ -41,12 +52,17 @@ class ProcessPlace:
     ----------
     memory_bytes : most memory of the process.
     idle : whether it uses only idle time, on systems that support this (Linux).
+    begin : called in the process at its start, picklable.
     """
 
-    def __init__(self, memory_bytes: int, *, idle: bool = False) -> None:
+    def __init__(
+        self, memory_bytes: int, *, idle: bool = False, begin: Callable[[], object] = _nothing
+    ) -> None:
         self._context = multiprocessing.get_context("spawn")
         self._memory_bytes = memory_bytes
         self._idle = idle
+        self._begin = begin
+        self._scratch = Path(tempfile.mkdtemp(prefix=f"{SCRATCH}{os.getpid()}-"))
         self._cells = self._context.Array("d", len(Cell), lock=False)
         self._executor = self._new()
 
@@ -81,27 +97,49 @@ class ProcessPlace:
 
     def replace(self) -> None:
         """Kill the process; the next job gets a new one."""
-        lost, self._executor = self._executor, self._new()
-        _kill(lost)
+        _kill(self._executor)
+        for left in self._scratch.iterdir():  # uploads that it was reading
+            shutil.rmtree(left, ignore_errors=True)
+        self._executor = self._new()
 
     def close(self) -> None:
         """End the process."""
         _kill(self._executor)
+        shutil.rmtree(self._scratch, ignore_errors=True)
 
     def _new(self) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(
             1,
             mp_context=self._context,
             initializer=_adopt,
-            initargs=(self._cells, self._memory_bytes, self._idle),
+            initargs=(
+                self._cells,
+                self._memory_bytes,
+                self._idle,
+                str(self._scratch),
+                self._begin,
+            ),
         )
 
 
 def processes(
-    count: int, memory_bytes: int = MEMORY_BYTES, *, idle: bool = False
+    count: int,
+    memory_bytes: int = MEMORY_BYTES,
+    *,
+    idle: bool = False,
+    begin: Callable[[], object] = _nothing,
 ) -> list[ProcessPlace]:
     """Several places, each with a memory limit."""
-    return [ProcessPlace(memory_bytes, idle=idle) for _ in range(count)]
+    _sweep()
+    return [ProcessPlace(memory_bytes, idle=idle, begin=begin) for _ in range(count)]
+
+
+def _sweep() -> None:
+    """Remove temporary files of services that were killed."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{SCRATCH}*-*"):
+        owner = folder.name.removeprefix(SCRATCH).partition("-")[0]
+        if not Path(f"/proc/{owner}").exists():
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _kill(executor: ProcessPoolExecutor) -> None:
@@ -114,10 +152,14 @@ _cells: Any = None
 _memory_bytes = 0
 
 
-def _adopt(cells: Any, memory_bytes: int, idle: bool) -> None:
+def _adopt(
+    cells: Any, memory_bytes: int, idle: bool, scratch: str, begin: Callable[[], object]
+) -> None:
     """In a worker: keep the shared memory and set the limits."""
     global _cells, _memory_bytes
     _cells, _memory_bytes = cells, memory_bytes
+    tempfile.tempdir = scratch
+    begin()
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _stand_back(idle)
     resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))

@@ -6,21 +6,29 @@ import asyncio
 
 from fastapi import APIRouter, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
-from app.doctor import check_space
-from app.http.problems import Problem, UnavailableError
-from knitcore.errors import InputError
+from app.doctor import examine_running
+from app.http.identity import LOCAL_USER, current_user
+from app.http.problems import Problem, ServiceError, UnavailableError
 
 router = APIRouter(tags=["service"])
 
 PATIENCE_S = 5.0
+NEEDED = frozenset({"database", "free space", "cluster"})
+"""Checks without which the service cannot work."""
 
 
 class Health(BaseModel):
     """The service answers."""
 
     status: str = "ok"
+
+
+class Readiness(Health):
+    """The service can work."""
+
+    checks: dict[str, bool] = Field(description="Whether all is well, by the name of the check.")
 
 
 class NotReadyError(UnavailableError):
@@ -40,25 +48,41 @@ async def healthz() -> Health:
     summary="Whether the service can work",
     responses={503: {"model": Problem, "description": "What is missing."}},
 )
-async def readyz(request: Request) -> Health:
-    """Checks database, disk and cluster: while this fails, send requests elsewhere."""
+async def readyz(request: Request) -> Readiness:
+    """The checks of `knitcore doctor` by name: while this fails, send requests elsewhere.
+
+    It fails without database, disk or cluster; what else is wrong, `knitcore doctor` tells.
+    """
     state = request.app.state
     try:
         async with asyncio.timeout(PATIENCE_S):
-            await asyncio.to_thread(state.database.check)
-            if state.database.is_sqlite:
-                check_space(state.settings.folder)
-            if state.cluster is not None:
-                await asyncio.to_thread(state.cluster.check)
+            found = await asyncio.to_thread(
+                examine_running, state.settings, state.database, state.cluster
+            )
     except TimeoutError:
         raise NotReadyError("The database or the cluster does not answer.") from None
-    except InputError as error:
-        raise NotReadyError(error.problem, remedy=error.remedy) from None
-    return Health()
+    for check in found.failed:
+        if check.name in NEEDED:
+            raise NotReadyError(check.problem or check.name, remedy=check.remedy)
+    return Readiness(checks={check.name: check.ok for check in found.checks})
+
+
+class NotForUsersError(ServiceError):
+    """It is for whoever runs the service."""
+
+    status, type, title = 403, "refused", "Refused"
 
 
 @router.get("/metrics", summary="Numbers for Prometheus", response_class=Response)
 def metrics(request: Request) -> Response:
-    """Requests, times, jobs, views and the process itself."""
+    """Requests, times, jobs, views and the process itself.
+
+    Where users have logins of their own, they need the token of the settings.
+    """
+    if current_user.get() != LOCAL_USER:
+        raise NotForUsersError(
+            "Numbers about everybody are for whoever runs the service.",
+            remedy="Send the token of KNITCORE_TOKEN.",
+        )
     registry = request.app.state.metrics.registry
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)

@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextvars import ContextVar
 from datetime import UTC, datetime
-from importlib.metadata import version
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, Info, ProcessCollector
@@ -21,6 +20,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.http.identity import current_user
+from app.version import VERSION
 
 log = logging.getLogger("knitcore.access")
 request_id: ContextVar[str | None] = ContextVar("request_id", default=None)
@@ -98,9 +98,7 @@ class Metrics:
             buckets=(0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0, 60.0),
             registry=self.registry,
         )
-        Info("knitcore", "The program.", registry=self.registry).info(
-            {"version": version("knitcore")}
-        )
+        Info("knitcore", "The program.", registry=self.registry).info({"version": VERSION})
         ProcessCollector(registry=self.registry)
         self.registry.register(_Gauges(gauges))
 

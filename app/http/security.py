@@ -170,7 +170,8 @@ class Guard:
 
     def _refusal(self, scope: Scope) -> Response | None:
         headers = Headers(scope=scope)
-        host = headers.get("host", "")
+        hosts = headers.getlist("host")
+        host = hosts[0] if len(hosts) == 1 else ""
         if not self._knows(host):
             return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
         origin = headers.get("origin")

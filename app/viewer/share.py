@@ -23,6 +23,15 @@ SOLID_LEVELS = ((1_000, 33, 8), (4_000, 17, 6), (10_000, 11, 5))
 MOST_SOLID = SOLID_LEVELS[-1][0]
 
 
+PAGE_POLICY = (
+    """<meta http-equiv="Content-Security-Policy" content="default-src 'none'; """
+    "script-src 'unsafe-inline' 'wasm-unsafe-eval' data: blob:; style-src 'unsafe-inline'; "
+    "img-src data: blob:; font-src data:; connect-src data: blob:; worker-src data: blob:; "
+    """base-uri 'none'; form-action 'none'">"""
+)
+"""A page that was given away reaches no network."""
+
+
 class NoPictureError(ServiceError):
     """There can be no picture of a view now."""
 
@@ -67,7 +76,7 @@ def page_html(scenes: Iterable[FabricScene], *, dark: bool) -> str:
     """A page that shows a fabric, and plays the steps if there are several."""
     with _recorded(scenes) as serializer:
         page: str = serializer.as_html(dark_mode=dark)
-    return page
+    return page.replace("<head>", f"<head>{PAGE_POLICY}", 1)
 
 
 def recording(scenes: Iterable[FabricScene]) -> bytes:

@@ -6,6 +6,7 @@ Lengths in mm; the origin is the top left corner, y points down.
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
@@ -55,6 +56,8 @@ class Label:
     anchor: str = "start"
 
 
+_FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
 Shape = Box | Strokes | Dots | Label
 
 
@@ -77,7 +80,7 @@ def to_svg(page: Page, title: str) -> str:
         viewBox=f"0 0 {page.width:g} {page.height:g}",
         role="img",
     )
-    ET.SubElement(root, "title").text = title
+    ET.SubElement(root, "title").text = _allowed(title)
     ET.SubElement(root, "rect", width=f"{page.width:g}", height=f"{page.height:g}", fill="#ffffff")
     for shape in page.shapes:
         _svg(root, shape)
@@ -112,7 +115,12 @@ def _svg(root: ET.Element, shape: Shape) -> None:
                 fill="#222222",
             )
             text.set("font-family", "Helvetica, Arial, sans-serif")
-            text.text = shape.text
+            text.text = _allowed(shape.text)
+
+
+def _allowed(text: str) -> str:
+    """A text without the characters that XML forbids, even escaped."""
+    return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 def to_pdf(pages: Iterable[Page], title: str) -> bytes:

@@ -91,6 +91,7 @@ def load_grey(path: Path) -> Array:
     except (
         OSError,
         SyntaxError,
+        ValueError,
         Image.DecompressionBombError,
         Image.DecompressionBombWarning,
     ) as e:

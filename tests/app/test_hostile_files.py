@@ -157,6 +157,18 @@ def test_files_that_go_beyond_a_reader_s_own_limits(name: str, content: bytes) -
         READERS["import"]({"name": name, "content": content}, {})
 
 
+def test_a_photo_with_a_text_bomb_is_refused() -> None:
+    with pytest.raises(InputError, match="cannot be read as an image"):
+        READERS["bending"]({"name": "a.png", "content": _text_bomb()}, {})
+
+
+def test_a_test_whose_readings_never_change_is_refused() -> None:
+    rows = "strain_along,strain_across,force_n,width_mm\n" + "0.1,0.02,0.5,50\n" * 60
+    file = {"name": "a.csv", "content": rows.encode()}
+    with pytest.raises(InputError, match=r"is 0\.1 in every row"):
+        READERS["fit"](file, file)
+
+
 @pytest.mark.parametrize("name", ["é" * 196 + ".txt", "🧶" * 190, "a" * 200, "." + "a" * 199, "/"])
 def test_a_long_name_is_shortened(name: str) -> None:
     with stored([_request(UploadedFile, name=name, content=b"KP")]) as (path,):

@@ -15,11 +15,14 @@ import httpx2 as httpx
 import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
+from starlette.websockets import WebSocketDisconnect
 
 from app import doctor
 from app.http.observing import JsonLines, TextLines, configure_logging
+from app.http.tokens import Tokens
 from app.main import create_app
 from app.settings import Settings
+from app.version import VERSION
 from knitcore.errors import InputError
 from tests.app.service import Service
 
@@ -83,7 +86,8 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
     for number in range(3):
         client.get(f"/api/v1/designs/no-such-design-{number}")
     client.get("/nowhere/at/all")
-    families = {f.name: f for f in text_string_to_metric_families(client.get("/metrics").text)}
+    numbers = client.get("/metrics").text
+    families = {f.name: f for f in text_string_to_metric_families(numbers)}
     counted = {
         s.labels["route"]: s.value
         for s in families["knitcore_requests"].samples
@@ -95,12 +99,39 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
     for name in ("views_open", "jobs_waiting", "jobs_running", "computations_waiting"):
         assert families[f"knitcore_{name}"].samples[0].value >= 0
     assert "process_resident_memory_bytes" in families
+    assert f'knitcore_info{{version="{VERSION}"}} 1.0' in numbers
+
+
+def test_metrics_are_for_whoever_runs_the_service(tmp_path: Path) -> None:
+    settings = Settings(require_login=True, token="operator" * 4, workers=1, data_dir=tmp_path)
+    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+        user = Tokens(client.app.state.database).create("ada").token  # type: ignore[attr-defined]
+        for token, status in ((user, 403), ("operator" * 4, 200)):
+            headers = {"Authorization": f"Bearer {token}"}
+            assert client.get("/metrics", headers=headers).status_code == status
+
+
+def test_a_websocket_is_a_line_too_and_refused_users_have_no_name(
+    tmp_path: Path, lines: list[dict[str, object]]
+) -> None:
+    settings = Settings(require_login=True, workers=1, data_dir=tmp_path)
+    with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
+        with pytest.raises(WebSocketDisconnect), client.websocket_connect("/view/a-view"):
+            pass
+        client.get("/api/v1/designs")
+    assert [(line["message"], line["status"], line["user"]) for line in lines] == [
+        ("websocket", 1008, "-"),
+        ("request", 403, "-"),
+    ]
 
 
 def test_readyz_checks_database_and_disk(
     client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert client.get("/readyz").json() == {"status": "ok"}
+    ready = client.get("/readyz").json()
+    assert ready["status"] == "ok"
+    told = doctor.examine(Settings()).checks
+    assert ready["checks"] == {check.name: check.ok for check in told}
     monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=3_000_000))
     full = client.get("/readyz")
     assert (full.status_code, full.json()["title"]) == (503, "Not ready")
@@ -165,16 +196,27 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
         except httpx.TransportError:
             heard.append("the stream ended")
 
-    listener = threading.Thread(target=listen)
-    listener.start()
+    answers: list[httpx.Response] = []
+
+    def stretch() -> None:
+        answers.append(client.post("/api/v1/stretch", json=wish))
+
+    threads = [threading.Thread(target=run, daemon=True) for run in (listen, stretch)]
+    for thread in threads:
+        thread.start()
     deadline = time.monotonic() + 40
-    while not heard and time.monotonic() < deadline:
-        time.sleep(0.05)
+    metrics = ""
+    while not heard or "knitcore_computations_waiting 1.0" not in metrics:
+        assert time.monotonic() < deadline
+        metrics = client.get("/metrics").text
     code = service.stop()
-    listener.join(20)
+    for thread in threads:
+        thread.join(20)
+        assert not thread.is_alive()
     client.close()
-    assert not listener.is_alive()
     assert code == 0
+    (answer,) = answers
+    assert (answer.status_code, answer.json()["detail"]) == (503, "The service is stopping.")
     with sqlite3.connect(tmp_path / "data" / "knitcore.sqlite3") as connection:
         assert connection.execute("SELECT state FROM jobs").fetchall() == [("waiting",)]
     connection.close()

@@ -42,6 +42,7 @@ def test_a_page_needs_nothing_but_itself(client: TestClient) -> None:
     assert 'filename="fabric.html"' in answer.headers["content-disposition"]
     assert "<html" in answer.text
     assert 'src="http' not in answer.text
+    assert "default-src 'none'" in answer.text.split("<script", 1)[0]
 
 
 def test_an_animation_holds_every_step_once(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 from app.compute import compute as compute_module
 from app.compute.compute import Compute
 from app.compute.places import AbandonedError, MemoryLimitError, TimeLimitError, WorkerDiedError
-from app.compute.processes import ProcessPlace, processes
+from app.compute.processes import SCRATCH, ProcessPlace, processes
 from app.http.problems import UnavailableError
 from knitcore import InputError
 from tests.app import jobs
@@ -77,8 +78,25 @@ def test_a_job_stays_within_its_memory() -> None:
         compute.close()
 
 
+def test_what_a_lost_worker_was_reading_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    killed = tmp_path / f"{SCRATCH}{2**22 + 1}-x"  # of a process that cannot be
+    killed.mkdir()
+    (place,) = processes(1)
+    (scratch,) = tmp_path.iterdir()
+    upload = scratch / "knitcore-1"
+    upload.mkdir()
+    (upload / "secret.csv").touch()
+    place.replace()
+    assert list(scratch.iterdir()) == []
+    place.close()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_worker_that_dies_loses_only_its_own_job(tmp_path: Path) -> None:
-    compute = Compute(processes(2), timeout_s=30.0)
+    compute = Compute(processes(2), timeout_s=120.0)
     mark = tmp_path / "mark"
 
     async def both() -> str:

@@ -71,8 +71,9 @@ def test_beyond_loopback_a_token_is_demanded() -> None:
 
 
 def test_a_short_token_is_refused() -> None:
-    with pytest.raises(InputError, match="too short"):
-        create_app(Settings(token="short"))
+    for token in ("short", " " * 16):
+        with pytest.raises(InputError, match="too short"):
+            create_app(Settings(token=token))
 
 
 def test_without_the_token_nothing_is_served(guarded: TestClient) -> None:
@@ -300,6 +301,11 @@ def test_no_view_is_opened_if_the_port_cannot_be_closed(monkeypatch: pytest.Monk
     monkeypatch.setitem(vars(infra), "websockets", websockets)
     with pytest.raises(RuntimeError, match="could not be closed"):
         private_server()
+
+
+def test_two_hosts_are_refused(client: TestClient) -> None:
+    twice = [("Host", "127.0.0.1"), ("Host", "evil.example")]
+    assert client.get("/healthz", headers=twice).status_code == 400
 
 
 def test_unknown_hosts_are_refused(client: TestClient) -> None:

@@ -20,7 +20,7 @@ from knitcore.formats import report
 from knitcore.formats.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.chart_key import HEAVY, ChartStyle, RegionMark, tinted
-from knitcore.formats.drawing import Box, Label, Page
+from knitcore.formats.drawing import Box, Label, Page, to_svg
 from knitcore.formats.export import (
     COLOURLESS_KINDS,
     RECTANGULAR_KINDS,
@@ -329,3 +329,10 @@ def test_a_report_tells_its_numbers_with_their_source(monkeypatch: pytest.Monkey
     assert "Shear modulus 0.01 N/mm: an assumption" in words
     inside = [s for s in drawn[0].shapes if isinstance(s, Box)]
     assert all(0 <= b.x <= 210 and b.y + b.height <= 297 for b in inside)
+
+
+def test_a_drawing_is_xml_whatever_it_is_called() -> None:
+    page = Page(10.0, 10.0, (Label(1.0, 1.0, "a\ufffe\x0b\ud800🧶", 3.0),))
+    drawn = ET.fromstring(to_svg(page, "\x00")).find("{*}text")  # noqa: S314 - our own
+    assert drawn is not None
+    assert drawn.text == "a\ufffd\ufffd\ufffd🧶"
