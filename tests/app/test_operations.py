@@ -121,7 +121,7 @@ def test_a_websocket_is_a_line_too_and_refused_users_have_no_name(
         client.get("/api/v1/designs")
     assert [(line["message"], line["status"], line["user"]) for line in lines] == [
         ("websocket", 1008, "-"),
-        ("request", 403, "-"),
+        ("request", 401, "-"),
     ]
 
 

@@ -389,7 +389,7 @@ def test_an_unexpected_error_carries_the_headers_and_no_secret_to_the_log(
 
     with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
         answer = client.get("/api/v1/shared/a-secret-link/broken", headers={"X-Request-ID": "r-7"})
-    assert (answer.status_code, answer.json()["type"]) == (500, "internal")
+    assert (answer.status_code, answer.json()["type"]) == (500, "/problems/internal")
     assert answer.headers["X-Request-ID"] == "r-7"
     assert answer.headers["Content-Security-Policy"] == PAGE_POLICY
     assert "ZeroDivisionError" in caplog.text
