@@ -22,6 +22,7 @@ from knitcore.materials import Laws, material
 from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty
 from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.swatch.measured_strip import MeasuredStrip
+from knitcore.swatch.strip_errors import LOG_WIDTH_READING
 from knitcore.swatch.strip_fit import fit_strips
 
 STRESSES = (0.05, 0.1, 0.2)
@@ -41,8 +42,13 @@ def strips(folder: Path, fabric: Fabric) -> list[MeasuredStrip]:
     return found
 
 
-def compared(law: ConstitutiveLaw, spread: LawUncertainty, strip: MeasuredStrip) -> Row:
-    """Simulated over measured force, waist less the measured one, whether the force is inside."""
+def compared(
+    law: ConstitutiveLaw, spread: LawUncertainty, strip: MeasuredStrip, *, same_sample: bool = False
+) -> Row:
+    """Simulated over measured force, waist less the measured one, whether the force is inside.
+
+    The reading of its width is no error between pulls of the same sample.
+    """
     stress, waist = strip.means
     known = np.isfinite(stress)
     reached = np.array(STRESSES) <= 1.02 * stress[known].max()
@@ -51,6 +57,8 @@ def compared(law: ConstitutiveLaw, spread: LawUncertainty, strip: MeasuredStrip)
     force, narrowing = strip.simulate(law, at)
     ratio = np.where(reached, force / STRESSES, np.nan)
     sd = spread.log_stress(strip.direction, STRESSES)
+    if same_sample:
+        sd = np.sqrt(sd**2 - LOG_WIDTH_READING**2)
     return (
         ratio,
         narrowing - np.interp(at, strip.strain[known], waist[known]),
@@ -109,9 +117,11 @@ def of_library(folder: Path, laws: Laws) -> dict[tuple[Fabric, Direction], Row]:
     }
 
 
-def left_out(folder: Path) -> list[Row]:
-    """Every pull predicted by a law fitted to the other pulls."""
-    rows = []
+def left_out(folder: Path) -> tuple[list[Row], list[Row]]:
+    """Every pull predicted by a law fitted to the other pulls; the intervals are those for another
+    sample, and those for another pull of the same sample.
+    """
+    rows: tuple[list[Row], list[Row]] = ([], [])
     for fabric in Fabric:
         both = strips(folder, fabric)
         for index in range(max(strip.pulls for strip in both)):
@@ -124,7 +134,10 @@ def left_out(folder: Path) -> list[Row]:
                         stress_n_per_mm=strip.stress_n_per_mm[index : index + 1],
                         waist=strip.waist[index : index + 1],
                     )
-                    rows.append(compared(fit.law, fit.uncertainty, alone))
+                    for same, found in enumerate(rows):
+                        found.append(
+                            compared(fit.law, fit.uncertainty, alone, same_sample=bool(same))
+                        )
     return rows
 
 
@@ -138,7 +151,10 @@ def main() -> None:
             print(f"  {fabric:12}{direction:8}", *found)
         print(" ", Summary.of(list(rows.values())))
     if "--left-out" in sys.argv:
-        print("pulls left out one at a time:", Summary.of(left_out(folder)))
+        for name, found in zip(
+            ("of another sample", "of this sample"), left_out(folder), strict=True
+        ):
+            print(f"pulls left out one at a time, intervals {name}:", Summary.of(found))
 
 
 if __name__ == "__main__":

@@ -1718,6 +1718,8 @@ export interface RSRequest {
 export interface RSResult {
   material: string;
   fabrics: Partial<Record<Fabric, RSFabricResult>>;
+  /** What the intervals rest on. */
+  interval_source: string;
 }
 
 /** The connecting segments of one direction. */
@@ -1734,6 +1736,8 @@ export interface RSSegment {
   delta: number;
   rigidity_n_per_mm: number;
   modulus_n_per_mm: number;
+  /** 90 % interval for the knitted fabric. */
+  modulus_interval_n_per_mm: [number, number];
   /** The paper's value for this modulus. */
   published_n_per_mm: number | null;
 }
@@ -1800,6 +1804,11 @@ export interface RelaxResult {
   repeat_columns: number;
   cell_course_mm: number;
   cell_wale_mm: number;
+  /** 90 % interval for knitted cloth; null for a width that was held. */
+  cell_course_interval_mm: [number, number] | null;
+  cell_wale_interval_mm: [number, number] | null;
+  /** What the intervals rest on. */
+  interval_source: string;
   energy_n_mm: number;
   bending_share: number;
   contact_share: number;
@@ -2146,6 +2155,11 @@ export interface SweepResult {
   direction: Direction;
   branch: Branch;
   strain: number[];
+  /** 90 % interval of the strain of knitted cloth at each stress. */
+  strain_low: number[];
+  strain_high: number[];
+  /** What the interval rests on. */
+  interval_source: string;
   transverse_strain: number[];
   stress_n_per_mm: number[];
   energy_n_mm: number[];

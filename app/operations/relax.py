@@ -7,11 +7,16 @@ from typing import Literal
 from pydantic import Field
 
 from app.cli.options import loop_lengths
-from app.models.base import Known, ResultModel
+from app.models.base import Ends, Known, ResultModel
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
+from knitcore.materials.uncertainty import (
+    YARN_LEVEL_ERRORS,
+    YARN_LEVEL_SIZE_LOG_SD,
+    log_interval,
+)
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlibrary.yarns import ChartYarn
@@ -49,6 +54,11 @@ class RelaxResult(ResultModel):
     repeat_columns: int
     cell_course_mm: float
     cell_wale_mm: float
+    cell_course_interval_mm: Ends | None = Field(
+        description="90 % interval for knitted cloth; null for a width that was held."
+    )
+    cell_wale_interval_mm: Ends | None
+    interval_source: str = Field(description="What the intervals rest on.")
     energy_n_mm: float
     bending_share: float
     contact_share: float
@@ -83,8 +93,15 @@ def _relaxed(
 ) -> RelaxResult:
     sizes = request.cell_course_mm, request.cell_wale_mm
     cell = relaxed_cell(repeat, used, request, context, sizes)
+    free = [
+        log_interval(size, YARN_LEVEL_SIZE_LOG_SD) if held is None else None
+        for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)
+    ]
     return RelaxResult.of(
         cell,
+        cell_course_interval_mm=free[0],
+        cell_wale_interval_mm=free[1],
+        interval_source=YARN_LEVEL_ERRORS,
         repeat_rows=cell.chart.rows,
         repeat_columns=cell.chart.columns,
         force_course_n=cell.force_n[0],
@@ -96,11 +113,16 @@ def _relaxed(
     )
 
 
+def _between(ends: tuple[float, float] | None) -> str:
+    return "" if ends is None else f" ({ends[0]:.2f} to {ends[1]:.2f})"
+
+
 def _text(r: RelaxResult) -> str:
     return "\n".join(
         [
             f"repeat          {r.repeat_columns} columns x {r.repeat_rows} rows, {r.branch} branch",
-            f"stitch          {r.cell_course_mm:.3f} mm wide, {r.cell_wale_mm:.3f} mm high",
+            f"stitch          {r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
+            f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}",
             f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
             f"bending, {100 * r.contact_share:.1f} % contact",
             f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",

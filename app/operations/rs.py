@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.models.base import RequestModel, ResultModel
+from app.models.base import Ends, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import Moduli
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction, Fabric
+from knitcore.materials.uncertainty import RS_ERRORS, RS_LOG_SD, log_interval
 from knitcore.mechanics.elastica import Parity
 from knitcore.mechanics.reduced_symmetry import rs_fabrics
 
@@ -31,6 +32,7 @@ class RSSegment(ResultModel):
     delta: float
     rigidity_n_per_mm: float
     modulus_n_per_mm: float
+    modulus_interval_n_per_mm: Ends = Field(description="90 % interval for the knitted fabric.")
     published_n_per_mm: float | None = Field(description="The paper's value for this modulus.")
 
 
@@ -45,6 +47,7 @@ class RSResult(ResultModel):
 
     material: str
     fabrics: dict[Fabric, RSFabricResult]
+    interval_source: str = Field(description="What the intervals rest on.")
 
 
 def rs(request: RSRequest, context: Context) -> RSResult:
@@ -54,9 +57,17 @@ def rs(request: RSRequest, context: Context) -> RSResult:
     for fabric, found in rs_fabrics(request.material).items():
         segments = {d: found.segment(d) for d in Direction}
         fabrics[fabric] = RSFabricResult.of(
-            found, segments={d: RSSegment.of(s, s.geometry) for d, s in segments.items()}
+            found,
+            segments={
+                d: RSSegment.of(
+                    s,
+                    s.geometry,
+                    modulus_interval_n_per_mm=log_interval(s.modulus_n_per_mm, RS_LOG_SD),
+                )
+                for d, s in segments.items()
+            },
         )
-    return RSResult(material=request.material, fabrics=fabrics)
+    return RSResult(material=request.material, fabrics=fabrics, interval_source=RS_ERRORS)
 
 
 def _text(result: RSResult) -> str:
@@ -70,7 +81,8 @@ def _text(result: RSResult) -> str:
                 f"{s.parity}: lambda {s.separation_mm:.3f} mm, L {s.length_mm:.3f} mm, "
                 f"v {s.slope:.3f}{angle}"
             )
-    return "\n".join(lines)
+    factor = log_interval(1.0, RS_LOG_SD).high
+    return "\n".join([*lines, f"Y: times or over {factor:.1f} (90 %). {result.interval_source}"])
 
 
 OPERATION = Operation(

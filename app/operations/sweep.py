@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from pydantic import Field
@@ -15,6 +16,11 @@ from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError
 from knitcore.fabric import Direction
+from knitcore.materials.uncertainty import (
+    YARN_LEVEL_ERRORS,
+    YARN_LEVEL_STRAIN_LOG_SD,
+    Z_SCORE,
+)
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.sweep import sweep as swept
@@ -66,6 +72,11 @@ class SweepResult(ResultModel):
     direction: Direction
     branch: Branch
     strain: Floats
+    strain_low: Floats = Field(
+        description="90 % interval of the strain of knitted cloth at each stress."
+    )
+    strain_high: Floats
+    interval_source: str = Field(description="What the interval rests on.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
     energy_n_mm: Floats
@@ -122,9 +133,13 @@ def _result(
         if context.cancelled():
             raise
         notes.append(f"No law could be fitted: {error}")
+    factor = math.exp(Z_SCORE * YARN_LEVEL_STRAIN_LOG_SD)
     return SweepResult.of(
         main,
         zero,
+        strain_low=main.strain / factor,
+        strain_high=main.strain * factor,
+        interval_source=YARN_LEVEL_ERRORS,
         branch=request.branch,
         law=None if law is None else SweptLaw.of(law, law.law),
         converged=main.converged and len(main.strain) == request.points,
@@ -154,6 +169,10 @@ def _text(r: SweepResult) -> str:
             f"{r.law.modulus_course_n_per_mm:.4f}, wale {r.law.modulus_wale_n_per_mm:.4f} N/mm, "
             f"Poisson yx {r.law.poisson_yx:.3f}, xy {r.law.poisson_xy:.3f}"
         )
+    factor = math.exp(Z_SCORE * YARN_LEVEL_STRAIN_LOG_SD)
+    lines.append(
+        f"strains of knitted cloth: times or over {factor:.1f} (90 %). {r.interval_source}"
+    )
     return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
 
 

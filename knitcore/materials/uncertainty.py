@@ -32,6 +32,23 @@ fabrics are off by a factor of 2.1 (rms). Scaling a law to the measured pure fab
 error that its phases have in common; half of the rest, in logarithms, is kept."""
 
 
+YARN_LEVEL_SIZE_LOG_SD = 0.16
+"""Of a relaxed width or height: rms of yarn-level over knitted sizes, the four pure fabrics of
+acrylic and cotton (``benchmarks/against_knitted.py``)."""
+
+YARN_LEVEL_STRAIN_LOG_SD = 0.41
+"""Of the strain at 0.05 to 0.3 N/mm, from the same comparison."""
+
+YARN_LEVEL_ERRORS = (
+    "The yarn level against knitted fabric: the four pure fabrics of acrylic and cotton. Mixed "
+    "charts, which fold too far without friction, may be further off."
+)
+
+RS_LOG_SD = 0.72
+"""Of a modulus of the reduced-symmetry model, against the same measured fabrics."""
+
+RS_ERRORS = "The model against the measured moduli of the pure fabrics of acrylic and cotton."
+
 QUIET_STRESS_N_PER_MM = 0.03
 """Stress below which a stretch test tells more about slack than about the curve."""
 

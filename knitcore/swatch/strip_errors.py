@@ -104,8 +104,9 @@ class LinearFit:
             loaded = stress > QUIET_STRESS_N_PER_MM
             loaded = loaded if loaded.any() else np.ones(LEVELS, dtype=bool)
             relative = (force_error * force_noise(stress) / stress)[:, loaded]
-            total = np.nansum(np.nanmean(relative**2, axis=1)) + TYPICAL_LOG_ERROR**2
-            log_stress = math.hypot(math.sqrt(total / (strip.pulls + 1)), LOG_WIDTH_READING)
+            own = np.nansum(np.nanmean(relative**2, axis=1)) * _from_all(strip.pulls)
+            pull = (own + TYPICAL_LOG_ERROR**2) / (strip.pulls + 1)
+            log_stress = math.sqrt(pull + LOG_WIDTH_READING**2)
             lock_up = self.log_lock_up[test]
             curves.append(
                 CurveUncertainty(log_stress, math.sqrt(self.covariance[lock_up, lock_up]))
@@ -161,3 +162,8 @@ class LinearFit:
     def _rows(test: int) -> slice:
         """Of a test's forces and waists among the residuals."""
         return slice(2 * LEVELS * test, 2 * LEVELS * (test + 1))
+
+
+def _from_all(pulls: int) -> float:
+    """Squared error of a pull predicted from so many others, over that from one less."""
+    return (1 + 1 / pulls) / (1 + 1 / (pulls - 1)) if pulls > 1 else 1.0
