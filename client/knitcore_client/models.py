@@ -2203,6 +2203,8 @@ class RSResult(BaseModel):
 
     material: str
     fabrics: dict[Fabric, RSFabricResult]
+    interval_source: str
+    """What the intervals rest on."""
 
 
 class RSSegment(BaseModel):
@@ -2220,6 +2222,8 @@ class RSSegment(BaseModel):
     delta: float
     rigidity_n_per_mm: float
     modulus_n_per_mm: float
+    modulus_interval_n_per_mm: tuple[float, float]
+    """90 % interval for the knitted fabric."""
     published_n_per_mm: float | None
     """The paper's value for this modulus."""
 
@@ -2259,6 +2263,11 @@ class RelaxResult(BaseModel):
     repeat_columns: int
     cell_course_mm: float
     cell_wale_mm: float
+    cell_course_interval_mm: tuple[float, float] | None
+    """90 % interval for knitted cloth; null for a width that was held."""
+    cell_wale_interval_mm: tuple[float, float] | None
+    interval_source: str
+    """What the intervals rest on."""
     energy_n_mm: float
     bending_share: float
     contact_share: float
@@ -2453,6 +2462,11 @@ class SweepResult(BaseModel):
     direction: Direction
     branch: Branch
     strain: list[float]
+    strain_low: list[float]
+    """90 % interval of the strain of knitted cloth at each stress."""
+    strain_high: list[float]
+    interval_source: str
+    """What the interval rests on."""
     transverse_strain: list[float]
     stress_n_per_mm: list[float]
     energy_n_mm: list[float]
