@@ -1,7 +1,7 @@
 """Call every operation of the service once and keep the answers as API examples (`make examples`).
 
-The requests are in ``app/examples/requests.json``; files that requests hold are those of the tests,
-because real ones are too long for an example.
+The requests are those of the schema; files that requests hold are those of the tests, because real
+ones are too long for an example.
 """
 
 from __future__ import annotations
@@ -63,9 +63,16 @@ def in_order(found: list[str]) -> list[str]:
     return [*FIRST, *between, *LAST]
 
 
+def _request(client: TestClient, name: str) -> Any:
+    """The example of a request, if it has a body."""
+    method, path = name.split()
+    operation = client.app.openapi()["paths"][path][method.lower()]  # type: ignore[attr-defined]
+    content = operation.get("requestBody", {}).get("content", {})
+    return content.get("application/json", {}).get("example")
+
+
 def ask_everything(client: TestClient) -> dict[str, Any]:
     """The answer of every operation that answers with JSON."""
-    requests = json.loads((EXAMPLES / "requests.json").read_text())
     with tempfile.TemporaryDirectory() as folder:
         files = job_requests(Path(folder))
     place: dict[str, Any] = {"material": "acrylic", "identifier": "acrylic", "number": 1}
@@ -76,7 +83,7 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
         method, path = name.split()
         if path.endswith(ENDLESS):
             continue
-        body = files.get(FILES.get(path.rsplit("/", 1)[-1], ""), requests.get(name))
+        body = files.get(FILES.get(path.rsplit("/", 1)[-1], ""), _request(client, name))
         if path.startswith("/api/v1/jobs/") and method == "GET":
             while client.get(f"/api/v1/jobs/{place['job']}").json()["state"] in OPEN:
                 time.sleep(0.1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from inspect import Parameter, Signature
 from typing import Annotated, Any
 
@@ -62,6 +62,12 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     return _typed(get, request=Request, **places)
 
 
+def _shown(example: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """A request as the schema shows it."""
+    content = {"application/json": {"example": example}}
+    return None if example is None else {"requestBody": {"content": content}}
+
+
 def _typed(function: Callable[..., Any], **parameters: Any) -> Callable[..., Any]:
     """With the signature that FastAPI reads."""
     keyword = Parameter.KEYWORD_ONLY
@@ -87,7 +93,7 @@ def _router() -> APIRouter:
             description=operation.description,
             response_model=operation.result,
             responses=(MISSING if in_path else {}) | (TAGGED if is_tagged else {}),
-            openapi_extra=ASKED_WITH_TAG if is_tagged else None,
+            openapi_extra=ASKED_WITH_TAG if is_tagged else _shown(operation.example),
         )
     return router
 

@@ -144,6 +144,7 @@ OPERATION = Operation(
     atlas,
     tag="design",
     summary="Predicted constants of all small repeats of a material",
+    example={"material": "acrylic"},
     heavy=True,
     job=True,
     command=Command(

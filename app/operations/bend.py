@@ -207,6 +207,7 @@ OPERATION = Operation(
     bend,
     tag="yarn level",
     summary="Bending, curl and shear of a repeat at the yarn level",
+    example={"chart": "K", "material": "acrylic"},
     heavy=True,
     job=True,
     command=Command(

@@ -82,6 +82,11 @@ OPERATION = Operation(
     path="/measure/bending",
     tag="measure",
     summary="Bending modulus from photos of hanging yarn",
+    example={
+        "images": [{"name": "photo.png", "content": "iVBORw0KGgo="}],
+        "linear_density_g_per_m": 0.5,
+        "length_mm": 120.0,
+    },
     heavy=True,
     job=True,
     command=Command(

@@ -138,6 +138,12 @@ OPERATION = Operation(
     calibrate,
     tag="displacement fields",
     summary="Shear modulus and couplings from a displacement field",
+    example={
+        "field": {"name": "field.npz", "content": "UEsDBA=="},
+        "direction": "wale",
+        "material": "acrylic",
+        "fabric": "garter",
+    },
     heavy=True,
     job=True,
     command=Command(

@@ -376,6 +376,7 @@ OPERATION = Operation(
     path=None,
     tag="yarn level",
     summary="The pure fabrics of a yarn at many stitch settings",
+    example={"material": "acrylic", "fabrics": ["garter"], "tensions": [1.0]},
     heavy=True,
     job=True,
     command=_command,

@@ -86,6 +86,12 @@ OPERATION = Operation(
     compare,
     tag="displacement fields",
     summary="A law compared with a measured displacement field",
+    example={
+        "field": {"name": "field.npz", "content": "UEsDBA=="},
+        "direction": "wale",
+        "material": "acrylic",
+        "fabric": "garter",
+    },
     heavy=True,
     job=True,
     command=Command(

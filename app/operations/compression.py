@@ -125,6 +125,7 @@ OPERATION = Operation(
     path="/measure/compression",
     tag="measure",
     summary="Contact constants from compression tests",
+    example={"file": {"name": "my-yarn-1.csv", "content": "ZGVwdGgsZm9yY2UK"}, "diameter_mm": 2.0},
     heavy=True,
     job=True,
     command=Command(

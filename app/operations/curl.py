@@ -141,6 +141,7 @@ OPERATION = Operation(
     curl,
     tag="mechanics",
     summary="How a piece curls and folds",
+    example={"chart": {"fabric": "stockinette", "columns": 6, "rows": 4}, "material": "acrylic"},
     heavy=True,
     job=True,
     command=Command(

@@ -85,6 +85,12 @@ OPERATION = Operation(
     curve,
     tag="mechanics",
     summary="Stress-strain curve of a chart",
+    example={
+        "chart": "K\nP",
+        "material": "acrylic",
+        "direction": "wale",
+        "stress_n_per_mm": [0.0, 0.05, 0.1],
+    },
     heavy=True,
     job=True,
     command=Command(

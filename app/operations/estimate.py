@@ -236,5 +236,6 @@ OPERATION = Operation(
     estimate,
     tag="materials",
     summary="The four fabrics of a yarn that is not in the library",
+    example={"bending_modulus_n_mm2": 0.04, "loop_length_mm": 14.0},
     command=_command,
 )

@@ -132,6 +132,7 @@ OPERATION = Operation(
     export,
     tag="files",
     summary="A chart as a file",
+    example={"chart": "KP\nPK", "to": "text"},
     heavy=True,
     command=Command(
         _text,

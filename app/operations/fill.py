@@ -209,6 +209,11 @@ OPERATION = Operation(
     fill,
     tag="design",
     summary="A chart for a map of wanted stiffness",
+    example={
+        "material": "acrylic",
+        "modulus_course_n_per_mm": [[0.2, 0.2, 0.2, 0.2], [0.2, 0.2, 0.2, 0.2]],
+        "modulus_wale_n_per_mm": [[None, None, None, None], [None, None, None, None]],
+    },
     heavy=True,
     job=True,
     command=Command(

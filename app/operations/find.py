@@ -270,6 +270,11 @@ OPERATION = Operation(
     find,
     tag="design",
     summary="Fabrics with wanted properties",
+    example={
+        "materials": ["acrylic"],
+        "targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2, "tolerance": 0.1}],
+        "count": 1,
+    },
     heavy=True,
     job=True,
     command=Command(

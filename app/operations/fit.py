@@ -171,6 +171,10 @@ OPERATION = Operation(
     fit,
     tag="measure",
     summary="A law from two stretch tests",
+    example={
+        "test_course": {"name": "course.csv", "content": "c3RyYWluLGZvcmNlCg=="},
+        "test_wale": {"name": "wale.csv", "content": "c3RyYWluLGZvcmNlCg=="},
+    },
     heavy=True,
     job=True,
     command=Command(

@@ -365,6 +365,10 @@ OPERATION = Operation(
     garment,
     tag="garments",
     summary="A garment from measurements",
+    example={
+        "garment": {"template": "wrist-brace", "wrist_mm": 165.0, "length_mm": 80.0},
+        "material": "acrylic",
+    },
     command=Command(
         _text,
         help="Plan a garment from a TEMPLATE and measurements.",

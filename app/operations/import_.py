@@ -79,6 +79,7 @@ OPERATION = Operation(
     import_,
     tag="files",
     summary="The chart in a file",
+    example={"file": {"name": "rib.txt", "content": "S1BLUApLUEtQ"}},
     heavy=True,
     command=Command(
         lambda r: r.chart,

@@ -41,4 +41,5 @@ OPERATION = Operation(
     path="/charts/parse",
     tag="charts",
     summary="Read a chart text and find its repeat",
+    example={"text": "KPKP\nPKPK"},
 )

@@ -182,6 +182,23 @@ OPERATION = Operation(
     piece,
     tag="pieces",
     summary="Load a piece of any outline at its edges",
+    example={
+        "chart": "K",
+        "material": "acrylic",
+        "steps": 2,
+        "mesh_mm": 10,
+        "piece": {
+            "outline": [[0, 0], [50, 0], [50, 80], [25, 100], [0, 80]],
+            "holes": [[[20, 30], [30, 30], [25, 45]]],
+            "grain_deg": 45,
+            "edges": {"hem": [1], "top": [3, 4], "hole": [6, 7, 8]},
+            "conditions": [
+                {"kind": "held", "edge": "hem"},
+                {"kind": "pulled", "edge": "top", "y_n": 1.0},
+                {"kind": "sewn", "edge": "hole", "stiffness_n": 10.0},
+            ],
+        },
+    },
     heavy=True,
     job=True,
     command=Command(

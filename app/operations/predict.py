@@ -147,6 +147,7 @@ OPERATION = Operation(
     predict,
     tag="mechanics",
     summary="Moduli and extensibility of a chart",
+    example={"chart": "KKPP", "material": "acrylic"},
     command=Command(
         _text,
         help="Moduli, Poisson's ratios and extensibility of CHART.",

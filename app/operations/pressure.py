@@ -148,6 +148,13 @@ OPERATION = Operation(
     pressure,
     tag="mechanics",
     summary="Pressure of a knitted tube on a limb",
+    example={
+        "material": "acrylic",
+        "fabric": "rib",
+        "direction": "course",
+        "rest_mm": 150.0,
+        "worn_mm": 180.0,
+    },
     command=Command(
         _text,
         help="Pressure of a knitted tube on a limb, as an interval; never a medical class.",

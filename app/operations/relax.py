@@ -138,6 +138,7 @@ OPERATION = Operation(
     relax,
     tag="yarn level",
     summary="Relax a repeat at the yarn level",
+    example={"chart": "K\nP", "material": "acrylic"},
     heavy=True,
     job=True,
     command=Command(

@@ -145,6 +145,12 @@ OPERATION = Operation(
     shape,
     tag="design",
     summary="A chart that takes a wanted outline when it is stretched",
+    example={
+        "material": "acrylic",
+        "strain": 0.2,
+        "across": 6,
+        "width": [0.9, 0.9, 0.9, 0.9, 0.9, 0.9, 0.9, 0.9],
+    },
     heavy=True,
     job=True,
     command=Command(

@@ -374,6 +374,13 @@ OPERATION = Operation(
     stretch,
     tag="stretch",
     summary="Pull a chart between two clamps",
+    example={
+        "chart": {"fabric": "garter", "columns": 4, "rows": 4},
+        "material": "acrylic",
+        "direction": "wale",
+        "strain": 0.3,
+        "steps": 3,
+    },
     heavy=True,
     job=True,
     command=Command(

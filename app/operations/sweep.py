@@ -180,6 +180,13 @@ OPERATION = Operation(
     sweep,
     tag="yarn level",
     summary="Stretch a repeat at the yarn level",
+    example={
+        "chart": "K\nP",
+        "material": "acrylic",
+        "direction": "wale",
+        "max_strain": 0.1,
+        "points": 3,
+    },
     heavy=True,
     job=True,
     command=Command(

@@ -83,6 +83,7 @@ OPERATION = Operation(
     trellis,
     tag="pieces",
     summary="Shear a square in a hinged frame",
+    example={"chart": "K", "material": "acrylic", "angle_deg": 20, "steps": 2},
     heavy=True,
     job=True,
     command=Command(

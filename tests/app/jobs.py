@@ -15,6 +15,7 @@ from app.compute.answers import Answers
 from app.compute.compute import Compute
 from app.jobs.kinds import KINDS
 from app.operations.context import Context
+from app.operations.perform import perform
 from app.operations.registry import Operation
 from app.results.recent import RecentResults
 from knitcore import InputError
@@ -114,16 +115,27 @@ def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[...
     return os.getpid()
 
 
-def killed_in_the_middle(kind: str, request: BaseModel, context: Context) -> Any:
-    """The operation of a kind, whose process is killed while it works.
+def killed_in_the_middle(
+    kind: str,
+    run: Callable[..., Any],
+    request: BaseModel,
+    data_dir: Path,
+    *,
+    cancelled: Callable[[], bool],
+    progress: Callable[[float, float], None],
+) -> Any:
+    """As ``perform``, but the process is killed while it works on an operation of a kind.
 
     It dies when the operation first looks whether it was cancelled; one that is too short to look
     dies before it can answer.
     """
 
+    if run is not KINDS[kind].run:
+        return perform(run, request, data_dir, cancelled=cancelled, progress=progress)
+
     def kill(*_: Any) -> bool:
         os.kill(os.getpid(), signal.SIGKILL)
         return False
 
-    KINDS[kind].run(request, Context(context.data_dir, cancelled=kill))
+    run(request, Context(data_dir, cancelled=kill))
     return kill()

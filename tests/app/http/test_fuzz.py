@@ -20,6 +20,7 @@ import httpx2 as httpx
 import pytest
 
 from app.http.schema import EXAMPLES
+from app.operations.registry import operations
 from tests.app.job_requests import job_requests
 from tests.app.service import Service
 
@@ -154,6 +155,8 @@ def _simple(rng: random.Random, schema: Schema, kind: str | None) -> Any:
 def _bodies(folder: Path) -> dict[str, Any]:
     """A valid body of every operation that takes one."""
     bodies: dict[str, Any] = json.loads((EXAMPLES / "requests.json").read_text())
+    made = [operation for operation in operations().values() if operation.example]
+    bodies |= {f"POST /api/v1{o.address}": dict(o.example or {}) for o in made}
     files = job_requests(folder)
     for name in ("fit", "compare", "calibrate", "measure/bending", "measure/compression"):
         bodies[f"POST /api/v1/{name}"] = files[name.rpartition("/")[2]]
