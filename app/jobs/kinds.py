@@ -10,6 +10,7 @@ from pydantic import Field, create_model
 
 from app.models.base import RequestModel, ResultModel
 from app.operations.registry import Operation, operations
+from knitcore.extensions import Group, extensions
 from knitcore.yarnlibrary import fingerprint
 
 KINDS: dict[str, Operation[Any, Any]] = {
@@ -45,9 +46,11 @@ else:
 
 
 def content_key(kind: str, request: str) -> str:
-    """A key of everything that determines a result: the request, and the operation's code and data.
+    """A key of everything that determines a result: the request, the operation's code and data, and
+    the versions of packages that bring yarns.
 
     The first of a kind takes half a second.
     """
-    module = KINDS[kind].run.__module__
-    return fingerprint.content_key({"kind": kind, "request": request}, (module,))
+    packages = [extension.package for extension in extensions(Group.MATERIALS)]
+    content = {"kind": kind, "request": request, "packages": packages}
+    return fingerprint.content_key(content, (KINDS[kind].run.__module__,))

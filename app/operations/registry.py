@@ -2,8 +2,8 @@
 
 A module holds one ``OPERATION``. Routes (:mod:`app.api.operations`), commands
 (:mod:`app.cli.commands`), jobs (:mod:`app.jobs.kinds`), the client's methods
-(``scripts/client_code.py``) and the page's types (``scripts/page_types.py``) are made from it, so a new
-operation is one file here and its test.
+(``scripts/client_code.py``) and the page's types (``scripts/page_types.py``) are made from it, so
+a new operation is one file here and its test.
 """
 
 from __future__ import annotations

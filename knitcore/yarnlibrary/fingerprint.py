@@ -26,11 +26,19 @@ _FILE_NAME = re.compile(r"[\w-]+\.\w+")
 def code_version(*modules: str) -> str:
     """Digest of the code of modules, of their imports from these packages, and of their data.
 
+    Raises
+    ------
+    ModuleNotFoundError
+        If there is no source of a module.
+
     Examples
     --------
     >>> len(code_version("knitcore.chart"))
     16
     """
+    for name in modules:
+        if _file(name) is None:
+            raise ModuleNotFoundError(f"there is no source of {name}", name=name)
     digest = hashlib.sha256()
     data: set[Path] = set()
     for name, tree in sorted(reached(modules).items()):

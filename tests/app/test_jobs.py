@@ -21,16 +21,18 @@ from app.compute.processes import processes
 from app.http.problems import NotFoundError
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
-from app.jobs.kinds import KINDS
+from app.jobs.kinds import KINDS, content_key
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.main import create_app
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate
+from knitcore.extensions import Group
 from knitcore.yarnlibrary import fingerprint
 from tests.app.jobs import WORK, Wish, answers
 from tests.app.service import Service
+from tests.extension_package import install
 
 JOBS = "/api/v1/jobs"
 GARTER = {"fabric": "garter", "columns": 9, "rows": 6}
@@ -178,6 +180,14 @@ def test_a_result_of_other_code_is_computed_again(
         assert (await _ended(runner, again.id)).state is JobState.DONE
 
     asyncio.run(scenario())
+
+
+def test_a_result_of_other_yarns_is_computed_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    before = content_key("work", "{}")
+    install(monkeypatch, tmp_path, "yarns", "1.0", {Group.MATERIALS: {"yarns": "yarns:all"}})
+    assert content_key("work", "{}") != before
 
 
 def test_progress_and_cancel(database: Database, compute: Compute) -> None:

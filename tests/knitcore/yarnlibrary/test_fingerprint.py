@@ -47,6 +47,11 @@ def test_what_is_imported_and_what_is_named_counts(package) -> None:
     assert changes(package, "data/yarns.csv", "2")
 
 
+def test_a_module_without_source_is_refused(package) -> None:
+    with pytest.raises(ModuleNotFoundError, match="source of cloth"):
+        code_version("cloth.gone")
+
+
 def test_what_is_neither_imported_nor_named_does_not_count(package) -> None:
     assert not changes(package, "aside.py", "A = 2\n")
     assert not changes(package, "data/other.csv", "2")
