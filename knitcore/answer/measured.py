@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from knitcore.answer.answer import Along, Answer, Source
 from knitcore.fabric import Direction, Fabric
-from knitcore.law.response import HeldLawResponse, LawResponse, Stiffened
+from knitcore.law.response import free_response, held_response, stiffened
+from knitcore.law.uniaxial import free_transverse_strains
 from knitcore.materials import FabricRecord, Interval, Material, Origin
 from knitcore.materials.uncertainty import Z_SCORE
 
@@ -45,14 +46,14 @@ def measured(fabric: Fabric, material: Material) -> Answer:
 
 def _along(record: FabricRecord, direction: Direction) -> Along:
     law, spread = record.law, record.uncertainty
-    response, modulus = LawResponse(law, direction), law.modulus(direction)
+    response, modulus = free_response(law, direction), law.modulus(direction)
     # the stress at each strain is uncertain; the lock-up strain, which tests fix best, is kept
     return Along(
         response,
-        Stiffened(response, lambda stress: Z_SCORE * spread.log_stress(direction, stress)),
-        Stiffened(response, lambda stress: -Z_SCORE * spread.log_stress(direction, stress)),
-        response.across,
-        HeldLawResponse(law, direction),
+        stiffened(response, lambda stress: Z_SCORE * spread.log_stress(direction, stress)),
+        stiffened(response, lambda stress: -Z_SCORE * spread.log_stress(direction, stress)),
+        lambda stress: free_transverse_strains(law, direction, response.strain(stress)),
+        held_response(law, direction),
         poisson=law.poisson(direction),
         poisson_sd=spread.poisson(direction),
         relaxed_mm=record.stitch_size_mm(direction),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -18,6 +17,7 @@ from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.response import Response
 from knitcore.materials import Interval, Material
 from knitcore.materials.uncertainty import Z_SCORE
 
@@ -30,47 +30,6 @@ SWEPT = (
     "and the draw-in are the least certain."
 )
 _LOOP_SPREAD = 1.15
-
-
-@dataclass(frozen=True, eq=False)
-class LearnedResponse:
-    """Stretch of a mixed chart, moved by ``deviations`` standard deviations of the log strain."""
-
-    answer: LearnedAnswer
-    direction: Direction
-    deviations: float = 0.0
-
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Young's modulus."""
-        spread = self.deviations * self.answer.modulus_log_sd(self.direction)
-        return self.answer.modulus_n_per_mm(self.direction) * math.exp(-spread)
-
-    def strain(self, stress: ArrayLike) -> Array:
-        """Strains at stresses (N/mm)."""
-        strain = self.answer.strain(self.direction, stress)
-        if self.deviations == 0:
-            return strain
-        spread = self.deviations * self.answer.strain_log_sd(self.direction, stress)
-        return np.asarray(strain * np.exp(spread))
-
-
-@dataclass(frozen=True, eq=False)
-class HeldLearnedResponse:
-    """Stretch of a mixed chart whose width is held."""
-
-    answer: LearnedAnswer
-    direction: Direction
-
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Stress over strain at no stress."""
-        share = float(self.answer.mixture.shares_of_strain(self.direction, 0.0)[1])
-        return self.answer.modulus_n_per_mm(self.direction) / share
-
-    def strain(self, stress: ArrayLike) -> Array:
-        """Strains at stresses (N/mm)."""
-        return self.answer.held_strain(self.direction, stress)
 
 
 def mixed(
@@ -114,20 +73,32 @@ def mixed(
 
 
 def _along(found: LearnedAnswer, direction: Direction) -> Along:
-    response = LearnedResponse(found, direction)
+    response = _response(found, direction)
+    held = float(found.mixture.shares_of_strain(direction, 0.0)[1])
     bounds = (*found.mixture.bounds_n_per_mm(direction), response.modulus_n_per_mm)
     return Along(
         response,
-        LearnedResponse(found, direction, -Z_SCORE),
-        LearnedResponse(found, direction, Z_SCORE),
+        _response(found, direction, -Z_SCORE),
+        _response(found, direction, Z_SCORE),
         partial(found.across_strain, direction),
-        HeldLearnedResponse(found, direction),
+        Response(response.modulus_n_per_mm / held, partial(found.held_strain, direction)),
         poisson=float(found.poisson[direction.axis]),
         poisson_sd=float(found.poisson_sd[direction.axis]),
         relaxed_mm=float(found.size_mm[direction.axis]),
         relaxed_log_sd=float(found.size_log_sd[direction.axis]),
         bounds_n_per_mm=Interval(min(bounds), max(bounds)),
     )
+
+
+def _response(found: LearnedAnswer, direction: Direction, deviations: float = 0.0) -> Response:
+    """The stretch, moved by ``deviations`` standard deviations of the log strain."""
+
+    def strain(stress: ArrayLike) -> Array:
+        spread = deviations * found.strain_log_sd(direction, stress) if deviations else 0.0
+        return np.asarray(found.strain(direction, stress) * np.exp(spread))
+
+    softer = math.exp(deviations * found.modulus_log_sd(direction))
+    return Response(found.modulus_n_per_mm(direction) / softer, strain)
 
 
 def _notes(mixture: Mixture, material: Material) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from knitcore.answer.mixed import mixed
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
-from knitcore.law.response import Response
+from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material, Origin
 from knitcore.phases import pure_fabric
 
@@ -110,7 +110,7 @@ class Patches:
             ),
         )
 
-    def _response(self, direction: Direction, kind: Callable[[Along], Response]) -> TabledResponse:
+    def _response(self, direction: Direction, kind: Callable[[Along], Response]) -> Response:
         """One curve of the whole chart from that of its patches."""
         grid, along, across = self.answers, np.diff(self.columns), np.diff(self.rows)
         if direction is Direction.WALE:
@@ -129,34 +129,7 @@ class Patches:
             max(curve[0] for curve in curves), min(curve[-1] for curve in curves), 200
         )
         force = across @ np.array([np.interp(common, curve, _FORCES_N) for curve in curves])
-        return TabledResponse(force / float(across @ np.array(heights)), common)
-
-
-@dataclass(frozen=True, eq=False)
-class TabledResponse:
-    """A response through points: linear below the first, a power law between two, and no further
-    stretch beyond the last.
-
-    Attributes
-    ----------
-    stress_n_per_mm, strains : (points,), increasing and above 0.
-    """
-
-    stress_n_per_mm: Array
-    strains: Array
-
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Young's modulus."""
-        return float(self.stress_n_per_mm[0] / self.strains[0])
-
-    def strain(self, stress: ArrayLike) -> Array:
-        """Strains at stresses (N/mm)."""
-        sigma = np.asarray(stress, dtype=float)
-        first = float(self.stress_n_per_mm[0])
-        at = np.log(np.maximum(sigma, first))
-        curved = np.exp(np.interp(at, np.log(self.stress_n_per_mm), np.log(self.strains)))
-        return np.where(sigma < first, sigma / self.modulus_n_per_mm, curved)
+        return response_through(force / float(across @ np.array(heights)), common)
 
 
 def patches_of(

@@ -1,97 +1,73 @@
-"""Stretch of a sheet under stress along one direction, the other free or held.
-
-Every response, whatever its source, has a modulus and gives the strain at a stress.
-"""
+"""Stretch of a sheet under stress along one direction, the other free or held."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from knitcore.arrays import Array
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.law.uniaxial import (
-    free_strains_at_stress,
-    free_transverse_strains,
-    held_strains_at_stress,
-)
-
-Array = NDArray[np.float64]
+from knitcore.law.uniaxial import free_strains_at_stress, held_strains_at_stress
 
 
-class Response(Protocol):
-    """Stretch of a sheet pulled along one direction."""
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Stretch of a sheet pulled along one direction.
 
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Stress over strain at zero stress."""
-        ...
+    Attributes
+    ----------
+    modulus_n_per_mm : stress over strain at zero stress.
+    strain : engineering strains at stresses (N/mm, at least 0); both arrays of one shape.
+    """
 
-    def strain(self, stress: ArrayLike) -> Array:
-        """Engineering strains at stresses (N/mm, at least 0); both arrays of one shape."""
-        ...
-
-
-@dataclass(frozen=True)
-class LawResponse:
-    """The response of a constitutive law, free across the pull."""
-
-    law: ConstitutiveLaw
-    direction: Direction
-
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Young's modulus of the law."""
-        return self.law.modulus(self.direction)
-
-    def strain(self, stress: ArrayLike) -> Array:
-        """Strains at stresses (N/mm)."""
-        return free_strains_at_stress(self.law, self.direction, stress)
-
-    def across(self, stress: ArrayLike) -> Array:
-        """Strains across the pull at stresses (N/mm)."""
-        return free_transverse_strains(self.law, self.direction, self.strain(stress))
+    modulus_n_per_mm: float
+    strain: Callable[[ArrayLike], Array]
 
 
-@dataclass(frozen=True)
-class HeldLawResponse:
-    """The response of a constitutive law whose width is held."""
-
-    law: ConstitutiveLaw
-    direction: Direction
-
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Stiffness of the law."""
-        return float(self.law.stiffness[self.direction.axis, self.direction.axis])
-
-    def strain(self, stress: ArrayLike) -> Array:
-        """Strains at stresses (N/mm)."""
-        return held_strains_at_stress(self.law, self.direction, stress)
+def free_response(law: ConstitutiveLaw, direction: Direction) -> Response:
+    """Of a law, free across the pull."""
+    return Response(law.modulus(direction), partial(free_strains_at_stress, law, direction))
 
 
-@dataclass(frozen=True)
-class Stiffened:
+def held_response(law: ConstitutiveLaw, direction: Direction) -> Response:
+    """Of a law whose width is held."""
+    stiffness = float(law.stiffness[direction.axis, direction.axis])
+    return Response(stiffness, partial(held_strains_at_stress, law, direction))
+
+
+def stiffened(response: Response, log_factor: Callable[[ArrayLike], Array]) -> Response:
     """A response that needs ``exp(log_factor)`` times the stress for every strain.
 
     ``log_factor`` is a function of the stress (N/mm) that changes slowly.
     """
 
-    response: Response
-    log_factor: Callable[[ArrayLike], Array]
+    def strain(stress: ArrayLike) -> Array:
+        return response.strain(stress * np.exp(-log_factor(stress)))
 
-    @property
-    def modulus_n_per_mm(self) -> float:
-        """Young's modulus."""
-        return float(np.exp(self.log_factor(0.0))) * self.response.modulus_n_per_mm
+    return Response(float(np.exp(log_factor(0.0))) * response.modulus_n_per_mm, strain)
 
-    def strain(self, stress: ArrayLike) -> Array:
-        """Strains at stresses (N/mm)."""
-        return self.response.strain(stress * np.exp(-self.log_factor(stress)))
+
+def response_through(stress_n_per_mm: Array, strains: Array) -> Response:
+    """Through points: linear below the first, a power law between two, no stretch beyond the last.
+
+    Parameters
+    ----------
+    stress_n_per_mm, strains : (points,), increasing and above 0.
+    """
+    first, modulus = float(stress_n_per_mm[0]), float(stress_n_per_mm[0] / strains[0])
+
+    def strain(stress: ArrayLike) -> Array:
+        sigma = np.asarray(stress, dtype=float)
+        at = np.log(np.maximum(sigma, first))
+        curved = np.exp(np.interp(at, np.log(stress_n_per_mm), np.log(strains)))
+        return np.where(sigma < first, sigma / modulus, curved)
+
+    return Response(modulus, strain)
 
 
 _STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, 10.0, 600)])

@@ -33,46 +33,18 @@ def potential(distance: float, k: float, p: float, radius: float, core: float) -
 
 
 @numba.njit(cache=True)
-def potential_slope(distance: float, k: float, p: float, radius: float, core: float) -> float:
-    """V'(R), N/mm³; minus this is the repulsion."""
-    shell = 2.0 * (radius - core)
-    zeta = (distance - 2.0 * core) / shell
-    if zeta >= 1.0:
-        return 0.0
-    if zeta < 1e-5:
-        star = 2.0 * core + 1e-5 * shell
-        return float(200.0 * (distance - star) / (star * star))
-    return float(-k * shell / p * (zeta ** (-p) - 1.0))
-
-
-@numba.njit(cache=True)
-def potential_curvature(distance: float, k: float, p: float, radius: float, core: float) -> float:
-    """V''(R), N/mm⁴."""
-    shell = 2.0 * (radius - core)
-    zeta = (distance - 2.0 * core) / shell
-    if zeta >= 1.0:
-        return 0.0
-    if zeta < 1e-5:
-        star = 2.0 * core + 1e-5 * shell
-        return 200.0 / (star * star)
-    return float(k * zeta ** (-p - 1.0))
-
-
-@numba.njit(cache=True)
 def potential_and_derivatives(
     distance: float, k: float, p: float, radius: float, core: float
 ) -> tuple[float, float, float]:
-    """V(R), V'(R) and V''(R) at the cost of one of them."""
+    """V(R), V'(R) in N/mm³ and V''(R) in N/mm⁴, at the cost of one; -V' is the repulsion."""
     shell = 2.0 * (radius - core)
     zeta = (distance - 2.0 * core) / shell
     if zeta >= 1.0:
         return 0.0, 0.0, 0.0
     if zeta < 1e-5:
-        return (
-            potential(distance, k, p, radius, core),
-            potential_slope(distance, k, p, radius, core),
-            potential_curvature(distance, k, p, radius, core),
-        )
+        star = 2.0 * core + 1e-5 * shell
+        slope = 200.0 * (distance - star) / (star * star)
+        return potential(distance, k, p, radius, core), slope, 200.0 / (star * star)
     power = zeta ** (-p)
     value = k * shell * shell / (p * (p - 1.0)) * (power * zeta - 1.0 - (p - 1.0) * (1.0 - zeta))
     return value, -k * shell / p * (power - 1.0), k * power / zeta

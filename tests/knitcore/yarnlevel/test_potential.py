@@ -2,16 +2,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from knitcore.yarnlevel.potential import (
-    CAP,
-    potential,
-    potential_and_derivatives,
-    potential_curvature,
-    potential_slope,
-)
+from knitcore.yarnlevel.potential import CAP, potential, potential_and_derivatives
 
 K, P, R, CORE = 6e-4, 2.4, 0.74, 0.335
 SHELL = 2 * (R - CORE)
+
+
+def slope_at(distance):
+    return potential_and_derivatives(distance, K, P, R, CORE)[1]
 
 
 @settings(deadline=None)
@@ -21,25 +19,23 @@ def test_slope_and_curvature_are_the_derivatives(zeta):
     slope = (
         potential(distance + step, K, P, R, CORE) - potential(distance - step, K, P, R, CORE)
     ) / (2 * step)
-    bend = (
-        potential_slope(distance + step, K, P, R, CORE)
-        - potential_slope(distance - step, K, P, R, CORE)
-    ) / (2 * step)
-    assert potential_slope(distance, K, P, R, CORE) == pytest.approx(slope, rel=1e-5, abs=1e-12)
-    assert potential_curvature(distance, K, P, R, CORE) == pytest.approx(bend, rel=1e-5)
+    bend = (slope_at(distance + step) - slope_at(distance - step)) / (2 * step)
+    _, first, second = potential_and_derivatives(distance, K, P, R, CORE)
+    assert first == pytest.approx(slope, rel=1e-5, abs=1e-12)
+    assert second == pytest.approx(bend, rel=1e-5)
 
 
 def test_force_is_the_measured_compression_law():
     # paper, Supplementary Note 2: force per area k rho0 / p * ((rho0 / rho)^p - 1)
     zeta = 0.4
     force = K * SHELL / P * (zeta**-P - 1)
-    assert -potential_slope(2 * CORE + zeta * SHELL, K, P, R, CORE) == pytest.approx(force)
+    assert -slope_at(2 * CORE + zeta * SHELL) == pytest.approx(force)
 
 
 def test_yarns_apart_do_not_feel_each_other():
-    for f in (potential, potential_slope, potential_curvature):
-        assert f(2 * R, K, P, R, CORE) == 0
-        assert f(3 * R, K, P, R, CORE) == 0
+    for distance in (2 * R, 3 * R):
+        assert potential(distance, K, P, R, CORE) == 0
+        assert potential_and_derivatives(distance, K, P, R, CORE) == (0, 0, 0)
 
 
 def test_inside_the_core_the_potential_is_finite_and_grows():
@@ -47,15 +43,12 @@ def test_inside_the_core_the_potential_is_finite_and_grows():
     at_edge = potential(edge, K, P, R, CORE)
     inside = potential(0.9 * edge, K, P, R, CORE)
     assert inside == pytest.approx(at_edge + 100 * 0.1**2)
-    assert potential_slope(0.9 * edge, K, P, R, CORE) == pytest.approx(-200 * 0.1 / edge)
+    assert slope_at(0.9 * edge) == pytest.approx(-200 * 0.1 / edge)
 
 
 @settings(deadline=None)
 @given(st.floats(-0.2, 1.2))
-def test_all_at_once_are_each_of_them(zeta):
+def test_the_value_alone_is_that_with_derivatives(zeta):
     distance = 2 * CORE + zeta * SHELL
-    together = potential_and_derivatives(distance, K, P, R, CORE)
-    for one, function in zip(
-        together, (potential, potential_slope, potential_curvature), strict=True
-    ):
-        assert one == pytest.approx(function(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)
+    together, _, _ = potential_and_derivatives(distance, K, P, R, CORE)
+    assert together == pytest.approx(potential(distance, K, P, R, CORE), rel=1e-9, abs=1e-15)
