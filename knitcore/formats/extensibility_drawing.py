@@ -14,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
+from knitcore.arrays import Array
 from knitcore.formats.chart_key import tinted
 from knitcore.formats.drawing import Box, Label, Shape
 from knitcore.formats.layout import DesignRegion, region_cells
 from knitcore.garment.piece import Piece
 from knitcore.materials import Material
+from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.mechanics.local import local_moduli
 
 MOST_RECTANGLES = 900
@@ -80,12 +82,12 @@ def region_fields(
     return tuple(found)
 
 
-def _mean(modulus: NDArray[np.float64], log_sd: NDArray[np.float64]) -> tuple[float, float]:
+def _mean(modulus: Array, log_sd: Array) -> tuple[float, float]:
     """Inverse of the mean extensibility, and the factor of its 90 % interval.
 
     The fabrics' errors are common to all stitches, so they do not average out.
     """
-    return 1 / float((1 / modulus).mean()), float(np.exp(1.645 * log_sd.mean()))
+    return 1 / float((1 / modulus).mean()), float(np.exp(Z_SCORE * log_sd.mean()))
 
 
 def field_shapes(
@@ -112,7 +114,7 @@ def field_shapes(
         owner[region_cells(region, chart.rows, chart.columns)] = index
     for row in range(chart.rows):
         y = top + high * (chart.rows - 1 - row)
-        for start, stop, index in _runs(np.where(stitch[row], owner[row], -2)):
+        for start, stop, index in runs(np.where(stitch[row], owner[row], -2)):
             if index > -2:
                 fill = tinted(regions[index].colour) if index >= 0 else "#ffffff"
                 yield Box(left + cell * start, y, cell * (stop - start), high, fill=fill)
@@ -142,7 +144,8 @@ def _rectangle(
     return Box(*corner, *sides, stroke=ink, line_width=line)
 
 
-def _runs(values: NDArray[np.intp]) -> Iterator[tuple[int, int, int]]:
+def runs(values: NDArray[np.int_]) -> Iterator[tuple[int, int, int]]:
+    """Stretches of equal values: first place, the place after the last, and the value."""
     edges = [0, *(np.flatnonzero(np.diff(values)) + 1).tolist(), len(values)]
     for start, stop in pairwise(edges):
         yield start, stop, int(values[start])

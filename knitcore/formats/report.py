@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from knitcore.answer.answer import Answer
+from knitcore.answer.answer import Along, Answer
 from knitcore.answer.choose import choose
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
 from knitcore.chart import StitchChart
@@ -17,7 +15,7 @@ from knitcore.fabric import Direction
 from knitcore.formats.chart_drawing import A4_MM, chart_pages
 from knitcore.formats.chart_key import MARGIN_MM, ChartStyle, tinted
 from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
-from knitcore.formats.extensibility_drawing import field_shapes, region_fields
+from knitcore.formats.extensibility_drawing import field_shapes, region_fields, runs
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.piece import Piece
 from knitcore.materials import Interval, Material
@@ -134,36 +132,23 @@ def _numbers(chart: StitchChart, material: Material, name: str, found: Answer) -
         f"segments: course-wise {course.even} even, {course.odd} odd; "
         f"wale-wise {wale.even} even, {wale.odd} odd",
     )
-    rows = [
-        ("", "along the rows (course)", "along the columns (wale)"),
-        (
-            "Young's modulus, N/mm",
-            _value(found.modulus_course_n_per_mm, found.modulus_course_interval_n_per_mm),
-            _value(found.modulus_wale_n_per_mm, found.modulus_wale_interval_n_per_mm),
-        ),
-        (
-            "extensibility, mm/N",
-            _value(
-                found.extensibility_course_mm_per_n, found.course.extensibility_interval_mm_per_n
-            ),
-            _value(found.extensibility_wale_mm_per_n, found.wale.extensibility_interval_mm_per_n),
-        ),
-        (
-            "contraction when pulled so",
-            _value(found.poisson_yx, found.poisson_yx_interval),
-            _value(found.poisson_xy, found.poisson_xy_interval),
-        ),
-        (
-            "stitch at rest, mm",
-            _value(found.relaxed_course_mm, found.relaxed_course_interval_mm),
-            _value(found.relaxed_wale_mm, found.relaxed_wale_interval_mm),
-        ),
-    ]
+    rows = [("", "along the rows (course)", "along the columns (wale)")]
+    for label, value in _NUMBERS:
+        along_rows, along_columns = (_value(*value(found.along(d))) for d in Direction)
+        rows.append((label, along_rows, along_columns))
     for index, cells in enumerate(rows):
         for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
             yield Label(x, 36.0 + 5.2 * index, text, 3.2)
     yield Strokes(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
     yield Label(MARGIN_MM, 64.0, f"Intervals hold 90 %. Source: {found.provenance}.", 3.0)
+
+
+_NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
+    ("Young's modulus, N/mm", lambda a: (a.modulus_n_per_mm, a.modulus_interval_n_per_mm)),
+    ("extensibility, mm/N", lambda a: (1 / a.modulus_n_per_mm, a.extensibility_interval_mm_per_n)),
+    ("contraction when pulled so", lambda a: (a.poisson, a.poisson_interval)),
+    ("stitch at rest, mm", lambda a: (a.relaxed_mm, a.relaxed_interval_mm)),
+)
 
 
 def _value(value: float, interval: Interval) -> str:
@@ -185,21 +170,15 @@ def _maps(piece: Piece, material: Material, aspect: float, top: float) -> Iterat
         level[~stitch] = _NO_STITCH
         for row in range(chart.rows):
             y = top + 2.5 + high_mm * (chart.rows - 1 - row)
-            for start, stop in _runs(level[row]):
-                if level[row, start] != _NO_STITCH:
+            for start, stop, value in runs(level[row]):
+                if value != _NO_STITCH:
                     width = cell * (stop - start)
-                    fill = _colour(int(level[row, start]))
-                    yield Box(left + cell * start, y, width, high_mm, fill=fill)
+                    yield Box(left + cell * start, y, width, high_mm, fill=_colour(value))
     for step in range(_LEVELS):
         yield Box(MARGIN_MM + 2.0 * step, top + 68.0, 2.0, 3.0, fill=_colour(step))
     yield Label(MARGIN_MM, top + 75.0, f"{np.exp(low):.3g}", 2.8)
     end = MARGIN_MM + 2.0 * _LEVELS
     yield Label(end, top + 75.0, f"{np.exp(high):.3g} N/mm (logarithmic)", 2.8, "end")
-
-
-def _runs(values: NDArray[np.int_]) -> Iterator[tuple[int, int]]:
-    edges = [0, *(np.flatnonzero(np.diff(values)) + 1).tolist(), len(values)]
-    yield from pairwise(edges)
 
 
 def _colour(level: int) -> str:

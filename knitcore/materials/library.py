@@ -66,36 +66,22 @@ def load_variants(laws: Laws = Laws.REFITTED) -> Mapping[str, Material]:
     """
     library = {row["identifier"]: _measured(row) for row in read_packaged("yarns.csv")}
     found = {}
+
+    def add(
+        base: str, variant: str, name: str, fabrics: Mapping[Fabric, FabricRecord], note: str
+    ) -> None:
+        key, yarn = f"{base}:{variant}", library[base]
+        found[key] = Material(key, f"{yarn.name}, {name}", yarn.yarn, fabrics, note=note)
+
     for yarn in ("acrylic", "cotton"):
-        base = library[yarn]
-        identifier = f"{yarn}:{SIMULATION}"
-        found[identifier] = Material(
-            identifier,
-            f"{base.name}, simulated",
-            base.yarn,
-            {fabric: _record(yarn, fabric, SIMULATION) for fabric in Fabric},
-            note="The paper's simulation of the relaxed stitch; no friction, no fuzz.",
-        )
-    glove = library["glove-wool"]
-    tight = _record("glove-wool", Fabric.STOCKINETTE, NEEDLE_2_MM)
-    for variant, name, fabrics, note in (
-        (
-            NEEDLE_2_MM,
-            "on 2.0 mm needles",
-            {Fabric.STOCKINETTE: tight},
-            "Stockinette only: the paper has no other fabric on this needle.",
-        ),
-        (
-            GLOVE,
-            "as in the glove",
-            {**glove.fabrics, Fabric.STOCKINETTE: tight},
-            "Stockinette on 2.0 mm needles, the other fabrics on 2.75 mm.",
-        ),
-    ):
-        identifier = f"glove-wool:{variant}"
-        found[identifier] = Material(
-            identifier, f"{glove.name}, {name}", glove.yarn, fabrics, note=note
-        )
+        simulated = {fabric: _record(yarn, fabric, SIMULATION) for fabric in Fabric}
+        note = "The paper's simulation of the relaxed stitch; no friction, no fuzz."
+        add(yarn, SIMULATION, "simulated", simulated, note)
+    tight = {Fabric.STOCKINETTE: _record("glove-wool", Fabric.STOCKINETTE, NEEDLE_2_MM)}
+    note = "Stockinette only: the paper has no other fabric on this needle."
+    add("glove-wool", NEEDLE_2_MM, "on 2.0 mm needles", tight, note)
+    note = "Stockinette on 2.0 mm needles, the other fabrics on 2.75 mm."
+    add("glove-wool", GLOVE, "as in the glove", {**library["glove-wool"].fabrics, **tight}, note)
     return MappingProxyType(_with_laws(found, laws))
 
 
