@@ -71,6 +71,11 @@ class Densities:
     ways: Array
 
     @property
+    def arrays(self) -> tuple[Array, Array, Array, Array]:
+        """All four."""
+        return self.shares, self.excess, self.straight, self.ways
+
+    @property
     def features(self) -> Array:
         """Shares (without stockinette's, which the others leave) and excess."""
         return np.concatenate([self.shares[..., 1:], self.excess], axis=-1)

@@ -11,7 +11,7 @@ their stretched sizes add up; all lines are strained alike, and their forces add
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -163,37 +163,32 @@ def patches_of(
     if swept is not None or small:
         return _one(chart, mixed(repeat, densities(repeat), material, gauge, swept))
     rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
-    parts = [
-        [
-            repeat.region(slice(below, above), slice(left, right))
-            for left, right in pairwise(columns)
-        ]
-        for below, above in pairwise(rows)
+    cells = [
+        (slice(*across), slice(*along)) for across in pairwise(rows) for along in pairwise(columns)
     ]
-    found = [[densities(part) for part in line] for line in parts]
-    counts = np.outer(np.diff(rows), np.diff(columns))
-    moved = _difference(densities(repeat), [d for line in found for d in line], counts.ravel())
-    answers = tuple(
-        tuple(
-            _patch(part, _sum(own, moved), material, None)
-            for part, own in zip(line, have, strict=True)
-        )
-        for line, have in zip(parts, found, strict=True)
-    )
-    whole = Patches(rows, columns, answers)
+    parts = [repeat.region(*cell) for cell in cells]
+    found = [densities(part) for part in parts]
+    moved = _difference(densities(repeat), found, [part.purl.size for part in parts])
+    shifted = [_sum(own, moved) for own in found]
+
+    def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
+        given = zip(parts, shifted, sizes, strict=True)
+        flat = [_patch(part, own, material, size) for part, own, size in given]
+        wide = len(columns) - 1
+        lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
+        return Patches(rows, columns, tuple(lines))
+
+    whole = answered([None] * len(parts))
     if gauge is None:
         return whole
     mean = whole.together()
-    factors = gauge.course_mm / mean.relaxed_course_mm, gauge.wale_mm / mean.relaxed_wale_mm
-    return replace(
-        whole,
-        answers=tuple(
-            tuple(
-                _patch(part, _sum(own, moved), material, _scaled(a, factors, gauge))
-                for part, own, a in zip(line, have, at, strict=True)
-            )
-            for line, have, at in zip(parts, found, answers, strict=True)
-        ),
+    wider, higher = (gauge.extent_mm(d) / mean.along(d).relaxed_mm for d in Direction)
+    return answered(
+        [
+            RelaxedSize(a.relaxed_course_mm * wider, a.relaxed_wale_mm * higher, gauge.log_sd)
+            for line in whole.answers
+            for a in line
+        ]
     )
 
 
@@ -216,25 +211,13 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
     return np.linspace(0, stitches, count + 1).round().astype(np.intp)
 
 
-def _difference(whole: Densities, parts: list[Densities], counts: NDArray[np.int_]) -> Densities:
-    def off(of: Callable[[Densities], Array]) -> Array:
-        return np.asarray(of(whole) - np.average([of(p) for p in parts], axis=0, weights=counts))
-
-    return Densities(
-        off(lambda d: d.shares),
-        off(lambda d: d.excess),
-        off(lambda d: d.straight),
-        off(lambda d: d.ways),
-    )
+def _difference(whole: Densities, parts: Sequence[Densities], counts: Sequence[int]) -> Densities:
+    own = zip(*(part.arrays for part in parts), strict=True)
+    means = (np.average(np.stack(values), axis=0, weights=counts) for values in own)
+    return Densities(*(a - mean for a, mean in zip(whole.arrays, means, strict=True)))
 
 
 def _sum(own: Densities, moved: Densities) -> Densities:
     shares, ways = (np.maximum(v, 0.0) for v in (own.shares + moved.shares, own.ways + moved.ways))
     straight = np.clip(own.straight + moved.straight, 0.0, 1.0)
     return Densities(shares / shares.sum(), own.excess + moved.excess, straight, ways / ways.sum())
-
-
-def _scaled(answer: Answer, factors: tuple[float, float], gauge: RelaxedSize) -> RelaxedSize:
-    return RelaxedSize(
-        answer.relaxed_course_mm * factors[0], answer.relaxed_wale_mm * factors[1], gauge.log_sd
-    )
