@@ -96,6 +96,15 @@ export async function fetched(path, { method = "GET", body, signal, headers = {}
 }
 
 export const api = {
+  /** @type {() => Promise<import("./types.js").SignedIn>} */
+  session: () => call("/session"),
+
+  /** @type {() => Promise<void>} */
+  signOut: () => call("/session", { method: "DELETE" }),
+
+  /** @type {(id: string) => Promise<void>} */
+  endSession: (id) => call(`/sessions/${encodeURIComponent(id)}`, { method: "DELETE" }),
+
   /** @type {() => Promise<import("./types.js").VersionResult>} */
   version: () => call("/version"),
 

@@ -136,6 +136,7 @@ const loadLists = async () => {
   }
 };
 void loadLists();
+void import("./services/account.js").then(({ showUser }) => showUser(studio));
 
 watchConnection(studio, () => {
   void loadLists();

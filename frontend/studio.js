@@ -81,6 +81,8 @@ export class Studio {
     );
     this.step = new Signal(0);
     this.online = new Signal(true);
+    /** Who is signed in with this browser, if anybody is. */
+    this.user = new Signal(/** @type {string | null} */ (null));
     this.message = new Signal(/** @type {Message | null} */ (null));
 
     this.overlay.listen(({ id }) => {

@@ -25,7 +25,7 @@ from app.http.kinds import PAGES
 from app.http.problems import Problem, StoppingError, problem_response, unexpected
 from app.http.rate import RateLimit
 from app.http.sessions import SESSION_S
-from app.http.sign_in import PATH, sign_in_form, sign_in_page
+from app.http.sign_in import PATH, sign_in_form, sign_in_page, token_page
 from app.http.tokens import REMEMBERED_S, Login
 from app.settings import Settings
 from app.store.database import StoreError
@@ -197,7 +197,6 @@ class Guard:
 
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
         """Let a known user in, within their rate, and note who it is."""
-        address = (scope.get("client") or ("unknown", 0))[0]
         login: Login = scope["app"].state.login
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)
@@ -207,12 +206,7 @@ class Guard:
         except StoreError as error:
             return problem_response(error.problem)
         if not user:
-            if (token or link) and self.failures.take(address)[1]:
-                return _too_many("Too many unknown tokens came from this address.", 10.0)
-            return _unknown(
-                "This service asks for a token.",
-                "Open the page as /?token=…, or send the header Authorization: Bearer ….",
-            )
+            return self._stranger(scope, tried=bool(token or link))
         current_user.set(user)
         if (refusal := self._over_budget(scope, user, limits)) is not None:
             return refusal
@@ -221,6 +215,17 @@ class Guard:
         if link and not (token or session) and scope["type"] == "http" and scope["method"] == "GET":
             return await self._by_link(scope, identifier, user, link)
         return None
+
+    def _stranger(self, scope: Scope, *, tried: bool) -> Response:
+        """Ask for a token; who tried one that is unknown must wait after some more."""
+        if tried and self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
+            return _too_many("Too many unknown tokens came from this address.", 10.0)
+        if scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", ""):
+            return token_page(401, "Nobody has this token. Ask for a new one." if tried else "")
+        return _unknown(
+            "This service asks for a token.",
+            "Open the page as /?token=…, or send the header Authorization: Bearer ….",
+        )
 
     def _over_budget(self, scope: Scope, user: str, limits: dict[str, str]) -> Response | None:
         """Refuse more requests than one user may send, a second or at once; tell what is left."""
@@ -259,7 +264,7 @@ class Guard:
             return problem_response(error.problem)
         if self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
             return _too_many("Too many unknown tokens came from this address.", 10.0)
-        return _unknown("Nobody has this token.", "Ask for a new one.")
+        return token_page(401, "Nobody has this token. Ask for a new one.")
 
     async def _begin(self, scope: Scope, identifier: str, user: str, to: str) -> Response:
         login: Login = scope["app"].state.login

@@ -1,4 +1,4 @@
-"""The page that asks before a link with a token begins a session, if another site led here."""
+"""Pages that sign in: with a token, and after a link, if another site led here."""
 
 from __future__ import annotations
 
@@ -9,30 +9,45 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse
 from starlette.types import Receive, Scope
 
+from app.http.pages import page
+
 PATH = "/sign-in"
 MOST_BYTES = 4_000
-POLICY = "default-src 'none'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'"
-PAGE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Knitcore: sign in</title>
-<h1>Sign in as {user}?</h1>
-<p>A link asks this browser to sign in as <strong>{user}</strong>{instead}. The person who gave
-you the link may see what you design there.</p>
+POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'; "
+    "base-uri 'none'"
+)
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "Referrer-Policy": "same-origin",  # without it the form's Origin would be "null"
+    "Cache-Control": "no-store",
+}
+ASK = """<p>A link asks this browser to sign in as <strong>{user}</strong>{instead}. The person who
+gave you the link may see what you design there.</p>
 <form method="post" action="{path}">
 <input type="hidden" name="token" value="{token}"><input type="hidden" name="to" value="{to}">
-<button>Sign in as {user}</button></form><p><a href="/">Do not</a></p></html>"""
+<button>Sign in as {user}</button></form><p><a href="/">Do not</a></p>"""
+FORM = """<form method="post" action="{path}">
+<p role="alert">{problem}</p>
+<p><label>Token <input type="password" name="token" required autocomplete="off"></label>
+<button>Sign in</button></p></form>
+<p>Whoever runs this service makes tokens. A link that ends in <code>/?token=…</code> signs in,
+too.</p>"""
 
 
 def sign_in_page(user: str, before: str, token: str, to: str) -> HTMLResponse:
     """Ask for a click before a session begins, or replaces that of the user ``before``."""
     instead = f", instead of <strong>{escape(before)}</strong>" if before else ""
-    page = PAGE.format(
+    asked = ASK.format(
         user=escape(user), instead=instead, path=PATH, token=escape(token), to=escape(to)
     )
-    headers = {
-        "Content-Security-Policy": POLICY,
-        "Referrer-Policy": "same-origin",  # without it the form's Origin would be "null"
-        "Cache-Control": "no-store",
-    }
-    return HTMLResponse(page, headers=headers)
+    return HTMLResponse(page(f"Sign in as {user}?", asked), headers=HEADERS)
+
+
+def token_page(status: int, problem: str = "") -> HTMLResponse:
+    """Ask for a token, and say what was wrong with the last one."""
+    asked = FORM.format(path=PATH, problem=escape(problem))
+    return HTMLResponse(page("Sign in to Knitcore", asked), status, HEADERS)
 
 
 async def sign_in_form(scope: Scope, receive: Receive) -> tuple[str, str]:

@@ -42,5 +42,9 @@ export const DESIGNS = [
     "export",
     ({ studio }) => void import("../services/exporter.js").then(({ exportProject }) => exportProject(studio)),
   ),
+  {
+    ...action("account", "Your account …", "", "person", ({ open }) => open("account")),
+    enabled: ({ user }) => user.value !== null,
+  },
   action("tour", "Tour of the page", "", "tour", ({ open }) => open("tour")),
 ];

@@ -52,6 +52,11 @@ export function saveDesign(design, history) {
   }
 }
 
+/** Forget the design, its history and the own patterns: somebody else may use this browser next. */
+export function forgetDesign() {
+  for (const key of [DESIGN, HISTORY, SHELF]) localStorage.removeItem(key);
+}
+
 /**
  * @template {object} T
  * @param {T} defaults

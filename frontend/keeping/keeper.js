@@ -17,7 +17,7 @@
  */
 
 import { ApiError } from "../api.js";
-import { newIdentifier, saveDesign } from "../core/store.js";
+import { forgetDesign, newIdentifier, saveDesign } from "../core/store.js";
 import { Signal } from "../core/signal.js";
 import { combine, deliver } from "./delivery.js";
 import { designs } from "./designs.js";
@@ -41,6 +41,7 @@ export class Keeper {
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #saveTimer;
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #sendTimer;
   #warned = false;
+  #over = false;
 
   /**
    * @param {Studio} studio with the design already open
@@ -163,12 +164,18 @@ export class Keeper {
     this.#sendLater(SEND_MS);
   }
 
+  /** Keep nothing from here on: the user signs out. */
+  end() {
+    this.#over = true;
+    forgetDesign();
+  }
+
   /** Keep the design in this browser, now. */
   save() {
     clearTimeout(this.#saveTimer);
     this.#saveTimer = undefined;
     delete document.documentElement.dataset.unsaved;
-    if (this.state.value.kind === "shared") return;
+    if (this.#over || this.state.value.kind === "shared") return;
     const { studio } = this;
     const design = studio.toDocument();
     const { id, remote } = this.#parcel;

@@ -11,6 +11,8 @@
 
 const PANELS = {
   /** @returns {Promise<PanelModule>} */
+  account: () => import("./dialogs/account.js"),
+  /** @returns {Promise<PanelModule>} */
   atlas: async () => ({ create: (await import("./inverse/inverse.js")).opening("atlas") }),
   /** @returns {Promise<PanelModule>} */
   fill: async () => ({ create: (await import("./inverse/inverse.js")).opening("fill") }),

@@ -89,7 +89,35 @@ export function topbar(host, studio, context) {
     button("share", "Share"),
     exportMenu(studio, context),
     h("div", { class: "group" }, button("theme"), button("help")),
+    accountButton(studio, context),
   );
+}
+
+/**
+ * Who is signed in; nothing where the service asks for no login.
+ *
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+function accountButton({ user }, context) {
+  const name = h("span", { class: "ellipsis" });
+  const element = h(
+    "button",
+    {
+      class: "button quiet account",
+      id: "action-account",
+      title: "Your account",
+      onclick: () => context.open("account"),
+    },
+    icon("person"),
+    h("span", { class: "visually-hidden" }, "Account:"),
+    name,
+  );
+  user.watch((known) => {
+    element.hidden = known === null;
+    name.textContent = known;
+  });
+  return element;
 }
 
 /**

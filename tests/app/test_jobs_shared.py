@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Awaitable, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -38,7 +40,7 @@ def _runner(database: Database, compute: Compute, name: str) -> JobRunner:
 
 
 async def _until(true: Callable[[], Awaitable[bool]]) -> None:
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(150):  # a worker starts, on a machine that may be busy
         while not await true():
             await asyncio.sleep(0.02)
 
@@ -133,3 +135,24 @@ def test_a_process_is_not_declared_dead_right_after_an_outage(
 
     calls = asyncio.run(scenario())
     assert calls.index("look round") == 2 * runner_module.BEATS_TO_LOOK_ROUND
+
+
+def test_equal_jobs_of_two_processes_may_end_at_the_same_time(database: Database) -> None:
+    stores = [JobStore(database, name) for name in ("here", "there")]
+    with ThreadPoolExecutor(2) as threads:
+        for key in map(str, range(8)):
+            jobs = [
+                store.add("ada", "work", _wish("answer"), key, JobState.WAITING).id
+                for store in stores
+            ]
+            meet = threading.Barrier(2)
+
+            def finish(store: JobStore, job: str, key: str, meet: threading.Barrier) -> bool:
+                meet.wait()
+                return store.finish(job, "work", key, b"the result")
+
+            ended = threads.map(finish, stores, jobs, [key] * 2, [meet] * 2)
+            assert list(ended) == [True, True]
+            for job in jobs:
+                assert stores[0].get("ada", job).state is JobState.DONE
+                assert stores[0].result("ada", job) == b"the result"

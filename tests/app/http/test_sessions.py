@@ -100,6 +100,19 @@ def test_a_session_is_replaced_by_a_click_only(lab: TestClient) -> None:
     assert again.status_code == 303  # one's own link asks nothing
 
 
+def test_a_person_without_a_session_is_asked_for_a_token(lab: TestClient) -> None:
+    page = lab.get("/", headers={"Accept": "text/html,*/*;q=0.8"})
+    assert page.status_code == 401
+    assert "form-action 'self'" in page.headers["content-security-policy"]
+    assert re.search(r'<input type="password" name="token"', page.text)
+    wrong = lab.post("/sign-in", data={"token": "x" * 43})
+    assert "Nobody has this token" in wrong.text
+    right = lab.post("/sign-in", data={"token": _token(lab, "ada").token}, follow_redirects=False)
+    assert (right.status_code, right.headers["location"]) == (303, "/")
+    assert lab.get(SESSION).json()["user"] == "ada"
+    lab.cookies.clear()
+
+
 def test_a_form_with_a_wrong_token_signs_nobody_in(lab: TestClient) -> None:
     assert lab.post("/sign-in", data={"token": "x" * 43}).status_code == 401
     assert lab.post("/sign-in", content=b"x" * 9_000).status_code == 401

@@ -1,0 +1,124 @@
+/**
+ * Who is signed in, in which browsers, and how much of the limits of one user is used.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {SessionSummary, SignedIn} from "../../types.js"
+ * @import {Studio} from "../../studio.js"
+ */
+
+import { api } from "../../api.js";
+import { ago } from "../../core/ago.js";
+import { h } from "../../dom.js";
+import { nameOf } from "../../services/account.js";
+import { attempt } from "../../widgets/attempt.js";
+import { dialog } from "../../widgets/dialog.js";
+
+/** @param {number} n */
+const count = (n) => n.toLocaleString("en");
+/** Limits that are told, in words, and how their numbers are written. */
+const LIMITS = /** @type {const} */ ([
+  ["designs", "Designs, with those deleted in the last 30 days", count],
+  ["kept_bytes", "Designs and their versions, MB", (/** @type {number} */ n) => (n / 1e6).toFixed(1)],
+  ["cpu_s", "Computing time of a day, hours", (/** @type {number} */ n) => (n / 3600).toFixed(1)],
+  ["jobs", "Jobs that wait", count],
+  ["views", "3D views", count],
+]);
+
+/**
+ * @param {Studio} _studio
+ * @param {ActionContext} context
+ */
+export function create(_studio, { keeper }) {
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const who = h("p", {});
+  const list = h("ol", { class: "rows-list", id: "sessions" });
+  const used = h("tbody", {});
+  const element = dialog(
+    "account-dialog",
+    "Your account",
+    who,
+    status,
+    h("h3", {}, "Browsers that are signed in"),
+    list,
+    h("h3", {}, "What you use"),
+    h(
+      "table",
+      { class: "figures use" },
+      h("thead", {}, h("tr", {}, ...["", "used", "of"].map((text) => h("th", { scope: "col" }, text)))),
+      used,
+    ),
+    h(
+      "div",
+      { class: "dialog-buttons" },
+      h("button", { class: "button primary", id: "sign-out", onclick: () => void signOut() }, "Sign out"),
+    ),
+  );
+
+  const load = async () => {
+    const found = await attempt(status, api.session);
+    if (found) show(found);
+  };
+
+  /** @param {SignedIn} found */
+  const show = (found) => {
+    who.replaceChildren(
+      "You are signed in",
+      ...(found.user === "local" ? [] : [" as ", h("strong", {}, nameOf(found))]),
+      ".",
+    );
+    list.replaceChildren(...found.sessions.map(row));
+    used.replaceChildren(
+      ...LIMITS.filter(([name]) => name in found.use).map(([name, text, written]) =>
+        h(
+          "tr",
+          {},
+          h("th", { scope: "row" }, text),
+          h("td", {}, written(found.use[name].used)),
+          h("td", {}, written(found.use[name].most)),
+        ),
+      ),
+    );
+  };
+
+  /** @param {SessionSummary} session */
+  const row = ({ id, created_at, is_this }) =>
+    h(
+      "li",
+      { class: "row" },
+      h(
+        "span",
+        { class: "row-text" },
+        h("span", {}, is_this ? "This browser" : "Another browser"),
+        h("span", { class: "muted" }, `signed in ${ago(created_at)}`),
+      ),
+      !is_this &&
+        h(
+          "button",
+          {
+            class: "button",
+            "aria-label": `End the session of the browser that signed in ${ago(created_at)}`,
+            onclick: async () => {
+              await attempt(status, () => api.endSession(id));
+              await load();
+            },
+          },
+          "End",
+        ),
+    );
+
+  const signOut = async () => {
+    await keeper.flushChanges();
+    const done = await attempt(status, async () => {
+      await api.signOut();
+      return true;
+    });
+    if (!done) return;
+    keeper.end();
+    location.replace("/");
+  };
+
+  return () => {
+    element.showModal();
+    void load();
+  };
+}

@@ -1,0 +1,51 @@
+"""Signing in and out: the page names the user, lists the browsers and forgets the design."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.app.service import Service
+from tests.browser.axe import THEMES, violations
+
+
+@pytest.fixture
+def lab(tmp_path: Path, bundle: None) -> Iterator[tuple[str, str]]:
+    """Address of a service with logins, and a token of ada."""
+    service = Service(tmp_path, require_login="true")
+    data = os.environ | {"KNITCORE_DATA_DIR": str(tmp_path / "data")}
+    words = [sys.executable, "-m", "app.cli.main", "token", "create", "ada", "--json"]
+    made = subprocess.run(words, env=data, capture_output=True, text=True, check=True)
+    service.start().close()
+    yield service.url, made.stdout.split('"token":')[1].split('"')[1]
+    service.kill()
+
+
+def test_the_user_is_named_and_signs_out(visitor: Page, lab: tuple[str, str]) -> None:
+    url, token = lab
+    page = visitor
+    page.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    page.goto(url)
+    found = [f"sign-in: {wrong}" for wrong in violations(page)]
+    page.get_by_label("Token").fill(token)
+    page.get_by_role("button", name="Sign in").click()
+    account = page.get_by_role("button", name="Account: ada")
+    for theme in THEMES:
+        page.emulate_media(color_scheme=theme)
+        account.click()
+        expect(page.locator("#sessions")).to_contain_text("This browser")
+        expect(page.get_by_role("row", name="Designs, with")).to_contain_text("5,000")
+        found += [f"{theme}: {wrong}" for wrong in violations(page, "#account-dialog")]
+        page.keyboard.press("Escape")
+    account.click()
+    page.locator("#sign-out").click()
+    expect(page.get_by_label("Token")).to_be_visible()
+    assert page.evaluate("localStorage['knitcore.design']") is None
+    assert page.context.cookies() == []
+    assert not found, "\n".join(found)
