@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -108,6 +108,18 @@ bench-service: $(VENV)/.installed-dev ## Fifty people paint at once; SECONDS=600
 
 docs: $(VENV)/.installed-dev ## Run every example of the documentation
 	$(BIN)/pytest -q tests/test_docs.py
+
+site: $(VENV)/.installed-dev ## Build the documentation as a site in build/site; no network needed
+	PYTHONPATH=. NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+	@echo "build/site/index.html"
+
+gallery: $(VENV)/.installed-dev ## Make the gallery of the documentation again
+	$(BIN)/python scripts/gallery.py
+
+mutation: $(VENV)/.installed-dev ## Would the tests notice? Changes the code in 1,000 ways (half an hour)
+	$(BIN)/pip install --quiet --disable-pip-version-check mutmut==3.8.1
+	$(BIN)/mutmut run --max-children 2
+	$(BIN)/mutmut results
 
 examples: $(VENV)/.installed-dev ## Ask the service for the answers that the API shows as examples
 	PYTHONPATH=. $(BIN)/python scripts/api_examples.py

@@ -83,19 +83,19 @@ def stitches(purl: NDArray[np.bool_], inside: NDArray[np.bool_] | None = None) -
     return svg(cell * columns + 1, cell * rows + 1, title, parts)
 
 
-def sides(rectangles: Sequence[tuple[str, float, float]], unit: str) -> str:
-    """Rectangles by their width and height, to one scale, around one centre, with names."""
-    most = max(max(w, h) for _, w, h in rectangles)
+def rectangles(drawn: Sequence[tuple[str, float, float]], unit: str) -> str:
+    """Rectangles by their name, width and height, to one scale, around one centre."""
+    most = max(max(width, height) for _, width, height in drawn)
     scale, middle = 120 / most, 70.0
     parts = []
-    for (_, width, height), ink in zip(rectangles, INKS, strict=False):
+    for (_, width, height), ink in zip(drawn, INKS, strict=False):
         w, h = width * scale, height * scale
         parts.append(
             f'<rect x="{middle - w / 2:.1f}" y="{middle - h / 2:.1f}" width="{w:.1f}" '
             f'height="{h:.1f}" fill="{ink}" fill-opacity=".25" stroke="{ink}"/>'
         )
-    told = "; ".join(f"{name} {w:.3g} × {h:.3g} {unit}".strip() for name, w, h in rectangles)
-    return figure(svg(2 * middle, 2 * middle, told, parts), told)
+    told = "; ".join(f"{name} {w:.3g} × {h:.3g} {unit}".strip() for name, w, h in drawn)
+    return svg(2 * middle, 2 * middle, told, parts)
 
 
 def curves(

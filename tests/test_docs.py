@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted([*ROOT.glob("docs/**/*.md"), ROOT / "README.md"])
+NOTEBOOKS = ROOT / "docs" / "notebooks"
+MADE = ROOT / "docs" / "reference"
+"""Pages of the site that are made from code; the strict build checks links to them."""
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -16,7 +20,14 @@ def _id(page: Path) -> str:
     return str(page.relative_to(ROOT))
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if FENCE.search(p.read_text())], ids=_id)
+def _with_examples() -> Iterator[object]:
+    for page in PAGES:
+        if FENCE.search(page.read_text()):
+            marks = [pytest.mark.slow] if page.parent == NOTEBOOKS else []
+            yield pytest.param(page, marks=marks, id=_id(page))
+
+
+@pytest.mark.parametrize("page", _with_examples())
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     namespace: dict[str, object] = {"__name__": "example"}
@@ -27,5 +38,5 @@ def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("page", PAGES, ids=_id)
 def test_links_between_pages_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(((?!https?:|mailto:|#)[^)#\s]+)", page.read_text())
-    missing = [t for t in targets if not (page.parent / t).exists()]
-    assert not missing
+    found = [(page.parent / target).resolve() for target in targets]
+    assert not [to for to in found if not to.exists() and MADE not in to.parents]

@@ -179,10 +179,12 @@ class Answer:
         give = self.extensibility_course_mm_per_n, self.extensibility_wale_mm_per_n
         pictures = showing.beside(
             showing.curves(drawn, "strain", "stress, N/mm"),
-            showing.sides([("extensibility, course × wale:", *give)], "mm/N"),
+            showing.rectangles([("extensibility", *give)], "mm/N"),
         )
+        extensible = f"The rectangle is the extensibility: {give[0]:.3g} × {give[1]:.3g} mm/N."
         told = f"{self.provenance}: {self.method}. Intervals cover 90 %."
-        return showing.figure(showing.table(head, rows) + pictures, told, *self.notes)
+        table = showing.table(head, rows)
+        return showing.figure(table + pictures, extensible, told, *self.notes)
 
     # -- under the names that command line, REST and files use ------------------------------
 

@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 
 from knitcore import Fabric, StitchChart, quarter_phases
-from knitcore.phases import ABOVE, BELOW, LEFT, RIGHT, surroundings
+from knitcore.phases import (
+    ABOVE,
+    BELOW,
+    LEFT,
+    QUARTERS_OF_CODE,
+    RIGHT,
+    pure_fabric,
+    reference_fabric,
+    surroundings,
+)
 from tests.knitcore.charts import stitch_charts
 
 
@@ -47,3 +56,58 @@ def test_one_purl_in_stockinette() -> None:
     assert code[2, 2] == LEFT | RIGHT | BELOW | ABOVE
     assert [code[2, 1], code[2, 3], code[1, 2], code[3, 2]] == [RIGHT, LEFT, ABOVE, BELOW]
     assert np.count_nonzero(code) == 5
+
+
+def test_the_quarters_of_a_stitch_take_the_segments_that_they_touch() -> None:
+    assert QUARTERS_OF_CODE.shape == (16, 2, 2)
+    for code in range(16):
+        for up, wale in enumerate((BELOW, ABOVE)):
+            for right, course in enumerate((LEFT, RIGHT)):
+                expected = 2 * bool(code & course) + bool(code & wale)
+                assert QUARTERS_OF_CODE[code, up, right] == expected
+
+
+OUTLINE = np.array([[1, 1, 1, 1], [1, 1, 1, 1], [0, 1, 1, 0], [0, 1, 1, 0]], dtype=bool)
+
+
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_a_pure_fabric_is_pure_up_to_its_outline(fabric: Fabric) -> None:
+    chart = StitchChart.of_fabric(fabric, *OUTLINE.shape)
+    other = StitchChart(np.where(OUTLINE, chart.purl, ~chart.purl))  # what is outside is not there
+    codes, phases = (of(other, stitch=OUTLINE) for of in (surroundings, quarter_phases))
+    np.testing.assert_array_equal(codes[OUTLINE], surroundings(chart)[OUTLINE])
+    quarters = np.kron(OUTLINE, np.ones((2, 2), dtype=bool))
+    assert (phases[quarters] == fabric.phase).all()
+
+
+def test_a_segment_that_is_not_there_is_like_the_one_on_the_other_side() -> None:
+    lone = np.array([[1, 1], [1, 0]], dtype=bool)  # an L of three stitches
+    codes = surroundings(StitchChart.parse("KK/PK"), stitch=lone)
+    assert codes[0].tolist() == [LEFT | RIGHT | BELOW | ABOVE, LEFT | RIGHT]
+    assert codes[1, 0] == BELOW | ABOVE
+
+
+@pytest.mark.parametrize("fabric", list(Fabric))
+def test_a_pure_fabric_is_recognised_however_it_is_cut(fabric: Fabric) -> None:
+    assert pure_fabric(StitchChart.of_fabric(fabric, rows=5, columns=7)) is fabric
+    assert pure_fabric(StitchChart.of_fabric(fabric, rows=5, columns=7).turn_over()) is fabric
+
+
+def test_a_chart_with_one_other_quarter_is_not_pure() -> None:
+    assert pure_fabric(StitchChart.parse("KKKP")) is None
+
+
+@pytest.mark.parametrize(
+    ("repeat", "reference"),
+    [
+        ("K", Fabric.STOCKINETTE),
+        ("K/P", Fabric.GARTER),
+        ("KKP", Fabric.RIB),
+        ("K/K/P", Fabric.GARTER),
+        ("KKK/KPK/KKK", Fabric.SEED),
+    ],
+)
+def test_the_reference_has_odd_segments_where_the_repeat_has_any(
+    repeat: str, reference: Fabric
+) -> None:
+    assert reference_fabric(StitchChart.parse(repeat)) is reference

@@ -43,3 +43,13 @@ def test_pure_fabrics_have_segments_of_one_kind(fabric: Fabric) -> None:
     course, wale = segments.counts(Direction.COURSE), segments.counts(Direction.WALE)
     assert (course.odd, course.even) == ((28, 0) if fabric.course_odd else (0, 28))
     assert (wale.odd, wale.even) == ((30, 0) if fabric.wale_odd else (0, 30))
+
+
+def test_a_repeat_has_a_segment_for_every_stitch_and_a_piece_one_less() -> None:
+    chart = StitchChart.parse("KPP/KKP")
+    piece, repeat = segment_map(chart), segment_map(chart, periodic=True)
+    assert (piece.periodic, repeat.periodic) == (False, True)
+    assert piece.course_odd.tolist() == [[False, True], [True, False]]
+    assert piece.wale_odd.tolist() == [[False, True, False]]
+    assert repeat.course_odd.tolist() == [[False, True, True], [True, False, True]]
+    assert repeat.wale_odd.tolist() == [[False, True, False]] * 2

@@ -1,0 +1,153 @@
+"""Make the gallery: ten designs with their pictures, numbers and files (docs/gallery).
+
+Everything comes from the library, and the same every time: python scripts/gallery.py
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from knitcore import StitchChart, material, predict, showing
+from knitcore.answer.answer import Answer
+from knitcore.fabric import Direction
+from knitcore.formats.export import ExportKind, ExportOptions, export_chart
+from knitcore.patterns import PATTERNS
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+SIDE = 24
+STRESS_N_PER_MM = np.linspace(0.0, 0.2, 31)
+KINDS = {ExportKind.DESIGN: "design", ExportKind.WRITTEN: "rows in words", ExportKind.KNITOUT: "knitout"}
+HEAD = """# Gallery
+
+Ten designs, each of 24 × 24 stitches, with what they do and files to go on with. The chart is on the left, its
+extensibility beside it (as wide as it gives along the rows, as high as along the columns, one scale for each), and on the
+right its stress–strain curves with their 90 % intervals. The design opens in [the studio](studio.md); the knitout program has been
+knitted on a virtual machine. Made by `python scripts/gallery.py`.
+"""
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design of the gallery."""
+
+    identifier: str
+    name: str
+    chart: StitchChart
+    material: str
+    note: str
+
+
+def designs() -> Iterator[Design]:
+    """The ten."""
+    named = {pattern.identifier: pattern for pattern in PATTERNS}
+    for identifier, yarn in (
+        ("garter", "acrylic"),
+        ("rib-2-2", "acrylic"),
+        ("rib-3-1", "cotton"),
+        ("welt-2-2", "acrylic"),
+        ("basket", "acrylic"),
+        ("moss", "cotton"),
+        ("diamonds", "acrylic"),
+    ):
+        pattern = named[identifier]
+        chart = pattern.chart.resized(SIDE, SIDE)
+        yield Design(identifier, pattern.name, chart, yarn, pattern.note)
+    row, column = np.indices((SIDE, SIDE))
+    garter, rib = row % 2 == 1, column % 2 == 1
+    yield Design(
+        "two-textures",
+        "Palm and cuff",
+        StitchChart(np.where(column < SIDE // 2, garter, rib)),
+        "acrylic",
+        "Garter beside rib: the right half gives first when it is pulled along the rows.",
+    )
+    yield Design(
+        "steps",
+        "Steps",
+        StitchChart((row // 2 + column) % 6 < 3),
+        "cotton",
+        "A 3×3 rib that moves over by one stitch every other row: its folds cannot run on.",
+    )
+    yield Design(
+        "soft-lines",
+        "Soft lines",
+        StitchChart(rib & (row % 8 < 2)),
+        "acrylic",
+        "Two rows of rib in every eight of stockinette.",
+    )
+
+
+def picture(design: Design, answer: Answer) -> str:
+    """Chart, rectangle and curves beside each other, on paper of their own."""
+    along = {d: answer.along(d) for d in Direction}
+    drawn = [
+        (d, a.strain(STRESS_N_PER_MM), STRESS_N_PER_MM, a.strain_interval(STRESS_N_PER_MM))
+        for d, a in along.items()
+    ]
+    give = answer.extensibility_course_mm_per_n, answer.extensibility_wale_mm_per_n
+    parts = [
+        (10, 10, showing.stitches(design.chart.purl)),
+        (455, 40, showing.rectangles([("", *give)], "mm/N")),
+        (610, 10, showing.curves(drawn, "strain", "stress, N/mm")),
+    ]
+    paper = '<rect width="100%" height="100%" fill="#ffffff"/><g style="color:#2a2521" '
+    placed = [f'<g transform="translate({x} {y})">{part}</g>' for x, y, part in parts]
+    return showing.svg(930, 460, design.name, [paper, 'font-family="sans-serif">', *placed, "</g>"])
+
+
+def section(design: Design, answer: Answer, files: dict[ExportKind, str]) -> str:
+    """The part of the page about a design."""
+    rows = []
+    for d in Direction:
+        along = answer.along(d)
+        modulus, size = along.modulus_interval_n_per_mm, along.relaxed_interval_mm
+        rows.append(
+            f"| {'rows' if d is Direction.COURSE else 'columns'} "
+            f"| {along.modulus_n_per_mm:.3f} ({modulus.low:.3f} to {modulus.high:.3f}) "
+            f"| {float(along.strain([0.1])[0]):.0%} "
+            f"| {along.relaxed_mm:.2f} ({size.low:.2f} to {size.high:.2f}) |"
+        )
+    links = ", ".join(f"[{KINDS[kind]}](gallery/{name})" for kind, name in files.items())
+    return "\n".join(
+        [
+            f"## {design.name}",
+            "",
+            f"{design.note} In {design.material}; {answer.provenance}.",
+            "",
+            f"![{design.name}: chart, extensibility and curves](gallery/{design.identifier}.svg)",
+            "",
+            "| along | Young's modulus, N/mm | stretch at 0.1 N/mm | stitch at rest, mm |",
+            "|---|---|---|---|",
+            *rows,
+            "",
+            f"Files: {links}.",
+            "",
+        ]
+    )
+
+
+def main() -> None:
+    folder = DOCS / "gallery"
+    folder.mkdir(exist_ok=True)
+    parts = [HEAD]
+    for design in designs():
+        yarn = material(design.material)
+        answer = predict(design.chart, yarn)
+        files = {}
+        for kind in KINDS:
+            file = export_chart(design.chart, kind, yarn, ExportOptions(name=design.name))
+            files[kind] = f"{design.identifier}{file.suffix}"
+            (folder / files[kind]).write_bytes(file.content)
+        (folder / f"{design.identifier}.svg").write_text(picture(design, answer) + "\n")
+        parts.append(section(design, answer, files))
+    (DOCS / "gallery.md").write_text("\n".join(parts))
+
+
+if __name__ == "__main__":
+    main()
