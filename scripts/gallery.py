@@ -22,13 +22,18 @@ from knitcore.patterns import PATTERNS
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 SIDE = 24
 STRESS_N_PER_MM = np.linspace(0.0, 0.2, 31)
-KINDS = {ExportKind.DESIGN: "design", ExportKind.WRITTEN: "rows in words", ExportKind.KNITOUT: "knitout"}
+KINDS = {
+    ExportKind.DESIGN: "design",
+    ExportKind.WRITTEN: "rows in words",
+    ExportKind.KNITOUT: "knitout",
+}
 HEAD = """# Gallery
 
-Ten designs, each of 24 × 24 stitches, with what they do and files to go on with. The chart is on the left, its
-extensibility beside it (as wide as it gives along the rows, as high as along the columns, one scale for each), and on the
-right its stress–strain curves with their 90 % intervals. The design opens in [the studio](studio.md); the knitout program has been
-knitted on a virtual machine. Made by `python scripts/gallery.py`.
+Ten designs, each of 24 × 24 stitches, with what they do and files to go on with. The chart is on
+the left, its extensibility beside it (as wide as it gives along the rows, as high as along the
+columns, one scale for each), and on the right its stress–strain curves with their 90 % intervals.
+The design opens in [the studio](studio.md); the knitout program has been knitted on a virtual
+machine. Made by `make gallery`.
 """
 
 
@@ -92,13 +97,13 @@ def picture(design: Design, answer: Answer) -> str:
     ]
     give = answer.extensibility_course_mm_per_n, answer.extensibility_wale_mm_per_n
     parts = [
-        (10, 10, showing.stitches(design.chart.purl)),
-        (455, 40, showing.rectangles([("", *give)], "mm/N")),
-        (610, 10, showing.curves(drawn, "strain", "stress, N/mm")),
+        ("10 10) scale(.5", showing.stitches(design.chart.purl)),
+        ("245 40", showing.rectangles([("", *give)], "mm/N")),
+        ("390 25", showing.curves(drawn, "strain", "stress, N/mm")),
     ]
     paper = '<rect width="100%" height="100%" fill="#ffffff"/><g style="color:#2a2521" '
-    placed = [f'<g transform="translate({x} {y})">{part}</g>' for x, y, part in parts]
-    return showing.svg(930, 460, design.name, [paper, 'font-family="sans-serif">', *placed, "</g>"])
+    placed = [f'<g transform="translate({place})">{part}</g>' for place, part in parts]
+    return showing.svg(700, 245, design.name, [paper, 'font-family="sans-serif">', *placed, "</g>"])
 
 
 def section(design: Design, answer: Answer, files: dict[ExportKind, str]) -> str:

@@ -29,9 +29,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-FORMULA = re.compile(
-    r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL
-)
+FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 ROOT_PAGES = {"contributing.md": "CONTRIBUTING.md", "changelog.md": "CHANGELOG.md"}
 
 
@@ -57,7 +55,11 @@ def commands_page() -> str:
 
     from app.cli.main import main
 
-    parts = ["# Commands", "", "Every command takes `--help`. Made from the command line's own parsers."]
+    parts = [
+        "# Commands",
+        "",
+        "Every command takes `--help`. Made from the command line's own parsers.",
+    ]
     for words, command in _commands(main, click.Context(main, info_name="knitcore"), "knitcore"):
         parts += ["", f"## {words}", "", (command.help or "").strip(), ""]
         context = click.Context(command, info_name=words)
@@ -137,7 +139,11 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     up = "../" * name.count("/")
     for target, source in ROOT_PAGES.items():
         markdown = markdown.replace(f"]({up}../{source}", f"]({up}{target}")
-    markdown = re.sub(rf"\]\({up}\.\./knitcore/(\w+)(?:\.py|/\S*?)?\)", rf"]({up}reference/library/\1.md)", markdown)
+    markdown = re.sub(
+        rf"\]\({up}\.\./knitcore/(\w+)(?:\.py|/\S*?)?\)",
+        rf"]({up}reference/library/\1.md)",
+        markdown,
+    )
     return run(markdown) if name.startswith("notebooks/") else markdown
 
 

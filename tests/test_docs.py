@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,14 +19,12 @@ def _id(page: Path) -> str:
     return str(page.relative_to(ROOT))
 
 
-def _with_examples() -> Iterator[object]:
-    for page in PAGES:
-        if FENCE.search(page.read_text()):
-            marks = [pytest.mark.slow] if page.parent == NOTEBOOKS else []
-            yield pytest.param(page, marks=marks, id=_id(page))
+def _with_examples(page: Path) -> object:
+    marks = [pytest.mark.slow] if page.parent == NOTEBOOKS else []
+    return pytest.param(page, marks=marks, id=_id(page))
 
 
-@pytest.mark.parametrize("page", _with_examples())
+@pytest.mark.parametrize("page", [_with_examples(p) for p in PAGES if FENCE.search(p.read_text())])
 def test_examples_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     namespace: dict[str, object] = {"__name__": "example"}
