@@ -160,7 +160,12 @@ def authors_curve() -> list[str]:
 
 def remarks(outcomes: list[Outcome]) -> list[str]:
     """Jumps, quenching variants and the effect of the midpoint derivative."""
-    lines = []
+    lines = [
+        "The shape jumps where the way out and the way back give different states, or where it "
+        "changes four times as much as around a step while the force falls or the energy changes "
+        "by more than the work done.",
+        "",
+    ]
     for o in outcomes:
         for sweep in (o.course, o.wale):
             lines.extend(

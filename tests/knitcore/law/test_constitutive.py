@@ -150,6 +150,14 @@ def test_an_asymmetric_law_has_no_energy():
         material("acrylic:published").law(Fabric.RIB).energy_density(0.1, 0.0)
 
 
+def test_a_sheet_at_rest_has_no_energy_and_shear_costs_twice_g_times_its_square():
+    law = material("acrylic").law(Fabric.GARTER).symmetrised()
+    assert law.energy_density(0.0, 0.0) == 0
+    sheared = law.energy_density(0.1, 0.2, [0.0, 0.05, -0.05])
+    assert sheared[1] == sheared[2]
+    assert sheared[1] - sheared[0] == pytest.approx(2 * law.shear_modulus * 0.05**2)
+
+
 @given(laws, st.sampled_from(Direction))
 def test_a_small_pull_shows_modulus_and_poisson_ratio(law, direction):
     curve = uniaxial_response(law, direction, [1e-7])
@@ -227,12 +235,20 @@ def test_a_law_without_stiffening_never_locks():
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"stiffness_xxxx": 0.0}, "stiffness_xxxx"),
-        ({"shear_modulus": -1.0}, "shear_modulus"),
-        ({"alpha_yy": -0.1}, "alpha_yy"),
-        ({"beta_xx": float("nan")}, "beta_xx"),
+        *(
+            ({name: bad}, name)
+            for name in ("stiffness_xxxx", "stiffness_yyyy", "shear_modulus")
+            for bad in (0.0, -1.0, float("nan"))
+        ),
+        *(
+            ({name: bad}, name)
+            for name in ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy")
+            for bad in (-0.1, float("inf"))
+        ),
         ({"stiffness_xxyy": -0.1}, "stiffness_yyxx"),
+        ({"stiffness_yyxx": -0.1}, "stiffness_yyxx"),
         ({"stiffness_xxyy": 2.0}, "stiffness_xxyy"),
+        ({"stiffness_xxyy": 0.45}, "stiffness_xxyy"),  # the determinant is 0
     ],
 )
 def test_unphysical_constants_are_refused_by_name(change, field):
@@ -247,6 +263,7 @@ def test_unphysical_constants_are_refused_by_name(change, field):
         "beta_yy": 0.01,
     }
     ConstitutiveLaw(**sound)
+    ConstitutiveLaw(**sound | dict.fromkeys(("alpha_xx", "beta_yy", "kappa_xx"), 0.0))
     with pytest.raises(InputError) as caught:
         ConstitutiveLaw(**{**sound, **change})
     assert caught.value.field == field
