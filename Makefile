@@ -58,7 +58,7 @@ test: $(VENV)/.installed-dev frontend-check page ## Run the default suite (brows
 	scripts/ensure-chromium
 	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
 
-test-slow: $(VENV)/.installed-dev ## Run the tests that compute for many seconds
+test-slow: $(VENV)/.installed-dev page ## Run the tests that compute for many seconds, or install the wheels
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
 test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real PostgreSQL
