@@ -40,7 +40,7 @@ class HeldInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return Held(self.edge, self.x_mm, self.y_mm)
+        return self.into(Held)
 
 
 class PulledInput(RequestModel):
@@ -53,7 +53,7 @@ class PulledInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return Pulled(self.edge, self.x_n, self.y_n)
+        return self.into(Pulled)
 
 
 class TractionInput(RequestModel):
@@ -66,7 +66,7 @@ class TractionInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return Traction(self.edge, self.x_n_per_mm, self.y_n_per_mm)
+        return self.into(Traction)
 
 
 class SewnInput(RequestModel):
@@ -78,7 +78,7 @@ class SewnInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return Sewn(self.edge, self.stiffness_n)
+        return self.into(Sewn)
 
 
 ConditionInput = Annotated[
@@ -106,7 +106,7 @@ class PieceInput(RequestModel):
 
     def piece(self) -> CutPiece:
         """As the library has it."""
-        return CutPiece(self.outline, self.holes, self.grain_deg, self.edges)
+        return self.into(CutPiece)
 
 
 class PieceTestRequest(LawsRequest):

@@ -17,11 +17,10 @@ from skfem import (
     MeshQuad,
 )
 
+from knitcore.arrays import Array
 from knitcore.piece.cloth import Cloth
 from knitcore.swatch.kernel import respond
 from knitcore.swatch.models import EnergyModel
-
-Array = NDArray[np.float64]
 
 QUADRATURE_ORDER = 4
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import quarter_laws
+from knitcore.arrays import Array
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
 from knitcore.materials.material import Material
@@ -16,8 +17,6 @@ from knitcore.piece.outline import CutPiece
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import chart_sheet
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

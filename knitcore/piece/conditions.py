@@ -11,10 +11,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.piece.outline import CutPiece
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 MAX_SHEAR_ANGLE = 1.2

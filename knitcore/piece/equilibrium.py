@@ -13,15 +13,13 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError
 from knitcore.gridsolver.factor import IndefiniteTangentError, positive_definite_factor
 from knitcore.piece.assembly import Assembled, PieceEnergy
 from knitcore.piece.conditions import Constraints
 from knitcore.swatch.solver import MAX_HALVINGS, MAX_NEWTON_STEPS, StepError
-
-Array = NDArray[np.float64]
 
 Solve = Callable[[Array], Array]
 """Solves with a tangent, for the unknowns."""

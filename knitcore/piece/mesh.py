@@ -15,10 +15,10 @@ import shapely
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.piece.outline import CutPiece
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 MAX_ELEMENTS = 20_000

@@ -9,11 +9,10 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 
-Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 MAX_CORNERS = 500

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.law.stiffening import EXTENSION_START, StiffeningForm
 from knitcore.piece.assembly import PieceEnergy
@@ -16,8 +16,6 @@ from knitcore.piece.conditions import Condition, Constraints
 from knitcore.piece.equilibrium import Equilibrium
 from knitcore.piece.outline import CutPiece
 from knitcore.swatch.fields import fibre_strains, response, stiffening_of
-
-Array = NDArray[np.float64]
 
 SUFFIXES = (".npz", ".csv", ".vtu")
 

@@ -11,17 +11,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import SPREAD_AT
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.gridsolver.factor import positive_definite_factor
 from knitcore.materials.material import Material
 from knitcore.piece.results import PieceTest
 from knitcore.swatch.margins import sampled_steps
 from knitcore.swatch.uncertainty import STEP, law_parameters
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -21,8 +21,6 @@ from knitcore.piece.solve import solve
 from knitcore.piece.spread import force_log_sd
 from knitcore.swatch.run import Progress
 from knitcore.swatch.strip import LOCK_UP_SHARE, MAX_STRAIN
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
