@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
-from pydantic import BaseModel
 
 from app.designs.conditions import etag, knows
 from app.designs.document import (
@@ -24,15 +23,12 @@ from app.designs.document import (
     Versions,
     VersionSummary,
 )
-from app.designs.idempotency import Retry
+from app.designs.parameters import MISSING, Cursor, Limit, Owner, Responses, RetryOf
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
-from app.http.identity import asking
 from app.http.problems import Problem
 from app.viewer.design_id import DesignId
 
-Responses = dict[int | str, dict[str, Any]]
-MISSING: Responses = {404: {"model": Problem, "description": "No such thing, or it is not yours."}}
 CONFLICT: Responses = {
     409: {"model": Problem, "description": "It does not go with the present state."}
 }
@@ -43,19 +39,8 @@ CONDITIONAL: Responses = {
 
 router = APIRouter(tags=["designs"], responses=MISSING)
 
-Owner = Annotated[str, Depends(asking)]
 IfMatch = Annotated[
     str | None, Header(description="The ETag of the state that was changed.", max_length=200)
-]
-Key = Annotated[
-    str | None,
-    Header(
-        alias="Idempotency-Key",
-        min_length=8,
-        max_length=200,
-        pattern=r"^[\x21-\x7e]+$",
-        description="With the same key and body a request takes effect once.",
-    ),
 ]
 Number = Annotated[int, Path(ge=1, le=1_000_000, description="Number of a version.")]
 Token = Annotated[str, Path(min_length=1, max_length=100, pattern=r"^[A-Za-z0-9_-]+$")]
@@ -74,16 +59,6 @@ Store = Annotated[DesignStore, Depends(_store)]
 Links = Annotated[Sharing, Depends(_sharing)]
 
 
-def retry_of(
-    owner: str, key: str | None, request: Request, body: BaseModel | None = None
-) -> Retry | None:
-    """The idempotency key of a request, if it has one."""
-    if key is None:
-        return None
-    content = "" if body is None else body.model_dump_json()
-    return Retry.of(owner, key, request.method, request.url.path, content)
-
-
 def _tagged(response: Response, design: Design) -> Design:
     response.headers["ETag"] = etag(design.revision)
     return design
@@ -98,8 +73,8 @@ def _created(response: Response, design: Design) -> Design:
 def get_designs(
     store: Store,
     owner: Owner,
-    limit: Annotated[int, Query(ge=1, le=200)] = 50,
-    cursor: Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")] = None,
+    limit: Limit = 50,
+    cursor: Cursor = None,
     deleted: Annotated[bool, Query(description="List what can be recovered instead.")] = False,
 ) -> DesignPage:
     """A page of summaries; ask with ``next_cursor`` for the next one."""
@@ -111,12 +86,11 @@ def post_design(
     body: DesignDocument,
     store: Store,
     owner: Owner,
-    request: Request,
     response: Response,
-    key: Key = None,
+    retry: RetryOf,
 ) -> Design:
     """The document of a design file; the chart is kept in its canonical text."""
-    return _created(response, store.create(owner, body, retry_of(owner, key, request, body)))
+    return _created(response, store.create(owner, body, retry(body)))
 
 
 @router.get(
@@ -185,12 +159,11 @@ def post_duplicate(
     design: DesignId,
     store: Store,
     owner: Owner,
-    request: Request,
     response: Response,
-    key: Key = None,
+    retry: RetryOf,
 ) -> Design:
     """A new design with the same content."""
-    return _created(response, store.duplicate(owner, design, retry_of(owner, key, request)))
+    return _created(response, store.duplicate(owner, design, retry(None)))
 
 
 @router.delete(
@@ -227,11 +200,10 @@ def post_version(
     body: VersionRequest,
     store: Store,
     owner: Owner,
-    request: Request,
-    key: Key = None,
+    retry: RetryOf,
 ) -> VersionSummary:
     """Versions are never changed or overwritten."""
-    return store.keep_version(owner, design, body.name, retry_of(owner, key, request, body))
+    return store.keep_version(owner, design, body.name, retry(body))
 
 
 @router.get("/designs/{design}/versions/{number}", summary="A kept state")
@@ -294,9 +266,8 @@ def post_copy(
     token: Token,
     links: Links,
     owner: Owner,
-    request: Request,
     response: Response,
-    key: Key = None,
+    retry: RetryOf,
 ) -> Design:
     """A design of your own, if the link allows it."""
-    return _created(response, links.copy(owner, token, retry_of(owner, key, request)))
+    return _created(response, links.copy(owner, token, retry(None)))

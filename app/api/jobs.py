@@ -7,26 +7,23 @@ import contextlib
 from collections.abc import AsyncIterator
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Request, Response
 from fastapi.responses import StreamingResponse
 
-from app.api.designs import Key, retry_of
 from app.designs.conditions import ConflictError
-from app.http.identity import asking
+from app.designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
 from app.http.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
 from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.jobs.kinds import JobRequest, JobResult
 from app.jobs.runner import JobRunner
 
-MISSING = {"model": Problem, "description": "No such thing, or it is not yours."}
 EVENT_PERIOD_S = 0.25
 HEARTBEATS = 60
 """Periods without a change after which a line is sent, so that a vanished client is noticed."""
 
-router = APIRouter(tags=["jobs"], responses={404: MISSING})
+router = APIRouter(tags=["jobs"], responses=MISSING)
 
-Owner = Annotated[str, Depends(asking)]
 JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
@@ -43,13 +40,11 @@ async def post_job(
     body: JobRequest,
     runner: Runner,
     owner: Owner,
-    request: Request,
     response: Response,
-    key: Key = None,
+    retry: RetryOf,
 ) -> JobStatus:
     """Waits for its turn among all users; if the result is known, the job is done at once."""
-    retry = retry_of(owner, key, request, body)
-    status = await runner.submit(owner, body.kind, body.request.model_dump_json(), retry)
+    status = await runner.submit(owner, body.kind, body.request.model_dump_json(), retry(body))
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status
 
@@ -58,8 +53,8 @@ async def post_job(
 async def get_jobs(
     runner: Runner,
     owner: Owner,
-    limit: Annotated[int, Query(ge=1, le=200)] = 50,
-    cursor: Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")] = None,
+    limit: Limit = 50,
+    cursor: Cursor = None,
 ) -> JobPage:
     """Jobs are kept for 30 days."""
     return await asyncio.to_thread(runner.store.page, owner, limit=limit, cursor=cursor)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi import APIRouter, Path, Request, Response
 
 from app.budgets import BUDGETS, InUse, Use
+from app.designs.parameters import Owner
 from app.designs.store import DesignStore
-from app.http.identity import asking, current_session
+from app.http.identity import current_session
 from app.http.problems import NotFoundError, Problem
 from app.http.security import SESSION_COOKIE
 from app.http.sessions import Sessions, SignedIn
@@ -16,7 +17,6 @@ from app.http.tokens import Login
 
 router = APIRouter(tags=["session"])
 
-Owner = Annotated[str, Depends(asking)]
 SessionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="Of a session.")]
 
 

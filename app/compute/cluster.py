@@ -40,13 +40,13 @@ class ClusterError(NotBegunError):
 class Cluster:
     """The connection to a scheduler, made when it is needed, and again when it was lost.
 
-    Parameters
+    Attributes
     ----------
     address : of the scheduler, such as ``tcp://scheduler:8786``.
     """
 
     def __init__(self, address: str) -> None:
-        self._address = address
+        self.address = address
         self._client: Client | None = None
         self._lock = threading.Lock()
         self.listeners: dict[str, ClusterPlace] = {}
@@ -101,10 +101,10 @@ class Cluster:
             if self._client is not None:
                 self._client.close(timeout=2)
             try:
-                self._client = Client(self._address, timeout=CONNECT_S, set_as_default=False)
+                self._client = Client(self.address, timeout=CONNECT_S, set_as_default=False)
             except (OSError, TimeoutError) as error:
                 self._client = None
-                log.warning("no scheduler answers at %s: %s", self._address, error)
+                log.warning("no scheduler answers at %s: %s", self.address, error)
                 raise ClusterError("The machines that compute cannot be reached.") from None
             self._client.subscribe_topic(TOPIC, self._hear)
             return self._client

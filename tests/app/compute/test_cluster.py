@@ -185,6 +185,6 @@ def test_a_lost_cluster_is_reported_and_found_again(
     compute = Compute([ClusterPlace(cluster)], timeout_s=60.0)
     with pytest.raises(ClusterError, match="cannot be reached"):
         asyncio.run(compute.run(never, jobs.add, 1, 1))
-    monkeypatch.setattr(cluster, "_address", address)
+    monkeypatch.setattr(cluster, "address", address)
     assert asyncio.run(compute.run(never, jobs.add, 1, 1)) == 2
     cluster.close()

@@ -1,0 +1,46 @@
+"""Parameters of requests about what is kept: who asks, pages of a list, repeated requests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from fastapi import Depends, Header, Query, Request
+from pydantic import BaseModel
+
+from app.designs.idempotency import Retry
+from app.http.identity import asking
+from app.http.problems import Problem
+
+Responses = dict[int | str, dict[str, Any]]
+MISSING: Responses = {404: {"model": Problem, "description": "No such thing, or it is not yours."}}
+
+Owner = Annotated[str, Depends(asking)]
+Limit = Annotated[int, Query(ge=1, le=200)]
+Cursor = Annotated[str | None, Query(max_length=100, pattern=r"^[^\x00]*$")]
+Key = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        min_length=8,
+        max_length=200,
+        pattern=r"^[\x21-\x7e]+$",
+        description="With the same key and body a request takes effect once.",
+    ),
+]
+
+
+async def _retries(
+    request: Request, owner: Owner, key: Key = None
+) -> Callable[[BaseModel | None], Retry | None]:
+    def retry(body: BaseModel | None) -> Retry | None:
+        if key is None:
+            return None
+        content = "" if body is None else body.model_dump_json()
+        return Retry.of(owner, key, request.method, request.url.path, content)
+
+    return retry
+
+
+RetryOf = Annotated[Callable[[BaseModel | None], Retry | None], Depends(_retries)]
+"""Makes the idempotency key of a request with a body or without, if the request has one."""
