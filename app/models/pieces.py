@@ -171,8 +171,8 @@ def of_test(test: PieceTest) -> dict[str, Any]:
     """Fields of every result."""
     past = bool(test.found) and test.is_past_the_law()
     told = (
-        "Some cloth is past 98 % of its lock-up. There the law is only continued, and forces are "
-        "not those of any fabric."
+        "Some cloth is past 98 % of its lock-up. There the law is extrapolated: do not rely on "
+        "the forces."
     )
     return {
         "energy_n_mm": test.energy_n_mm,
