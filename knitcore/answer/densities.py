@@ -50,6 +50,9 @@ _NO_CHANGE = 1e-12
 _FEW_CROSSINGS = 0.1
 """Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""
 
+_FEW_OTHERS = 0.05
+"""Share of other fabrics at which a chart is about as unsure as a mixed one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Densities:
@@ -74,6 +77,13 @@ class Densities:
     def arrays(self) -> tuple[Array, Array, Array, Array]:
         """All four."""
         return self.shares, self.excess, self.straight, self.ways
+
+    @property
+    def mixed(self) -> Array:
+        """(…,) 0 in a pure fabric, nearly 1 from a tenth of other fabrics on: the part of what
+        remains unknown of a mixed chart that is unknown of this one.
+        """
+        return np.asarray(1 - np.exp((self.shares.max(axis=-1) - 1) / _FEW_OTHERS))
 
     @property
     def features(self) -> Array:

@@ -217,6 +217,7 @@ class LearnedModel:
         slopes = self.slopes * follows(mixture)
         values = means[0] + slopes @ fold
         spread = found.ways @ self.unfolding_scale
+        spread[:12] *= found.mixed  # next to a pure fabric little is left to learn
         deviations = np.sqrt(spread**2 * variance[0] + slopes**2 @ fold_sd**2)
         return LearnedAnswer(
             size_mm=flat_mm * np.exp(fold),
@@ -238,11 +239,12 @@ class LearnedModel:
         fold, variance : (m, 2), (m,) at the yarn level.
         simulated : for yarn-level fabric, which folds more than knitted fabric.
         """
-        deviation = found.ways @ self.folding_scale * np.sqrt(variance)[:, None]
+        part = np.asarray(found.mixed)[..., None]
+        deviation = part * (found.ways @ self.folding_scale) * np.sqrt(variance)[:, None]
         if simulated:
             return fold, deviation
         shown = found.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
-        return shown * fold, np.hypot(SHOWN_LOG_SD, shown * deviation)
+        return shown * fold, np.hypot(part * SHOWN_LOG_SD, shown * deviation)
 
     def relaxed_mm(self, found: Densities, material: Material) -> Array:
         """(m, 2) relaxed width and height of m charts.

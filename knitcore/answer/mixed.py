@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from knitcore.answer.answer import GAUGE, Along, Answer, Source
 from knitcore.answer.densities import Densities
 from knitcore.answer.learned import LearnedAnswer, SweptChart, packaged_model
-from knitcore.answer.measured import CURL
+from knitcore.answer.measured import CURL, GAUGE_LOG_SD
 from knitcore.answer.mixture import Mixture
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
@@ -54,7 +54,8 @@ def mixed(
         If the material lacks a pure fabric that the repeat needs.
     """
     learned = packaged_model().answer(found, material, gauge, swept)
-    course, wale = (_along(learned, direction) for direction in Direction)
+    own = 0.0 if gauge is not None else GAUGE_LOG_SD * (1 - float(found.mixed))
+    course, wale = (_along(learned, direction, own) for direction in Direction)
     parts = learned.mixture.parts
     shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
     source = Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE
@@ -72,7 +73,7 @@ def mixed(
     )
 
 
-def _along(found: LearnedAnswer, direction: Direction) -> Along:
+def _along(found: LearnedAnswer, direction: Direction, own_size_log_sd: float) -> Along:
     response = _response(found, direction)
     held = float(found.mixture.shares_of_strain(direction, 0.0)[1])
     bounds = (*found.mixture.bounds_n_per_mm(direction), response.modulus_n_per_mm)
@@ -85,7 +86,7 @@ def _along(found: LearnedAnswer, direction: Direction) -> Along:
         poisson=float(found.poisson[direction.axis]),
         poisson_sd=float(found.poisson_sd[direction.axis]),
         relaxed_mm=float(found.size_mm[direction.axis]),
-        relaxed_log_sd=float(found.size_log_sd[direction.axis]),
+        relaxed_log_sd=math.hypot(found.size_log_sd[direction.axis], own_size_log_sd),
         bounds_n_per_mm=Interval(min(bounds), max(bounds)),
     )
 

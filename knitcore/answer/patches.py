@@ -1,7 +1,8 @@
 """Large charts: patches of stitches, each with its own answer, that pull on each other.
 
 A repeat of at most :data:`SIDE` stitches a side, a rib or a welt is one patch. A larger chart is
-cut into patches of about that size. Each is a pure fabric or a mixed chart of its own. The
+cut into patches of about that size. Each is a pure fabric or a mixed chart of its own; up to twice
+that size, its densities pass gradually from those of the whole chart to its own. The
 densities of mixed patches are shifted so that their mean is the whole chart's: a cut across a
 repeat then does not change the result for the whole.
 
@@ -169,11 +170,15 @@ def patches_of(
     parts = [repeat.region(*cell) for cell in cells]
     found = [densities(part) for part in parts]
     moved = _difference(densities(repeat), found, [part.purl.size for part in parts])
+    # a chart that has just outgrown one patch is answered almost as one
+    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0)
     shifted = [_sum(own, moved) for own in found]
+    if apart < 1:
+        shifted = [_between(densities(repeat), own, apart) for own in shifted]
 
     def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
         given = zip(parts, shifted, sizes, strict=True)
-        flat = [_patch(part, own, material, size) for part, own, size in given]
+        flat = [_patch(part, own, material, size, apart < 1) for part, own, size in given]
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
         return Patches(rows, columns, tuple(lines))
@@ -193,10 +198,14 @@ def patches_of(
 
 
 def _patch(
-    part: StitchChart, found: Densities, material: Material, gauge: RelaxedSize | None
+    part: StitchChart,
+    found: Densities,
+    material: Material,
+    gauge: RelaxedSize | None,
+    blended: bool,
 ) -> Answer:
     fabric = pure_fabric(part)
-    if fabric is None:
+    if fabric is None or blended:
         return mixed(part, found, material, gauge)
     answer = measured(fabric, material)
     return answer if gauge is None else answer.with_size(gauge)
@@ -215,6 +224,12 @@ def _difference(whole: Densities, parts: Sequence[Densities], counts: Sequence[i
     own = zip(*(part.arrays for part in parts), strict=True)
     means = (np.average(np.stack(values), axis=0, weights=counts) for values in own)
     return Densities(*(a - mean for a, mean in zip(whole.arrays, means, strict=True)))
+
+
+def _between(whole: Densities, part: Densities, share: float) -> Densities:
+    """Densities that lie between those of the whole chart (share 0) and of a part (1)."""
+    pairs = zip(whole.arrays, part.arrays, strict=True)
+    return Densities(*((1 - share) * one + share * other for one, other in pairs))
 
 
 def _sum(own: Densities, moved: Densities) -> Densities:

@@ -94,7 +94,8 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
             here = slice(below, above), slice(left, right)
             cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
             number[here] = len(laws) // len(PHASES)
-            if pure_fabric(chart.region(*here)) is not None:
+            learned = answer.provenance.startswith("learned")
+            if not learned and pure_fabric(chart.region(*here)) is not None:
                 laws += _own_laws(cells, material)
                 continue
             laws += _fitted_laws(cells, answer, material, even)

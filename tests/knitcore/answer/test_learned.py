@@ -63,7 +63,7 @@ def test_one_stitch_in_1024_changes_an_answer_by_at_most_3_percent(
     before, after = (learned(c, material(yarn)) for c in (whole, StitchChart(flipped)))
     assert after.size_mm == pytest.approx(before.size_mm, rel=0.03)
     assert strains(after) == pytest.approx(strains(before), rel=0.03)
-    assert after.log_ratio_sd == pytest.approx(before.log_ratio_sd, rel=0.1)
+    assert after.log_ratio_sd == pytest.approx(before.log_ratio_sd, rel=0.1, abs=0.03)
 
 
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])

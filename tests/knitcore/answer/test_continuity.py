@@ -1,0 +1,81 @@
+"""Answers change by no more than the chart does: single stitches, run lengths, growing pieces."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from knitcore import StitchChart, predict
+from knitcore.fabric import Direction
+from knitcore.materials import material
+
+LOADS = [0.05, 0.1, 0.2]
+CLOTHS = ["K", "K/P", "KP", "KP/PK", "KKPP", "K/K/P/P", "KKPP/KKPP/PPKK/PPKK", "KKKKPPPP"]
+
+
+def values(chart: StitchChart, name: str = "acrylic") -> tuple[NDArray[np.float64], ...]:
+    """Logarithms of strains and relaxed sizes; of the ratios of the ends of strains' intervals."""
+    answer = predict(chart, material(name))
+    found, widths = [], []
+    for along in (answer.along(direction) for direction in Direction):
+        low, high = along.strain_interval(LOADS)
+        found += [*np.log(along.strain(LOADS)), np.log(along.relaxed_mm)]
+        widths += [*np.log(high / low)]
+    return np.array(found), np.array(widths)
+
+
+def change(one: StitchChart, other: StitchChart, name: str = "acrylic") -> tuple[float, float]:
+    """Largest change of a strain or size, and of an interval's width."""
+    pairs = zip(values(one, name), values(other, name), strict=True)
+    found, widths = (float(np.abs(a - b).max()) for a, b in pairs)
+    return found, widths
+
+
+def one_stitch(text: str, side: int) -> tuple[StitchChart, StitchChart]:
+    cloth = StitchChart.parse(text).resized(side, side)
+    purl = cloth.purl.copy()
+    purl[side // 2, side // 2] ^= True
+    return cloth, StitchChart(purl)
+
+
+@pytest.mark.parametrize("side", [8, 16, 32, pytest.param(64, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("text", CLOTHS)
+def test_one_stitch_counts_as_one_stitch(text: str, side: int) -> None:
+    """3 % at one in 1,024, and in proportion; intervals likewise."""
+    assert max(change(*one_stitch(text, side))) < 31 / side**2
+
+
+@pytest.mark.parametrize("name", ["cotton", "lace-cashmere"])
+@pytest.mark.parametrize("text", CLOTHS)
+def test_one_stitch_in_256_counts_as_one_in_other_yarns(text: str, name: str) -> None:
+    found, widths = change(*one_stitch(text, 16), name)
+    assert found < 31 / 256
+    assert widths < 0.3  # of cotton rib, whose stretch is known to a factor of five
+
+
+@pytest.mark.parametrize("name", ["acrylic", "cotton"])
+@pytest.mark.parametrize("kind", ["rib", "welt", "single purls"])
+def test_runs_one_stitch_longer_change_little(kind: str, name: str) -> None:
+    """4 to 12 stitches: 30 % at most; from 6 on 15 %."""
+    charts = []
+    for length in range(4, 13):
+        text = "K" * length + "P" * (1 if kind == "single purls" else length)
+        charts.append(StitchChart.parse("/".join(text) if kind == "welt" else text))
+    steps = np.array([change(a, b, name) for a, b in pairwise(charts)])
+    assert steps.max() < np.log(1.3)
+    assert steps[2:].max() < np.log(1.15)
+
+
+@pytest.mark.parametrize("above", ["K", "KP/PK"])
+def test_a_growing_piece_keeps_its_answer(above: str) -> None:
+    """A ribbed hem below a third of the height, from one patch to several."""
+    pieces = []
+    for side in range(14, 25):
+        hem, body = (StitchChart.parse(text) for text in ("KKPP", above))
+        rows = side // 3
+        parts = [hem.resized(rows, side).purl, body.resized(side - rows, side).purl]
+        pieces.append(values(StitchChart(np.vstack(parts)))[0])
+    assert np.abs(np.diff(np.array(pieces), axis=0)).max() < 0.15
