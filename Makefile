@@ -103,7 +103,7 @@ format: $(VENV)/.installed-dev frontend/node_modules/.installed ## Format the co
 bench: $(VENV)/.installed-dev ## Print the benchmarks (CPU time and ratios)
 	for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
-bench-service: $(VENV)/.installed-dev ## Fifty people paint at once; SECONDS=600 for ten minutes
+bench-service: $(VENV)/.installed-dev ## Fifty people paint beside computations; SECONDS=600 for ten minutes
 	$(BIN)/python benchmarks/service.py
 
 docs: $(VENV)/.installed-dev ## Run every example of the documentation

@@ -104,8 +104,9 @@ class JobRunner:
     async def cancel(self, owner: str, job: str) -> JobStatus:
         """Stop a job; one that has ended stays as it is."""
         await asyncio.to_thread(self.store.get, owner, job)
-        await asyncio.to_thread(self.store.end, job, JobState.CANCELLED)
         run = self._runs.get(job)
+        reached = {} if run is None else {"progress": run.progress}
+        await asyncio.to_thread(self.store.end, job, JobState.CANCELLED, **reached)
         if run is not None:
             run.cancelled = True
         return await self.status(owner, job)

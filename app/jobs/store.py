@@ -114,8 +114,8 @@ class JobStore:
         """Put a running job back in the queue."""
         return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None, progress=0.0)
 
-    def end(self, job: str, state: JobState, problem: Problem | None = None) -> bool:
-        """Close an open job; False if it was closed before."""
+    def end(self, job: str, state: JobState, problem: Problem | None = None, **values: Any) -> bool:
+        """Close an open job, and change ``values`` of it; False if it was closed before."""
         packed = None if problem is None else problem.model_dump_json()
         return self._move(
             job,
@@ -123,6 +123,7 @@ class JobStore:
             state,
             problem=packed,
             finished_at=now(),
+            **values,
         )
 
     def _move(self, job: str, before: tuple[JobState, ...], after: JobState, **values: Any) -> bool:

@@ -2645,6 +2645,7 @@ JobResult = (
     | CompressionResult
     | CurlResult
     | CurveResult
+    | ExportResult
     | FillResult
     | FindResult
     | FitResult

@@ -202,7 +202,8 @@ def test_progress_and_cancel(database: Database, compute: Compute) -> None:
         async with asyncio.timeout(10):
             while runner.counts()["running"]:
                 await asyncio.sleep(0.02)
-        assert (await runner.status("ada", job)).state is JobState.CANCELLED
+        status = await runner.status("ada", job)
+        assert (status.state, status.progress) == (JobState.CANCELLED, 0.25)
         assert (await runner.cancel("ada", job)).state is JobState.CANCELLED
         assert runner.store.result("ada", job) is None
 
