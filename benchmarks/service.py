@@ -3,9 +3,10 @@
 Each user has a design of 100 x 100 stitches and paints a stroke of ten stitches five times a
 second: it is durable when it is acknowledged, and the answer holds the map of the changed stitches.
 Stretch tests, predictions and shapes are computed at the same time in every other slice, so that
-other load on the machine affects slices with and without them alike. Then 20 designs' views are opened and dropped ten times. Every
-figure is printed with its target; the exit code is 1 if one is missed. Each slice is printed with
-the time the disk alone takes to keep 4 kB: the pauses of a shared disk are in every stroke's time.
+other load on the machine affects slices with and without them alike. Then 20 designs' views are
+opened and dropped ten times. Every figure is printed with its target; the exit code is 1 if one is
+missed. Each slice is printed with the time the disk alone takes to keep 4 kB: the pauses of a
+shared disk are in every stroke's time.
 
     make bench-service                     (SECONDS=600 for ten minutes of painting,
                                             FOLDER=/dev/shm to leave the disk out,

@@ -60,7 +60,7 @@ class Painter:
         self.acknowledged = found["revision"]
 
 
-@pytest.mark.timeout(60 + 10 * KILLS)
+@pytest.mark.timeout(60 + 30 * KILLS)
 def test_no_acknowledged_edit_is_lost(tmp_path: Path) -> None:
     service = Service(tmp_path)
     rng = random.Random(2024)  # noqa: S311
