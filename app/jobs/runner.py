@@ -105,8 +105,8 @@ class JobRunner:
         """Stop a job; one that has ended stays as it is."""
         await asyncio.to_thread(self.store.get, owner, job)
         run = self._runs.get(job)
-        reached = {} if run is None else {"progress": run.progress}
-        await asyncio.to_thread(self.store.end, job, JobState.CANCELLED, **reached)
+        progress = None if run is None else run.progress
+        await asyncio.to_thread(self.store.end, job, JobState.CANCELLED, progress=progress)
         if run is not None:
             run.cancelled = True
         return await self.status(owner, job)

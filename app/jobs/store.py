@@ -114,16 +114,24 @@ class JobStore:
         """Put a running job back in the queue."""
         return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None, progress=0.0)
 
-    def end(self, job: str, state: JobState, problem: Problem | None = None, **values: Any) -> bool:
-        """Close an open job, and change ``values`` of it; False if it was closed before."""
+    def end(
+        self,
+        job: str,
+        state: JobState,
+        problem: Problem | None = None,
+        *,
+        progress: float | None = None,
+    ) -> bool:
+        """Close an open job, with the progress it made; False if it was closed before."""
         packed = None if problem is None else problem.model_dump_json()
+        reached = {} if progress is None else {"progress": progress}
         return self._move(
             job,
             (JobState.WAITING, JobState.RUNNING),
             state,
             problem=packed,
             finished_at=now(),
-            **values,
+            **reached,
         )
 
     def _move(self, job: str, before: tuple[JobState, ...], after: JobState, **values: Any) -> bool:

@@ -134,7 +134,6 @@ OPERATION = Operation(
     summary="A chart as a file",
     example={"chart": "KP\nPK", "to": "text"},
     heavy=True,
-    job=True,
     command=Command(
         _text,
         help="Write CHART to a file: knitout is checked on a virtual machine before it is written.",

@@ -2645,7 +2645,6 @@ JobResult = (
     | CompressionResult
     | CurlResult
     | CurveResult
-    | ExportResult
     | FillResult
     | FindResult
     | FitResult

@@ -29,7 +29,6 @@ def job_requests(folder: Path) -> dict[str, dict[str, Any]]:
 
     measured = {"field": _upload(field), "frames": [2]}
     files = {
-        "export": {"chart": "KP\nPK", "to": "svg"},
         "fit": {"test_course": _upload(course), "test_wale": _upload(wale)},
         "bending": {"images": [_upload(photo)]},
         "compression": {"file": _upload(squeezed)},
