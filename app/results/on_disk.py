@@ -1,8 +1,8 @@
 """Results kept by what decides them, in files of the data folder, for commands and for the service.
 
-A name is the digest of all inputs and of the solver (:mod:`knitcore.yarnlibrary.fingerprint`), so a
-result is never found for other inputs, nor after the solver has changed. Files appear as a whole or
-not at all, so any number of processes may share the folder.
+A name is the digest of all inputs and of the code (:mod:`knitcore.yarnlibrary.fingerprint`), so a
+result is never found for other inputs, nor after the solver or the operation has changed. Files
+appear as a whole or not at all, so any number of processes may share the folder.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from knitcore.yarnlibrary.fingerprint import content_key
+from knitcore.yarnlibrary.fingerprint import SOLVERS, content_key
 
 log = logging.getLogger("knitcore.kept")
 
@@ -51,7 +51,7 @@ class KeptResults:
 
         Parameters
         ----------
-        kind : model of the result.
+        kind : model of the result, from the module of what makes it.
         inputs : all that decides it, JSON-able.
         make : computes it.
         fresh : compute it although it may be there, and keep the new one.
@@ -60,7 +60,8 @@ class KeptResults:
         -------
         The result, and whether it had been kept.
         """
-        file = self.folder / f"{content_key({'kind': kind.__name__, **inputs})}.json"
+        modules = (*SOLVERS, kind.__module__)
+        file = self.folder / f"{content_key({'kind': kind.__name__, **inputs}, modules)}.json"
         if not fresh and (found := self._read(kind, file)) is not None:
             return found, True
         result = make()

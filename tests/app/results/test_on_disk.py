@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 from app.cli.main import main
 from app.results.on_disk import KeptResults
+from knitcore.yarnlibrary import fingerprint
 
 
 class Answer(BaseModel):
@@ -35,6 +36,15 @@ def test_the_same_inputs_are_computed_once(tmp_path: Path) -> None:
     assert kept.get_or_make(Answer, {"a": 2}, make) == (Answer(value=2), False)
     assert kept.get_or_make(Answer, {"a": 1}, make, fresh=True) == (Answer(value=3), False)
     assert kept.get_or_make(Answer, {"a": 1}, make) == (Answer(value=3), True)
+
+
+def test_a_result_of_other_code_is_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept, make = KeptResults(tmp_path), Counting()
+    kept.get_or_make(Answer, {"a": 1}, make)
+    monkeypatch.setattr(fingerprint, "code_version", lambda *modules: str(__name__ in modules))
+    assert kept.get_or_make(Answer, {"a": 1}, make) == (Answer(value=2), False)
 
 
 @pytest.mark.parametrize("damage", [b"", b'{"value": 1', b'{"other": 1}', b"\xff\xfe"])
