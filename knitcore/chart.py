@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from knitcore import showing
 from knitcore.errors import InputError
@@ -108,11 +108,6 @@ class StitchChart:
         return cls(np.array(rows[::-1], dtype=bool))
 
     @classmethod
-    def from_rows(cls, rows: ArrayLike) -> StitchChart:
-        """A chart from a nested sequence of booleans, bottom row first, True = purl."""
-        return cls(np.asarray(rows, dtype=bool))
-
-    @classmethod
     def of_fabric(cls, fabric: Fabric | str, rows: int, columns: int) -> StitchChart:
         """A pure fabric of the given size.
 
@@ -167,10 +162,6 @@ class StitchChart:
     def mirror(self) -> StitchChart:
         """The chart reflected left to right (knits stay knits)."""
         return StitchChart(self.purl[:, ::-1])
-
-    def mirror_vertical(self) -> StitchChart:
-        """The chart reflected top to bottom."""
-        return StitchChart(self.purl[::-1])
 
     def swap(self) -> StitchChart:
         """Every knit becomes a purl and every purl a knit, in place."""

@@ -18,13 +18,11 @@ class KnittingCost:
     crossings_per_stitch : times that the yarn passes between face and back, from bed to bed on a
         machine. Every stitch is knitted with the one yarn, so nothing floats.
     curl : knits minus purls on the face, over all stitches; far from 0 the cloth curls.
-    even_share : share of even segments, course-wise and wale-wise together; 1 is stockinette.
     """
 
     transfers_per_stitch: float
     crossings_per_stitch: float
     curl: float
-    even_share: float
 
 
 @dataclass(frozen=True)
@@ -65,5 +63,4 @@ def knitting_cost(repeat: StitchChart) -> KnittingCost:
         transfers_per_stitch=wale,
         crossings_per_stitch=course,
         curl=1.0 - 2.0 * float(repeat.purl.mean()),
-        even_share=1.0 - (course + wale) / 2,
     )

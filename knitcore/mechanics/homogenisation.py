@@ -66,8 +66,6 @@ class EffectiveSheet:
         mirror axis couple stretch and shear.
     voigt_n_per_mm, reuss_n_per_mm : (3, 3), bounds of it.
     poisson_yx, poisson_xy : with the phases' own asymmetry restored.
-    energy_shares : (2, 4) share of each phase in the energy of a pull course-wise and wale-wise:
-        d ln(modulus) / d ln(stiffness of the phase).
     """
 
     stiffness_n_per_mm: Array
@@ -75,7 +73,6 @@ class EffectiveSheet:
     reuss_n_per_mm: Array
     poisson_yx: float
     poisson_xy: float
-    energy_shares: Array
 
     def modulus_n_per_mm(self, direction: Direction) -> float:
         """Young's modulus with the transverse direction and shear free."""
@@ -146,11 +143,9 @@ def homogenise(
     """
     grid = phase_grid(chart, material, periodic=periodic)
     fine = _sheet_grid(grid, material)
-    coarse = coarsened(fine, most_cells)
-    stiffness, energies = _solve(coarse)
-    shares = _energy_shares(grid, coarse, energies)
+    stiffness = _solve(coarsened(fine, most_cells))
     nu_yx, nu_xy = _poisson(stiffness, grid, material)
-    return EffectiveSheet(stiffness, fine.voigt(), fine.reuss(), nu_yx, nu_xy, shares)
+    return EffectiveSheet(stiffness, fine.voigt(), fine.reuss(), nu_yx, nu_xy)
 
 
 def _sheet_grid(grid: PhaseGrid, material: Material) -> SheetGrid:
@@ -180,8 +175,8 @@ stiffness_form = skfem.BilinearForm(_stiffness_density)
 """Virtual work of an orthotropic sheet; its constants are fields at the quadrature points."""
 
 
-def _solve(grid: SheetGrid) -> tuple[Array, Array]:
-    """Effective stiffness (3, 3) and energies (2, rows, columns) of a pull along x and y."""
+def _solve(grid: SheetGrid) -> Array:
+    """Effective stiffness (3, 3)."""
     mesh = PeriodicMesh(grid.width_mm, grid.height_mm)
     fields = {
         name: mesh.cell_field(getattr(grid, name)) for name in ("xxxx", "yyyy", "xxyy", "xyxy")
@@ -198,33 +193,7 @@ def _solve(grid: SheetGrid) -> tuple[Array, Array]:
     )
     response = -factor.solve(coupling)
     condensed = reduced[macro][:, macro].toarray() + coupling.T @ response
-    stiffness = (condensed + condensed.T) / (2 * mesh.area_mm2)
-    unknowns = np.zeros((mesh.map.shape[1], 3))
-    unknowns[free], unknowns[macro] = response, np.eye(3)
-    pulls = mesh.map @ (unknowns @ np.linalg.inv(stiffness)[:, :2])
-    energies = np.stack([mesh.cell_energies(pull, fields) for pull in pulls.T])
-    return stiffness, energies
-
-
-def _energy_shares(grid: PhaseGrid, coarse: SheetGrid, energies: Array) -> Array:
-    """(2, 4) energy by phase; inside a merged cell the phases share it by their area."""
-    rows, columns = coarse.shape
-    area = np.outer(grid.height_mm, grid.width_mm)
-    row = _parents(grid.height_mm, coarse.height_mm)
-    column = _parents(grid.width_mm, coarse.width_mm)
-    cell = (row[:, None] * columns + column[None, :]).ravel()
-    by_phase = np.zeros((rows * columns, 4))
-    np.add.at(by_phase, (cell, grid.phases.ravel()), area.ravel())
-    by_phase /= by_phase.sum(axis=1, keepdims=True)
-    shares = energies.reshape(2, -1) @ by_phase
-    total: Array = shares / shares.sum(axis=1, keepdims=True)
-    return total
-
-
-def _parents(fine: Array, coarse: Array) -> NDArray[np.int64]:
-    """Index of the merged interval that each fine interval lies in."""
-    middle = np.cumsum(fine) - fine / 2
-    return np.minimum(np.searchsorted(np.cumsum(coarse), middle), len(coarse) - 1)
+    return np.asarray((condensed + condensed.T) / (2 * mesh.area_mm2))
 
 
 def poisson_asymmetry(grid: PhaseGrid, material: Material) -> float:

@@ -46,20 +46,6 @@ class PeriodicMesh:
         field: Array = np.repeat(by_element[:, None], self.basis.dx.shape[1], axis=1)
         return field
 
-    def cell_energies(self, displacement: Array, fields: dict[str, Array]) -> Array:
-        """Twice the energy of each grid cell, (rows, columns)."""
-        gradient = self.basis.interpolate(displacement).grad
-        xx, yy, xy = gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]
-        density = (
-            fields["xxxx"] * xx**2
-            + fields["yyyy"] * yy**2
-            + 2 * fields["xxyy"] * xx * yy
-            + fields["xyxy"] * xy**2
-        )
-        energies = np.zeros((len(self._y) - 1, len(self._x) - 1))
-        energies[self._row, self._column] = (density * self.basis.dx).sum(axis=1)
-        return energies
-
     def _set_map(self) -> None:
         x, y = self.basis.doflocs
         size = self.basis.N

@@ -79,14 +79,13 @@ class BendingResponse:
         mm of width). Negative: left free, the fabric curves with its face outside.
     rigidity_n_mm : bending rigidity with the size across free, N·mm.
     held_n_mm : the same with the size across held.
-    strain_along_mm, strain_across_mm : strain of the surface of mean height per curvature, with the
+    strain_across_mm : strain of the surface of mean height across the bend, per curvature, with the
         size across free, mm.
     """
 
     moment_n: float
     rigidity_n_mm: float
     held_n_mm: float
-    strain_along_mm: float
     strain_across_mm: float
 
     @property
@@ -191,7 +190,6 @@ class BentCell:
             moment_n=first / area,
             rigidity_n_mm=(free - first * across) / area,
             held_n_mm=held / area,
-            strain_along_mm=float(strains @ (cos**2, sin**2)),
             strain_across_mm=across,
         )
 

@@ -19,7 +19,7 @@ class Parameter:
     Parameters
     ----------
     name : a field of :class:`YarnModel`, or ``loop_length_mm``.
-    printed, printed_unit : as in the table.
+    printed : as in the table.
     used : the value to compute with, in the unit that ``name`` states.
     configured : the value in the authors' public configuration file where there is one (acrylic).
     reason : why ``used`` differs from ``printed``; empty if it does not.
@@ -27,7 +27,6 @@ class Parameter:
 
     name: str
     printed: float
-    printed_unit: str
     used: float
     configured: float | None
     reason: str
@@ -95,7 +94,6 @@ def load_samples() -> tuple[Sample, ...]:
             Parameter(
                 row["quantity"],
                 float(row["printed"]),
-                row["printed_unit"],
                 float(row["used"]),
                 configured,
                 row["reason"],

@@ -19,7 +19,6 @@ def test_text_is_read_back(chart: StitchChart) -> None:
 def test_mirrors_and_turning_over_undo_themselves(chart: StitchChart) -> None:
     for act in (
         StitchChart.mirror,
-        StitchChart.mirror_vertical,
         StitchChart.swap,
         StitchChart.turn_over,
     ):

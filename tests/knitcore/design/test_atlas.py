@@ -215,19 +215,12 @@ def test_files_that_hold_no_atlas(tmp_path: Path, content: bytes | None) -> None
 
 
 @pytest.mark.parametrize(
-    ("text", "transfers", "curl", "even"),
-    [
-        ("K", 0, 1, 1),
-        ("KP", 0, 0, 0.5),
-        ("K\nP", 1, 0, 0.5),
-        ("KP\nPK", 1, 0, 0),
-        ("KKP", 0, 1 / 3, 2 / 3),
-    ],
+    ("text", "transfers", "curl"),
+    [("K", 0, 1), ("KP", 0, 0), ("K\nP", 1, 0), ("KP\nPK", 1, 0), ("KKP", 0, 1 / 3)],
 )
-def test_costs_of_knitting(text: str, transfers: float, curl: float, even: float) -> None:
+def test_costs_of_knitting(text: str, transfers: float, curl: float) -> None:
     cost = knitting_cost(StitchChart.parse(text))
     assert (cost.transfers_per_stitch, cost.curl) == pytest.approx((transfers, curl))
-    assert cost.even_share == pytest.approx(even if text != "KKP" else (1 / 3 + 1) / 2)
 
 
 @pytest.mark.parametrize("index", range(len(REPEATS)))

@@ -176,7 +176,7 @@ def test_unusable_loop_lengths_are_refused_with_a_bound(loop, chart, field):
 
 
 def test_a_cell_that_is_too_large_is_refused():
-    chart = StitchChart.from_rows(np.random.default_rng(0).random((13, 11)) < 0.5)
+    chart = StitchChart(np.random.default_rng(0).random((13, 11)) < 0.5)
     with pytest.raises(InputError, match="at most 100"):
         relax(chart, STUDY_YARN, 11.28)
 
@@ -206,7 +206,7 @@ def test_random_charts_and_starts_relax_or_fail_by_name():
     relaxed = 0
     for seed in range(12):
         rows, columns = rng.integers(1, 3, 2)
-        chart = StitchChart.from_rows(rng.random((rows, columns)) < 0.5)
+        chart = StitchChart(rng.random((rows, columns)) < 0.5)
         yarn = YarnModel(
             10 ** rng.uniform(-3, -0.5), 10 ** rng.uniform(-4, -2), rng.uniform(1.5, 3.5), 0.74,
             rng.uniform(0.1, 0.36),
