@@ -210,11 +210,6 @@ def rest_separation_mm(parity: Parity, slope: float, length_mm: float) -> float:
     return length_mm / (1 + slope**2 * rate / 2)
 
 
-def small_slope_rest_separation_mm(parity: Parity, slope: float, length_mm: float) -> float:
-    """lambda* to lowest order: L (1 - v²/6) for even, L (1 - v²/10) for odd segments."""
-    return length_mm * (1 - slope**2 / (2 * (parity.order + 2)))
-
-
 def high_tension_energy(
     slope: float, separation_mm: float, length_mm: float, bending_modulus_n_mm2: float
 ) -> float:

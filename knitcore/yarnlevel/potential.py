@@ -23,11 +23,11 @@ def potential(distance: float, k: float, p: float, radius: float, core: float) -
     zeta = (distance - 2.0 * core) / shell
     if zeta >= 1.0:
         return 0.0
-    capped = max(zeta, 1e-5)
+    capped = max(zeta, CAP)
     scale = k * shell * shell / (p * (p - 1.0))
     value = scale * (capped ** (1.0 - p) - 1.0 - (p - 1.0) * (1.0 - capped))
-    if zeta < 1e-5:
-        star = 2.0 * core + 1e-5 * shell
+    if zeta < CAP:
+        star = 2.0 * core + CAP * shell
         value += 100.0 * ((distance - star) / star) ** 2
     return float(value)
 
@@ -41,8 +41,8 @@ def potential_and_derivatives(
     zeta = (distance - 2.0 * core) / shell
     if zeta >= 1.0:
         return 0.0, 0.0, 0.0
-    if zeta < 1e-5:
-        star = 2.0 * core + 1e-5 * shell
+    if zeta < CAP:
+        star = 2.0 * core + CAP * shell
         slope = 200.0 * (distance - star) / (star * star)
         return potential(distance, k, p, radius, core), slope, 200.0 / (star * star)
     power = zeta ** (-p)

@@ -43,8 +43,7 @@ PARAMETERS = (
 
 COUNT = len(PARAMETERS)
 CELL_COURSE, CELL_WALE = COUNT - 2, COUNT - 1
-SEGMENTS = ("B1", "c11", "A1", "c12", "A2", "c22", "B2", "c21")
-"""Names of the curves, in yarn order."""
+# The eight curves in yarn order: B1, c11, A1, c12, A2, c22, B2, c21.
 
 
 def ties(fabric: Fabric) -> Array:
