@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import pairwise
 
 import numpy as np
@@ -26,7 +27,7 @@ from knitcore.answer.measured import measured
 from knitcore.answer.mixed import mixed
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
+from knitcore.fabric import Direction, Fabric
 from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material, Origin
 from knitcore.phases import pure_fabric
@@ -116,12 +117,17 @@ class Patches:
         grid, along, across = self.answers, np.diff(self.columns), np.diff(self.rows)
         if direction is Direction.WALE:
             grid, along, across = tuple(zip(*grid, strict=True)), across, along
+
+        @cache  # patches of one fabric share its answer
+        def strains_of(response: Response, width: float) -> Array:
+            return response.strain(_FORCES_N / width)
+
         heights, curves = [], []
         for line in grid:
             lengths = along * [a.along(direction).relaxed_mm for a in line]
             widths = [a.along(direction.other).relaxed_mm for a in line]
             strains = [
-                kind(a.along(direction)).strain(_FORCES_N / width)
+                strains_of(kind(a.along(direction)), width)
                 for a, width in zip(line, widths, strict=True)
             ]
             curves.append(lengths @ np.array(strains) / lengths.sum())
@@ -176,9 +182,11 @@ def patches_of(
     if apart < 1:
         shifted = [_between(densities(repeat), own, apart) for own in shifted]
 
+    fabrics = cache(partial(measured, material=material)) if apart == 1 else None
+
     def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
         given = zip(parts, shifted, sizes, strict=True)
-        flat = [_patch(part, own, material, size, apart < 1) for part, own, size in given]
+        flat = [_patch(part, own, material, size, fabrics) for part, own, size in given]
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
         return Patches(rows, columns, tuple(lines))
@@ -202,12 +210,12 @@ def _patch(
     found: Densities,
     material: Material,
     gauge: RelaxedSize | None,
-    blended: bool,
+    pure: Callable[[Fabric], Answer] | None,
 ) -> Answer:
     fabric = pure_fabric(part)
-    if fabric is None or blended:
+    if fabric is None or pure is None:
         return mixed(part, found, material, gauge)
-    answer = measured(fabric, material)
+    answer = pure(fabric)
     return answer if gauge is None else answer.with_size(gauge)
 
 

@@ -148,8 +148,9 @@ def _by_newton(
     """Newton's method for the strain at a stress, kept between bounds by halving."""
     along, across = direction.axis, direction.other.axis
     strain = np.minimum(high, 0.5 * law.lock_up_strain(direction))
+    other = np.zeros_like(strain)
     for _ in range(_NEWTON_STEPS):
-        other = free_transverse_strains(law, direction, strain)
+        other = free_transverse_strains(law, direction, strain, start=other)
         pair = _pair(direction, strain, other)
         excess = law.stress(*pair)[along] - stress
         tangent = law.tangent(*pair)
@@ -192,8 +193,13 @@ def free_transverse_strains(
     direction: Direction,
     axial: Array,
     form: StiffeningForm = StiffeningForm.FULL,
+    *,
+    start: Array | None = None,
 ) -> Array:
-    """Transverse strains at which the transverse stress vanishes, at axial strains that exist."""
+    """Transverse strains at which the transverse stress vanishes, at axial strains that exist.
+
+    ``start`` is about where they are.
+    """
     linear = -law.poisson(direction) * axial
     if form is StiffeningForm.PUBLISHED:
         return np.array([_published_free_strain(law, direction, e) for e in axial])
@@ -201,7 +207,7 @@ def free_transverse_strains(
         return linear  # slack yarn does not stiffen: the linear answer is exact
     # The transverse stress grows and is convex in the transverse strain: after its first step
     # Newton's method comes down to the root from one side.
-    axis, across = direction.other.axis, np.zeros_like(axial)
+    axis, across = direction.other.axis, np.zeros_like(axial) if start is None else start
     for _ in range(_NEWTON_STEPS):
         pair = _pair(direction, axial, across)
         step = law.stress(*pair)[axis] / law.tangent(*pair)[..., axis, axis]
