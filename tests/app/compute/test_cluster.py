@@ -39,7 +39,7 @@ def _dask(name: str, folder: Path, *options: str, **changed: str) -> subprocess.
     """What the compose file runs, with some of its words changed and options added."""
     service = COMPOSE["services"][name]
     program, *words = service["command"]
-    assert program == ".venv/bin/dask"
+    assert program == "dask"
     command = [changed.get(word, word) for word in words]
     with (folder / f"{name}.log").open("w") as log:
         return subprocess.Popen(
