@@ -49,7 +49,7 @@ def content_key(kind: str, request: str) -> str:
     """A key of everything that determines a result: the request, the operation's code and data, and
     the versions of packages that bring yarns.
 
-    The first of a kind takes half a second.
+    The first one takes half a second.
     """
     packages = [extension.package for extension in extensions(Group.MATERIALS)]
     content = {"kind": kind, "request": request, "packages": packages}

@@ -11,6 +11,7 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -41,9 +42,9 @@ def code_version(*modules: str) -> str:
             raise ModuleNotFoundError(f"there is no source of {name}", name=name)
     digest = hashlib.sha256()
     data: set[Path] = set()
-    for name, tree in sorted(reached(modules).items()):
-        data.update(_named_data(name, tree))
-        digest.update(f"{name}\0{ast.dump(_without_docstrings(tree))}\0".encode())
+    for name, source in sorted(reached(modules).items()):
+        data.update(_named_data(name, source))
+        digest.update(f"{name}\0{source.digest}\0".encode())
     for file in sorted(data):
         digest.update(file.name.encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()[:16]
@@ -61,20 +62,40 @@ def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) 
     return hashlib.sha256(f"{code_version(*modules)}\0{text}".encode()).hexdigest()[:32]
 
 
-def reached(modules: tuple[str, ...]) -> dict[str, ast.Module]:
-    """Syntax trees of modules and of all that they import, by name."""
+@dataclass(frozen=True)
+class Source:
+    """What counts of a module's source: its imports, names of files in it, a digest of its code."""
+
+    imports: frozenset[str]
+    files: frozenset[str]
+    digest: str
+
+
+def reached(modules: tuple[str, ...]) -> dict[str, Source]:
+    """Modules and all that they import from these packages, by name."""
     packages = {name.partition(".")[0] for name in modules}
     packages.add("knitcore")
-    found: dict[str, ast.Module] = {}
+    found: dict[str, Source] = {}
     waiting = list(modules)
     while waiting:
         name = waiting.pop()
         file = _file(name)
         if name in found or file is None:
             continue
-        found[name] = ast.parse(file.read_text(encoding="utf-8"))
-        waiting += [n for n in _imports(found[name]) if n.partition(".")[0] in packages]
+        found[name] = _read(file.read_text(encoding="utf-8"))
+        waiting += [n for n in found[name].imports if n.partition(".")[0] in packages]
     return found
+
+
+@cache
+def _read(text: str) -> Source:
+    tree = ast.parse(text)
+    constants = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    return Source(
+        imports=frozenset(_imports(tree)),
+        files=frozenset(c for c in constants if isinstance(c, str) and _FILE_NAME.fullmatch(c)),
+        digest=hashlib.sha256(ast.dump(_without_docstrings(tree)).encode()).hexdigest(),
+    )
 
 
 def _file(module: str) -> Path | None:
@@ -92,14 +113,12 @@ def _imports(tree: ast.Module) -> Iterator[str]:
             yield from (name.name for name in node.names)
 
 
-def _named_data(module: str, tree: ast.Module) -> Iterator[Path]:
+def _named_data(module: str, source: Source) -> Iterator[Path]:
     """Files in the data folders around a module that it names."""
     parts = module.split(".")
     folders = [ROOT.joinpath(*parts[:k], "data") for k in range(1, len(parts))]
-    for node in ast.walk(tree):
-        named = node.value if isinstance(node, ast.Constant) else None
-        if isinstance(named, str) and _FILE_NAME.fullmatch(named):
-            yield from (folder / named for folder in folders if (folder / named).is_file())
+    for name in source.files:
+        yield from (folder / name for folder in folders if (folder / name).is_file())
 
 
 def _without_docstrings(tree: ast.Module) -> ast.Module:
