@@ -56,14 +56,26 @@ class Patches:
     columns: NDArray[np.intp]
     answers: tuple[tuple[Answer, ...], ...]
 
+    @property
+    def _flat(self) -> list[Answer]:
+        return [answer for line in self.answers for answer in line]
+
+    @property
+    def _share(self) -> Array:
+        """Of each patch in the chart's stitches."""
+        counts = np.outer(np.diff(self.rows), np.diff(self.columns)).ravel()
+        return np.asarray(counts / counts.sum())
+
+    def relaxed_mm(self, direction: Direction) -> float:
+        """Extent of the mean stitch at rest."""
+        return float(self._share @ [a.along(direction).relaxed_mm for a in self._flat])
+
     def together(self) -> Answer:
         """The answer of the whole chart."""
         first = self.answers[0][0]
         if len(self.answers) == len(self.answers[0]) == 1:
             return first
-        flat = [answer for line in self.answers for answer in line]
-        share = np.outer(np.diff(self.rows), np.diff(self.columns)).ravel().astype(float)
-        share /= share.sum()
+        flat, share = self._flat, self._share
         course, wale = (self._along(flat, share, direction) for direction in Direction)
         # the least certain source, and the notes of all
         source = next((a for a in flat if a.provenance.startswith("learned")), first)
@@ -104,7 +116,7 @@ class Patches:
             held,
             poisson=mean(lambda part: part.poisson),
             poisson_sd=mean(lambda part: part.poisson_sd),
-            relaxed_mm=mean(lambda part: part.relaxed_mm),
+            relaxed_mm=self.relaxed_mm(direction),
             relaxed_log_sd=mean(lambda part: part.relaxed_log_sd),
             bounds_n_per_mm=Interval(
                 min(modulus, *(part.bounds_n_per_mm.low for part in parts)),
@@ -194,8 +206,7 @@ def patches_of(
     whole = answered([None] * len(parts))
     if gauge is None:
         return whole
-    mean = whole.together()
-    wider, higher = (gauge.extent_mm(d) / mean.along(d).relaxed_mm for d in Direction)
+    wider, higher = (gauge.extent_mm(d) / whole.relaxed_mm(d) for d in Direction)
     return answered(
         [
             RelaxedSize(a.relaxed_course_mm * wider, a.relaxed_wale_mm * higher, gauge.log_sd)

@@ -33,7 +33,7 @@ from scipy.optimize import nnls
 from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
 from knitcore.answer.neighbourhood import neighbourhood_folds
-from knitcore.answer.patches import patches_of
+from knitcore.answer.patches import Patches, patches_of
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
@@ -105,12 +105,12 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
     whole = np.ix_(
         *(np.arange(n) % period for n, period in zip(chart.purl.shape, extent, strict=True))
     )
-    scale = _scale(chart, phases, patches.together(), material)
+    scale = _scale(chart, phases, patches, material)
     return QuarterLaws(tuple(laws), number[whole], scale, spread)
 
 
 def _scale(
-    chart: StitchChart, phases: NDArray[np.uint8], answer: Answer, material: Material
+    chart: StitchChart, phases: NDArray[np.uint8], patches: Patches, material: Material
 ) -> Array:
     """Folded sizes of the stitches over those of their phases, such that the mean is the answer's.
 
@@ -124,7 +124,7 @@ def _scale(
         flat = np.array([_size(record, direction) for record in records])[phases]
         flat = flat.reshape(chart.rows, 2, chart.columns, 2).mean(axis=(1, 3))
         mean = float((flat * folds[..., direction.axis]).mean())
-        folds[..., direction.axis] *= answer.along(direction).relaxed_mm / mean
+        folds[..., direction.axis] *= patches.relaxed_mm(direction) / mean
     return folds
 
 
