@@ -111,7 +111,7 @@ docs: $(VENV)/.installed-dev ## Run every example of the documentation
 
 site: $(VENV)/.installed-dev ## Build the documentation as a site in build/site; no network needed
 	PYTHONPATH=. NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
-	@echo "build/site/index.html"
+	@echo "build/site/index.html; with its search: python -m http.server --directory build/site"
 
 gallery: $(VENV)/.installed-dev ## Make the gallery of the documentation again
 	$(BIN)/python scripts/gallery.py

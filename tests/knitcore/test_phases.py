@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given
+from numpy.typing import NDArray
 
 from knitcore import Fabric, StitchChart, quarter_phases
 from knitcore.phases import (
@@ -70,13 +71,16 @@ def test_the_quarters_of_a_stitch_take_the_segments_that_they_touch() -> None:
 OUTLINE = np.array([[1, 1, 1, 1], [1, 1, 1, 1], [0, 1, 1, 0], [0, 1, 1, 0]], dtype=bool)
 
 
+@pytest.mark.parametrize("outline", [OUTLINE, OUTLINE[::-1], OUTLINE.T, OUTLINE.T[:, ::-1]])
 @pytest.mark.parametrize("fabric", list(Fabric))
-def test_a_pure_fabric_is_pure_up_to_its_outline(fabric: Fabric) -> None:
-    chart = StitchChart.of_fabric(fabric, *OUTLINE.shape)
-    other = StitchChart(np.where(OUTLINE, chart.purl, ~chart.purl))  # what is outside is not there
-    codes, phases = (of(other, stitch=OUTLINE) for of in (surroundings, quarter_phases))
-    np.testing.assert_array_equal(codes[OUTLINE], surroundings(chart)[OUTLINE])
-    quarters = np.kron(OUTLINE, np.ones((2, 2), dtype=bool))
+def test_a_pure_fabric_is_pure_up_to_its_outline(
+    fabric: Fabric, outline: NDArray[np.bool_]
+) -> None:
+    chart = StitchChart.of_fabric(fabric, *outline.shape)
+    other = StitchChart(np.where(outline, chart.purl, ~chart.purl))  # what is outside is not there
+    codes, phases = (of(other, stitch=outline) for of in (surroundings, quarter_phases))
+    np.testing.assert_array_equal(codes[outline], surroundings(chart)[outline])
+    quarters = np.kron(outline, np.ones((2, 2), dtype=bool))
     assert (phases[quarters] == fabric.phase).all()
 
 
