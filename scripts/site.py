@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent
 FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
+LATER_IN_SEARCH = "---\nsearch:\n  boost: 0.2\n---\n\n"
+"""References have every word; pages that explain them come first."""
 ROOT_PAGES = {"contributing.md": "CONTRIBUTING.md", "changelog.md": "CHANGELOG.md"}
 
 
@@ -45,7 +47,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     made["reference/rest.md"] = rest_page()
     made["reference/library.md"], modules = library_pages()
     for name, text in (made | modules).items():
-        files.append(File.generated(config, name, content=text))
+        meta = LATER_IN_SEARCH if name.startswith("reference/") else ""
+        files.append(File.generated(config, name, content=meta + text))
     return files
 
 
