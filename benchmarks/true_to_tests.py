@@ -13,6 +13,7 @@ import math
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,6 +30,15 @@ STRESSES = (0.05, 0.1, 0.2)
 GARTER_WIDTH_MM = 59.5
 """The file has the clamp's size in place of acrylic garter's width course-wise."""
 Row = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class LeftOut(NamedTuple):
+    """A pull predicted from the others, with intervals for another sample and for this one."""
+
+    fabric: Fabric
+    direction: Direction
+    other_sample: Row
+    same_sample: Row
 
 
 def strips(folder: Path, fabric: Fabric) -> list[MeasuredStrip]:
@@ -117,16 +127,13 @@ def of_library(folder: Path, laws: Laws) -> dict[tuple[Fabric, Direction], Row]:
     }
 
 
-def left_out(folder: Path) -> tuple[list[Row], list[Row]]:
-    """Every pull predicted by a law fitted to the other pulls; the intervals are those for another
-    sample, and those for another pull of the same sample.
-    """
-    rows: tuple[list[Row], list[Row]] = ([], [])
+def left_out(folder: Path) -> list[LeftOut]:
+    """Every pull predicted by a law fitted to the other pulls."""
+    rows = []
     for fabric in Fabric:
         both = strips(folder, fabric)
         for index in range(max(strip.pulls for strip in both)):
-            kept = [s.without(index) if index < s.pulls else s for s in both]
-            fit = fit_strips(kept)
+            fit = fit_strips([s.without(index) if index < s.pulls else s for s in both])
             for strip in both:
                 if index < strip.pulls:
                     alone = replace(
@@ -134,10 +141,11 @@ def left_out(folder: Path) -> tuple[list[Row], list[Row]]:
                         stress_n_per_mm=strip.stress_n_per_mm[index : index + 1],
                         waist=strip.waist[index : index + 1],
                     )
-                    for same, found in enumerate(rows):
-                        found.append(
-                            compared(fit.law, fit.uncertainty, alone, same_sample=bool(same))
-                        )
+                    other, same = (
+                        compared(fit.law, fit.uncertainty, alone, same_sample=same)
+                        for same in (False, True)
+                    )
+                    rows.append(LeftOut(fabric, strip.direction, other, same))
     return rows
 
 
@@ -151,10 +159,9 @@ def main() -> None:
             print(f"  {fabric:12}{direction:8}", *found)
         print(" ", Summary.of(list(rows.values())))
     if "--left-out" in sys.argv:
-        for name, found in zip(
-            ("of another sample", "of this sample"), left_out(folder), strict=True
-        ):
-            print(f"pulls left out one at a time, intervals {name}:", Summary.of(found))
+        pulls = left_out(folder)
+        print("pulls left out:", Summary.of([pull.other_sample for pull in pulls]))
+        print("  intervals of the same sample:", Summary.of([pull.same_sample for pull in pulls]))
 
 
 if __name__ == "__main__":

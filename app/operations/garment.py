@@ -10,7 +10,7 @@ import click
 from pydantic import Field
 
 from app.cli.options import out_option
-from app.models.base import IntervalResult, RequestModel, ResultModel
+from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.context import Context
@@ -25,6 +25,7 @@ from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.templates import Girth, limb_tube, sock_leg, wrist_brace
 from knitcore.garment.worn import Fit, Worn
 from knitcore.materials import Material
+from knitcore.materials.uncertainty import log_interval
 
 Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
 Ease = Annotated[float, Field(ge=-0.6, le=1, allow_inf_nan=False)]
@@ -148,6 +149,16 @@ class Glove(Template):
         return glove(hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
 
 
+MATERIAL_ERRORS = (
+    "Sizes: the material's gauge, with one aspect ratio of stitches for all yarns (8 %); "
+    "your own gauge makes them surer. Yarn: the paper's ± on loop lengths (5 %)."
+)
+SWATCH_ERRORS = (
+    "Sizes: a counted gauge (3 %), and for fabrics other than the swatch's the aspect ratio "
+    "of stitches (8 %). Yarn: the paper's ± on loop lengths (5 %)."
+)
+
+
 class GarmentRequest(LawsRequest):
     """A template with measurements, and the yarn."""
 
@@ -175,6 +186,8 @@ class RegionResult(Moduli, Extensibility):
     rows: int = Field(description="Rows of its longest column.")
     width_mm: float = Field(description="Of that many stitches at rest.")
     height_mm: float
+    width_interval_mm: Ends = Field(description="90 %, by the gauge.")
+    height_interval_mm: Ends
     yarn_m: float
     yarn_g: float | None
     cells: str = Field(description="Lines of x (in the region) and ., the top row first.")
@@ -223,6 +236,9 @@ class GarmentResult(ResultModel):
     worn: list[WornResult]
     yarn_m: float
     yarn_g: float | None
+    yarn_interval_m: Ends = Field(description="90 % interval.")
+    yarn_interval_g: Ends | None
+    interval_source: str = Field(description="What the intervals rest on.")
     notes: list[str]
     warnings: list[str] = Field(description="Where regions of unlike gauge meet.")
     design: DesignFile = Field(description="The same as a project file, ready to be edited.")
@@ -255,6 +271,9 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         worn=[_worn(place) for place in plan.worn],
         yarn_m=plan.yarn.length_m,
         yarn_g=plan.yarn.mass_g,
+        yarn_interval_m=plan.yarn.length_interval_m,
+        yarn_interval_g=plan.yarn.mass_interval_g,
+        interval_source=SWATCH_ERRORS if count else MATERIAL_ERRORS,
         warnings=[misfit.text for misfit in plan.misfits],
         design=design_of_plan(plan, request.material, intarsia=request.intarsia),
     )
@@ -277,6 +296,8 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
                 rows=rows,
                 width_mm=columns * gauge.stitch_course_mm,
                 height_mm=rows * gauge.stitch_wale_mm,
+                width_interval_mm=log_interval(columns * gauge.stitch_course_mm, gauge.log_sd),
+                height_interval_mm=log_interval(rows * gauge.stitch_wale_mm, gauge.log_sd),
                 yarn_m=use.length_m,
                 yarn_g=use.mass_g,
                 cells="\n".join("".join("x" if c else "." for c in row) for row in cells[::-1]),
@@ -340,7 +361,8 @@ def _command(request: GarmentRequest, context: Context, out: Path | None) -> Gar
 def _text(r: GarmentResult) -> str:
     lines = [
         f"{r.name}: {r.columns} columns x {r.rows} rows, {r.stitches} stitches, "
-        f"{r.yarn_m:.0f} m of yarn; {r.closing}",
+        f"{r.yarn_m:.0f} m of yarn ({r.yarn_interval_m[0]:.0f} to {r.yarn_interval_m[1]:.0f}); "
+        f"{r.closing}",
         f"{'region':20} {'stitches':>8} {'course':>8} {'wale':>8}  mm/N",
     ]
     lines += [

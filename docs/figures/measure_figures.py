@@ -35,10 +35,16 @@ COLOURS = {
 class Plot:
     """Lines and points in two axes, as SVG."""
 
-    def __init__(self, x: tuple[float, float], y: tuple[float, float], labels: tuple[str, str]):
+    def __init__(
+        self,
+        x: tuple[float, float],
+        y: tuple[float, float],
+        labels: tuple[str, str],
+        ticks: tuple[int, int] = (6, 6),
+    ):
         self.x, self.y = x, y
         self.parts: list[str] = []
-        self._frame(labels)
+        self._frame(labels, ticks)
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         (x0, x1), (y0, y1) = self.x, self.y
@@ -47,10 +53,17 @@ class Plot:
             HEIGHT - MARGIN - (y - y0) / (y1 - y0) * (HEIGHT - 1.5 * MARGIN),
         )
 
-    def line(self, xs: Sequence[float], ys: Sequence[float], colour: str, dash: str = "") -> None:
+    def line(
+        self,
+        xs: Sequence[float],
+        ys: Sequence[float],
+        colour: str,
+        dash: str = "",
+        width: float = 2,
+    ) -> None:
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in map(self.place, xs, ys))
         self.parts.append(
-            f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"'
+            f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}"'
             f' stroke-dasharray="{dash}"/>'
         )
 
@@ -62,9 +75,9 @@ class Plot:
         a, b = self.place(x, y)
         self.parts.append(f'<text x="{a:.0f}" y="{b:.0f}" fill="{colour}">{words}</text>')
 
-    def _frame(self, labels: tuple[str, str]) -> None:
+    def _frame(self, labels: tuple[str, str], ticks: tuple[int, int]) -> None:
         for axis, (low, high) in enumerate((self.x, self.y)):
-            for value in np.linspace(low, high, 6):
+            for value in np.linspace(low, high, ticks[axis]):
                 at = (value, self.y[0]) if axis == 0 else (self.x[0], value)
                 a, b = self.place(*at)
                 dx, dy, anchor = (0, 18, "middle") if axis == 0 else (-8, 4, "end")

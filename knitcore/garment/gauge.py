@@ -7,9 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+from knitcore.answer.measured import GAUGE_LOG_SD
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
+
+SWATCH_LOG_SD = RelaxedSize.log_sd
+"""Of a knitter's own gauge."""
 
 
 class GaugeLength(Enum):
@@ -28,11 +33,13 @@ class Gauge:
     ----------
     stitch_course_mm, stitch_wale_mm : width of a stitch and height of a row.
     source : where they come from, in words.
+    log_sd : standard deviation of the logarithm of both.
     """
 
     stitch_course_mm: float
     stitch_wale_mm: float
     source: str = ""
+    log_sd: float = SWATCH_LOG_SD
 
     def __post_init__(self) -> None:
         for name in ("stitch_course_mm", "stitch_wale_mm"):
@@ -80,6 +87,7 @@ class Gauge:
             record.stitch_course_mm,
             record.stitch_wale_mm,
             f"{material.identifier}, {fabric}: {record.stitch_size_source}",
+            GAUGE_LOG_SD,
         )
 
     def counts(self, per: GaugeLength = GaugeLength.TEN_CM) -> tuple[float, float]:
@@ -139,6 +147,7 @@ class GaugeSet:
                 g.stitch_course_mm * across,
                 g.stitch_wale_mm * along,
                 f"{swatch.source} {fabric}, other fabrics scaled alike",
+                swatch.log_sd if f is fabric else math.hypot(swatch.log_sd, GAUGE_LOG_SD),
             )
             for f, g in found.items()
         }

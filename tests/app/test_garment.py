@@ -107,3 +107,22 @@ def test_a_missing_measurement_is_named(client: TestClient) -> None:
     refused = client.post("/api/v1/garment", json={"garment": garment, "material": "acrylic"})
     assert refused.status_code == 422
     assert "length_mm" in refused.json()["detail"]
+
+
+def test_sizes_and_yarn_have_intervals_and_a_swatch_makes_sizes_surer(client: TestClient) -> None:
+    asked = {
+        "garment": {"template": "wrist-brace", "wrist_mm": 165.0, "length_mm": 80.0},
+        "material": "acrylic",
+    }
+    swatch = {"stitches": 30, "rows": 40, "per": "10 cm"}
+    widths = []
+    for body in (asked, asked | {"gauge": swatch}):
+        found = client.post("/api/v1/garment", json=body).json()
+        low, high = found["yarn_interval_m"]
+        assert low < found["yarn_m"] < high
+        plain = next(r for r in found["regions"] if "P" not in r["fill"])
+        low, high = plain["width_interval_mm"]
+        assert low < plain["width_mm"] < high
+        widths.append(high / low)
+        assert "gauge" in found["interval_source"]
+    assert widths[1] < widths[0]

@@ -119,6 +119,26 @@ def test_wide_rib_pulls_in_and_unfolds():
         assert any("draw-in" in note for note in wide.notes)
 
 
+@pytest.mark.parametrize("identifier", ["glove-wool", "lace-cashmere", "lace-alpaca-mohair"])
+def test_a_2x2_rib_stretches_about_as_far_as_a_1x1_rib_of_the_same_loops(identifier):
+    """Swatches of one yarn at one setting, KnitDB's: 1.93 and 1.96. From a narrower rest."""
+    yarn = material(identifier)
+    wide, narrow = (predict(StitchChart.parse(text), yarn).course for text in ("KKPP", "KP"))
+    loads = np.array([0.05, 0.1, 0.2])
+    ratio = wide.strain(loads) / narrow.strain(loads)
+    assert np.all((ratio > 0.9) & (ratio < 1.2))
+    assert wide.relaxed_mm < narrow.relaxed_mm
+
+
+def test_loops_of_different_length_are_told():
+    """Acrylic's 1x1 rib has longer loops than its stockinette, so a 2x2 rib gives less than it."""
+    wide, narrow = (
+        predict(StitchChart.parse(text), material("acrylic")) for text in ("KKPP", "KP")
+    )
+    assert wide.course.strain(0.1) < narrow.course.strain(0.1)
+    assert any("different loop lengths" in note for note in wide.notes)
+
+
 def test_stockinette_is_said_to_curl():
     found = predict(StitchChart.parse("K"), material("cotton:published"))
     assert any("curls" in note for note in found.notes)
