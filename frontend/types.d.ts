@@ -1092,6 +1092,11 @@ export interface GarmentResult {
   worn: WornResult[];
   yarn_m: number;
   yarn_g: number | null;
+  /** 90 % interval. */
+  yarn_interval_m: [number, number];
+  yarn_interval_g: [number, number] | null;
+  /** What the intervals rest on. */
+  interval_source: string;
   notes: string[];
   /** Where regions of unlike gauge meet. */
   warnings: string[];
@@ -1765,6 +1770,9 @@ export interface RegionResult {
   /** Of that many stitches at rest. */
   width_mm: number;
   height_mm: number;
+  /** 90 %, by the gauge. */
+  width_interval_mm: [number, number];
+  height_interval_mm: [number, number];
   yarn_m: number;
   yarn_g: number | null;
   /** Lines of x (in the region) and ., the top row first. */

@@ -1771,6 +1771,11 @@ class GarmentResult(BaseModel):
     worn: list[WornResult]
     yarn_m: float
     yarn_g: float | None
+    yarn_interval_m: tuple[float, float]
+    """90 % interval."""
+    yarn_interval_g: tuple[float, float] | None
+    interval_source: str
+    """What the intervals rest on."""
     notes: list[str]
     warnings: list[str]
     """Where regions of unlike gauge meet."""
@@ -2246,6 +2251,9 @@ class RegionResult(BaseModel):
     width_mm: float
     """Of that many stitches at rest."""
     height_mm: float
+    width_interval_mm: tuple[float, float]
+    """90 %, by the gauge."""
+    height_interval_mm: tuple[float, float]
     yarn_m: float
     yarn_g: float | None
     cells: str
