@@ -10,6 +10,8 @@ others (``knitdb``, see ``benchmarks/knitdb.py``). Takes some minutes.
 from __future__ import annotations
 
 import sys
+import textwrap
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -371,6 +373,15 @@ def strains() -> str:
     return " ".join(f"{strain:.0%} |" for strain in STRAINS)
 
 
+def wrapped(lines: list[str]) -> list[str]:
+    """The lines, those of a paragraph joined and broken anew."""
+    found = []
+    for kept, group in groupby(lines, lambda line: not line or line[0] in "|#!- "):
+        part = list(group)
+        found += part if kept else textwrap.wrap(" ".join(part), 100)
+    return found
+
+
 def main() -> None:
     folder = Path(sys.argv[1])
     sections = [
@@ -385,7 +396,7 @@ def main() -> None:
         *bending(folder / "bending"),
         *compression(folder / "compression"),
     ]
-    text = "\n".join([HEAD, *sections]).rstrip() + "\n"
+    text = "\n".join([HEAD, *wrapped(sections)]).rstrip() + "\n"
     (ROOT / "docs" / "evidence.md").write_text(text, encoding="utf-8")
 
 
