@@ -358,16 +358,22 @@ def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: Tangent, cell: i
     inverse[0], inverse[1], inverse[2] = i00, i01, i11
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def assemble(
-    cells: Cells, laws: NDArray[Any], state: Nodes, force: Nodes, tangent: Tangent | None
+    cells: Cells,
+    laws: NDArray[Any],
+    state: Nodes,
+    force: Nodes,
+    tangent: Tangent | None,
+    first: int,
+    last: int,
 ) -> float:
-    """Energy, forces and, where wanted, condensed element tangents.
+    """Energy, forces and, where wanted, condensed element tangents of some of the cells.
 
-    Writes ``force``, the full gradient, and ``tangent``. All is 0 where there is no cloth, and
-    where the law is all 0. Energy and forces are linear in the laws' stiffnesses and betas.
-    Returns the energy (N·mm), infinite where a fibre has collapsed to a point; nothing else that
-    is written then means anything.
+    Adds to the corners' ``force``, the full gradient, and writes those of the centres and
+    ``tangent``. All is 0 where there is no cloth, and where the law is all 0. Energy and forces
+    are linear in the laws' stiffnesses and betas. Returns the energy (N·mm), infinite where a
+    fibre has collapsed to a point; nothing else that is written then means anything.
 
     Parameters
     ----------
@@ -375,14 +381,14 @@ def assemble(
     laws : records of :data:`knitcore.swatch.models.LAW`, by code.
     state : positions.
     force, tangent : to be written.
+    first, last : the cells, the last excluded.
     """
-    force.corners[:] = 0.0
-    force.centres[:] = 0.0
+    force.centres[first:last] = 0.0
     total = 0.0
     f, h = np.empty(4), np.empty((4, 4))
     x = np.empty((4, 2))
     k, kc, kcc = np.empty((8, 8)), np.empty((2, 8)), np.empty((2, 2))
-    for cell in range(cells.law.size):
+    for cell in range(first, last):
         law = laws[cells.law[cell]]
         if not cells.cloth[cell] or law.stiffness_xxxx == 0.0:
             if tangent is not None:

@@ -14,8 +14,12 @@ from knitcore.swatch import kernel
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.kernel import Cells, Nodes, Tangent
 from knitcore.swatch.models import EnergyModel, SheetModel
+from knitcore.threads import side_by_side
 
 Array = NDArray[np.float64]
+
+SIDE_BY_SIDE = 5_000
+"""Cells from which on two threads assemble."""
 
 
 class State(Nodes):
@@ -160,7 +164,21 @@ class Sheet:
     def _assemble(
         self, laws: NDArray[np.void], state: State, force: Nodes, tangent: Tangent | None
     ) -> float:
-        return float(kernel.assemble(self._cells, laws, state, force, tangent))
+        count = len(state.centres)
+
+        def assemble(to: Nodes, first: int, last: int) -> float:
+            to.corners[:] = 0.0
+            return float(kernel.assemble(self._cells, laws, state, to, tangent, first, last))
+
+        if count < SIDE_BY_SIDE:
+            return assemble(force, 0, count)
+        # both halves add to the corners between them, so each has its own
+        other = Nodes(np.empty_like(force.corners), force.centres)
+        lower, upper = side_by_side(
+            lambda: assemble(force, 0, count // 2), lambda: assemble(other, count // 2, count)
+        )
+        force.corners[:] += other.corners
+        return lower + upper
 
 
 def _empty_like(nodes: Nodes) -> Nodes:

@@ -185,6 +185,19 @@ def test_force_and_tangent_are_derivatives_of_the_energy(
     )
 
 
+def test_two_threads_assemble_what_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(11)
+    sheet = Sheet(mixed_grid(rng), LAWS, SheetModel())
+    state = disturbed(sheet, rng)
+    alone = sheet.linearise(state)
+    monkeypatch.setattr("knitcore.swatch.sheet.SIDE_BY_SIDE", 1)
+    together = sheet.linearise(state)
+    assert together.energy == pytest.approx(alone.energy, rel=1e-14)
+    for ours, theirs in zip(together.force, alone.force, strict=True):
+        assert ours == pytest.approx(theirs, abs=1e-15)
+    assert np.array_equal(together.tangent.matrix, alone.tangent.matrix)
+
+
 def test_cloth_pulled_to_a_point_has_infinite_energy_and_raises_nothing() -> None:
     sheet = Sheet(mixed_grid(np.random.default_rng(3)), LAWS, SheetModel())
     point = State(np.zeros_like(sheet.grid.corners), np.zeros_like(sheet.grid.centres))
