@@ -22,6 +22,7 @@ import random
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import AsyncIterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -47,6 +48,10 @@ WARM_UP_S, WARM_UP_TESTS, WARM_UP_SLICES = 10.0, 7, 12
 """Stretch tests that fill the service's memory of recent results (`app/results/recent.py`)."""
 VIEWS, ROUNDS = 20, int(os.environ.get("ROUNDS", "10"))
 JOBS = "/api/v1/jobs"
+PATIENCE_S = 300.0
+"""For computations, whose workers stand back behind everything else."""
+Ended = list[tuple[str, str]]
+"""Kinds of computations and how they ended."""
 
 
 @dataclass
@@ -164,7 +169,7 @@ def percentiles(name: str, ms: list[float]) -> str:
     return f"{name}: {len(ms)} strokes, p50 {p50:.1f} p95 {p95:.1f} p99 {p99:.1f} ms"
 
 
-async def stretch_tests(client: httpx.AsyncClient, ended: list[str]) -> None:
+async def stretch_tests(client: httpx.AsyncClient, ended: Ended) -> None:
     for number in range(1000):  # each a little further, so that no answer is known
         wish = {"chart": {"fabric": "garter", "columns": SIDE, "rows": SIDE}, "steps": 20}
         wish |= {"material": "acrylic", "direction": "wale", "strain": 0.5 + number / 1e4}
@@ -173,38 +178,39 @@ async def stretch_tests(client: httpx.AsyncClient, ended: list[str]) -> None:
         try:
             while (state := (await client.get(address)).json()["state"]) in ("waiting", "running"):
                 await asyncio.sleep(0.5)
-            ended.append(state)
+            ended.append(("stretch test", state))
         finally:
             await client.delete(address)
 
 
-async def predictions(client: httpx.AsyncClient, ended: list[str]) -> None:
+async def predictions(client: httpx.AsyncClient, ended: Ended) -> None:
     rng = random.Random(7)
     while True:  # of charts that a page asks about, and now and then of a large one
         side = 400 if rng.random() < 0.1 else SIDE
         chart = "\n".join("".join(rng.choices("KP", k=side)) for _ in range(side))
-        asked = client.post("/api/v1/predict", json={"chart": chart, "material": "acrylic"})
-        ended.append(_outcome(await asked))
+        wish = {"chart": chart, "material": "acrylic"}
+        ended.append(("prediction", await _outcome(client, "predict", wish)))
         await asyncio.sleep(0.2)
 
 
-async def shapes(client: httpx.AsyncClient, ended: list[str]) -> None:
+async def shapes(client: httpx.AsyncClient, ended: Ended) -> None:
     for number in range(1000):
         wish = {"material": "acrylic", "strain": 0.2 + number / 1e5, "across": 12}
         wish |= {"width": [0.9] * 16}
-        ended.append(_outcome(await client.post("/api/v1/shape", json=wish)))
+        ended.append(("shape", await _outcome(client, "shape", wish)))
         await asyncio.sleep(1.0)
 
 
-def _outcome(answer: httpx.Response) -> str:
+async def _outcome(client: httpx.AsyncClient, name: str, wish: object) -> str:
     """Done, also if the service was too busy and said so."""
+    answer = await client.post(f"/api/v1/{name}", json=wish, timeout=PATIENCE_S)
     return "done" if answer.status_code in (200, 503) else f"{answer.status_code}"
 
 
 @contextlib.asynccontextmanager
-async def computing(client: httpx.AsyncClient) -> AsyncIterator[list[str]]:
+async def computing(client: httpx.AsyncClient) -> AsyncIterator[Ended]:
     """Stretch tests, predictions and shapes are asked for all the time; yields how they ended."""
-    ended: list[str] = []
+    ended: Ended = []
     kinds = stretch_tests, predictions, shapes
     tasks = [asyncio.create_task(kind(client, ended)) for kind in kinds]
     try:
@@ -221,11 +227,12 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
     body = {"name": "bench", "material": "acrylic", "chart": "\n".join(["K" * SIDE] * SIDE)}
     made = [await client.post("/api/v1/designs", json=body) for _ in range(USERS)]
     painters = [Painter(m.json()["id"], random.Random(n)) for n, m in enumerate(made)]
-    alone, beside, ended = f"{USERS} users", "beside computations", []
+    alone, beside = f"{USERS} users", "beside computations"
+    ended: Ended = []
     async with computing(client) as known:
         for _ in range(WARM_UP_SLICES):
             await paint_all(client, painters, "warm-up", WARM_UP_S, pid)
-            if len(known) >= WARM_UP_TESTS:
+            if len([kind for kind, _ in known if kind == "stretch test"]) >= WARM_UP_TESTS:
                 break
     warm = resident_mb(pid)
     waits: dict[str, list[float]] = {alone: [], beside: []}
@@ -245,7 +252,9 @@ async def painting(client: httpx.AsyncClient, pid: int, figures: Figures) -> Non
     figures.report("… compared with p95 alone", 100 * (p95[beside] / p95[alone] - 1), "%", 50)
     figures.report("strokes that were refused", sum(p.errors for p in painters), "", 0)
     figures.report("designs with a lost edit", lost, "", 0)
-    failed = len([state for state in ended if state != "done"])
+    failed = len([state for _, state in ended if state != "done"])
+    told = Counter(kind for kind, _ in ended)
+    print("      computed: " + ", ".join(f"{n} {kind}s" for kind, n in told.items()))
     figures.report(f"computations that failed, of {len(ended)}", failed, "", 0)
     grown = 100 * (resident_mb(pid) / warm - 1)
     figures.report(f"memory after {SECONDS:g} s of painting, from {warm:.0f} MB", grown, "%", 5)
