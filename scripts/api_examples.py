@@ -1,7 +1,6 @@
 """Call every operation of the service once and keep the answers as API examples (`make examples`).
 
-The requests are those of the schema; files that requests hold are those of the tests, because real
-ones are too long for an example.
+The requests are those of the schema.
 """
 
 from __future__ import annotations
@@ -15,12 +14,12 @@ from typing import Any
 from fastapi.testclient import TestClient
 
 from app.http.identity import LOCAL_USER
-from app.http.schema import EXAMPLES, operations
+from app.http.schema import operations
 from app.http.sessions import Sessions
 from app.jobs.store import OPEN
 from app.main import create_app
+from app.models.uploads import EXAMPLES
 from app.settings import Settings
-from tests.app.job_requests import job_requests
 
 FIRST = [
     "POST /api/v1/designs",
@@ -38,9 +37,6 @@ LAST = [
     "DELETE /api/v1/sessions/{session}",
     "DELETE /api/v1/session",
 ]
-FILES = {"fit": "fit", "bending": "bending", "compression": "compression"} | {
-    kind: kind for kind in ("compare", "calibrate")
-}
 ENDLESS = ("/events", "/picture")
 """Streams, and operations that need a browser watching."""
 MOST_ITEMS, MOST_CHARACTERS = 2, 160
@@ -73,8 +69,6 @@ def _request(client: TestClient, name: str) -> Any:
 
 def ask_everything(client: TestClient) -> dict[str, Any]:
     """The answer of every operation that answers with JSON."""
-    with tempfile.TemporaryDirectory() as folder:
-        files = job_requests(Path(folder))
     place: dict[str, Any] = {"material": "acrylic", "identifier": "acrylic", "number": 1}
     sessions = Sessions(client.app.state.database)  # type: ignore[attr-defined]
     place["session"] = sessions.begin("a token's id", LOCAL_USER)
@@ -83,7 +77,7 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
         method, path = name.split()
         if path.endswith(ENDLESS):
             continue
-        body = files.get(FILES.get(path.rsplit("/", 1)[-1], ""), _request(client, name))
+        body = _request(client, name)
         if path.startswith("/api/v1/jobs/") and method == "GET":
             while client.get(f"/api/v1/jobs/{place['job']}").json()["state"] in OPEN:
                 time.sleep(0.1)
@@ -107,12 +101,16 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
     return {"parameters": place, "answers": answers}
 
 
+def patient_client(folder: Path) -> TestClient:
+    """A client of a service that has time, with its data in ``folder``."""
+    settings = Settings(workers=1, worker_priority="low", job_timeout_s=600, data_dir=folder)
+    return TestClient(create_app(settings), base_url="http://127.0.0.1")
+
+
 def main() -> None:
     """Write the file."""
-    with tempfile.TemporaryDirectory() as folder:
-        app = create_app(Settings(workers=1, data_dir=Path(folder)))
-        with TestClient(app, base_url="http://127.0.0.1") as client:
-            found = ask_everything(client)
+    with tempfile.TemporaryDirectory() as folder, patient_client(Path(folder)) as client:
+        found = ask_everything(client)
     text = json.dumps(found, indent=1, ensure_ascii=False, sort_keys=True)
     (EXAMPLES / "answers.json").write_text(text + "\n", encoding="utf-8")
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
 
 from app.http.packed import tagged
 from app.http.problems import PROBLEM_TYPE, problem_of
+from app.models.uploads import EXAMPLES
 from knitcore.errors import InputError
 
-EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
-"""Requests, written by hand, and the service's answers to them (`make examples`)."""
 FIRST_PROBLEM = 400
 EXAMPLE = problem_of(
     InputError(

@@ -14,6 +14,8 @@ from pydantic_core import PydanticCustomError
 
 from app.models.base import RequestModel
 
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+"""Files of the API's examples (``scripts/example_files.py``), and the answers to them."""
 MOST_NAME_BYTES = 200
 """A length that every file system accepts, with room to spare."""
 
@@ -55,6 +57,12 @@ class UploadedFile(RequestModel):
         file = cls.model_construct(name=path.name, content=b"")
         file._path = path
         return file
+
+
+def example_file(name: str) -> dict[str, str]:
+    """A file of the API's examples, as a request holds it."""
+    content = base64.b64encode((EXAMPLES / name).read_bytes()).decode()
+    return {"name": name, "content": content}
 
 
 @contextlib.contextmanager

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
-from app.models.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.measure.bending import measure_bending
@@ -83,7 +83,7 @@ OPERATION = Operation(
     tag="measure",
     summary="Bending modulus from photos of hanging yarn",
     example={
-        "images": [{"name": "photo.png", "content": "iVBORw0KGgo="}],
+        "images": [example_file("photo.png")],
         "linear_density_g_per_m": 0.5,
         "length_mm": 120.0,
     },

@@ -13,7 +13,7 @@ from app.models.base import Floats
 from app.models.charts import MaterialName
 from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
 from app.models.laws import LawResult
-from app.models.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
@@ -139,7 +139,7 @@ OPERATION = Operation(
     tag="displacement fields",
     summary="Shear modulus and couplings from a displacement field",
     example={
-        "field": {"name": "field.npz", "content": "UEsDBA=="},
+        "field": example_file("field.npz"),
         "direction": "wale",
         "material": "acrylic",
         "fabric": "garter",

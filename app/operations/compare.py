@@ -10,7 +10,7 @@ from app.models.base import ResultModel
 from app.models.charts import MaterialName
 from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
 from app.models.laws import LawsRequest
-from app.models.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
@@ -87,7 +87,7 @@ OPERATION = Operation(
     tag="displacement fields",
     summary="A law compared with a measured displacement field",
     example={
-        "field": {"name": "field.npz", "content": "UEsDBA=="},
+        "field": example_file("field.npz"),
         "direction": "wale",
         "material": "acrylic",
         "fabric": "garter",

@@ -9,7 +9,7 @@ import click
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
-from app.models.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
@@ -125,7 +125,7 @@ OPERATION = Operation(
     path="/measure/compression",
     tag="measure",
     summary="Contact constants from compression tests",
-    example={"file": {"name": "my-yarn-1.csv", "content": "ZGVwdGgsZm9yY2UK"}, "diameter_mm": 2.0},
+    example={"file": example_file("my-yarn-1.csv"), "diameter_mm": 2.0},
     heavy=True,
     job=True,
     command=Command(

@@ -11,7 +11,7 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.models.base import Floats, RequestModel, ResultModel
 from app.models.laws import ElasticConstants, LawConstants, LawResult
-from app.models.uploads import UploadedFile, stored
+from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
@@ -172,8 +172,8 @@ OPERATION = Operation(
     tag="measure",
     summary="A law from two stretch tests",
     example={
-        "test_course": {"name": "course.csv", "content": "c3RyYWluLGZvcmNlCg=="},
-        "test_wale": {"name": "wale.csv", "content": "c3RyYWluLGZvcmNlCg=="},
+        "test_course": example_file("course.csv"),
+        "test_wale": example_file("wale.csv"),
     },
     heavy=True,
     job=True,

@@ -76,7 +76,7 @@ class Operation(Generic[Request, Result]):
         docstring is the description in the API's reference.
     summary : one line.
     tag : heading in the API's reference.
-    example : a small request, which the reference shows; content of files is cut short in it.
+    example : a small request, which the reference shows and the tests send.
     path : address under ``/api/v1``; None if it is a job only.
     heavy : whether it always takes long enough to need a worker process; others go there with
         large charts only.

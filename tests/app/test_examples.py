@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import jsonschema_rs
 import pytest
 from fastapi.testclient import TestClient
 
-from app.http.schema import EXAMPLES, operations
+from app.http.schema import operations
 from app.main import create_app
+from app.models.uploads import EXAMPLES
+from scripts.api_examples import ask_everything, patient_client
 
 SCHEMA = create_app().openapi()
 NAMES = operations(create_app())
@@ -61,3 +64,14 @@ def test_the_service_takes_the_example(client: TestClient, name: str) -> None:
     answer = client.post(f"/api/v1/{name}", json=content["example"])
     assert answer.status_code == 200, answer.text
     assert set(answer.json()) == set(ANSWERS[operation])
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_the_service_takes_every_example(tmp_path: Path) -> None:
+    """`make examples` keeps what it answers."""
+    with patient_client(tmp_path) as client:
+        answers = ask_everything(client)["answers"]
+    assert set(answers) == set(ANSWERS)
+    for name, answer in answers.items():
+        assert set(answer) == set(ANSWERS[name]), name

@@ -28,8 +28,8 @@ SLOW = frozenset({"relax", "sweep", "characterise"})
 
 
 @pytest.fixture(scope="module")
-def requests(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
-    return job_requests(tmp_path_factory.mktemp("requests"))
+def requests() -> dict[str, dict[str, Any]]:
+    return job_requests()
 
 
 @pytest.fixture(scope="module")

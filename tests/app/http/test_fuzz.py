@@ -19,9 +19,8 @@ from typing import Any
 import httpx2 as httpx
 import pytest
 
-from app.http.schema import EXAMPLES
+from app.models.uploads import EXAMPLES
 from app.operations.registry import operations
-from tests.app.job_requests import job_requests
 from tests.app.service import Service
 
 REQUESTS = int(os.environ.get("KNITCORE_FUZZ_REQUESTS", "300"))
@@ -152,15 +151,11 @@ def _simple(rng: random.Random, schema: Schema, kind: str | None) -> Any:
     return rng.choice((True, False)) if kind == "boolean" else rng.choice(HOSTILE)
 
 
-def _bodies(folder: Path) -> dict[str, Any]:
+def _bodies() -> dict[str, Any]:
     """A valid body of every operation that takes one."""
     bodies: dict[str, Any] = json.loads((EXAMPLES / "requests.json").read_text())
     made = [operation for operation in operations().values() if operation.example]
-    bodies |= {f"POST /api/v1{o.address}": dict(o.example or {}) for o in made}
-    files = job_requests(folder)
-    for name in ("fit", "compare", "calibrate", "measure/bending", "measure/compression"):
-        bodies[f"POST /api/v1/{name}"] = files[name.rpartition("/")[2]]
-    return bodies
+    return bodies | {f"POST /api/v1{o.address}": dict(o.example or {}) for o in made}
 
 
 def _new_ids(client: httpx.Client, bodies: dict[str, Any]) -> dict[str, str]:
@@ -208,7 +203,7 @@ def test_whatever_comes_is_answered_in_words(service: Service, tmp_path: Path) -
         if surprise or not problem or not json.loads(content)["detail"]:
             strange.append(f"{told}: {status} {content[:300]!r}")
 
-    bodies = _bodies(tmp_path)
+    bodies = _bodies()
     with (
         httpx.Client(base_url=service.url, timeout=PATIENCE_S) as client,
         ThreadPoolExecutor(AT_ONCE) as threads,
