@@ -17,12 +17,12 @@ export interface AtlasResult {
   /** Rows from the top, separated by /. */
   repeats: string[];
   modulus_course_n_per_mm: number[];
-  /** Low and high: ends of 90 % intervals. */
-  modulus_course_low: number[];
-  modulus_course_high: number[];
+  /** Low and high: the ends of 90 % intervals. */
+  modulus_course_low_n_per_mm: number[];
+  modulus_course_high_n_per_mm: number[];
   modulus_wale_n_per_mm: number[];
-  modulus_wale_low: number[];
-  modulus_wale_high: number[];
+  modulus_wale_low_n_per_mm: number[];
+  modulus_wale_high_n_per_mm: number[];
   poisson_yx: number[];
   poisson_xy: number[];
   /** Strain at 0.1 N/mm. */
@@ -555,9 +555,9 @@ export interface CurveResult {
   /** Upper end of the 90 % interval. */
   strain_high: number[];
   /** Lower end of the 90 % interval of the stress at each strain, N/mm. */
-  stress_low: number[];
+  stress_low_n_per_mm: number[];
   /** Upper end of it, at most 10 N/mm. */
-  stress_high: number[];
+  stress_high_n_per_mm: number[];
   provenance: string;
 }
 
@@ -714,10 +714,9 @@ export type Edges = "measured" | "rigid";
 export type EnergyModel = "published" | "full";
 
 /** A value and its 90 % interval (of no width where it is measured). */
-export interface EstimateInterval {
-  low: number;
-  high: number;
+export interface Estimate {
   value: number;
+  interval: [number, number];
 }
 
 /** Known facts of the yarn and the product. */
@@ -859,10 +858,10 @@ export interface FabricDocument {
 
 /** One fabric: extension under load first, because it is predicted best. */
 export interface FabricEstimateResult {
-  strain_at_0_1_n_per_mm: Record<Direction, EstimateInterval>;
-  modulus_n_per_mm: Record<Direction, EstimateInterval>;
-  alpha: Record<Direction, EstimateInterval>;
-  beta_n_per_mm: Record<Direction, EstimateInterval>;
+  strain_at_0_1_n_per_mm: Record<Direction, Estimate>;
+  modulus_n_per_mm: Record<Direction, Estimate>;
+  alpha: Record<Direction, Estimate>;
+  beta_n_per_mm: Record<Direction, Estimate>;
   law: LawResult;
   loop_length_mm: number;
   measured: boolean;
@@ -1188,12 +1187,6 @@ export interface ImportResult {
   repeat: ChartResult;
   /** What may not be as meant, such as a lost region. */
   notes: string[];
-}
-
-/** An interval by its ends. */
-export interface IntervalResult {
-  low: number;
-  high: number;
 }
 
 /** A part of a list of jobs, latest first. */
@@ -1650,21 +1643,21 @@ export interface PressureRequest {
 /** Mean pressure; no medical class. */
 export interface PressureResult {
   /** From axially free to axially fixed. */
-  mmhg: IntervalResult;
-  kpa: IntervalResult;
+  mmhg: [number, number];
+  kpa: [number, number];
   /** The same, widened by the 90 % interval of the fabric's stress, where known. */
-  mmhg_with_law_spread: IntervalResult | null;
+  mmhg_with_law_spread: [number, number] | null;
   /** Around the limb. */
   strain: number;
   rest_mm: number;
   worn_mm: number;
   /** Hoop tension per worn length. */
-  tension_n_per_mm: IntervalResult;
+  tension_n_per_mm: [number, number];
   axial_strain_free: number;
   /** Strain over lock-up strain. */
   lock_up_share: number;
   /** Sizes that press by the target: axially free to axially fixed. */
-  rest_mm_for_target: IntervalResult | null;
+  rest_mm_for_target: [number, number] | null;
   warnings: string[];
   /** Where the law comes from; empty if unknown. */
   law_source: string;
@@ -2031,8 +2024,8 @@ export interface StitchKind {
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
   code: number;
-  modulus_course_interval: [number, number];
-  modulus_wale_interval: [number, number];
+  modulus_course_interval_n_per_mm: [number, number];
+  modulus_wale_interval_n_per_mm: [number, number];
   /** Shares of the four phases. */
   fractions: Partial<Record<Fabric, number>>;
 }
@@ -2384,8 +2377,8 @@ export interface WornResult {
   worn_mm: number;
   ease: number;
   strain: number | null;
-  mmhg: IntervalResult | null;
-  kpa: IntervalResult | null;
+  mmhg: [number, number] | null;
+  kpa: [number, number] | null;
   warnings: string[];
 }
 

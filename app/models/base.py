@@ -83,17 +83,10 @@ def _known(value: Any) -> Any:
 Floats = Annotated[list[float], BeforeValidator(_listed)]
 """An array of the library."""
 Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
-"""An interval as [low, high]."""
+"""An interval, as [low, high] wherever there is one."""
 Known = Annotated[float | None, BeforeValidator(_known)]
 """Null where the library has no finite number."""
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
 """The same of an interval's ends."""
 
 Positive = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
-
-
-class IntervalResult(ResultModel):
-    """An interval by its ends."""
-
-    low: float
-    high: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -48,11 +49,13 @@ class AtlasResult(ResultModel):
     material: str
     repeats: list[str] = Field(description="Rows from the top, separated by /.")
     modulus_course_n_per_mm: Column
-    modulus_course_low: Column = Field(description="Low and high: ends of 90 % intervals.")
-    modulus_course_high: Column
+    modulus_course_low_n_per_mm: Column = Field(
+        description="Low and high: the ends of 90 % intervals."
+    )
+    modulus_course_high_n_per_mm: Column
     modulus_wale_n_per_mm: Column
-    modulus_wale_low: Column
-    modulus_wale_high: Column
+    modulus_wale_low_n_per_mm: Column
+    modulus_wale_high_n_per_mm: Column
     poisson_yx: Column
     poisson_xy: Column
     stretch_course: Column = Field(description="Strain at 0.1 N/mm.")
@@ -74,11 +77,16 @@ def atlas(request: AtlasRequest, context: Context) -> AtlasResult:
     return _result(atlas_of(request.material, request.repeats, context))
 
 
+def _of_library(column: str) -> str:
+    """The name of a column in the atlas, whose ends of intervals have no unit in theirs."""
+    return re.sub("_(low|high)_n_per_mm$", r"_\1", column)
+
+
 def _result(found: Atlas) -> AtlasResult:
     return AtlasResult.of(
         found,
         repeats=found.keys,
-        **{name: found.column(name) for name in COLUMNS},
+        **{name: found.column(_of_library(name)) for name in COLUMNS},
         **{name: [getattr(cost, name) for cost in found.costs] for name in COSTS},
         **{f"stretch_{d}": found.strain_at(d, USUAL_LOAD_N_PER_MM) for d in Direction},
     )

@@ -42,10 +42,10 @@ class CurveResult(ResultModel):
     strain: Floats
     strain_low: Floats = Field(description="Lower end of the 90 % interval.")
     strain_high: Floats = Field(description="Upper end of the 90 % interval.")
-    stress_low: Floats = Field(
+    stress_low_n_per_mm: Floats = Field(
         description="Lower end of the 90 % interval of the stress at each strain, N/mm."
     )
-    stress_high: Floats = Field(description="Upper end of it, at most 10 N/mm.")
+    stress_high_n_per_mm: Floats = Field(description="Upper end of it, at most 10 N/mm.")
     provenance: str
 
 

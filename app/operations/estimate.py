@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from app.cli.common import emit, json_option, user_data_dir
 from app.cli.options import out_option
-from app.models.base import IntervalResult, RequestModel, ResultModel
+from app.models.base import Ends, RequestModel, ResultModel
 from app.models.laws import LawResult
 from app.operations.context import Context
 from app.operations.estimate_report import LeftOutResult, report, text_of_left_out
@@ -44,19 +45,27 @@ class EstimateRequest(RequestModel):
     )
 
 
-class EstimateInterval(IntervalResult):
+class Estimate(ResultModel):
     """A value and its 90 % interval (of no width where it is measured)."""
 
     value: float
+    interval: Ends
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_library(cls, value: Any) -> Any:
+        if not hasattr(value, "low"):
+            return value
+        return {"value": value.value, "interval": (value.low, value.high)}
 
 
 class FabricEstimateResult(ResultModel):
     """One fabric: extension under load first, because it is predicted best."""
 
-    strain_at_0_1_n_per_mm: dict[Direction, EstimateInterval]
-    modulus_n_per_mm: dict[Direction, EstimateInterval]
-    alpha: dict[Direction, EstimateInterval]
-    beta_n_per_mm: dict[Direction, EstimateInterval]
+    strain_at_0_1_n_per_mm: dict[Direction, Estimate]
+    modulus_n_per_mm: dict[Direction, Estimate]
+    alpha: dict[Direction, Estimate]
+    beta_n_per_mm: dict[Direction, Estimate]
     law: LawResult
     loop_length_mm: float
     measured: bool
@@ -219,17 +228,19 @@ def _text(r: EstimateResult) -> str:
         for d in Direction:
             strain = _percent(f.strain_at_0_1_n_per_mm[d])
             modulus = f.modulus_n_per_mm[d]
+            low, high = modulus.interval
             lines.append(
                 f"{fabric + kind:22} {d:6} {strain:24} {modulus.value:.4f}"
-                f" ({modulus.low:.4f} to {modulus.high:.4f})"
+                f" ({low:.4f} to {high:.4f})"
             )
     if r.left_out is not None:
         lines += ["", text_of_left_out(r.left_out)]
     return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
 
 
-def _percent(e: EstimateInterval) -> str:
-    return f"{e.value:.0%} ({e.low:.0%} to {e.high:.0%})"
+def _percent(e: Estimate) -> str:
+    low, high = e.interval
+    return f"{e.value:.0%} ({low:.0%} to {high:.0%})"
 
 
 OPERATION = Operation(

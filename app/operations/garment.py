@@ -10,7 +10,7 @@ import click
 from pydantic import Field
 
 from app.cli.options import out_option
-from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
+from app.models.base import Ends, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.context import Context
@@ -215,8 +215,8 @@ class WornResult(ResultModel):
     worn_mm: float
     ease: float
     strain: float | None
-    mmhg: IntervalResult | None
-    kpa: IntervalResult | None
+    mmhg: Ends | None
+    kpa: Ends | None
     warnings: list[str]
 
 
@@ -380,7 +380,8 @@ def _pressure(place: WornResult) -> str:
     )
     if place.mmhg is None:
         return f"{sizes}; {place.warnings[0]}"
-    return f"{sizes} presses {place.mmhg.low:.1f} to {place.mmhg.high:.1f} mmHg"
+    low, high = place.mmhg
+    return f"{sizes} presses {low:.1f} to {high:.1f} mmHg"
 
 
 OPERATION = Operation(

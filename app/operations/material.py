@@ -66,8 +66,8 @@ class StitchKind(Moduli, Extensibility):
     """One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8."""
 
     code: int
-    modulus_course_interval: Ends
-    modulus_wale_interval: Ends
+    modulus_course_interval_n_per_mm: Ends
+    modulus_wale_interval_n_per_mm: Ends
     fractions: dict[Fabric, float] = Field(description="Shares of the four phases.")
 
 
@@ -192,7 +192,7 @@ def _table(table: StitchTable) -> StitchTableResult:
             low, high = table.modulus_interval_n_per_mm(d)
             values[f"modulus_{d}_n_per_mm"] = modulus
             values[f"extensibility_{d}_mm_per_n"] = 1 / modulus
-            values[f"modulus_{d}_interval"] = (low[code], high[code])
+            values[f"modulus_{d}_interval_n_per_mm"] = (low[code], high[code])
         fractions = dict(zip(PHASES, table.fractions[code].tolist(), strict=True))
         kinds.append(StitchKind.of(code=code, fractions=fractions, **values))
     return StitchTableResult(codes=kinds)

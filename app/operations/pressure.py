@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from pydantic import Field
 
-from app.models.base import IntervalResult, ResultModel
+from app.models.base import Ends, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import LawsRequest
 from app.operations.context import Context
@@ -38,18 +38,18 @@ class PressureRequest(LawsRequest):
 class PressureResult(ResultModel):
     """Mean pressure; no medical class."""
 
-    mmhg: IntervalResult = Field(description="From axially free to axially fixed.")
-    kpa: IntervalResult
-    mmhg_with_law_spread: IntervalResult | None = Field(
+    mmhg: Ends = Field(description="From axially free to axially fixed.")
+    kpa: Ends
+    mmhg_with_law_spread: Ends | None = Field(
         description="The same, widened by the 90 % interval of the fabric's stress, where known."
     )
     strain: float = Field(description="Around the limb.")
     rest_mm: float
     worn_mm: float
-    tension_n_per_mm: IntervalResult = Field(description="Hoop tension per worn length.")
+    tension_n_per_mm: Ends = Field(description="Hoop tension per worn length.")
     axial_strain_free: float
     lock_up_share: float = Field(description="Strain over lock-up strain.")
-    rest_mm_for_target: IntervalResult | None = Field(
+    rest_mm_for_target: Ends | None = Field(
         description="Sizes that press by the target: axially free to axially fixed."
     )
     warnings: list[str]
@@ -105,7 +105,7 @@ def _of_law(
     if uncertainty is not None:
         spread = uncertainty.log_stress(direction, found.tension_n_per_mm.low)
         factor = math.exp(Z_SCORE * float(spread))
-        widened = IntervalResult(low=found.mmhg.low / factor, high=found.mmhg.high * factor)
+        widened = found.mmhg.low / factor, found.mmhg.high * factor
     return PressureResult.of(
         found,
         mmhg_with_law_spread=widened,
@@ -130,17 +130,18 @@ def _command(request: PressureRequest, context: Context, law: Path | None) -> Pr
 
 
 def _text(r: PressureResult) -> str:
+    (low, high), (low_kpa, high_kpa) = r.mmhg, r.kpa
     lines = [
-        f"pressure  {r.mmhg.low:.1f} to {r.mmhg.high:.1f} mmHg "
-        f"({r.kpa.low:.2f} to {r.kpa.high:.2f} kPa), axially free to fixed",
+        f"pressure  {low:.1f} to {high:.1f} mmHg "
+        f"({low_kpa:.2f} to {high_kpa:.2f} kPa), axially free to fixed",
         f"strain    {r.strain:.3f} around the limb ({r.lock_up_share:.0%} of the lock-up)",
     ]
     if r.mmhg_with_law_spread is not None:
-        spread = r.mmhg_with_law_spread
-        lines.append(f"          {spread.low:.1f} to {spread.high:.1f} mmHg with the law's spread")
+        low, high = r.mmhg_with_law_spread
+        lines.append(f"          {low:.1f} to {high:.1f} mmHg with the law's spread")
     if r.rest_mm_for_target is not None:
-        sizes = r.rest_mm_for_target
-        lines.append(f"size      {sizes.low:.1f} to {sizes.high:.1f} mm unworn; middle shown above")
+        low, high = r.rest_mm_for_target
+        lines.append(f"size      {low:.1f} to {high:.1f} mm unworn; middle shown above")
     return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
 
 

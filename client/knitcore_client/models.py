@@ -1048,12 +1048,12 @@ class AtlasResult(BaseModel):
     repeats: list[str]
     """Rows from the top, separated by /."""
     modulus_course_n_per_mm: list[float]
-    modulus_course_low: list[float]
-    """Low and high: ends of 90 % intervals."""
-    modulus_course_high: list[float]
+    modulus_course_low_n_per_mm: list[float]
+    """Low and high: the ends of 90 % intervals."""
+    modulus_course_high_n_per_mm: list[float]
     modulus_wale_n_per_mm: list[float]
-    modulus_wale_low: list[float]
-    modulus_wale_high: list[float]
+    modulus_wale_low_n_per_mm: list[float]
+    modulus_wale_high_n_per_mm: list[float]
     poisson_yx: list[float]
     poisson_xy: list[float]
     stretch_course: list[float]
@@ -1408,9 +1408,9 @@ class CurveResult(BaseModel):
     """Lower end of the 90 % interval."""
     strain_high: list[float]
     """Upper end of the 90 % interval."""
-    stress_low: list[float]
+    stress_low_n_per_mm: list[float]
     """Lower end of the 90 % interval of the stress at each strain, N/mm."""
-    stress_high: list[float]
+    stress_high_n_per_mm: list[float]
     """Upper end of it, at most 10 N/mm."""
     provenance: str
 
@@ -1517,12 +1517,11 @@ class DeviationDocument(BaseModel):
     poisson_xy: float | None = None
 
 
-class EstimateInterval(BaseModel):
+class Estimate(BaseModel):
     """A value and its 90 % interval (of no width where it is measured)."""
 
-    low: float
-    high: float
     value: float
+    interval: tuple[float, float]
 
 
 class EstimateResult(BaseModel):
@@ -1629,10 +1628,10 @@ class FabricDocument(BaseModel):
 class FabricEstimateResult(BaseModel):
     """One fabric: extension under load first, because it is predicted best."""
 
-    strain_at_0_1_n_per_mm: dict[Direction, EstimateInterval]
-    modulus_n_per_mm: dict[Direction, EstimateInterval]
-    alpha: dict[Direction, EstimateInterval]
-    beta_n_per_mm: dict[Direction, EstimateInterval]
+    strain_at_0_1_n_per_mm: dict[Direction, Estimate]
+    modulus_n_per_mm: dict[Direction, Estimate]
+    alpha: dict[Direction, Estimate]
+    beta_n_per_mm: dict[Direction, Estimate]
     law: LawResult
     loop_length_mm: float
     measured: bool
@@ -1815,13 +1814,6 @@ class ImportResult(BaseModel):
     repeat: ChartResult
     notes: list[str] = []
     """What may not be as meant, such as a lost region."""
-
-
-class IntervalResult(BaseModel):
-    """An interval by its ends."""
-
-    low: float
-    high: float
 
 
 class JobPage(BaseModel):
@@ -2154,21 +2146,21 @@ class PredictResult(BaseModel):
 class PressureResult(BaseModel):
     """Mean pressure; no medical class."""
 
-    mmhg: IntervalResult
+    mmhg: tuple[float, float]
     """From axially free to axially fixed."""
-    kpa: IntervalResult
-    mmhg_with_law_spread: IntervalResult | None
+    kpa: tuple[float, float]
+    mmhg_with_law_spread: tuple[float, float] | None
     """The same, widened by the 90 % interval of the fabric's stress, where known."""
     strain: float
     """Around the limb."""
     rest_mm: float
     worn_mm: float
-    tension_n_per_mm: IntervalResult
+    tension_n_per_mm: tuple[float, float]
     """Hoop tension per worn length."""
     axial_strain_free: float
     lock_up_share: float
     """Strain over lock-up strain."""
-    rest_mm_for_target: IntervalResult | None
+    rest_mm_for_target: tuple[float, float] | None
     """Sizes that press by the target: axially free to axially fixed."""
     warnings: list[str]
     law_source: str
@@ -2408,8 +2400,8 @@ class StitchKind(BaseModel):
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float
     code: int
-    modulus_course_interval: tuple[float, float]
-    modulus_wale_interval: tuple[float, float]
+    modulus_course_interval_n_per_mm: tuple[float, float]
+    modulus_wale_interval_n_per_mm: tuple[float, float]
     fractions: dict[Fabric, float]
     """Shares of the four phases."""
 
@@ -2612,8 +2604,8 @@ class WornResult(BaseModel):
     worn_mm: float
     ease: float
     strain: float | None
-    mmhg: IntervalResult | None
-    kpa: IntervalResult | None
+    mmhg: tuple[float, float] | None
+    kpa: tuple[float, float] | None
     warnings: list[str]
 
 

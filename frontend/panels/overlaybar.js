@@ -184,7 +184,7 @@ function describe(studio, cell) {
     parts.push(`${percent(used)}${within("utilisation", used)} of lock-up`);
   } else if (kind) {
     const value = (/** @type {"course" | "wale"} */ direction) => {
-      const interval = range(kind[`modulus_${direction}_interval`]);
+      const interval = range(kind[`modulus_${direction}_interval_n_per_mm`]);
       return `${LINES[direction]} ${figure(kind[`modulus_${direction}_n_per_mm`])}${interval && ` (${interval})`}`;
     };
     parts.push(`${value("course")}, ${value("wale")} N/mm`);
@@ -209,7 +209,7 @@ function give(studio, row, column) {
     let low = 0;
     let high = 0;
     for (const i of group.cells) {
-      const [least, most] = kinds[codes[i]][`modulus_${direction}_interval`] ?? [NaN, NaN];
+      const [least, most] = kinds[codes[i]][`modulus_${direction}_interval_n_per_mm`] ?? [NaN, NaN];
       low += 1 / most;
       high += 1 / least;
     }

@@ -108,13 +108,7 @@ function pressure({ worn }, unit) {
             h("td", {}, long(place.rest_mm, unit)),
             h("td", {}, long(place.worn_mm, unit)),
             h("td", {}, percent(place.ease)),
-            h(
-              "td",
-              {},
-              place.mmhg && place.kpa
-                ? `${figure(place.mmhg.low, 2)} – ${figure(place.mmhg.high, 2)} mmHg (${figure(place.kpa.low, 2)} – ${figure(place.kpa.high, 2)} kPa)`
-                : "none",
-            ),
+            h("td", {}, place.mmhg && place.kpa ? `${span(place.mmhg)} mmHg (${span(place.kpa)} kPa)` : "none"),
           ),
         ),
       ),
@@ -127,3 +121,6 @@ function pressure({ worn }, unit) {
     ),
   ];
 }
+
+/** @param {import("./planner.js").Span} ends */
+const span = ([low, high]) => `${figure(low, 2)} – ${figure(high, 2)}`;

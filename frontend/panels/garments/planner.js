@@ -6,7 +6,7 @@
  * @import {Studio} from "../../studio.js"
  * @import {DesignDocument} from "../../types.js"
  *
- * @typedef {{low: number, high: number}} Span
+ * @typedef {[low: number, high: number]} Span
  * @typedef {{at_mm: number, part: string, rest_mm: number, worn_mm: number, ease: number,
  *   mmhg: Span | null, kpa: Span | null, warnings: string[]}} Worn
  * @typedef {{name: string, colour: string, stitches: number, columns: number, rows: number,
