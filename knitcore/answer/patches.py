@@ -156,6 +156,8 @@ def patches_of(
     material: Material,
     gauge: RelaxedSize | None = None,
     swept: SweptChart | None = None,
+    *,
+    gradual: bool = True,
 ) -> Patches:
     """A chart in patches, each with its answer.
 
@@ -165,6 +167,9 @@ def patches_of(
     gauge : measured relaxed size of the whole chart's mean stitch, if known.
     swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
         of the packaged samples.
+
+    gradual : whether the patches of a chart that has just outgrown one are still much alike. A
+        swatch, which has its textures where they are, takes them as they are.
 
     Raises
     ------
@@ -189,7 +194,7 @@ def patches_of(
     found = [densities(part) for part in parts]
     moved = _difference(densities(repeat), found, [part.purl.size for part in parts])
     # a chart that has just outgrown one patch is answered almost as one
-    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0)
+    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0) if gradual else 1.0
     shifted = [_sum(own, moved) for own in found]
     if apart < 1:
         shifted = [_between(densities(repeat), own, apart) for own in shifted]

@@ -80,7 +80,7 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    patches = patches_of(chart, material)
+    patches = patches_of(chart, material, gradual=False)
     phases = quarter_phases(chart)
     laws: list[ConstitutiveLaw] = []
     extent = (
@@ -94,8 +94,7 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
             here = slice(below, above), slice(left, right)
             cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
             number[here] = len(laws) // len(PHASES)
-            learned = answer.provenance.startswith("learned")
-            if not learned and pure_fabric(chart.region(*here)) is not None:
+            if pure_fabric(chart.region(*here)) is not None:
                 laws += _own_laws(cells, material)
                 continue
             laws += _fitted_laws(cells, answer, material, even)
