@@ -62,6 +62,12 @@ class CutPiece:
                 raise InputError(
                     name, "a corner is no place.", f"Give mm, at most {MAX_SIZE_MM:g} from 0."
                 )
+            if np.any(np.all(np.asarray(ring) == np.roll(ring, -1, axis=0), axis=1)):
+                raise InputError(
+                    name,
+                    "a corner is given twice in a row.",
+                    "Give each corner once; the last side leads back to the first by itself.",
+                )
         corners = sum(map(len, rings))
         if corners > MAX_CORNERS:
             raise InputError(

@@ -74,6 +74,7 @@ def test_a_sliver_gets_no_endless_mesh() -> None:
     ("field", "make"),
     [
         ("outline", lambda: CutPiece([(0, 0), (1, 1)])),
+        ("outline", lambda: CutPiece([(0, 0), (9, 0), (9, 9), (0, 0)])),
         ("outline", lambda: CutPiece([(0, 0), (9, 9), (9, 0), (0, 9)])),
         ("outline", lambda: CutPiece([(0, 0), (np.nan, 0), (9, 9)])),
         (
