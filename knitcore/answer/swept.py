@@ -26,6 +26,8 @@ from knitcore.materials.uncertainty import LawUncertainty
 
 STRESS = np.geomspace(0.005, 0.33, 24)
 """Stresses (N/mm) at which curves are compared."""
+LEAST_REACHED_N_PER_MM = 0.1
+"""A curve that ends at a smaller stress, as wide ribs' do at a strain of 3, says too little."""
 
 
 def swept_chart(
@@ -67,14 +69,15 @@ def over_mixture(
     Returns
     -------
     (2,) logarithms of width and height; (14,) logarithms of strain at the stresses of the learned
-    model, nan where a quarter of a stretch or less is known, and differences of Poisson's ratios.
+    model, nan where a stretch ended below :data:`LEAST_REACHED_N_PER_MM`, and differences of
+    Poisson's ratios.
     """
     at = np.log(STRESS / mixture.bending_stress_n_per_mm)
     ratio = np.full((2, len(STRESS_GRID)), np.nan)
     for direction, strain in zip(Direction, strains, strict=True):
         logs = np.log(strain / mixture.strain(direction, STRESS))
         known = np.isfinite(logs)
-        if np.count_nonzero(known) > len(STRESS) // 4:
+        if known.any() and STRESS[known][-1] >= LEAST_REACHED_N_PER_MM:
             ratio[direction.axis] = np.interp(np.log(STRESS_GRID), at[known], logs[known])
     fold = np.log(np.array(size_mm) / mixture.size_mm)
     return fold, np.append(ratio.ravel(), np.array(poisson) - mixture.poisson)
