@@ -26,6 +26,7 @@ TAGS = {
     "charts": "Read charts, and patterns to begin with.",
     "mechanics": "What a chart does: moduli, curves, pressure, curl.",
     "stretch": "A stretch test of a piece, stitch by stitch.",
+    "pieces": "Cut pieces of any outline, pulled, sheared and sewn.",
     "yarn level": "Repeats as curves of yarn in space.",
     "materials": "The library of yarns, and estimates for others.",
     "design": "Inverse design: repeats for wished mechanics.",
