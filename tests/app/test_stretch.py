@@ -31,8 +31,8 @@ def test_the_service_pulls_a_swatch(client: TestClient) -> None:
 
 
 def test_force_waist_and_stitches_have_intervals(client: TestClient) -> None:
-    """Those of a pure fabric's force are as wide as those of its modulus; no other source of doubt
-    matters as much.
+    """Those of a pure fabric's force are as wide as those of its modulus at first; the stiffened
+    cloth is known better. No other source of doubt matters as much.
     """
     answer = client.post("/api/v1/stretch", json=ASKED | {"steps": 9}).json()
     low, force, high = (np.array(answer[f"force_{name}n"]) for name in ("low_", "", "high_"))
@@ -41,7 +41,8 @@ def test_force_waist_and_stitches_have_intervals(client: TestClient) -> None:
     asked = {"chart": GARTER, "material": "acrylic"}
     modulus = client.post("/api/v1/predict", json=asked).json()
     ends = np.array(modulus["modulus_wale_interval_n_per_mm"]) / modulus["modulus_wale_n_per_mm"]
-    assert high / force == pytest.approx(ends[1], rel=0.05)
+    assert high[0] / force[0] == pytest.approx(ends[1], rel=0.05)
+    assert np.all(np.diff(high / force) < 0)
     assert np.all(np.array(answer["waist_margin"]) > 0)
     for name in ("strain_margin", "utilisation_margin"):
         margins = np.array(answer["stitch_fields"][name])
@@ -113,7 +114,7 @@ def test_beyond_the_lock_up_the_limit_is_named(client: TestClient) -> None:
     result = CliRunner().invoke(main, ["stretch", *arguments, "--strain", "0.9", "--json"])
     assert result.exit_code == 2
     assert "locks up before that" in result.stderr
-    assert "Use at most 0.44" in result.stderr
+    assert "Use at most 0.45" in result.stderr
 
 
 def test_the_published_model_warns_beyond_the_lock_up(client: TestClient) -> None:
@@ -141,7 +142,7 @@ def test_a_lock_up_in_part_of_a_quarter_cell_is_reported(client: TestClient) -> 
     body = ASKED | {
         "chart": "PPKKPKP\nKKKPPKK\nPKKKPKK",
         "outline": "xxxxxxx\nxxxxxxx\n...x...",
-        "strain": 1.0,
+        "strain": 0.9,
         "steps": 8,
     }
     answer = client.post("/api/v1/stretch", json=body).json()
