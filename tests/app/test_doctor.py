@@ -237,6 +237,7 @@ class _Nobody:
     """A place that takes jobs and never begins."""
 
     share = None
+    cpu_s = None
 
     async def submit(self, job: object) -> asyncio.Future[int]:
         self.future: asyncio.Future[int] = asyncio.get_running_loop().create_future()

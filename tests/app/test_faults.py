@@ -90,7 +90,7 @@ def test_a_full_disk_refuses_clearly_and_loses_nothing(small_disk: Path, tmp_pat
             if refused.status_code != 200:
                 break
         problem = refused.json()
-        assert (refused.status_code, problem["type"]) == (507, "full"), problem
+        assert (refused.status_code, problem["type"]) == (507, "/problems/full"), problem
         assert "nothing was changed" in problem["detail"]
         assert "Make room" in problem["remedy"]
         painter.check()

@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import subprocess
 import sys
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import httpx2 as httpx
 import pytest
@@ -19,6 +21,12 @@ from scripts.client_code import FOLDER, code
 from tests.app.service import Service
 
 TOKEN = "a-token-of-this-test"
+
+
+def awaited(script: Coroutine[Any, Any, None]) -> None:
+    """Run a script in a thread: Playwright's loop runs on in this one after the browser tests."""
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(asyncio.run, script).result()
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +120,7 @@ def test_the_same_awaited(service: Service) -> None:
             with pytest.raises(ProblemError, match="no design"):
                 await knit.design("no-such-design")
 
-    asyncio.run(script())
+    awaited(script())
 
 
 def test_a_job_given_up_is_cancelled() -> None:
@@ -137,7 +145,7 @@ def test_a_job_given_up_is_cancelled() -> None:
                 async with asyncio.timeout(0.01):
                     await knit.run("bend", chart="K", material="acrylic")
 
-    asyncio.run(script())
+    awaited(script())
     assert cancelled == ["a-job"]
 
 
