@@ -58,7 +58,10 @@ def test_every_kind_has_an_example() -> None:
     assert [kind for kind, operation in KINDS.items() if not operation.example] == []
 
 
-@pytest.mark.parametrize("kind", list(KINDS))
+@pytest.mark.parametrize(
+    "kind",
+    [kind if kind == "bend" else pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS],
+)
 def test_a_killed_worker_loses_only_its_own_job(
     runner: JobRunner,
     requests: dict[str, dict[str, Any]],

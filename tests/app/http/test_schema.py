@@ -23,6 +23,7 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     service.kill()
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(150)
 def test_every_answer_is_documented(url: str) -> None:
     schema = schemathesis.openapi.from_url(f"{url}/openapi.json")
