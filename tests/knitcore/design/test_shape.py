@@ -37,10 +37,10 @@ def fill(width: np.ndarray, strain: float = 0.3, **options: Any) -> ShapedSwatch
 
 @pytest.mark.slow
 def test_the_outline_of_a_hidden_chart_is_found_again() -> None:
-    wanted = outline(banded("seed", "stockinette", "garter"), 0.3)
+    wanted = outline(banded("seed", "rib", "garter"), 0.3)
     assert np.ptp(wanted) > 0.03
     found = fill(wanted)
-    assert found.rms <= 0.012
+    assert found.rms <= 0.01
     assert found.width == pytest.approx(outline(found.chart, 0.3), abs=1e-6)
     assert sum(band.lines for band in found.bands) == len(wanted)
     assert found.force_n > 0
