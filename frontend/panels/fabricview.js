@@ -25,6 +25,11 @@ const DELAY_MS = 650;
 /** How long a change takes to reach the viewer and be drawn. */
 const DRAW_MS = 1500;
 const START_MS = 6000;
+/**
+ * A viewer that has drawn nothing for so long is loaded again: now and then viser's client misses its
+ * first scene. Then after twice as long, as a slow machine may need that.
+ */
+const RELOAD_MS = 6000;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
@@ -58,10 +63,23 @@ export function fabricview(host, studio, view) {
     }
   };
 
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let reloading;
+  let patience = RELOAD_MS;
+  const reloadUnseen = () => {
+    if (sending || problem || governor.held) {
+      reloading = setTimeout(reloadUnseen, RELOAD_MS);
+      return;
+    }
+    patience *= 2;
+    frame.contentWindow?.location.reload();
+  };
   frame.addEventListener("load", () => {
     if (!frame.contentWindow || !shown) return;
     governor.govern(frame.contentWindow, () => knitted());
     governor.wake(START_MS);
+    clearTimeout(reloading);
+    reloading = setTimeout(reloadUnseen, patience);
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let holding;
@@ -94,12 +112,14 @@ export function fabricview(host, studio, view) {
   let problem = false;
   /** A cloth is shown. */
   const knitted = () => {
+    clearTimeout(reloading);
     if (!problem) status.replaceChildren();
   };
   /** @param {string} url */
   const open = (url) => {
     if (shown === url) return;
     shown = url;
+    patience = RELOAD_MS;
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     frame.src = url;
     link.disconnect();

@@ -77,6 +77,11 @@ export class FrameGovernor {
     if (!held) this.#release();
   }
 
+  /** Whether frames wait. */
+  get held() {
+    return this.#held;
+  }
+
   /** Whether this machine draws too slowly to follow the pointer. */
   get slow() {
     return this.#pace >= SLOW_MS;
