@@ -149,7 +149,7 @@ class SceneWriter:
             self._put("rectangles", None)
             self._put("panes", None)
             return
-        corners = _lifted_rectangles(scene, middle)
+        corners = _lifted(scene.rectangles_mm - middle, scene)
         first = 4 * np.arange(len(corners))[:, None]
         self._put(
             "panes",
@@ -217,10 +217,8 @@ def _units(points_mm: Array) -> NDArray[np.float32]:
     return units
 
 
-def _lifted_rectangles(scene: FabricScene, middle: Array) -> NDArray[np.float32]:
-    """Corners of the rectangles over the face, (rectangles, 4, 3), in the scene's unit."""
-    assert scene.rectangles_mm is not None  # noqa: S101 - the caller checked
-    corners = scene.rectangles_mm - middle
+def _lifted(corners: Array, scene: FabricScene) -> NDArray[np.float32]:
+    """Corners (rectangles, 4, 2) in mm over the face, (rectangles, 4, 3) in the scene's unit."""
     highest = scene.placement.depth * scene.shapes.lines[..., 2].max()
     height = highest + 1.3 * scene.shapes.yarn_radius_mm
     lifted = np.concatenate([corners, np.full((*corners.shape[:2], 1), height)], axis=2)
