@@ -1,10 +1,10 @@
 // Made from the service's models by scripts/page_types.py: change those, then `make types`.
 
-/** Which atlas. */
+/** The atlas to compute. */
 export interface AtlasRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   /** small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics. */
   repeats?: "small" | "all";
@@ -38,7 +38,7 @@ export interface AtlasResult {
   provenance: string[];
 }
 
-/** Lines of one repeat. */
+/** A band of lines of one repeat. */
 export interface BandResult {
   repeat: string;
   /** From 1, at the bottom or the left. */
@@ -51,11 +51,11 @@ export interface BendRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Yarn per stitch; the material's. */
+  /** Yarn per stitch; the material's by default. */
   loop_length_mm?: number | null;
-  /** Of the yarn; gives bending lengths. */
+  /** Of the yarn; needed for the bending lengths. */
   linear_density_g_per_m?: number | null;
 }
 
@@ -65,10 +65,10 @@ export interface BendResult {
   /** Derivative of the energy per area by the curvature, N·mm per mm of width. Negative: left alone, the fabric curves with its face outside. */
   moment_course_n: number;
   moment_wale_n: number;
-  /** Bending rigidity, the other size free. */
+  /** Bending rigidity, with the size across free to change. */
   bending_course_n_mm: number;
   bending_wale_n_mm: number;
-  /** The same, the other size held. */
+  /** Bending rigidity, with the size across held. */
   bending_held_course_n_mm: number;
   bending_held_wale_n_mm: number;
   /** Strain across per curvature, bent along the rows. */
@@ -79,34 +79,34 @@ export interface BendResult {
   /** D1 + 2 D66, from bending at 45°. */
   twist_n_mm: number | null;
   thickness_mm: number;
-  /** What free edges do. */
+  /** How free edges curl. */
   curl: string;
-  /** Where the sides go. */
+  /** The way the sides curl. */
   curl_course: Curl;
-  /** Where top and bottom go. */
+  /** The way the top and bottom curl. */
   curl_wale: Curl;
   /** Peirce's, of a strip cut along the rows; null where the weight is not known. */
   bending_length_course_mm: number | null;
   bending_length_wale_mm: number | null;
-  /** Whether the state is a minimum without its symmetries. */
+  /** Whether the state is still a minimum when it may lose its symmetries. */
   stable: boolean;
   provenance: string;
   yarn: YarnResult;
   notes: string[];
 }
 
-/** What one photo gave. */
+/** The result of one photo. */
 export interface BendingPhotoResult {
   name: string;
   bending_modulus_n_mm2: number;
   length_mm: number;
   px_per_mm: number;
   yarn_width_mm: number;
-  /** Distance of the traced line from the elastica. */
+  /** Distance between the traced line and the fitted elastica. */
   rms_mm: number;
 }
 
-/** Photos of hanging yarn, and facts that they do not show. */
+/** Photos of hanging yarn, with the lengths and weight needed to read them. */
 export interface BendingRequest {
   images: UploadedFile[];
   /** Mass per length: weigh some metres; 0.5 g/m is 500 tex. */
@@ -121,7 +121,7 @@ export interface BendingRequest {
 export interface BendingResult {
   kind: "bending";
   bending_modulus_n_mm2: number;
-  /** Of one photo, N·mm²; None for one. */
+  /** Of a single photo, N·mm²; null if there is only one. */
   standard_deviation: number | null;
   /** Of the mean, N·mm². */
   standard_error: number | null;
@@ -134,27 +134,27 @@ export interface BiasRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Of the load. */
+  /** Steps of the load. */
   steps?: number;
-  /** C_xyxy; that of the laws otherwise. */
+  /** C_xyxy; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
   /** Length of an element's side; by default there are about 600 elements. */
   mesh_mm?: number | null;
   /** Last clamp-to-clamp strain: 0.5 is 50 %. */
   strain: number;
-  /** Between the free sides. */
+  /** Distance between the free sides. */
   width_mm?: number;
-  /** Between the clamps. */
+  /** Distance between the clamps. */
   length_mm?: number;
-  /** From the width to the rows: 0 pulls along columns, 90 along rows. */
+  /** Angle from the width to the rows: 0 pulls along columns, 90 along rows. */
   angle_deg?: number;
 }
 
 /** A simulated strip test at an angle, not a certified one. */
 export interface BiasResult {
-  /** Stored in the cloth. */
+  /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
   seconds: number;
@@ -165,13 +165,13 @@ export interface BiasResult {
   messages: string[];
   kind: "bias";
   strain: number[];
-  /** Along the pull. */
+  /** Force along the pull. */
   force_n: number[];
   /** Lower end of the 90 % interval. */
   force_low_n: number[];
   /** Upper end of the 90 % interval. */
   force_high_n: number[];
-  /** Across the pull: clamps hold cloth that would shear. */
+  /** Force across the pull: the clamps keep the cloth from shearing sideways. */
   sideways_n: number[];
   /** Force per width. */
   stress_n_per_mm: number[];
@@ -183,11 +183,11 @@ export interface BiaxialRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Of the load. */
+  /** Steps of the load. */
   steps?: number;
-  /** C_xyxy; that of the laws otherwise. */
+  /** C_xyxy; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
   /** Length of an element's side; by default there are about 600 elements. */
   mesh_mm?: number | null;
@@ -199,13 +199,13 @@ export interface BiaxialRequest {
   width_mm?: number;
   /** Along y. */
   length_mm?: number;
-  /** From the x axis to the rows. */
+  /** Angle from the x axis to the rows. */
   grain_deg?: number;
 }
 
 /** A simulated biaxial test: edges stay straight and slide along themselves. */
 export interface BiaxialResult {
-  /** Stored in the cloth. */
+  /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
   seconds: number;
@@ -243,15 +243,15 @@ export interface BoxInput {
 /** Shapes of the yarn that are admitted. */
 export type Branch = "published" | "mirrored" | "free";
 
-/** Where to start from, and tests whose forces the law should keep. */
+/** The law to start from, and tests whose forces the law has to match. */
 export interface CalibrateRequest {
   /** .npz: displacement (frames, 2, rows, columns), frame. */
   field: UploadedFile;
-  /** In which the fabric was pulled. */
+  /** Direction in which the fabric was pulled. */
   direction: Direction;
-  /** Pictures to use; all otherwise. */
+  /** Frames to use; all by default. */
   frames?: number[] | null;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   fabric: Fabric;
   /** Stretch tests: of the direction (forces), or course and wale (forces and start). */
@@ -276,12 +276,12 @@ export interface CalibrateResult {
   kind: "calibrate";
   parameters: Record<string, number>;
   standard_errors: Record<string, number>;
-  /** Pictures that were used. */
+  /** The frames that were fitted. */
   frames: number[];
-  /** All pictures, measured edges. */
+  /** Errors at all frames, with the edges moved as measured. */
   comparison: FrameErrorResult[];
   force_strain: number[];
-  /** Simulated over measured force. */
+  /** Simulated force over measured force. */
   force_ratio: number[];
   evaluations: number;
 }
@@ -294,12 +294,12 @@ export interface CameraRequest {
 /** Sides of a fabric. */
 export type CameraSide = "face" | "back" | "edge" | "angle";
 
-/** A repeat and how near it comes. */
+/** A repeat, and how near it comes to the targets. */
 export interface CandidateResult {
   material: string;
   /** K/P lines of one repeat, the top row first. */
   chart: string;
-  /** By quantity, with @load or @rest/worn; null beyond the lock-up. */
+  /** Values by quantity, with @load or @rest/worn; null beyond the lock-up. */
   values: Record<string, number | null>;
   /** 90 % intervals; null where an end lies beyond the computed curve. */
   intervals: Record<string, [number | null, number | null]>;
@@ -310,7 +310,7 @@ export interface CandidateResult {
   reached: boolean;
   provenance: string;
   transfers_per_stitch: number;
-  /** Between face and back, or beds. */
+  /** Moves of the yarn between face and back, or between beds, per stitch. */
   crossings_per_stitch: number;
   /** Knits minus purls over all stitches; far from 0 it curls. */
   curl: number;
@@ -325,7 +325,7 @@ export interface CharacteriseRequest {
   tensions?: number[];
   branch?: Branch;
   convention?: Convention;
-  /** Laws end here. */
+  /** Largest stress of the fitted laws. */
   max_stress_n_per_mm?: number;
   material?: string | null;
   yarn?: YarnInput | null;
@@ -345,11 +345,11 @@ export interface CharacteriseResult {
   rows: CharacterisedFabric[];
   /** A material file; null if no fabric has a law at the reference. */
   material: MaterialDocument | null;
-  /** The same at every setting. */
+  /** A material file for every setting, by its name. */
   materials: Record<string, MaterialDocument>;
 }
 
-/** With its stress-strain curves. */
+/** A pure fabric at one stitch setting, with its stress-strain curves. */
 export interface CharacterisedFabric {
   fabric: Fabric;
   setting: string;
@@ -378,12 +378,12 @@ export interface CharacterisedFabric {
   rms_course_n_per_mm: number | null;
   rms_wale_n_per_mm: number | null;
   converged: boolean | null;
-  /** Why something is missing, or what to know. */
+  /** Cautions, and why anything is missing. */
   remark: string;
   curves: Record<Direction, FabricCurve>;
 }
 
-/** A chart, read and written again in the canonical form. */
+/** A chart in canonical form. */
 export interface ChartResult {
   rows: number;
   columns: number;
@@ -402,20 +402,20 @@ export interface CompareRequest {
   laws?: Laws | null;
   /** .npz: displacement (frames, 2, rows, columns), frame. */
   field: UploadedFile;
-  /** In which the fabric was pulled. */
+  /** Direction in which the fabric was pulled. */
   direction: Direction;
-  /** Pictures to use; all otherwise. */
+  /** Frames to use; all by default. */
   frames?: number[] | null;
   material?: string | null;
-  /** Of the material. */
+  /** A fabric of the material. */
   fabric?: Fabric | null;
-  /** LAW.json, instead of material and fabric. */
+  /** A law file, LAW.json, in place of material and fabric. */
   law?: UploadedFile | null;
   edges?: Edges;
   model?: EnergyModel;
 }
 
-/** Errors per picture, in the order of the stretch. */
+/** Errors of each frame, in the order of the stretch. */
 export interface CompareResult {
   kind: "compare";
   frames: FrameErrorResult[];
@@ -437,9 +437,9 @@ export interface CompressionMeanResult {
 /** Compression tests of yarns. */
 export interface CompressionRequest {
   file: UploadedFile;
-  /** Only the samples of this yarn (sheets named yarn-number). */
+  /** Use only the samples of this yarn (sheets named yarn-number). */
   yarn?: string | null;
-  /** The yarn's, if the file does not say. */
+  /** Diameter of the yarn, if the file does not state it. */
   diameter_mm?: number | null;
   probe_width_mm?: number;
 }
@@ -447,7 +447,7 @@ export interface CompressionRequest {
 /** Constants of the contact law, per sample and mean. */
 export interface CompressionResult {
   kind: "compression";
-  /** Mean of the yarn; null if there are several, which have one each in `mean`. */
+  /** Mean of the yarn; null if there are several yarns, whose means are in `mean`. */
   k_n_per_mm3: number | null;
   /** The same. */
   p: number | null;
@@ -457,7 +457,7 @@ export interface CompressionResult {
   notes: string[];
 }
 
-/** What one test gave; the errors are those of the fit. */
+/** The result of one test, with the standard errors of its fit. */
 export interface CompressionSampleResult {
   name: string;
   yarn: string;
@@ -482,18 +482,18 @@ export type Curl = "flat" | "front" | "back";
 /** A whole piece with free edges. */
 export interface CurlRequest {
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Give the corners of all stitches as well. */
+  /** Also return the corners of all stitches. */
   corners?: boolean;
-  /** CPU time after which the shape is given as it is then, unconverged. */
+  /** CPU time after which the current shape is returned, not converged. */
   time_limit_s?: number;
 }
 
 /** The piece as it lies; heights are positive towards the face (the front). */
 export interface CurlResult {
   kind: "curl";
-  /** The shape, for views. */
+  /** Name of the shape, for 3D views. */
   id: string;
   rows: number;
   columns: number;
@@ -503,13 +503,13 @@ export interface CurlResult {
   depth_mm: number;
   /** Height of the sides above the fabric next to them; negative to the back. */
   curl_course_mm: number;
-  /** The same of top and bottom. */
+  /** Height of the top and bottom above the fabric next to them. */
   curl_wale_mm: number;
-  /** Extent if it lay flat. */
+  /** Extent of the piece laid flat. */
   flat_width_mm: number;
   flat_height_mm: number;
   thickness_mm: number;
-  /** Where it is false, the shape is a preview. */
+  /** If false, the shape is only a preview. */
   converged: boolean;
   /** CPU time. */
   seconds: number;
@@ -536,7 +536,7 @@ export interface CurveRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   /** Along rows, or along columns. */
   direction: Direction;
@@ -556,7 +556,7 @@ export interface CurveResult {
   strain_high: number[];
   /** Lower end of the 90 % interval of the stress at each strain, N/mm. */
   stress_low_n_per_mm: number[];
-  /** Upper end of it, at most 10 N/mm. */
+  /** Upper end of that interval, at most 10 N/mm. */
   stress_high_n_per_mm: number[];
   provenance: string;
 }
@@ -567,9 +567,9 @@ export interface DeformedPiece {
   corners_mm: [number, number][];
   /** Displacement of each corner. */
   moved_mm: [number, number][];
-  /** Numbers of corners, from 0. */
+  /** Corner numbers of each element, from 0. */
   elements: number[][];
-  /** Per element, as all that follow. */
+  /** Per element, like the fields below. */
   strain_course: number[];
   strain_wale: number[];
   /** In radians. */
@@ -713,13 +713,13 @@ export type Edges = "measured" | "rigid";
 /** Which sheet energy is meant. */
 export type EnergyModel = "published" | "full";
 
-/** A value and its 90 % interval (of no width where it is measured). */
+/** A value and its 90 % interval, which has no width if the value is measured. */
 export interface Estimate {
   value: number;
   interval: [number, number];
 }
 
-/** Known facts of the yarn and the product. */
+/** What is known of the yarn and the product. */
 export interface EstimateRequest {
   /** B of the yarn (`measure bending`). */
   bending_modulus_n_mm2: number;
@@ -741,7 +741,7 @@ export interface EstimateResult {
 /** Formats for export. */
 export type ExportKind = "knitout" | "knitspeak" | "png" | "svg" | "pdf" | "report" | "text" | "written" | "design" | "glb" | "stl" | "vtu" | "csv";
 
-/** A chart and the format that it shall become. */
+/** A chart and the format to write it in. */
 export interface ExportRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
@@ -753,17 +753,17 @@ export interface ExportRequest {
   chart: string | PureFabricChart;
   /** knitout, knitspeak, png, svg, pdf, report, text, written, design, glb, stl, vtu, csv; or a format of an installed extension. */
   to: ExportKind | string;
-  /** For sizes and values. */
+  /** Gives sizes and values. */
   material?: string;
   construction?: Construction;
-  /** Side of row 1 in flat knitting. */
+  /** The side of row 1, in flat knitting. */
   first_side?: Side;
-  /** How a knitout program ends. */
+  /** The end of a knitout program. */
   finish?: Finish;
   name?: string;
   /** Printed. */
   note?: string;
-  /** Of the yarns, for their mass. */
+  /** Linear density of the yarn, for its mass. */
   linear_density_tex?: number | null;
 }
 
@@ -773,7 +773,7 @@ export interface ExportResult {
   rows: number;
   columns: number;
   bytes: number;
-  /** Of a knitout program, without finishing. */
+  /** Of a knitout program, without the finish. */
   transfers: number | null;
   /** Of a knitout program, without waste. */
   carriers: number | null;
@@ -811,13 +811,13 @@ export interface FabricCurve {
   stress_n_per_mm: number[];
   bending_share: number[];
   contact_share: number[];
-  /** Where contact first holds half of the energy. */
+  /** Strain at which contact first holds half of the energy. */
   contact_overtakes_at_strain: number | null;
   jumps: number[];
   notes: string[];
 }
 
-/** A pure fabric of a material, with everything that is known of it. */
+/** A pure fabric of a material in full. */
 export interface FabricDetail {
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
@@ -856,7 +856,7 @@ export interface FabricDocument {
   measured: Record<Direction, CurveDocument>;
 }
 
-/** One fabric: extension under load first, because it is predicted best. */
+/** One fabric; extension under load comes first because it is predicted best. */
 export interface FabricEstimateResult {
   strain_at_0_1_n_per_mm: Record<Direction, Estimate>;
   modulus_n_per_mm: Record<Direction, Estimate>;
@@ -867,7 +867,7 @@ export interface FabricEstimateResult {
   measured: boolean;
 }
 
-/** A pure fabric of a material, in short. */
+/** A summary of a pure fabric of a material. */
 export interface FabricSummary {
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
@@ -913,17 +913,17 @@ export interface FigureResult {
 export interface FillRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** [row][column], the bottom row first; null for no wish. */
+  /** [row][column], the bottom row first; null where any value will do. */
   modulus_course_n_per_mm?: ((number | null)[])[] | null;
   modulus_wale_n_per_mm?: ((number | null)[])[] | null;
-  /** Of the chart, with wishes. */
+  /** Of the chart, if wishes are given. */
   rows?: number | null;
   columns?: number | null;
-  /** Instead of the two maps. */
+  /** In place of the two maps. */
   wishes?: WishInput[] | null;
-  /** Stitches without a wish stay as they are here; filled, too, otherwise. */
+  /** Stitches without a target stay as in this chart; otherwise they are filled. */
   chart?: string | null;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
@@ -932,23 +932,23 @@ export interface FillRequest {
   smallest_patch?: number;
   /** The same seed gives the same chart. */
   seed?: number;
-  /** Pull the chart in the finite swatch, and choose again what departs there. */
+  /** Pull the chart in the finite swatch; choose again where the result differs. */
   check?: boolean;
 }
 
-/** A chart, and how near it comes. */
+/** A chart, and how near it comes to the targets. */
 export interface FillResult {
   kind: "fill";
   rows: number;
   columns: number;
   chart: string;
-  /** Share of the stitches with a wish that are off by more than 10 %. */
+  /** Share of the stitches with a target that miss it by more than 10 %. */
   off_share: number;
   patches: PatchResult[];
   messages: string[];
 }
 
-/** Wishes, and the yarns to search. */
+/** Target properties, and the yarns to search. */
 export interface FindRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
@@ -958,24 +958,24 @@ export interface FindRequest {
   /** small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics. */
   repeats?: "small" | "all";
   count?: number;
-  /** Where nothing reaches the wishes, look into the other yarns too. */
+  /** Search the other yarns too if nothing meets the targets. */
   elsewhere?: boolean;
 }
 
-/** Ranked repeats; the best first. */
+/** Ranked repeats, the best first. */
 export interface FindResult {
   kind: "find";
   reached: boolean;
   message: string;
   searched: number;
-  /** What all repeats span. */
+  /** Range of each quantity over all repeats. */
   ranges: Record<string, [number, number]>;
   candidates: CandidateResult[];
-  /** Nearest in yarns that were not asked for, if those asked for reach nothing. */
+  /** Nearest fabrics in other yarns, if none of those asked for meets the targets. */
   elsewhere: CandidateResult[];
 }
 
-/** Of one finger. */
+/** Measurements of one finger. */
 export interface FingerSize {
   length_mm: number;
   circumference_mm: number;
@@ -990,7 +990,7 @@ export interface FitRequest {
   test_course: UploadedFile;
   /** Pulled along the columns. */
   test_wale: UploadedFile;
-  /** Found out from the content if not given. */
+  /** Recognised from the content if not given. */
   format?: "csv" | "h5" | null;
   /** recommended: force and waist of the simulated test, clamp to clamp; uniform: clamp to clamp, as if the cloth strained evenly; published: as in the paper. */
   reduction?: Reduction;
@@ -1025,11 +1025,11 @@ export interface FitResult {
   poisson_xy: number;
   kind: "fit";
   standard_errors: LawErrors;
-  /** Of all residuals. */
+  /** Rms of all residuals. */
   rms_n_per_mm: number;
   rms_course_n_per_mm: number;
   rms_wale_n_per_mm: number;
-  /** Up to where the law was fitted. */
+  /** Largest strain of the fit. */
   largest_strain: Record<Direction, number>;
   /** Pulls used. */
   runs: Record<Direction, number>;
@@ -1049,7 +1049,7 @@ export interface Focus {
   column: number;
 }
 
-/** Simulated minus measured displacement of one picture, in percent of the width. */
+/** Simulated minus measured displacement at one frame, in per cent of the width. */
 export interface FrameErrorResult {
   frame: number;
   applied_stretch: number;
@@ -1064,13 +1064,13 @@ export interface GarmentRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   garment: WristBrace | SockLeg | Limb | Glove;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** The knitter's; else the material's. */
+  /** The knitter's gauge; the material's by default. */
   gauge?: GaugeCount | null;
   /** Linear density of the yarn (g/km), for its mass. */
   linear_density_tex?: number | null;
-  /** Give each fabric a yarn of its own. */
+  /** Whether each fabric gets a yarn of its own. */
   intarsia?: boolean;
 }
 
@@ -1094,25 +1094,25 @@ export interface GarmentResult {
   /** 90 % interval. */
   yarn_interval_m: [number, number];
   yarn_interval_g: [number, number] | null;
-  /** What the intervals rest on. */
+  /** Source of the intervals. */
   interval_source: string;
   notes: string[];
-  /** Where regions of unlike gauge meet. */
+  /** Notes on borders between regions of different gauge. */
   warnings: string[];
-  /** The same as a project file, ready to be edited. */
+  /** The garment as a project file, ready to edit. */
   design: DesignFile;
 }
 
-/** A swatch's gauge, as it is counted. */
+/** A gauge counted on a swatch. */
 export interface GaugeCount {
   stitches: number;
   rows: number;
   per?: "10 cm" | "4 in" | "5 cm";
-  /** Of the swatch. */
+  /** Repeat of the swatch. */
   fabric?: Fabric;
 }
 
-/** A swatch's gauge: what you counted on your own relaxed cloth. */
+/** The gauge of a swatch, counted on your own relaxed cloth. */
 export interface GaugeInput {
   /** Counted on your own relaxed swatch; give stitches and rows, or neither. */
   stitches_per_10_cm: number;
@@ -1132,10 +1132,10 @@ export interface GaugeResult {
   source: string;
 }
 
-/** The therapeutic glove; an adult's hand unless measured. */
+/** The therapeutic glove; measurements default to an adult's hand. */
 export interface Glove {
   ease?: number;
-  /** Wanted pressure; before the ease. */
+  /** Target pressure; takes precedence over the ease. */
   target_mmhg?: number | null;
   template: "glove";
   cuff_mm?: number;
@@ -1185,7 +1185,7 @@ export interface ImportResult {
   rows: number;
   columns: number;
   repeat: ChartResult;
-  /** What may not be as meant, such as a lost region. */
+  /** What may have been read wrongly or lost, such as a region. */
   notes: string[];
 }
 
@@ -1255,7 +1255,7 @@ export interface LawErrors {
   poisson_yx: number;
   /** Contraction course-wise when pulled wale-wise. */
   poisson_xy: number;
-  /** Recommended reduction only, and mostly its prior's: a factor of 1.5. */
+  /** Recommended reduction only; mostly that of its prior, a factor of 1.5. */
   shear_modulus_n_per_mm: number | null;
   kappa_xx: number | null;
   kappa_yy: number | null;
@@ -1281,7 +1281,7 @@ export interface LawResult {
 /** Which laws of the paper's yarns: refitted clamp to clamp, or as published. */
 export type Laws = "refitted" | "published";
 
-/** How well the library's yarns are predicted when they are left out; factors of the rms. */
+/** Errors for the library's yarns when each is left out; rms errors are factors. */
 export interface LeftOutResult {
   measured: Fabric[];
   values: number;
@@ -1297,10 +1297,10 @@ export interface LeftOutResult {
   strain_coverage: number;
 }
 
-/** A sleeve along any limb. */
+/** A sleeve for any limb. */
 export interface Limb {
   ease?: number;
-  /** Wanted pressure; before the ease. */
+  /** Target pressure; takes precedence over the ease. */
   target_mmhg?: number | null;
   template: "limb";
   /** [position_mm, circumference_mm] along the limb. */
@@ -1312,13 +1312,13 @@ export interface Limb {
 
 /** A tube on a limb. */
 export interface LimbInput {
-  /** Of the unworn tube. */
+  /** Circumference of the unworn tube. */
   rest_mm: number;
-  /** Of the limb. */
+  /** Circumference of the limb. */
   worn_mm: number;
 }
 
-/** Limits on the cost of knitting; null for no limit. */
+/** Limits on the effort of knitting; null for no limit. */
 export interface LimitsInput {
   /** Loops moved between the beds, per stitch. */
   transfers_per_stitch?: number | null;
@@ -1328,17 +1328,17 @@ export interface LimitsInput {
   curl?: number | null;
 }
 
-/** What was done to an edge, per step. */
+/** Force and motion of an edge at each step. */
 export interface LoadedEdge {
   edge: string;
   kind: string;
-  /** On the whole edge; 0 of a tape. */
+  /** Force on the whole edge; 0 for a tape. */
   force_x_n: number[];
   force_y_n: number[];
-  /** Mean of the edge. */
+  /** Mean displacement of the edge. */
   moved_x_mm: number[];
   moved_y_mm: number[];
-  /** The last step's 90 % interval is this much to either side. */
+  /** Half width of the 90 % interval at the last step. */
   force_x_margin_n: number;
   force_y_margin_n: number;
   moved_x_margin_mm: number;
@@ -1350,7 +1350,7 @@ export interface MarkRequest {
   box?: BoxInput | null;
 }
 
-/** A material, with everything that is known of it. */
+/** A material in full. */
 export interface MaterialDetail {
   id: string;
   name: string;
@@ -1361,11 +1361,11 @@ export interface MaterialDetail {
   compression_stiffness_n_per_mm3: number | null;
   compression_exponent: number | null;
   fabrics: Partial<Record<Fabric, FabricDetail>>;
-  /** None for a material that lacks one of the four fabrics. */
+  /** Null for a material that lacks one of the four fabrics. */
   stitch_table: StitchTableResult | null;
-  /** Of the laws. */
+  /** Curves of the laws. */
   curves: Partial<Record<Fabric, Record<Direction, LawCurve>>>;
-  /** Of the stretch tests, where they are kept with the material. */
+  /** Curves of the stretch tests, if they are stored with the material. */
   measured: Partial<Record<Fabric, Record<Direction, CurveDocument>>>;
 }
 
@@ -1380,13 +1380,13 @@ export interface MaterialDocument {
   note: string;
 }
 
-/** A material by its id. */
+/** A material by its identifier. */
 export interface MaterialRequest {
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   identifier: string;
 }
 
-/** A material, in short. */
+/** A summary of a material. */
 export interface MaterialSummary {
   id: string;
   name: string;
@@ -1418,12 +1418,12 @@ export interface ModelReport {
   left_out: LeftOutResult[];
 }
 
-/** Where the swatch is nearest to its lock-up at the last step. */
+/** The place nearest to its lock-up at the last step. */
 export interface NearestLockUp {
   utilisation: number;
-  /** From 1, bottom row first. */
+  /** Row, from 1 at the bottom. */
   row: number;
-  /** From 1, left wale first. */
+  /** Column, from 1 at the left. */
   column: number;
   direction: Direction;
   fabric: string;
@@ -1438,7 +1438,7 @@ export interface NewShare {
   token: string;
 }
 
-/** The request of an operation that needs none. */
+/** The request of an operation without inputs. */
 export interface NoRequest {
 
 }
@@ -1484,13 +1484,13 @@ export interface ParsedChart {
 export interface PatchResult {
   repeat: string;
   stitches: number;
-  /** Of its first stitch, from 1 at the bottom left. */
+  /** Position of its first stitch, from 1 at the bottom left. */
   row: number;
   column: number;
-  /** Of the repeat; null without a wish. */
+  /** Of the repeat; null without a target. */
   deviation_course: number | null;
   deviation_wale: number | null;
-  /** The same of the patch as the finite swatch has it; null if it was not pulled. */
+  /** Of the patch in the finite swatch; null if it was not pulled. */
   swatch_course: number | null;
   swatch_wale: number | null;
 }
@@ -1509,40 +1509,40 @@ export interface Patterns {
   patterns: PatternResult[];
 }
 
-/** A piece cut from cloth, and what is done to its edges in the end. */
+/** A piece cut from cloth, and the conditions on its edges at the last step. */
 export interface PieceInput {
   /** Corners in mm; side 1 goes from the first to the second. */
   outline: [number, number][];
-  /** Their sides are counted on. */
+  /** Corners of each hole; their sides continue the numbering. */
   holes?: [number, number][][];
-  /** From the x axis to the rows, counter-clockwise: 45 is on the bias. */
+  /** Angle from the x axis to the rows, counter-clockwise: 45 is on the bias. */
   grain_deg?: number;
   /** Names of parts of the boundary, by the numbers of their sides. */
   edges: Record<string, number[]>;
   conditions: (HeldInput | PulledInput | TractionInput | SewnInput)[];
 }
 
-/** Cloth, the piece that is cut from it, and what is done to its edges. */
+/** Cloth, the piece cut from it, and the conditions on its edges. */
 export interface PieceRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Of the load. */
+  /** Steps of the load. */
   steps?: number;
-  /** C_xyxy; that of the laws otherwise. */
+  /** C_xyxy; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
   /** Length of an element's side; by default there are about 600 elements. */
   mesh_mm?: number | null;
   piece: PieceInput;
-  /** Whether to tell the shape and strains at the end. */
+  /** Whether to return the final shape and strains. */
   fields?: boolean;
 }
 
 /** Equilibria of a piece under a growing load. */
 export interface PieceResult {
-  /** Stored in the cloth. */
+  /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
   seconds: number;
@@ -1552,7 +1552,7 @@ export interface PieceResult {
   utilisation: number;
   messages: string[];
   kind: "piece";
-  /** Of the load, per step. */
+  /** Share of the load at each step. */
   share: number[];
   area_mm2: number;
   /** In the order of the conditions. */
@@ -1568,22 +1568,22 @@ export interface Placement {
   columns: number;
 }
 
-/** A chart and its material; of a shaped piece, the largest rectangle inside counts. */
+/** A chart and its material; a shaped piece counts by the largest rectangle inside it. */
 export interface PredictRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
-  /** Relaxed size of the mean stitch; estimated if left out. */
+  /** Measured gauge; the relaxed size is estimated if left out. */
   gauge?: GaugeInput | null;
   /** Further numbers, by the names of installed extensions. */
   measures?: string[];
 }
 
-/** Effective elastic constants of the whole chart at small strain; intervals cover 90 %. */
+/** Effective elastic constants of the whole chart at small strain, with 90 % intervals. */
 export interface PredictResult {
   extensibility_course_mm_per_n: number;
   extensibility_wale_mm_per_n: number;
@@ -1593,7 +1593,7 @@ export interface PredictResult {
   poisson_yx: number;
   /** Contraction course-wise when pulled wale-wise. */
   poisson_xy: number;
-  /** Of the stitches that the constants are of. */
+  /** Size of the chart that the constants describe. */
   rows: number;
   columns: number;
   segments: Record<Direction, SegmentCountsResult>;
@@ -1601,7 +1601,7 @@ export interface PredictResult {
   modulus_wale_interval_n_per_mm: [number, number];
   poisson_yx_interval: [number, number];
   poisson_xy_interval: [number, number];
-  /** Reuss and Voigt; wider where folds need it. */
+  /** Reuss and Voigt bounds, widened where folds require it. */
   modulus_course_bounds_n_per_mm: [number, number];
   modulus_wale_bounds_n_per_mm: [number, number];
   /** An assumption unless it was calibrated. */
@@ -1617,11 +1617,11 @@ export interface PredictResult {
   provenance: string;
   method: string;
   notes: string[];
-  /** Those that were asked for. */
+  /** The measures that were asked for. */
   measures: MeasureResult[];
 }
 
-/** A fabric of a material, or a law, as a tube on a limb. */
+/** A tube on a limb: its law, or a fabric of a material, and its sizes. */
 export interface PressureRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
@@ -1631,10 +1631,10 @@ export interface PressureRequest {
   rest_mm?: number | null;
   /** Circumference of the limb. */
   worn_mm: number;
-  /** Instead of rest_mm: the pressure wanted, for which to size the tube. */
+  /** Target pressure, in place of rest_mm: finds the size of the tube. */
   target_mmhg?: number | null;
   material?: string | null;
-  /** Of the material. */
+  /** A fabric of the material. */
   fabric?: Fabric | null;
   /** Constants of a law, by name. */
   law?: Record<string, number> | null;
@@ -1642,12 +1642,12 @@ export interface PressureRequest {
 
 /** Mean pressure; no medical class. */
 export interface PressureResult {
-  /** From axially free to axially fixed. */
+  /** Mean pressure, from axially free to axially fixed. */
   mmhg: [number, number];
   kpa: [number, number];
-  /** The same, widened by the 90 % interval of the fabric's stress, where known. */
+  /** That range, widened by the 90 % interval of the fabric's stress, if known. */
   mmhg_with_law_spread: [number, number] | null;
-  /** Around the limb. */
+  /** Strain around the limb. */
   strain: number;
   rest_mm: number;
   worn_mm: number;
@@ -1656,7 +1656,7 @@ export interface PressureResult {
   axial_strain_free: number;
   /** Strain over lock-up strain. */
   lock_up_share: number;
-  /** Sizes that press by the target: axially free to axially fixed. */
+  /** Sizes that give the target pressure, axially free to axially fixed. */
   rest_mm_for_target: [number, number] | null;
   warnings: string[];
   /** Where the law comes from; empty if unknown. */
@@ -1706,9 +1706,9 @@ export interface RSFabricResult {
   segments: Record<Direction, RSSegment>;
 }
 
-/** A yarn whose shape the paper has: acrylic or cotton. */
+/** A yarn whose shape the paper gives: acrylic or cotton. */
 export interface RSRequest {
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
 }
 
@@ -1716,7 +1716,7 @@ export interface RSRequest {
 export interface RSResult {
   material: string;
   fabrics: Partial<Record<Fabric, RSFabricResult>>;
-  /** What the intervals rest on. */
+  /** Source of the intervals. */
   interval_source: string;
 }
 
@@ -1746,7 +1746,7 @@ export type RectangleGroups = "stitch" | "block" | "region";
 /** How points become constants: as published, or as recommended. */
 export type Reduction = "published" | "uniform" | "recommended";
 
-/** One region: the fabric's repeat, its colour, its size, and means over its stitches. */
+/** One region: its repeat, colour and size, and means over its stitches. */
 export interface RegionResult {
   extensibility_course_mm_per_n: number;
   extensibility_wale_mm_per_n: number;
@@ -1760,10 +1760,10 @@ export interface RegionResult {
   columns: number;
   /** Rows of its longest column. */
   rows: number;
-  /** Of that many stitches at rest. */
+  /** Relaxed size of that many stitches. */
   width_mm: number;
   height_mm: number;
-  /** 90 %, by the gauge. */
+  /** 90 % interval, from that of the gauge. */
   width_interval_mm: [number, number];
   height_interval_mm: [number, number];
   yarn_m: number;
@@ -1775,9 +1775,9 @@ export interface RegionResult {
 /** A repeat, its yarn, and what may be held while it relaxes. */
 export interface RelaxRequest {
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Yarn per stitch; the material's. */
+  /** Yarn per stitch; the material's by default. */
   loop_length_mm?: number | null;
   /** Instead of one length: a list for every row of the chart, the bottom row first, of one length for all its stitches or one for each. */
   loop_lengths_mm?: number[][] | null;
@@ -1785,7 +1785,7 @@ export interface RelaxRequest {
   flat?: boolean;
   branch?: Branch;
   convention?: Convention;
-  /** Compute it even if the result is known. */
+  /** Compute again, even if the result is stored. */
   fresh?: boolean;
   /** Hold a stitch at this width. */
   cell_course_mm?: number | null;
@@ -1808,19 +1808,19 @@ export interface RelaxResult {
   /** 90 % interval for knitted cloth; null for a width that was held. */
   cell_course_interval_mm: [number, number] | null;
   cell_wale_interval_mm: [number, number] | null;
-  /** What the intervals rest on. */
+  /** Source of the intervals. */
   interval_source: string;
   energy_n_mm: number;
   bending_share: number;
   contact_share: number;
   yarn_length_mm: number;
-  /** What holds a prescribed width, per stitch; null in the published branch. */
+  /** Force per stitch that holds a prescribed width; null in the published branch. */
   force_course_n: number | null;
   force_wale_n: number | null;
   min_distance_mm: number | null;
-  /** CPU time of the solve, whenever it was. */
+  /** CPU time of the solve, when it was first run. */
   seconds: number;
-  /** Whether it had been computed before. */
+  /** Whether the result was already stored. */
   known: boolean;
   evaluations: number;
   converged: boolean;
@@ -1866,26 +1866,26 @@ export interface SessionSummary {
 export interface SewnInput {
   kind: "sewn";
   edge: string;
-  /** Its force over its strain. */
+  /** Force of the tape over its strain. */
   stiffness_n: number;
 }
 
-/** A profile of widths under a stretch. */
+/** A profile of widths at a stretch. */
 export interface ShapeRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Of the pull. */
+  /** Direction of the pull. */
   direction?: Direction;
   /** From clamp to clamp: 0.3 is 30 %. */
   strain: number;
-  /** Stretched width over width at rest, line by line across the pull, from the bottom (wale-wise) or the left (course-wise); null for no wish. */
+  /** Stretched width over width at rest, line by line across the pull, from the bottom (wale-wise) or the left (course-wise); null where any width will do. */
   width: (number | null)[];
-  /** Stitches of a line. */
+  /** Stitches in a line. */
   across: number;
   repeats?: "small" | "all";
-  /** Lines of the narrowest band. */
+  /** Fewest lines in a band. */
   smallest_band?: number;
   /** The same seed gives the same chart. */
   seed?: number;
@@ -1898,14 +1898,14 @@ export interface ShapeResult {
   columns: number;
   chart: string;
   bands: BandResult[];
-  /** Width in the finite swatch, for comparison with the wanted one. */
+  /** Width in the finite swatch, to compare with the target. */
   width: number[];
   wanted: (number | null)[];
-  /** Of the differences, as parts of the width at rest. */
+  /** Rms of the differences, over the width at rest. */
   rms: number;
   largest: number;
   force_n: number;
-  /** Swatches that were pulled on the way. */
+  /** Number of swatches that were computed. */
   pulls: number;
   messages: string[];
 }
@@ -1936,7 +1936,7 @@ export interface SharedDesign {
 /** A design, as it lies or with its stretch test as an animation. */
 export interface SharedViewRequest {
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
@@ -1988,7 +1988,7 @@ export interface SignedIn {
 /** The leg of a sock. */
 export interface SockLeg {
   ease?: number;
-  /** Wanted pressure; before the ease. */
+  /** Target pressure; takes precedence over the ease. */
   target_mmhg?: number | null;
   template: "sock-leg";
   ankle_mm: number;
@@ -1996,7 +1996,7 @@ export interface SockLeg {
   length_mm: number;
 }
 
-/** What became of one start; null where it failed. */
+/** The result from one starting shape; null where it failed. */
 export interface StartResult {
   name: string;
   outcome: string;
@@ -2011,9 +2011,9 @@ export interface StitchFields {
   strain_wale: number[][];
   /** alpha * strain; 1 is the lock-up. */
   utilisation: number[][];
-  /** Of the strain along the pull: its 90 % interval is this much to either side. */
+  /** Half width of the 90 % interval of the strain along the pull. */
   strain_margin: number[][];
-  /** The same of the utilisation. */
+  /** Half width of the 90 % interval of the utilisation. */
   utilisation_margin: number[][];
 }
 
@@ -2040,7 +2040,7 @@ export interface StitchKinds {
   kinds: string[];
 }
 
-/** Values of all kinds of stitch. */
+/** Values for all 16 kinds of stitch. */
 export interface StitchTableResult {
   codes: StitchKind[];
 }
@@ -2050,7 +2050,7 @@ export interface StretchRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
@@ -2062,15 +2062,15 @@ export interface StretchRequest {
   /** Ends gripped, or free to slide along the clamps. */
   clamps?: Clamps;
   model?: EnergyModel;
-  /** C_xyxy in N/mm (an assumption otherwise). */
+  /** C_xyxy in N/mm; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
-  /** Size course-wise; from the gauge otherwise. */
+  /** Size course-wise; from the gauge by default. */
   width_mm?: number | null;
-  /** Size wale-wise; from the gauge otherwise. */
+  /** Size wale-wise; from the gauge by default. */
   length_mm?: number | null;
 }
 
-/** The curve of a test and the fields at its stitches. */
+/** The curve of a test, with fields at its stitches. */
 export interface StretchResult {
   strain: number[];
   force_n: number[];
@@ -2078,10 +2078,10 @@ export interface StretchResult {
   force_low_n: number[];
   /** Upper end of the 90 % interval. */
   force_high_n: number[];
-  /** Force per width, and as sure as the force. */
+  /** Force per width; its relative interval is that of the force. */
   stress_n_per_mm: number[];
   waist_strain: number[];
-  /** 90 % interval, to either side. */
+  /** Half width of the 90 % interval. */
   waist_margin: number[];
   iterations: number[];
   converged: boolean;
@@ -2094,7 +2094,7 @@ export interface StretchResult {
   nearest_lock_up: NearestLockUp | null;
   messages: string[];
   kind: "stretch";
-  /** Names this test for the 3D view. */
+  /** Name of this test, for the 3D view. */
   id: string;
   rows: number;
   columns: number;
@@ -2129,9 +2129,9 @@ export interface SwatchInput {
 /** A repeat, its yarn and the stretch. */
 export interface SweepRequest {
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Yarn per stitch; the material's. */
+  /** Yarn per stitch; the material's by default. */
   loop_length_mm?: number | null;
   /** Instead of one length: a list for every row of the chart, the bottom row first, of one length for all its stitches or one for each. */
   loop_lengths_mm?: number[][] | null;
@@ -2139,7 +2139,7 @@ export interface SweepRequest {
   flat?: boolean;
   branch?: Branch;
   convention?: Convention;
-  /** Compute it even if the result is known. */
+  /** Compute again, even if the result is stored. */
   fresh?: boolean;
   /** Along rows, or along columns. */
   direction: Direction;
@@ -2159,7 +2159,7 @@ export interface SweepResult {
   /** 90 % interval of the strain of knitted cloth at each stress. */
   strain_low: number[];
   strain_high: number[];
-  /** What the interval rests on. */
+  /** Source of the interval. */
   interval_source: string;
   transverse_strain: number[];
   stress_n_per_mm: number[];
@@ -2173,9 +2173,9 @@ export interface SweepResult {
   cell_wale_mm: number;
   law: SweptLaw | null;
   converged: boolean;
-  /** CPU time of the solves, whenever they were. */
+  /** CPU time of the solves, when they were first run. */
   seconds: number;
-  /** Whether it had been computed before. */
+  /** Whether the result was already stored. */
   known: boolean;
   yarn: YarnResult;
   notes: string[];
@@ -2205,7 +2205,7 @@ export interface SweptLaw {
   rms_wale_n_per_mm: number;
 }
 
-/** One wish for a fabric. */
+/** One target property of a fabric. */
 export interface TargetInput {
   quantity: Quantity;
   /** Stretch as a strain: 0.5 is 50 %. */
@@ -2213,7 +2213,7 @@ export interface TargetInput {
   /** Relative (0.1 is 10 %); a difference for Poisson's ratios. */
   tolerance?: number;
   weight?: number;
-  /** For a stretch, per width of the cloth. */
+  /** Load at which a stretch is wanted, per width of cloth. */
   load_n_per_mm?: number;
   /** For a pressure. */
   limb?: LimbInput | null;
@@ -2232,25 +2232,25 @@ export interface TrellisRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
-  /** Of the load. */
+  /** Steps of the load. */
   steps?: number;
-  /** C_xyxy; that of the laws otherwise. */
+  /** C_xyxy; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
   /** Length of an element's side; by default there are about 600 elements. */
   mesh_mm?: number | null;
-  /** By which the frame's right angle closes. */
+  /** How far the frame's right angle closes at the last step. */
   angle_deg: number;
-  /** Of the square. */
+  /** Side of the square. */
   side_mm?: number;
-  /** From a bar to the rows. */
+  /** Angle from a bar of the frame to the rows. */
   grain_deg?: number;
 }
 
 /** A simulated trellis (picture frame) test. */
 export interface TrellisResult {
-  /** Stored in the cloth. */
+  /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
   seconds: number;
@@ -2261,15 +2261,15 @@ export interface TrellisResult {
   messages: string[];
   kind: "trellis";
   angle_deg: number[];
-  /** That pulls two opposite corners of the frame apart. */
+  /** Force that pulls two opposite corners of the frame apart. */
   force_n: number[];
   /** Lower end of the 90 % interval. */
   force_low_n: number[];
   /** Upper end of the 90 % interval. */
   force_high_n: number[];
-  /** Work of the frame per shear angle in radians. */
+  /** Moment about the hinges: work per radian of shear. */
   moment_n_mm: number[];
-  /** The moment over the area at rest. */
+  /** Moment over the relaxed area. */
   shear_stress_n_per_mm: number[];
 }
 
@@ -2303,11 +2303,11 @@ export interface VersionRequest {
   name: string;
 }
 
-/** The program behind the address. */
+/** The program and its versions. */
 export interface VersionResult {
-  /** Of the program, as `knitcore --version` says. */
+  /** Version of the program, as `knitcore --version` prints it. */
   version: string;
-  /** Of the REST API: the part of its addresses after /api/. */
+  /** Version of the REST API, as in its addresses after /api/. */
   api: string;
 }
 
@@ -2330,7 +2330,7 @@ export interface Versions {
 /** A design and how to show it. */
 export interface ViewRequest {
   chart: string | PureFabricChart;
-  /** Id of the library. */
+  /** Identifier of a material of the library. */
   material: string;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
@@ -2363,7 +2363,7 @@ export interface ViewResult {
 /** Stiffness wanted in one part of the chart. */
 export interface WishInput {
   name?: string;
-  /** [row, first column, length] of its stitches, row 0 at the bottom. */
+  /** Its stitches as runs [row, first column, length], with row 0 at the bottom. */
   runs: [number, number, number][];
   modulus_course_n_per_mm?: number | null;
   modulus_wale_n_per_mm?: number | null;
@@ -2382,10 +2382,10 @@ export interface WornResult {
   warnings: string[];
 }
 
-/** A brace knitted sideways and grafted. */
+/** A brace, knitted sideways and grafted. */
 export interface WristBrace {
   ease?: number;
-  /** Wanted pressure; before the ease. */
+  /** Target pressure; takes precedence over the ease. */
   target_mmhg?: number | null;
   template: "wrist-brace";
   wrist_mm: number;
@@ -2414,7 +2414,7 @@ export interface YarnInput {
   core_radius_mm: number;
 }
 
-/** The yarn that was used and where its numbers come from. */
+/** The yarn that was used, and the source of its numbers. */
 export interface YarnResult {
   bending_modulus_n_mm2: number;
   contact_stiffness_n_per_mm3: number;

@@ -1,4 +1,4 @@
-"""Designs over REST: kept, listed, changed, versioned and shared."""
+"""Designs over REST: saved, listed, changed, versioned and shared."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from app.http.problems import Problem
 from app.viewer.design_id import DesignId
 
 CONFLICT: Responses = {
-    409: {"model": Problem, "description": "It does not go with the present state."}
+    409: {"model": Problem, "description": "It conflicts with the present state."}
 }
 CONDITIONAL: Responses = {
     412: {"model": Problem, "description": "The design was changed in the meantime."},
@@ -81,7 +81,7 @@ def get_designs(
     return store.page(owner, limit=limit, cursor=cursor, deleted=deleted)
 
 
-@router.post("/designs", status_code=201, summary="Keep a new design", responses=CONFLICT)
+@router.post("/designs", status_code=201, summary="Save a new design", responses=CONFLICT)
 def post_design(
     body: DesignDocument,
     store: Store,
@@ -135,7 +135,7 @@ def patch_design(
     response: Response,
     if_match: IfMatch = None,
 ) -> Design:
-    """Change its name, material or note, and nothing else."""
+    """Change only its name, material or note."""
     return _tagged(response, store.patch(owner, design, body, if_match))
 
 
@@ -177,13 +177,13 @@ def delete_design(design: DesignId, store: Store, owner: Owner, if_match: IfMatc
     store.delete(owner, design, if_match)
 
 
-@router.post("/designs/{design}/recover", summary="Bring a deleted design back")
+@router.post("/designs/{design}/recover", summary="Recover a deleted design")
 def post_recover(design: DesignId, store: Store, owner: Owner, response: Response) -> Design:
-    """As it was."""
+    """The design comes back as it was."""
     return _tagged(response, store.recover(owner, design))
 
 
-@router.get("/designs/{design}/versions", summary="Kept states of a design")
+@router.get("/designs/{design}/versions", summary="Saved versions of a design")
 def get_versions(design: DesignId, store: Store, owner: Owner) -> Versions:
     """Oldest first."""
     return store.versions(owner, design)
@@ -192,7 +192,7 @@ def get_versions(design: DesignId, store: Store, owner: Owner) -> Versions:
 @router.post(
     "/designs/{design}/versions",
     status_code=201,
-    summary="Keep the present state under a name",
+    summary="Save the present state under a name",
     responses=CONFLICT,
 )
 def post_version(
@@ -208,13 +208,13 @@ def post_version(
 
 @router.get("/designs/{design}/versions/{number}", summary="A kept state")
 def get_version(design: DesignId, number: Number, store: Store, owner: Owner) -> Version:
-    """With its document."""
+    """The version with its document."""
     return store.version(owner, design, number)
 
 
 @router.post(
     "/designs/{design}/versions/{number}/restore",
-    summary="Go back to a kept state",
+    summary="Restore a saved version",
     responses=CONDITIONAL | CONFLICT,
 )
 def post_restore(
@@ -225,13 +225,13 @@ def post_restore(
     response: Response,
     if_match: IfMatch = None,
 ) -> Design:
-    """The present state is kept as a version first."""
+    """The present state is saved as a version first."""
     return _tagged(response, store.restore(owner, design, number, if_match))
 
 
 @router.get("/designs/{design}/shares", summary="Links to a design")
 def get_shares(design: DesignId, links: Links, owner: Owner) -> Shares:
-    """Without their secrets, which nobody keeps."""
+    """Without their secrets, which are not stored."""
     return links.given(owner, design)
 
 
@@ -239,12 +239,12 @@ def get_shares(design: DesignId, links: Links, owner: Owner) -> Shares:
 def post_share(
     design: DesignId, body: ShareRequest, links: Links, owner: Owner, response: Response
 ) -> NewShare:
-    """A link for reading, or for copying; its token is told this once."""
+    """A link for reading, or for copying; its token is shown only once."""
     response.headers["Cache-Control"] = "no-store"
     return links.give(owner, design, body.mode)
 
 
-@router.delete("/designs/{design}/shares/{share}", status_code=204, summary="Take a link back")
+@router.delete("/designs/{design}/shares/{share}", status_code=204, summary="Revoke a link")
 def delete_share(design: DesignId, share: ShareId, links: Links, owner: Owner) -> None:
     """At once and for good."""
     links.revoke(owner, design, share)

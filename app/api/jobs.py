@@ -35,7 +35,7 @@ async def _runner(request: Request) -> JobRunner:
 Runner = Annotated[JobRunner, Depends(_runner)]
 
 
-@router.post("/jobs", status_code=202, summary="Run something in the background")
+@router.post("/jobs", status_code=202, summary="Run an operation in the background")
 async def post_job(
     body: JobRequest,
     runner: Runner,
@@ -60,7 +60,7 @@ async def get_jobs(
     return await asyncio.to_thread(runner.store.page, owner, limit=limit, cursor=cursor)
 
 
-@router.get("/jobs/{job}", summary="Where a job stands")
+@router.get("/jobs/{job}", summary="The state of a job")
 async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
     """State, progress, and the problem if there is one."""
     return await runner.status(owner, job)
@@ -75,7 +75,7 @@ async def get_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
 async def get_job_events(
     job: JobId, runner: Runner, owner: Owner, request: Request
 ) -> StreamingResponse:
-    """Server-sent events, one per change, each a job as `GET /jobs/{job}` has it; ends with it."""
+    """Server-sent events, one per change, each as `GET /jobs/{job}` answers; ends with the job."""
     first = await runner.status(owner, job)
     request.app.state.in_use.check("streams", owner)
     return StreamingResponse(
@@ -114,11 +114,11 @@ async def _events(
     openapi_extra=ASKED_WITH_TAG,
 )
 async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request) -> Response:
-    """The same JSON that the operation's own address answers; `kind` says which."""
+    """The same JSON that the operation's own address returns; `kind` names the operation."""
     status = await runner.status(owner, job)
     if status.state is not JobState.DONE:
         raise ConflictError(
-            f"The job is {status.state}, it has no result.",
+            f"The job is {status.state}; it has no result.",
             field="job",
             remedy="Follow its events until it is done."
             if not status.state.is_final
@@ -127,7 +127,7 @@ async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request)
     body = await asyncio.to_thread(runner.store.result, owner, job)
     if body is None:
         raise NotFoundError(
-            "The result is not kept any more.", field="job", remedy="Run the job again."
+            "The result is no longer stored.", field="job", remedy="Run the job again."
         )
     tag = await asyncio.to_thread(etag_of, body)
     if is_known(tag, request.headers):
@@ -139,7 +139,7 @@ async def get_result(job: JobId, runner: Runner, owner: Owner, request: Request)
 
 @router.delete("/jobs/{job}", summary="Cancel a job")
 async def delete_job(job: JobId, runner: Runner, owner: Owner) -> JobStatus:
-    """Stops what runs; a job that has ended stays as it is."""
+    """Stops a job that waits or runs; a job that has ended stays as it is."""
     return await runner.cancel(owner, job)
 
 

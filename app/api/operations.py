@@ -19,15 +19,15 @@ from app.operations.perform import Viewed
 from app.operations.registry import Operation, operations
 
 MOST_LIGHT = 10_000
-"""Stitches of a request that is answered in the service itself. A larger one goes to a worker, with
+"""Most stitches of a request that the service answers itself. A larger one goes to a worker, with
 its limits on memory and time: a million stitches take 300 MB."""
 MISSING: dict[int | str, dict[str, Any]] = {
-    404: {"model": Problem, "description": "There is none of that name."}
+    404: {"model": Problem, "description": "Nothing has that name."}
 }
 
 
 def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
-    """What FastAPI calls: with the request as a body, or put together from the address."""
+    """The function for FastAPI, with the request as a body or as parameters of the address."""
 
     def made(body: BaseModel, request: Request) -> bytes:
         found = operation.run(body, request.app.state.answers.context())
@@ -63,13 +63,13 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
 
 
 def _shown(example: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    """A request as the schema shows it."""
+    """A request as the schema describes it."""
     content = {"application/json": {"example": example}}
     return None if example is None else {"requestBody": {"content": content}}
 
 
 def _typed(function: Callable[..., Any], **parameters: Any) -> Callable[..., Any]:
-    """With the signature that FastAPI reads."""
+    """The function with the signature that FastAPI reads."""
     keyword = Parameter.KEYWORD_ONLY
     signature = [Parameter(n, keyword, annotation=of) for n, of in parameters.items()]
     function.__signature__ = Signature(signature)  # type: ignore[attr-defined]

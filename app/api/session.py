@@ -1,4 +1,4 @@
-"""Who is signed in, and where."""
+"""The user of this request, and the browsers that are signed in."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ def delete_session(owner: Owner, request: Request, response: Response) -> None:
     "/sessions/{session}",
     status_code=204,
     summary="End a session",
-    responses={404: {"model": Problem, "description": "It is no session of yours."}},
+    responses={404: {"model": Problem, "description": "It is not one of your sessions."}},
 )
 def end_session(session: SessionId, owner: Owner, request: Request) -> None:
-    """Of another browser of yours, for instance one that was lost."""
+    """The session of another of your browsers, for instance one on a lost machine."""
     login: Login = request.app.state.login
     if not login.end(owner, session):
         raise NotFoundError(f"There is no session {session} of yours.", field="session")

@@ -19,34 +19,34 @@ UNIT = "_n_per_mm"
 
 
 class MissingError(InputError):
-    """There is none of the name in the address."""
+    """Nothing has the name that the address gives."""
 
 
 class RequestModel(BaseModel):
-    """A request, or a part of one; a field that it does not know is refused."""
+    """A request, or a part of one; unknown fields are refused."""
 
     model_config = ConfigDict(extra="forbid")
 
     def into(self, kind: type[OfLibrary], **more: Any) -> OfLibrary:
-        """As a dataclass of the library, made of the fields that both have and of what is given."""
+        """A dataclass of the library, made from the fields that both have and the values given."""
         mine = {f.name: getattr(self, f.name) for f in fields(kind) if hasattr(self, f.name)}
         return kind(**mine | more)
 
 
 class NoRequest(RequestModel):
-    """The request of an operation that needs none."""
+    """The request of an operation without inputs."""
 
 
 class ResultModel(BaseModel):
-    """A result, or a part of one, read from attributes of a result of the library.
+    """A result, or a part of one, read from the attributes of a library result.
 
-    A field takes the attribute of its name, or of its name without the unit N/mm, for laws have
+    A field takes the attribute of its name, or of its name without the unit N/mm: laws have
     ``stiffness_xxxx`` where a result has ``stiffness_xxxx_n_per_mm``.
     """
 
     @classmethod
     def of(cls, *sources: object, **more: Any) -> Self:
-        """A result of attributes of the first source that has them, and of what is given."""
+        """A result from the attributes of the first source that has each, and the values given."""
         found = more
         for source in sources:
             found = _attributes(cls, source) | found
@@ -83,10 +83,10 @@ def _known(value: Any) -> Any:
 Floats = Annotated[list[float], BeforeValidator(_listed)]
 """An array of the library."""
 Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
-"""An interval, as [low, high] wherever there is one."""
+"""An interval, as [low, high]."""
 Known = Annotated[float | None, BeforeValidator(_known)]
-"""Null where the library has no finite number."""
+"""A number, null where the library's is not finite."""
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
-"""The same of an interval's ends."""
+"""The ends of an interval, null where they are not finite."""
 
 Positive = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]

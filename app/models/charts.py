@@ -31,7 +31,7 @@ ChartText = Annotated[
     ),
 ]
 TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
-"""Names of the two ways to give a chart; errors leave them out of the field's name."""
+"""Tags of the two ways to give a chart; errors leave them out of the field's name."""
 
 ChartInput = Annotated[
     Annotated[ChartText, Tag(TEXT_TAG)] | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
@@ -39,7 +39,7 @@ ChartInput = Annotated[
 ]
 IS_REPEAT = "repeat"
 RepeatInput = Annotated[ChartInput, IS_REPEAT]
-"""A chart of which the repeat counts: a pure fabric by name needs no size on the command line."""
+"""A chart that stands for its repeat: a pure fabric needs no size on the command line."""
 
 OutlineInput = Annotated[
     str | None,
@@ -50,12 +50,17 @@ OutlineInput = Annotated[
     ),
 ]
 MaterialName = Annotated[
-    str, Field(max_length=1000, description="Id of the library.", examples=["acrylic"])
+    str,
+    Field(
+        max_length=1000,
+        description="Identifier of a material of the library.",
+        examples=["acrylic"],
+    ),
 ]
 
 
 def size_of(request: BaseModel) -> int:
-    """About how many stitches a request speaks of: the letters of its texts, and named fabrics."""
+    """About how many stitches a request holds: the letters of its texts, and named fabrics."""
     size = 0
     for _, value in request:
         if isinstance(value, PureFabricChart):
@@ -66,14 +71,14 @@ def size_of(request: BaseModel) -> int:
 
 
 def to_chart(chart: ChartInput) -> StitchChart:
-    """The chart that a request means."""
+    """The chart of a request."""
     if isinstance(chart, PureFabricChart):
         return StitchChart.of_fabric(chart.fabric, rows=chart.rows, columns=chart.columns)
     return StitchChart.parse(chart)
 
 
 def to_repeat(chart: ChartInput) -> StitchChart:
-    """The repeat that a request means: the chart itself, or a pure fabric's own repeat."""
+    """The repeat of a request: the chart itself, or a pure fabric's own repeat."""
     if isinstance(chart, PureFabricChart):
         return fabric_repeat(chart.fabric)
     return StitchChart.parse(chart)

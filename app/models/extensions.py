@@ -1,4 +1,4 @@
-"""Names of what extensions offer, in requests."""
+"""Names of things that extensions offer, in requests."""
 
 from __future__ import annotations
 

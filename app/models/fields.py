@@ -14,16 +14,16 @@ class FieldRequest(RequestModel):
     """A displacement field and how the fabric in it was pulled."""
 
     field: UploadedFile = Field(description=".npz: displacement (frames, 2, rows, columns), frame.")
-    direction: Direction = Field(description="In which the fabric was pulled.")
-    frames: list[int] | None = Field(None, description="Pictures to use; all otherwise.")
+    direction: Direction = Field(description="Direction in which the fabric was pulled.")
+    frames: list[int] | None = Field(None, description="Frames to use; all by default.")
 
     def chosen(self, field: MeasuredField) -> MeasuredField:
-        """The pictures that are asked for."""
+        """The frames that the request selects."""
         return field.only(set(self.frames)) if self.frames else field
 
 
 class FrameErrorResult(ResultModel):
-    """Simulated minus measured displacement of one picture, in percent of the width."""
+    """Simulated minus measured displacement at one frame, in per cent of the width."""
 
     frame: int
     applied_stretch: float
@@ -40,7 +40,7 @@ def load(file: UploadedFile) -> MeasuredField:
 
 
 def errors_table(frames: list[FrameErrorResult]) -> list[str]:
-    """Lines of a table, in percent of the width."""
+    """Lines of a table, in per cent of the width."""
     head = f"{'frame':>6} {'stretch':>8} {'ux rms':>7} {'ux max':>7} {'uy rms':>7} {'uy max':>7}"
     return [
         head + "   (% of width)",

@@ -21,7 +21,7 @@ Count = Annotated[
 
 
 class GaugeInput(RequestModel):
-    """A swatch's gauge: what you counted on your own relaxed cloth."""
+    """The gauge of a swatch, counted on your own relaxed cloth."""
 
     stitches_per_10_cm: Count
     rows_per_10_cm: Count

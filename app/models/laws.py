@@ -13,7 +13,7 @@ from knitcore.materials import Laws, load_library
 class LawsRequest(RequestModel):
     """A request about materials, with a choice of the laws of the paper's yarns.
 
-    The choice becomes part of the materials' names, so that nothing else has to know of it.
+    The choice becomes part of the materials' names, so that nothing else depends on it.
     """
 
     laws: Laws | None = Field(
@@ -33,12 +33,12 @@ class LawsRequest(RequestModel):
         return self
 
     def _named(self, material: str) -> str:
-        """A material's name with the laws chosen; files and own materials have no choice."""
+        """A material's name with the laws chosen; files and own materials have one law only."""
         yarn = material.strip().lower().partition(":")[0]
         if self.laws is None or yarn not in load_library():
             if self.laws is Laws.PUBLISHED:
                 raise ValueError(
-                    f"{material} has one law only; leave laws out, or take a yarn of the library."
+                    f"{material} has one law only; omit laws, or choose a yarn of the library."
                 )
             return material
         return self.laws.of(material)
@@ -52,14 +52,14 @@ class Moduli(ResultModel):
 
 
 class ElasticConstants(Moduli):
-    """Moduli, and what happens across a pull."""
+    """Moduli and Poisson ratios."""
 
     poisson_yx: float = Field(description="Contraction wale-wise when pulled course-wise.")
     poisson_xy: float = Field(description="Contraction course-wise when pulled wale-wise.")
 
 
 class Extensibility(ResultModel):
-    """How far cloth gives, the inverse of its moduli."""
+    """Extensibility, the inverse of the moduli."""
 
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float

@@ -1,4 +1,4 @@
-"""Cut pieces, what is done to their edges, and tests of them."""
+"""Cut pieces, conditions on their edges, and tests of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from knitcore.piece.mesh import DEFAULT_ELEMENTS, size_for
 from knitcore.piece.outline import MAX_CORNERS
 
 MAX_ELEMENT_STEPS = 40_000
-"""Most elements times steps over REST, about a minute; the command line takes more."""
+"""Most elements times steps over REST, about a minute; the command line accepts more."""
 MAX_CONDITIONS = 50
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -74,7 +74,9 @@ class SewnInput(RequestModel):
 
     kind: Literal["sewn"]
     edge: EdgeName
-    stiffness_n: float = Field(gt=0, allow_inf_nan=False, description="Its force over its strain.")
+    stiffness_n: float = Field(
+        gt=0, allow_inf_nan=False, description="Force of the tape over its strain."
+    )
 
     def condition(self) -> Condition:
         """As the library has it."""
@@ -87,15 +89,17 @@ ConditionInput = Annotated[
 
 
 class PieceInput(RequestModel):
-    """A piece cut from cloth, and what is done to its edges in the end."""
+    """A piece cut from cloth, and the conditions on its edges at the last step."""
 
     outline: Corners = Field(
         description="Corners in mm; side 1 goes from the first to the second.",
         examples=[[[0, 0], [50, 0], [50, 100], [0, 100]]],
     )
-    holes: list[Corners] = Field([], max_length=100, description="Their sides are counted on.")
+    holes: list[Corners] = Field(
+        [], max_length=100, description="Corners of each hole; their sides continue the numbering."
+    )
     grain_deg: Number = Field(
-        0.0, description="From the x axis to the rows, counter-clockwise: 45 is on the bias."
+        0.0, description="Angle from the x axis to the rows, counter-clockwise: 45 is on the bias."
     )
     edges: dict[EdgeName, Annotated[list[int], Field(max_length=MAX_CORNERS)]] = Field(
         description="Names of parts of the boundary, by the numbers of their sides.",
@@ -114,9 +118,13 @@ class PieceTestRequest(LawsRequest):
 
     chart: RepeatInput
     material: MaterialName
-    steps: int = Field(10, ge=1, le=1000, description="Of the load.")
+    steps: int = Field(10, ge=1, le=1000, description="Steps of the load.")
     shear_modulus_n_per_mm: float | None = Field(
-        None, ge=1e-4, le=10, allow_inf_nan=False, description="C_xyxy; that of the laws otherwise."
+        None,
+        ge=1e-4,
+        le=10,
+        allow_inf_nan=False,
+        description="C_xyxy; that of the laws by default.",
     )
     mesh_mm: float | None = Field(
         None,
@@ -127,7 +135,7 @@ class PieceTestRequest(LawsRequest):
     )
 
     def check(self, piece: CutPiece, context: Context) -> None:
-        """Refuse a test that takes longer than the service computes.
+        """Refuse a test that would take too long for the service.
 
         Raises
         ------
@@ -143,7 +151,7 @@ class PieceTestRequest(LawsRequest):
             )
 
     def options(self, context: Context) -> dict[str, Any]:
-        """Of every test in the library."""
+        """Options of every test in the library."""
         return {
             "steps": self.steps,
             "shear_modulus": self.shear_modulus_n_per_mm,
@@ -154,9 +162,9 @@ class PieceTestRequest(LawsRequest):
 
 
 class PieceTestResult(ResultModel):
-    """What a test of a piece has in common; lists have a value per step."""
+    """Fields that all tests of pieces share; lists have a value per step."""
 
-    energy_n_mm: Floats = Field(description="Stored in the cloth.")
+    energy_n_mm: Floats = Field(description="Energy stored in the cloth.")
     converged: bool
     seconds: float
     nodes: int
@@ -168,7 +176,7 @@ class PieceTestResult(ResultModel):
 
 
 def of_test(test: PieceTest) -> dict[str, Any]:
-    """Fields of every result."""
+    """Fields of every result, from the library's test."""
     past = bool(test.found) and test.is_past_the_law()
     told = (
         "Some cloth is past 98 % of its lock-up. There the law is extrapolated: do not rely on "

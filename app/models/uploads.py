@@ -1,4 +1,4 @@
-"""Files that come inside a JSON request, as base64."""
+"""Files inside a JSON request, as base64."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from app.models.base import RequestModel
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 """Files of the API's examples (``scripts/example_files.py``), and the answers to them."""
 MOST_NAME_BYTES = 200
-"""A length that every file system accepts, with room to spare."""
+"""A length that every file system accepts."""
 
 
 class _Strict(EncoderProtocol):
-    """Base64 in which nothing else is skipped: a file arrives whole, or not at all."""
+    """Strict base64: a file arrives whole, or not at all."""
 
     @classmethod
     def decode(cls, data: bytes) -> bytes:
@@ -53,7 +53,7 @@ class UploadedFile(RequestModel):
 
     @classmethod
     def at(cls, path: Path) -> UploadedFile:
-        """A file of this machine, read where it is."""
+        """A file of this machine, read in place."""
         file = cls.model_construct(name=path.name, content=b"")
         file._path = path
         return file
@@ -67,7 +67,7 @@ def example_file(name: str) -> dict[str, str]:
 
 @contextlib.contextmanager
 def stored(files: Sequence[UploadedFile]) -> Iterator[list[Path]]:
-    """The files in a folder that exists for the time of the context, each in one of its own."""
+    """The files in a temporary folder, each in a subfolder, for the duration of the context."""
     with tempfile.TemporaryDirectory(prefix="knitcore-") as folder:
         paths = []
         for index, file in enumerate(files):
@@ -83,7 +83,7 @@ def stored(files: Sequence[UploadedFile]) -> Iterator[list[Path]]:
 
 
 def _name(given: str) -> str:
-    """The last part of a name, which cannot lead out of its folder, as long as may be."""
+    """The last part of a name, which cannot lead out of its folder, cut to the permitted length."""
     name = PurePosixPath(given.replace("\\", "/").replace("\0", ""))
     room = MOST_NAME_BYTES - len(name.suffix.encode())
     if name.name in ("", ".", "..") or room < 1:

@@ -27,13 +27,17 @@ LoopLengths = list[
 
 
 class YarnLevelRequest(RequestModel):
-    """A repeat, its yarn, and which model of it."""
+    """A repeat, its yarn, and the model to use."""
 
     chart: RepeatInput
     material: MaterialName
 
     loop_length_mm: float | None = Field(
-        None, gt=0, le=1000, allow_inf_nan=False, description="Yarn per stitch; the material's."
+        None,
+        gt=0,
+        le=1000,
+        allow_inf_nan=False,
+        description="Yarn per stitch; the material's by default.",
     )
     loop_lengths_mm: LoopLengths | None = Field(
         None,
@@ -48,10 +52,10 @@ class YarnLevelRequest(RequestModel):
     )
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
-    fresh: bool = Field(False, description="Compute it even if the result is known.")
+    fresh: bool = Field(False, description="Compute again, even if the result is stored.")
 
     def repeat(self) -> StitchChart:
-        """The repeat of the chart, or all of it where its rows have loop lengths of their own."""
+        """The chart's repeat, or the whole chart if its rows have loop lengths of their own."""
         if self.loop_lengths_mm is not None:
             return to_chart(self.chart)
         return to_repeat(self.chart).repeat()
@@ -67,7 +71,7 @@ class YarnLevelRequest(RequestModel):
         lengths, given = self.loop_lengths_mm, self.loop_length_mm
         if lengths is not None and given is not None:
             raise InputError(
-                "loop_lengths_mm", "loop_length_mm is given as well.", "Leave one of them out."
+                "loop_lengths_mm", "loop_length_mm is given as well.", "Give one of the two."
             )
         if lengths is not None:
             given = float(np.mean([np.mean(row) for row in lengths]))
@@ -75,13 +79,13 @@ class YarnLevelRequest(RequestModel):
         return used if given is None else replace(used, loop_length_mm=given)
 
     def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
-        """All that decides a result, for its name among kept results."""
+        """Everything that decides a result, from which its stored name is made."""
         asked = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
         return {"repeat": repeat.text, "used": asdict(used), "asked": asked}
 
 
 class YarnResult(ResultModel):
-    """The yarn that was used and where its numbers come from."""
+    """The yarn that was used, and the source of its numbers."""
 
     bending_modulus_n_mm2: float
     contact_stiffness_n_per_mm3: float
@@ -115,7 +119,7 @@ def relaxed_cell(
     context: Context,
     sizes_mm: tuple[float | None, float | None] = (None, None),
 ) -> RelaxedCell:
-    """Relax in the branch that is asked for, at held sizes of a stitch if they are given."""
+    """Relax in the requested branch, at held sizes of a stitch if they are given."""
     return relax(
         repeat,
         used.yarn,
@@ -139,7 +143,7 @@ def kept_or_made(
     context: Context,
     make: Callable[[Request, StitchChart, ChartYarn, Context], Kept],
 ) -> Kept:
-    """The result of a request that was computed before, or a new one; it says which."""
+    """The stored or new result of a request; it says which."""
     repeat = request.repeat()
     used = request.yarn(repeat, context)
     result, known = context.kept.get_or_make(

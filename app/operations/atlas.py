@@ -36,7 +36,7 @@ Column = Annotated[list[float], BeforeValidator(_rounded)]
 
 
 class AtlasRequest(LawsRequest):
-    """Which atlas."""
+    """The atlas to compute."""
 
     material: MaterialName
     repeats: Extent = Field("small", description=EXTENTS)

@@ -26,9 +26,9 @@ from knitcore.yarnlevel.relax import Branch, OnSplines, RelaxedRepeat, relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
 COMPARED_UP_TO = 9
-"""Repeats of so many stitches are relaxed without symmetry too, to compare."""
+"""Repeats of up to this many stitches are also relaxed without symmetry, for comparison."""
 FAR_APART = 1.5
-"""Ratio of the two states from which a note is made."""
+"""A note is added where the two states differ by this factor or more."""
 _FRICTIONLESS = (
     "Without friction and set, so qualitative: measured knits of 187 to 284 g/m² have rigidities "
     "of .007 to .10 N·mm."
@@ -41,10 +41,18 @@ class BendRequest(LawsRequest):
     chart: RepeatInput
     material: MaterialName
     loop_length_mm: float | None = Field(
-        None, gt=0, le=1000, allow_inf_nan=False, description="Yarn per stitch; the material's."
+        None,
+        gt=0,
+        le=1000,
+        allow_inf_nan=False,
+        description="Yarn per stitch; the material's by default.",
     )
     linear_density_g_per_m: float | None = Field(
-        None, gt=0, le=100, allow_inf_nan=False, description="Of the yarn; gives bending lengths."
+        None,
+        gt=0,
+        le=100,
+        allow_inf_nan=False,
+        description="Of the yarn; needed for the bending lengths.",
     )
 
 
@@ -57,9 +65,13 @@ class BendResult(ResultModel):
         "Negative: left alone, the fabric curves with its face outside."
     )
     moment_wale_n: float
-    bending_course_n_mm: float = Field(description="Bending rigidity, the other size free.")
+    bending_course_n_mm: float = Field(
+        description="Bending rigidity, with the size across free to change."
+    )
     bending_wale_n_mm: float
-    bending_held_course_n_mm: float = Field(description="The same, the other size held.")
+    bending_held_course_n_mm: float = Field(
+        description="Bending rigidity, with the size across held."
+    )
     bending_held_wale_n_mm: float
     strain_across_course_mm: float = Field(
         description="Strain across per curvature, bent along the rows."
@@ -70,29 +82,31 @@ class BendResult(ResultModel):
     )
     twist_n_mm: float | None = Field(description="D1 + 2 D66, from bending at 45°.")
     thickness_mm: float
-    curl: str = Field(description="What free edges do.")
-    curl_course: Curl = Field(description="Where the sides go.")
-    curl_wale: Curl = Field(description="Where top and bottom go.")
+    curl: str = Field(description="How free edges curl.")
+    curl_course: Curl = Field(description="The way the sides curl.")
+    curl_wale: Curl = Field(description="The way the top and bottom curl.")
     bending_length_course_mm: float | None = Field(
         description="Peirce's, of a strip cut along the rows; null where the weight is not known."
     )
     bending_length_wale_mm: float | None
-    stable: bool = Field(description="Whether the state is a minimum without its symmetries.")
+    stable: bool = Field(
+        description="Whether the state is still a minimum when it may lose its symmetries."
+    )
     provenance: str
     yarn: YarnResult
     notes: list[str]
 
 
 def bend(request: BendRequest, context: Context) -> BendResult:
-    """Bending rigidity, curl and shear of the repeat, relaxed with its symmetries and compared
-    with it free of them.
+    """Bending rigidity, curl and shear of the repeat, relaxed with the chart's symmetries and
+    compared with a relaxation without them.
 
     Raises
     ------
     InputError
         If the repeat is too large.
     ConvergenceError
-        If no state of it bears bending.
+        If no stable state is found.
     """
     repeat = to_repeat(request.chart).repeat()
     if repeat.rows * repeat.columns > MAX_STITCHES:
@@ -160,7 +174,7 @@ def _hanging(response: BendingResponse, weight_n_per_mm2: float | None) -> float
 
 
 def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> list[str]:
-    """How the state without symmetries differs."""
+    """A note where the state without symmetries differs."""
     if mirrored is None or free is None:
         return []
     both = {

@@ -16,7 +16,7 @@ MAX_PHOTOS = 100
 
 
 class BendingRequest(RequestModel):
-    """Photos of hanging yarn, and facts that they do not show."""
+    """Photos of hanging yarn, with the lengths and weight needed to read them."""
 
     images: list[UploadedFile] = Field(min_length=1, max_length=MAX_PHOTOS)
     linear_density_g_per_m: float = Field(
@@ -30,14 +30,14 @@ class BendingRequest(RequestModel):
 
 
 class BendingPhotoResult(ResultModel):
-    """What one photo gave."""
+    """The result of one photo."""
 
     name: str
     bending_modulus_n_mm2: float
     length_mm: float
     px_per_mm: float
     yarn_width_mm: float
-    rms_mm: float = Field(description="Distance of the traced line from the elastica.")
+    rms_mm: float = Field(description="Distance between the traced line and the fitted elastica.")
 
 
 class BendingResult(ResultModel):
@@ -45,7 +45,9 @@ class BendingResult(ResultModel):
 
     kind: Literal["bending"] = "bending"
     bending_modulus_n_mm2: float
-    standard_deviation: float | None = Field(description="Of one photo, N·mm²; None for one.")
+    standard_deviation: float | None = Field(
+        description="Of a single photo, N·mm²; null if there is only one."
+    )
     standard_error: float | None = Field(description="Of the mean, N·mm².")
     photos: list[BendingPhotoResult]
     notes: list[str]

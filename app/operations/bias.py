@@ -21,14 +21,14 @@ class BiasRequest(PieceTestRequest):
     strain: float = Field(
         gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
     )
-    width_mm: Size = Field(50.0, description="Between the free sides.")
-    length_mm: Size = Field(100.0, description="Between the clamps.")
+    width_mm: Size = Field(50.0, description="Distance between the free sides.")
+    length_mm: Size = Field(100.0, description="Distance between the clamps.")
     angle_deg: float = Field(
         45.0,
         ge=-180,
         le=180,
         allow_inf_nan=False,
-        description="From the width to the rows: 0 pulls along columns, 90 along rows.",
+        description="Angle from the width to the rows: 0 pulls along columns, 90 along rows.",
     )
 
 
@@ -37,10 +37,12 @@ class BiasResult(PieceTestResult):
 
     kind: Literal["bias"] = "bias"
     strain: Floats
-    force_n: Floats = Field(description="Along the pull.")
+    force_n: Floats = Field(description="Force along the pull.")
     force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
     force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
-    sideways_n: Floats = Field(description="Across the pull: clamps hold cloth that would shear.")
+    sideways_n: Floats = Field(
+        description="Force across the pull: the clamps keep the cloth from shearing sideways."
+    )
     stress_n_per_mm: Floats = Field(description="Force per width.")
     waist_strain: Floats
 

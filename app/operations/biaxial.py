@@ -23,7 +23,7 @@ class BiaxialRequest(PieceTestRequest):
     width_mm: Size = Field(100.0, description="Along x.")
     length_mm: Size = Field(100.0, description="Along y.")
     grain_deg: float = Field(
-        0.0, ge=-180, le=180, allow_inf_nan=False, description="From the x axis to the rows."
+        0.0, ge=-180, le=180, allow_inf_nan=False, description="Angle from the x axis to the rows."
     )
 
 

@@ -28,7 +28,7 @@ from knitcore.swatch.comparison import Edges, compare
 
 
 class CalibrateRequest(FieldRequest):
-    """Where to start from, and tests whose forces the law should keep."""
+    """The law to start from, and tests whose forces the law has to match."""
 
     material: MaterialName
     fabric: Fabric
@@ -46,10 +46,12 @@ class CalibrateResult(LawResult):
     kind: Literal["calibrate"] = "calibrate"
     parameters: dict[str, float]
     standard_errors: dict[str, float]
-    frames: list[int] = Field(description="Pictures that were used.")
-    comparison: list[FrameErrorResult] = Field(description="All pictures, measured edges.")
+    frames: list[int] = Field(description="The frames that were fitted.")
+    comparison: list[FrameErrorResult] = Field(
+        description="Errors at all frames, with the edges moved as measured."
+    )
     force_strain: Floats
-    force_ratio: Floats = Field(description="Simulated over measured force.")
+    force_ratio: Floats = Field(description="Simulated force over measured force.")
     evaluations: int
 
 
@@ -78,7 +80,7 @@ def _calibration(request: CalibrateRequest, context: Context) -> Calibration:
             if stated_direction(test) not in (None, request.direction):
                 raise InputError(
                     "tests",
-                    f"{chosen.name} says that it was not pulled {request.direction}-wise.",
+                    f"{chosen.name} was not pulled {request.direction}-wise.",
                     "Give the test in the direction of the field.",
                 )
             forces = ForceCurve.of_test(test, field.length / field.width)
@@ -94,7 +96,7 @@ def _course_first(tests: list[Path]) -> list[Path]:
 
 
 def _result(request: CalibrateRequest, found: Calibration) -> CalibrateResult:
-    """The numbers of a calibration, with the errors of all pictures, used or not."""
+    """The result, with the errors at all frames, fitted or not."""
     field, direction = load(request.field), request.direction
     errors = compare(field, found.law, direction, edges=Edges.MEASURED)
     return CalibrateResult.of(found, found.law, comparison=errors.frames)
@@ -109,7 +111,7 @@ def _command(
         raise InputError("tests", f"{more_tests[0]} is unexpected.", "Put --tests before tests.")
     tests = [*request.tests, *map(UploadedFile.at, more_tests)]
     if len(tests) > 2:
-        raise InputError("tests", f"{len(tests)} are too many.", "Give one per direction.")
+        raise InputError("tests", f"{len(tests)} tests are too many.", "Give one per direction.")
     request = request.model_copy(update={"tests": tests})
     found = _calibration(request, context)
     numbers = ", ".join(str(number) for number in found.frames)

@@ -42,7 +42,7 @@ MAX_SETTINGS = 24
 BRANCHES = click.Choice([branch.value for branch in Branch])
 CONVENTIONS = click.Choice([convention.value for convention in Convention])
 FINISHED = "finished"
-"""Folder of finished stitches within the results, from which a stopped batch goes on."""
+"""Folder of finished stitches inside the results folder, from which a stopped batch continues."""
 
 
 class YarnInput(RequestModel):
@@ -57,7 +57,7 @@ class YarnInput(RequestModel):
 
 
 class CharacteriseOptions(RequestModel):
-    """Which stitches of a yarn, and which model."""
+    """The stitches of a yarn to compute, and the model to use."""
 
     fabrics: list[Fabric] = Field(default_factory=lambda: list(Fabric), min_length=1)
     loop_lengths_mm: list[Positive] = Field(
@@ -74,7 +74,11 @@ class CharacteriseOptions(RequestModel):
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
     max_stress_n_per_mm: float = Field(
-        MAX_STRESS_N_PER_MM, gt=0.001, le=100, allow_inf_nan=False, description="Laws end here."
+        MAX_STRESS_N_PER_MM,
+        gt=0.001,
+        le=100,
+        allow_inf_nan=False,
+        description="Largest stress of the fitted laws.",
     )
 
 
@@ -100,7 +104,7 @@ class FabricCurve(ResultModel):
     bending_share: list[float]
     contact_share: list[float]
     contact_overtakes_at_strain: float | None = Field(
-        description="Where contact first holds half of the energy."
+        description="Strain at which contact first holds half of the energy."
     )
     jumps: list[int]
     notes: list[str]
@@ -136,11 +140,11 @@ class FabricRow(ResultModel):
     rms_course_n_per_mm: float | None
     rms_wale_n_per_mm: float | None
     converged: bool | None
-    remark: str = Field(description="Why something is missing, or what to know.")
+    remark: str = Field(description="Cautions, and why anything is missing.")
 
 
 class CharacterisedFabric(FabricRow):
-    """With its stress-strain curves."""
+    """A pure fabric at one stitch setting, with its stress-strain curves."""
 
     curves: dict[Direction, FabricCurve]
 
@@ -159,7 +163,9 @@ class CharacteriseResult(ResultModel):
     material: MaterialDocument | None = Field(
         description="A material file; null if no fabric has a law at the reference."
     )
-    materials: dict[str, MaterialDocument] = Field(description="The same at every setting.")
+    materials: dict[str, MaterialDocument] = Field(
+        description="A material file for every setting, by its name."
+    )
 
 
 def characterise(request: CharacteriseRequest, context: Context) -> CharacteriseResult:
@@ -175,12 +181,12 @@ def characterise(request: CharacteriseRequest, context: Context) -> Characterise
 
 
 def _plan(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> YarnPlan:
-    """What to compute of a yarn.
+    """The computation that a request asks for.
 
     Raises
     ------
     InputError
-        If there is none, or it does not go with the options.
+        If no yarn is given, or the options do not apply to it.
     """
     asked = options.model_dump(include=set(CharacteriseOptions.model_fields))
     if isinstance(yarn, Material):
@@ -230,7 +236,7 @@ def _row(row: YarnRow) -> CharacterisedFabric:
 @click.option("--max-stress-n-per-mm", type=float, default=MAX_STRESS_N_PER_MM, show_default=True)
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask cluster to work on.")
 @click.option("--workers", type=click.IntRange(1), help="Processes here; all cores if left out.")
-@click.option("--fresh", is_flag=True, help="Forget what an earlier run left in the folder.")
+@click.option("--fresh", is_flag=True, help="Discard what an earlier run left in the folder.")
 @click.option("--out", required=True, type=click.Path(path_type=Path), help="FOLDER of results.")
 @json_option
 def _command(
@@ -251,8 +257,9 @@ def _command(
 ) -> None:
     """Characterise yarns at the yarn level: laws, sizes and energies of their pure fabrics.
 
-    Every fabric is relaxed at every loop length and stretched both ways. Stopped, the command goes
-    on where it was. FOLDER holds table.csv, curves.csv, and material files that every other command
+    Every fabric is relaxed at every loop length and stretched both ways. A stopped command
+    continues where it left off. FOLDER holds table.csv, curves.csv, and material files that every
+    other command
     takes for --material.
     """
     given = {

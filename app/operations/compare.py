@@ -26,14 +26,16 @@ class CompareRequest(FieldRequest, LawsRequest):
     """A law, or a fabric of a material, and a field to compare it with."""
 
     material: MaterialName | None = None
-    fabric: Fabric | None = Field(None, description="Of the material.")
-    law: UploadedFile | None = Field(None, description="LAW.json, instead of material and fabric.")
+    fabric: Fabric | None = Field(None, description="A fabric of the material.")
+    law: UploadedFile | None = Field(
+        None, description="A law file, LAW.json, in place of material and fabric."
+    )
     edges: Edges = Edges.MEASURED
     model: EnergyModel = EnergyModel.FULL
 
 
 class CompareResult(ResultModel):
-    """Errors per picture, in the order of the stretch."""
+    """Errors of each frame, in the order of the stretch."""
 
     kind: Literal["compare"] = "compare"
     frames: list[FrameErrorResult]
@@ -43,7 +45,7 @@ class CompareResult(ResultModel):
 
 
 def compare(request: CompareRequest, context: Context) -> CompareResult:
-    """Errors of the displacements, picture by picture.
+    """Errors of the displacements, frame by frame.
 
     Raises
     ------

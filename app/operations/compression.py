@@ -22,14 +22,18 @@ class CompressionRequest(RequestModel):
 
     file: UploadedFile
     yarn: str | None = Field(
-        None, max_length=80, description="Only the samples of this yarn (sheets named yarn-number)."
+        None,
+        max_length=80,
+        description="Use only the samples of this yarn (sheets named yarn-number).",
     )
-    diameter_mm: float | None = Field(None, description="The yarn's, if the file does not say.")
+    diameter_mm: float | None = Field(
+        None, description="Diameter of the yarn, if the file does not state it."
+    )
     probe_width_mm: float = PROBE_WIDTH_MM
 
 
 class CompressionSampleResult(ResultModel):
-    """What one test gave; the errors are those of the fit."""
+    """The result of one test, with the standard errors of its fit."""
 
     name: str
     yarn: str
@@ -58,7 +62,7 @@ class CompressionResult(ResultModel):
 
     kind: Literal["compression"] = "compression"
     k_n_per_mm3: float | None = Field(
-        description="Mean of the yarn; null if there are several, which have one each in `mean`."
+        description="Mean of the yarn; null if there are several yarns, whose means are in `mean`."
     )
     p: float | None = Field(description="The same.")
     mean: dict[str, CompressionMeanResult] = Field(description="By yarn.")
@@ -75,7 +79,7 @@ def compression(request: CompressionRequest, context: Context) -> CompressionRes
 def _command(
     request: CompressionRequest, context: Context, more_files: tuple[Path, ...]
 ) -> CompressionResult:
-    """As :func:`compression`, of any number of files.
+    """The same for any number of files.
 
     Raises
     ------

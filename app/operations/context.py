@@ -1,4 +1,4 @@
-"""Services for an operation, wherever it runs."""
+"""What an operation needs from its surroundings, wherever it runs."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ def _never() -> bool:
 
 
 def _untold(done: float, total: float) -> None:
-    """Nobody asks how far it is."""
+    """Ignore progress."""
 
 
 class Context:
-    """Materials, kept results, cancellation and progress.
+    """Materials, stored results, cancellation and progress.
 
     Parameters
     ----------
-    data_dir : folder of own materials and kept results, or what finds it when it is needed.
-    local : whether the caller sits at this machine: then materials may be files, and charts are
-        as large as the library takes.
+    data_dir : folder of the user's materials and stored results, or a function that returns it.
+    local : whether the caller works on this machine: materials may then be files, and charts may be
+        as large as the library accepts.
     cancelled : whether the caller has given up.
     progress : called with (done, total).
     """
@@ -48,16 +48,16 @@ class Context:
 
     @cached_property
     def data_dir(self) -> Path:
-        """Folder of own materials and kept results."""
+        """Folder of the user's materials and stored results."""
         return self._data_dir if isinstance(self._data_dir, Path) else self._data_dir()
 
     @property
     def kept(self) -> KeptResults:
-        """Results of the yarn level that were computed before."""
+        """Yarn-level results that were computed before."""
         return KeptResults(self.data_dir / "yarn-level")
 
     def material(self, name: str) -> Material:
-        """A material of the library, one's own, or, on this machine, of a file.
+        """A material from the library, the user's own materials or, on this machine, a file.
 
         Raises
         ------
@@ -69,11 +69,11 @@ class Context:
         return find_own_material(name, self.data_dir) if name.startswith(PREFIX) else material(name)
 
     def share(self, done: float) -> None:
-        """Tell how much is done, 0 to 1."""
+        """Report progress, from 0 to 1."""
         self.progress(done, 1.0)
 
     def within(self, start: float, share: float) -> Context:
-        """For a part of the work: its progress from 0 to 1 is ``share`` of the whole's."""
+        """A context for part of the work, which makes up ``share`` of the whole."""
 
         def progress(done: float, total: float) -> None:
             self.progress(start + share * done / total, 1.0)

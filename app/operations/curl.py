@@ -21,7 +21,7 @@ from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece
 from knitcore.shell.curl import curl as curl_piece
 
 FLAT = 0.02
-"""Edges that stand out by less than this part of the thickness are called flat."""
+"""Edges that stand out by less than this fraction of the thickness count as flat."""
 
 
 class CurlRequest(RequestModel):
@@ -29,13 +29,13 @@ class CurlRequest(RequestModel):
 
     chart: ChartInput
     material: MaterialName
-    corners: bool = Field(False, description="Give the corners of all stitches as well.")
+    corners: bool = Field(False, description="Also return the corners of all stitches.")
     time_limit_s: float = Field(
         TIME_LIMIT_S,
         gt=0,
         le=600,
         allow_inf_nan=False,
-        description="CPU time after which the shape is given as it is then, unconverged.",
+        description="CPU time after which the current shape is returned, not converged.",
     )
 
 
@@ -47,7 +47,7 @@ class CurlView:
 
     @property
     def size_bytes(self) -> int:
-        """How much memory it takes."""
+        """Memory that it takes, bytes."""
         return self.corners_mm.nbytes
 
 
@@ -55,7 +55,7 @@ class CurlResult(ResultModel):
     """The piece as it lies; heights are positive towards the face (the front)."""
 
     kind: Literal["curl"] = "curl"
-    id: str = Field(description="The shape, for views.")
+    id: str = Field(description="Name of the shape, for 3D views.")
     rows: int
     columns: int
     width_mm: float = Field(description="Extent along the rows of the piece as a whole.")
@@ -64,11 +64,13 @@ class CurlResult(ResultModel):
     curl_course_mm: float = Field(
         description="Height of the sides above the fabric next to them; negative to the back."
     )
-    curl_wale_mm: float = Field(description="The same of top and bottom.")
-    flat_width_mm: float = Field(description="Extent if it lay flat.")
+    curl_wale_mm: float = Field(
+        description="Height of the top and bottom above the fabric next to them."
+    )
+    flat_width_mm: float = Field(description="Extent of the piece laid flat.")
     flat_height_mm: float
     thickness_mm: float
-    converged: bool = Field(description="Where it is false, the shape is a preview.")
+    converged: bool = Field(description="If false, the shape is only a preview.")
     seconds: float = Field(description="CPU time.")
     corners_mm: list[list[tuple[float, float, float]]] | None = Field(
         None, description="Corners of the stitches, the lowest row first."
@@ -80,8 +82,8 @@ def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
     """Shape of least energy of a piece with free edges, without friction, set and weight.
 
     Stockinette rolls its sides to the back and its ends to the front, garter, 1x1 rib and seed lie
-    flat, wide ribs pleat. Directions are those of nature, sizes of tight rolls and folds are what
-    frictionless cloth would do. Pieces of up to 10,000 stitches.
+    flat, wide ribs pleat. Directions agree with real fabric; sizes of tight rolls and folds are
+    those of frictionless cloth. Pieces may have up to 10,000 stitches.
     """
     piece = _curled(request, context)
     return Viewed(_result(piece, request), CurlView(piece.corners_mm.astype(np.float32)))

@@ -45,7 +45,7 @@ class CurveResult(ResultModel):
     stress_low_n_per_mm: Floats = Field(
         description="Lower end of the 90 % interval of the stress at each strain, N/mm."
     )
-    stress_high_n_per_mm: Floats = Field(description="Upper end of it, at most 10 N/mm.")
+    stress_high_n_per_mm: Floats = Field(description="Upper end of that interval, at most 10 N/mm.")
     provenance: str
 
 
@@ -65,7 +65,7 @@ def curve(request: CurveRequest, context: Context) -> CurveResult:
     type=click.FloatRange(0, 100, min_open=True),
     default=0.3,
     show_default=True,
-    help="Last stress in N/mm.",
+    help="Largest stress in N/mm.",
 )
 @click.option("--points", type=click.IntRange(2, 500), default=31, show_default=True)
 def _stresses(max_stress: float, points: int) -> dict[str, Any]:

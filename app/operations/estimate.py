@@ -35,7 +35,7 @@ class SwatchInput(RequestModel):
 
 
 class EstimateRequest(RequestModel):
-    """Known facts of the yarn and the product."""
+    """What is known of the yarn and the product."""
 
     bending_modulus_n_mm2: float = Field(description="B of the yarn (`measure bending`).")
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
@@ -46,7 +46,7 @@ class EstimateRequest(RequestModel):
 
 
 class Estimate(ResultModel):
-    """A value and its 90 % interval (of no width where it is measured)."""
+    """A value and its 90 % interval, which has no width if the value is measured."""
 
     value: float
     interval: Ends
@@ -60,7 +60,7 @@ class Estimate(ResultModel):
 
 
 class FabricEstimateResult(ResultModel):
-    """One fabric: extension under load first, because it is predicted best."""
+    """One fabric; extension under load comes first because it is predicted best."""
 
     strain_at_0_1_n_per_mm: dict[Direction, Estimate]
     modulus_n_per_mm: dict[Direction, Estimate]
@@ -80,7 +80,7 @@ class EstimateResult(ResultModel):
 
 
 def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
-    """Extension under load first, then moduli and laws, with 90 % intervals."""
+    """Extension under load, moduli and laws of a yarn's four fabrics, with 90 % intervals."""
     del context
     swatches = [
         MeasuredSwatch(s.fabric, law_from_mapping(s.law).law, s.loop_length_mm, s.setting)

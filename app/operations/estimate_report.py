@@ -1,4 +1,4 @@
-"""How well the estimates of yarns that are not in the library do."""
+"""Accuracy of the estimates of yarns that are not in the library."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from knitcore.fabric import Direction, Fabric
 
 
 class LeftOutResult(ResultModel):
-    """How well the library's yarns are predicted when they are left out; factors of the rms."""
+    """Errors for the library's yarns when each is left out; rms errors are factors."""
 
     measured: list[Fabric]
     values: int
@@ -47,7 +47,7 @@ def estimate_report(request: NoRequest, context: Context) -> ModelReport:
 
 
 def report() -> ModelReport:
-    """Refit the model and leave one yarn out, with nothing, one and two swatches measured."""
+    """Refit the model and leave out one yarn at a time, with no, one and two swatches measured."""
     table = library_table()
 
     def means(name: str) -> dict[Fabric, dict[Direction, float]]:

@@ -26,11 +26,11 @@ MAX_STITCHES: dict[str, int] = {
     ExportKind.GLB: 2_500,
     ExportKind.STL: 2_500,
 }
-"""Over REST; the command line takes larger ones."""
+"""Largest chart over REST, in stitches; the command line accepts larger ones."""
 
 
 class ExportRequest(DesignLayout, LawsRequest):
-    """A chart and the format that it shall become."""
+    """A chart and the format to write it in."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -38,14 +38,18 @@ class ExportRequest(DesignLayout, LawsRequest):
     to: ExportKind | ExtensionName = Field(
         description=f"{', '.join(ExportKind)}; or a format of an installed extension."
     )
-    material: MaterialName = Field("acrylic", description="For sizes and values.")
+    material: MaterialName = Field("acrylic", description="Gives sizes and values.")
     construction: Construction = Construction.FLAT
-    first_side: Side = Field(Side.RS, description="Side of row 1 in flat knitting.")
-    finish: Finish = Field(Finish.WASTE, description="How a knitout program ends.")
+    first_side: Side = Field(Side.RS, description="The side of row 1, in flat knitting.")
+    finish: Finish = Field(Finish.WASTE, description="The end of a knitout program.")
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$", description="Printed.")
     linear_density_tex: float | None = Field(
-        None, gt=0, lt=1e5, allow_inf_nan=False, description="Of the yarns, for their mass."
+        None,
+        gt=0,
+        lt=1e5,
+        allow_inf_nan=False,
+        description="Linear density of the yarn, for its mass.",
     )
 
 
@@ -56,7 +60,7 @@ class ExportFacts(ResultModel):
     rows: int
     columns: int
     bytes: int
-    transfers: int | None = Field(None, description="Of a knitout program, without finishing.")
+    transfers: int | None = Field(None, description="Of a knitout program, without the finish.")
     carriers: int | None = Field(None, description="Of a knitout program, without waste.")
     notes: list[str]
 
@@ -104,7 +108,7 @@ def _facts(chart: StitchChart, file: ExportedFile) -> ExportFacts:
 
 
 def _file_name(name: str) -> str:
-    """A design's name as a file's: letters, digits and a few signs."""
+    """A file name from a design's name: letters, digits and a few signs."""
     kept = "".join(c if c.isalnum() or c in " -_." else "-" for c in name).strip(" .")
     return kept[:80] or "chart"
 

@@ -1,4 +1,4 @@
-"""A chart for wanted stiffness, painted as a map or given part by part."""
+"""A chart with a target stiffness, given as a map or part by part."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Maps = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 MAPS = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 MAX_STITCHES = 40_000
-"""Over REST; the command line takes larger maps."""
+"""Largest map over REST, in stitches; the command line accepts larger ones."""
 MAX_WISHES = 200
 MAX_RUNS = 40_000
 
@@ -46,13 +46,13 @@ class WishInput(RequestModel):
     runs: list[Run] = Field(
         min_length=1,
         max_length=MAX_RUNS,
-        description="[row, first column, length] of its stitches, row 0 at the bottom.",
+        description="Its stitches as runs [row, first column, length], with row 0 at the bottom.",
     )
     modulus_course_n_per_mm: Modulus = None
     modulus_wale_n_per_mm: Modulus = None
 
     def wish(self) -> Wish:
-        """As the library knows it."""
+        """The library's object."""
         return Wish(
             self.name,
             tuple(self.runs),
@@ -66,16 +66,17 @@ class FillRequest(LawsRequest):
 
     material: MaterialName
     modulus_course_n_per_mm: Map | None = Field(
-        None, description="[row][column], the bottom row first; null for no wish."
+        None, description="[row][column], the bottom row first; null where any value will do."
     )
     modulus_wale_n_per_mm: Map | None = None
-    rows: int | None = Field(None, ge=1, le=1000, description="Of the chart, with wishes.")
+    rows: int | None = Field(None, ge=1, le=1000, description="Of the chart, if wishes are given.")
     columns: int | None = Field(None, ge=1, le=1000)
     wishes: list[WishInput] | None = Field(
-        None, min_length=1, max_length=MAX_WISHES, description="Instead of the two maps."
+        None, min_length=1, max_length=MAX_WISHES, description="In place of the two maps."
     )
     chart: ChartText | None = Field(
-        None, description="Stitches without a wish stay as they are here; filled, too, otherwise."
+        None,
+        description="Stitches without a target stay as in this chart; otherwise they are filled.",
     )
     outline: OutlineInput = None
     repeats: Extent = "small"
@@ -83,7 +84,7 @@ class FillRequest(LawsRequest):
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
     check: bool = Field(
         True,
-        description="Pull the chart in the finite swatch, and choose again what departs there.",
+        description="Pull the chart in the finite swatch; choose again where the result differs.",
     )
 
 
@@ -92,32 +93,33 @@ class PatchResult(ResultModel):
 
     repeat: str
     stitches: int
-    row: int = Field(description="Of its first stitch, from 1 at the bottom left.")
+    row: int = Field(description="Position of its first stitch, from 1 at the bottom left.")
     column: int
-    deviation_course: Known = Field(description="Of the repeat; null without a wish.")
+    deviation_course: Known = Field(description="Of the repeat; null without a target.")
     deviation_wale: Known
     swatch_course: Known = Field(
-        description="The same of the patch as the finite swatch has it; null if it was not pulled."
+        description="Of the patch in the finite swatch; null if it was not pulled."
     )
     swatch_wale: Known
 
 
 class FillResult(ResultModel):
-    """A chart, and how near it comes."""
+    """A chart, and how near it comes to the targets."""
 
     kind: Literal["fill"] = "fill"
     rows: int
     columns: int
     chart: str
     off_share: float = Field(
-        description="Share of the stitches with a wish that are off by more than 10 %."
+        description="Share of the stitches with a target that miss it by more than 10 %."
     )
     patches: list[PatchResult]
     messages: list[str]
 
 
 def fill(request: FillRequest, context: Context) -> FillResult:
-    """Patches from the atlas, fitted to each other; reports wishes that are not met.
+    """Patches of repeats from the atlas that match at their edges; reports targets that are not
+    met.
 
     Raises
     ------
@@ -172,12 +174,14 @@ def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float
     if rows is None:
         raise InputError(name, "is missing.", "Give both maps, or wishes for parts of the chart.")
     if len({len(row) for row in rows}) > 1 or not rows[0]:
-        raise InputError(name, "its rows differ in length.", "Give one number or null a stitch.")
+        raise InputError(
+            name, "the rows differ in length.", "Give a number or null for each stitch."
+        )
     return np.array([[np.nan if v is None else v for v in row] for row in rows], dtype=float)
 
 
 @click.argument("target", type=click.Path(path_type=Path))
-@click.option("--chart", "kept", help="Stitches without a wish stay as they are in this file.")
+@click.option("--chart", "kept", help="Stitches without a target keep what they are in this file.")
 @atlas_option
 @design_option
 def _command(
@@ -200,7 +204,7 @@ def _command(
 def _text(r: FillResult) -> str:
     head = (
         f"{r.columns} columns x {r.rows} rows in {len(r.patches)} patches; "
-        f"{r.off_share:.1%} of the stitches with a wish are off by more than 10 %"
+        f"{r.off_share:.1%} of the stitches with a target miss it by more than 10 %"
     )
     return "\n".join([r.chart, head, *r.messages])
 

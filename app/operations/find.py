@@ -1,4 +1,4 @@
-"""Fabrics with wanted properties, in one yarn or several."""
+"""Fabrics with target properties, in one yarn or several."""
 
 from __future__ import annotations
 
@@ -26,18 +26,22 @@ from knitcore.materials import load_library
 MAX_MATERIALS = 16
 MAX_TARGETS = 20
 ELSEWHERE = 3
-"""Fabrics of other yarns that are offered where the wanted ones reach nothing."""
+"""Most fabrics of other yarns to offer where none of those asked for meets the targets."""
 
 
 class LimbInput(RequestModel):
     """A tube on a limb."""
 
-    rest_mm: float = Field(gt=0, le=5000, allow_inf_nan=False, description="Of the unworn tube.")
-    worn_mm: float = Field(gt=0, le=5000, allow_inf_nan=False, description="Of the limb.")
+    rest_mm: float = Field(
+        gt=0, le=5000, allow_inf_nan=False, description="Circumference of the unworn tube."
+    )
+    worn_mm: float = Field(
+        gt=0, le=5000, allow_inf_nan=False, description="Circumference of the limb."
+    )
 
 
 class TargetInput(RequestModel):
-    """One wish for a fabric."""
+    """One target property of a fabric."""
 
     quantity: Quantity
     value: float = Field(
@@ -48,7 +52,10 @@ class TargetInput(RequestModel):
     )
     weight: float = Field(1.0, gt=0, le=1000)
     load_n_per_mm: float = Field(
-        USUAL_LOAD_N_PER_MM, gt=0, le=0.5, description="For a stretch, per width of the cloth."
+        USUAL_LOAD_N_PER_MM,
+        gt=0,
+        le=0.5,
+        description="Load at which a stretch is wanted, per width of cloth.",
     )
     limb: LimbInput | None = Field(None, description="For a pressure.")
 
@@ -58,7 +65,7 @@ class TargetInput(RequestModel):
 
 
 class LimitsInput(RequestModel):
-    """Limits on the cost of knitting; null for no limit."""
+    """Limits on the effort of knitting; null for no limit."""
 
     transfers_per_stitch: float | None = Field(
         None, ge=0, le=1, description="Loops moved between the beds, per stitch."
@@ -72,7 +79,7 @@ class LimitsInput(RequestModel):
 
 
 class FindRequest(LawsRequest):
-    """Wishes, and the yarns to search."""
+    """Target properties, and the yarns to search."""
 
     materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)
     targets: list[TargetInput] = Field(min_length=1, max_length=MAX_TARGETS)
@@ -80,17 +87,17 @@ class FindRequest(LawsRequest):
     repeats: Extent = Field("small", description=EXTENTS)
     count: int = Field(10, ge=1, le=100)
     elsewhere: bool = Field(
-        True, description="Where nothing reaches the wishes, look into the other yarns too."
+        True, description="Search the other yarns too if nothing meets the targets."
     )
 
 
 class CandidateResult(ResultModel):
-    """A repeat and how near it comes."""
+    """A repeat, and how near it comes to the targets."""
 
     material: str
     chart: str = Field(description="K/P lines of one repeat, the top row first.")
     values: dict[str, Known] = Field(
-        description="By quantity, with @load or @rest/worn; null beyond the lock-up."
+        description="Values by quantity, with @load or @rest/worn; null beyond the lock-up."
     )
     intervals: dict[str, KnownEnds] = Field(
         description="90 % intervals; null where an end lies beyond the computed curve."
@@ -102,26 +109,28 @@ class CandidateResult(ResultModel):
     reached: bool
     provenance: str
     transfers_per_stitch: float
-    crossings_per_stitch: float = Field(description="Between face and back, or beds.")
+    crossings_per_stitch: float = Field(
+        description="Moves of the yarn between face and back, or between beds, per stitch."
+    )
     curl: float = Field(description="Knits minus purls over all stitches; far from 0 it curls.")
 
 
 class FindResult(ResultModel):
-    """Ranked repeats; the best first."""
+    """Ranked repeats, the best first."""
 
     kind: Literal["find"] = "find"
     reached: bool
     message: str
     searched: int
-    ranges: dict[str, Ends] = Field(description="What all repeats span.")
+    ranges: dict[str, Ends] = Field(description="Range of each quantity over all repeats.")
     candidates: list[CandidateResult]
     elsewhere: list[CandidateResult] = Field(
-        description="Nearest in yarns that were not asked for, if those asked for reach nothing."
+        description="Nearest fabrics in other yarns, if none of those asked for meets the targets."
     )
 
 
 def find(request: FindRequest, context: Context) -> FindResult:
-    """Ranked repeats with intervals and knitting cost; says so when nothing reaches the wishes."""
+    """Ranked repeats with intervals and knitting effort; says so when nothing meets the targets."""
     names = list(dict.fromkeys(request.materials))
     others = [name for name in load_library() if name not in names] if request.elsewhere else []
     share = len(names) / (len(names) + len(others))
@@ -136,7 +145,7 @@ def find(request: FindRequest, context: Context) -> FindResult:
 def _ranked(
     atlases: Sequence[Atlas], request: FindRequest, others: Sequence[str], context: Context
 ) -> FindResult:
-    """The best of some atlases, and of other yarns where those reach nothing."""
+    """The best of some atlases, and of other yarns if nothing in those meets the targets."""
     targets = [target.target() for target in request.targets]
     limits = request.limits.into(CostLimits) if request.limits else None
     found = find_fabric(atlases, targets, count=request.count, limits=limits)
@@ -163,7 +172,7 @@ def _ranked(
 
 def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atlas]:
     for name in names:
-        context.material(name)  # a wrong one is told before the first is computed
+        context.material(name)  # an unknown material is reported before any atlas is computed
     part = 1 / max(len(names), 1)
     return [
         atlas_of(name, extent, context.within(number * part, part))
@@ -208,7 +217,9 @@ def _asked(
 
 @click.option("--atlas", "atlases", multiple=True, type=click.Path(path_type=Path))
 @click.option(
-    "--elsewhere", is_flag=True, help="If nothing reaches it, look into the library's other yarns."
+    "--elsewhere",
+    is_flag=True,
+    help="If nothing meets the targets, search the library's other yarns.",
 )
 def _command(
     request: FindRequest,

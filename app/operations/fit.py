@@ -21,7 +21,7 @@ from knitcore.measure.uniaxial import LawFit, Reduction, Residuals
 from knitcore.swatch.strip_fit import fit_tests
 
 PLOTTED_POINTS = 2000
-"""Points of a residual plot; more than a screen shows."""
+"""Most points of a residual plot: more than a screen resolves."""
 
 
 class FitRequest(RequestModel):
@@ -30,7 +30,7 @@ class FitRequest(RequestModel):
     test_course: UploadedFile = Field(description="Pulled along the rows; HDF5 or CSV.")
     test_wale: UploadedFile = Field(description="Pulled along the columns.")
     format: Literal["csv", "h5"] | None = Field(
-        None, description="Found out from the content if not given."
+        None, description="Recognised from the content if not given."
     )
     reduction: Reduction = Field(
         Reduction.RECOMMENDED,
@@ -48,7 +48,7 @@ class LawErrors(ElasticConstants, LawConstants):
     """Standard errors of a law's constants."""
 
     shear_modulus_n_per_mm: float | None = Field(
-        None, description="Recommended reduction only, and mostly its prior's: a factor of 1.5."
+        None, description="Recommended reduction only; mostly that of its prior, a factor of 1.5."
     )
     kappa_xx: float | None = None
     kappa_yy: float | None = None
@@ -68,10 +68,10 @@ class FitResult(ElasticConstants, LawResult):
 
     kind: Literal["fit"] = "fit"
     standard_errors: LawErrors
-    rms_n_per_mm: float = Field(description="Of all residuals.")
+    rms_n_per_mm: float = Field(description="Rms of all residuals.")
     rms_course_n_per_mm: float
     rms_wale_n_per_mm: float
-    largest_strain: dict[Direction, float] = Field(description="Up to where the law was fitted.")
+    largest_strain: dict[Direction, float] = Field(description="Largest strain of the fit.")
     runs: dict[Direction, int] = Field(description="Pulls used.")
     reduction: Reduction
     error_method: str

@@ -31,17 +31,22 @@ Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
 Ease = Annotated[float, Field(ge=-0.6, le=1, allow_inf_nan=False)]
 Target = Annotated[
     float | None,
-    Field(gt=0, le=300, allow_inf_nan=False, description="Wanted pressure; before the ease."),
+    Field(
+        gt=0,
+        le=300,
+        allow_inf_nan=False,
+        description="Target pressure; takes precedence over the ease.",
+    ),
 ]
 
 
 class GaugeCount(RequestModel):
-    """A swatch's gauge, as it is counted."""
+    """A gauge counted on a swatch."""
 
     stitches: float = Field(gt=0, le=1000, allow_inf_nan=False)
     rows: float = Field(gt=0, le=1000, allow_inf_nan=False)
     per: Literal["10 cm", "4 in", "5 cm"] = "10 cm"
-    fabric: Fabric = Field(Fabric.STOCKINETTE, description="Of the swatch.")
+    fabric: Fabric = Field(Fabric.STOCKINETTE, description="Repeat of the swatch.")
 
     def gauge(self) -> Gauge:
         """As the library knows it."""
@@ -56,7 +61,7 @@ _LENGTHS = {
 
 
 class Template(RequestModel):
-    """How tightly a garment sits."""
+    """How tightly a garment fits."""
 
     ease: Ease = -0.15
     target_mmhg: Target = None
@@ -68,7 +73,7 @@ class Template(RequestModel):
 
 
 class WristBrace(Template):
-    """A brace knitted sideways and grafted."""
+    """A brace, knitted sideways and grafted."""
 
     template: Literal["wrist-brace"]
     wrist_mm: Length
@@ -76,7 +81,7 @@ class WristBrace(Template):
     edge_mm: Annotated[float, Field(ge=0, le=500)] = 15.0
 
     def plan(self, **yarn: Any) -> GarmentPlan:
-        """Its plan in a yarn: material, gauges and linear density."""
+        """Its plan, for a material, gauges and a linear density."""
         sizes = self.wrist_mm, self.length_mm
         return wrist_brace(*sizes, fit=self.fit, edge_mm=self.edge_mm, **yarn)
 
@@ -95,7 +100,7 @@ class SockLeg(Template):
 
 
 class Limb(Template):
-    """A sleeve along any limb."""
+    """A sleeve for any limb."""
 
     template: Literal["limb"]
     profile: list[tuple[float, Length]] = Field(
@@ -114,7 +119,7 @@ class Limb(Template):
 
 
 class FingerSize(RequestModel):
-    """Of one finger."""
+    """Measurements of one finger."""
 
     length_mm: Length
     circumference_mm: Length
@@ -124,7 +129,7 @@ _HAND = Hand()
 
 
 class Glove(Template):
-    """The therapeutic glove; an adult's hand unless measured."""
+    """The therapeutic glove; measurements default to an adult's hand."""
 
     template: Literal["glove"]
     cuff_mm: Length = _HAND.cuff_mm
@@ -151,7 +156,7 @@ class Glove(Template):
 
 MATERIAL_ERRORS = (
     "Sizes: the material's gauge, with one aspect ratio of stitches for all yarns (8 %); "
-    "your own gauge makes them surer. Yarn: the paper's ± on loop lengths (5 %)."
+    "a gauge of your own makes them more certain. Yarn: the paper's ± on loop lengths (5 %)."
 )
 SWATCH_ERRORS = (
     "Sizes: a counted gauge (3 %), and for fabrics other than the swatch's the aspect ratio "
@@ -164,7 +169,9 @@ class GarmentRequest(LawsRequest):
 
     garment: Annotated[WristBrace | SockLeg | Limb | Glove, Field(discriminator="template")]
     material: MaterialName
-    gauge: GaugeCount | None = Field(None, description="The knitter's; else the material's.")
+    gauge: GaugeCount | None = Field(
+        None, description="The knitter's gauge; the material's by default."
+    )
     linear_density_tex: float | None = Field(
         None,
         gt=0,
@@ -172,11 +179,11 @@ class GarmentRequest(LawsRequest):
         allow_inf_nan=False,
         description="Linear density of the yarn (g/km), for its mass.",
     )
-    intarsia: bool = Field(False, description="Give each fabric a yarn of its own.")
+    intarsia: bool = Field(False, description="Whether each fabric gets a yarn of its own.")
 
 
 class RegionResult(Moduli, Extensibility):
-    """One region: the fabric's repeat, its colour, its size, and means over its stitches."""
+    """One region: its repeat, colour and size, and means over its stitches."""
 
     name: str
     fill: str
@@ -184,9 +191,9 @@ class RegionResult(Moduli, Extensibility):
     stitches: int
     columns: int = Field(description="Stitches of its longest row.")
     rows: int = Field(description="Rows of its longest column.")
-    width_mm: float = Field(description="Of that many stitches at rest.")
+    width_mm: float = Field(description="Relaxed size of that many stitches.")
     height_mm: float
-    width_interval_mm: Ends = Field(description="90 %, by the gauge.")
+    width_interval_mm: Ends = Field(description="90 % interval, from that of the gauge.")
     height_interval_mm: Ends
     yarn_m: float
     yarn_g: float | None
@@ -238,19 +245,19 @@ class GarmentResult(ResultModel):
     yarn_g: float | None
     yarn_interval_m: Ends = Field(description="90 % interval.")
     yarn_interval_g: Ends | None
-    interval_source: str = Field(description="What the intervals rest on.")
+    interval_source: str = Field(description="Source of the intervals.")
     notes: list[str]
-    warnings: list[str] = Field(description="Where regions of unlike gauge meet.")
-    design: DesignFile = Field(description="The same as a project file, ready to be edited.")
+    warnings: list[str] = Field(description="Notes on borders between regions of different gauge.")
+    design: DesignFile = Field(description="The garment as a project file, ready to edit.")
 
 
 def garment(request: GarmentRequest, context: Context) -> GarmentResult:
-    """Outline, regions, fills, yarn and warnings of a template.
+    """Outline, regions, fills, yarn and warnings of a template with measurements.
 
     Raises
     ------
     InputError
-        From measurements or the material.
+        If a measurement or the material cannot be used.
     """
     material, count = context.material(request.material), request.gauge
     gauges = (
@@ -329,7 +336,7 @@ def _worn(place: Worn) -> WornResult:
     metavar="NAME=VALUE",
     help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
 )
-@click.option("--gauge", metavar="STSxROWS", help="The knitter's own, such as 22x30.")
+@click.option("--gauge", metavar="STSxROWS", help="The knitter's own gauge, such as 22x30.")
 @click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm")
 def _asked(
     template: str, settings: tuple[str, ...], gauge: str | None, per: str

@@ -41,7 +41,9 @@ class ImportResult(FoundDesign):
     rows: int
     columns: int
     repeat: ChartResult
-    notes: list[str] = Field([], description="What may not be as meant, such as a lost region.")
+    notes: list[str] = Field(
+        [], description="What may have been read wrongly or lost, such as a region."
+    )
 
 
 def import_(request: ImportRequest, context: Context) -> ImportResult:

@@ -1,4 +1,4 @@
-"""Everything known of a material."""
+"""Everything known about a material."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ CURVE_END = 0.85
 
 
 class MaterialRequest(RequestModel):
-    """A material by its id."""
+    """A material by its identifier."""
 
     identifier: MaterialName
 
 
 class FabricSummary(Moduli):
-    """A pure fabric of a material, in short."""
+    """A summary of a pure fabric of a material."""
 
     stitch_course_mm: float = Field(description="Relaxed width of one stitch.")
     stitch_wale_mm: float = Field(description="Relaxed height of one stitch.")
@@ -50,7 +50,7 @@ class FigureResult(ResultModel):
 
 
 class FabricDetail(ElasticConstants, FabricSummary):
-    """A pure fabric of a material, with everything that is known of it."""
+    """A pure fabric of a material in full."""
 
     law: LawResult
     lock_up_strain_course: float
@@ -72,7 +72,7 @@ class StitchKind(Moduli, Extensibility):
 
 
 class StitchTableResult(ResultModel):
-    """Values of all kinds of stitch."""
+    """Values for all 16 kinds of stitch."""
 
     codes: list[StitchKind]
 
@@ -85,7 +85,7 @@ class LawCurve(ResultModel):
 
 
 class MaterialSummary(ResultModel):
-    """A material, in short."""
+    """A summary of a material."""
 
     id: str
     name: str
@@ -94,7 +94,7 @@ class MaterialSummary(ResultModel):
 
 
 class MaterialDetail(ResultModel):
-    """A material, with everything that is known of it."""
+    """A material in full."""
 
     id: str
     name: str
@@ -106,11 +106,11 @@ class MaterialDetail(ResultModel):
     compression_exponent: float | None
     fabrics: dict[Fabric, FabricDetail]
     stitch_table: StitchTableResult | None = Field(
-        description="None for a material that lacks one of the four fabrics."
+        description="Null for a material that lacks one of the four fabrics."
     )
-    curves: dict[Fabric, dict[Direction, LawCurve]] = Field(description="Of the laws.")
+    curves: dict[Fabric, dict[Direction, LawCurve]] = Field(description="Curves of the laws.")
     measured: dict[Fabric, dict[Direction, CurveDocument]] = Field(
-        description="Of the stretch tests, where they are kept with the material."
+        description="Curves of the stretch tests, if they are stored with the material."
     )
 
 
@@ -203,5 +203,5 @@ OPERATION = Operation(
     method="GET",
     path="/materials/{identifier}",
     tag="materials",
-    summary="Everything known of a material",
+    summary="Everything known about a material",
 )

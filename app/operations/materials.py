@@ -1,4 +1,4 @@
-"""The library of materials, with one's own."""
+"""The library of materials, with the user's own."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Materials(ResultModel):
 
 
 def materials(request: NoRequest, context: Context) -> Materials:
-    """One's own, the yarns of the paper on their machine settings, variants, and extensions'."""
+    """The user's own materials, the paper's yarns and their variants, and those of extensions."""
     del request
     library = {**load_library(), **load_variants(), **offered_materials()}
     found = {**own_materials(context.data_dir), **library}

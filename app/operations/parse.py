@@ -16,7 +16,7 @@ class ParseRequest(RequestModel):
 
 
 class ChartResult(ResultModel):
-    """A chart, read and written again in the canonical form."""
+    """A chart in canonical form."""
 
     rows: int
     columns: int

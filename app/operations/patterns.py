@@ -1,4 +1,4 @@
-"""Named patterns to begin with."""
+"""Named patterns to start from."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Patterns(ResultModel):
 
 
 def patterns(request: NoRequest, context: Context) -> Patterns:
-    """Repeats to begin with: the four fabrics, ribs, basket and more; and those of extensions."""
+    """Repeats to start from: the four fabrics, ribs, basket and more, and those of extensions."""
     del request, context
     return Patterns(
         patterns=[

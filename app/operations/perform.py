@@ -1,4 +1,4 @@
-"""Running an operation in a worker process, where its answer is packed, too."""
+"""Running an operation in a worker process, which also packs the answer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.operations.context import Context
 
 Result = TypeVar("Result", bound=BaseModel)
 LEVEL = 4
-"""Of gzip: twice as fast as the usual one, for a few per cent more bytes."""
+"""Level of gzip: twice as fast as the default, for a few per cent more bytes."""
 
 
 class View(Protocol):

@@ -24,24 +24,22 @@ from knitcore.piece.spread import piece_spread
 
 
 class PieceRequest(PieceTestRequest):
-    """Cloth, the piece that is cut from it, and what is done to its edges."""
+    """Cloth, the piece cut from it, and the conditions on its edges."""
 
     piece: PieceInput
-    fields: bool = Field(False, description="Whether to tell the shape and strains at the end.")
+    fields: bool = Field(False, description="Whether to return the final shape and strains.")
 
 
 class LoadedEdge(ResultModel):
-    """What was done to an edge, per step."""
+    """Force and motion of an edge at each step."""
 
     edge: str
     kind: str
-    force_x_n: Floats = Field(description="On the whole edge; 0 of a tape.")
+    force_x_n: Floats = Field(description="Force on the whole edge; 0 for a tape.")
     force_y_n: Floats
-    moved_x_mm: Floats = Field(description="Mean of the edge.")
+    moved_x_mm: Floats = Field(description="Mean displacement of the edge.")
     moved_y_mm: Floats
-    force_x_margin_n: float = Field(
-        description="The last step's 90 % interval is this much to either side."
-    )
+    force_x_margin_n: float = Field(description="Half width of the 90 % interval at the last step.")
     force_y_margin_n: float
     moved_x_margin_mm: float
     moved_y_margin_mm: float
@@ -52,8 +50,8 @@ class DeformedPiece(ResultModel):
 
     corners_mm: list[tuple[float, float]] = Field(description="At rest.")
     moved_mm: list[tuple[float, float]] = Field(description="Displacement of each corner.")
-    elements: list[list[int]] = Field(description="Numbers of corners, from 0.")
-    strain_course: Floats = Field(description="Per element, as all that follow.")
+    elements: list[list[int]] = Field(description="Corner numbers of each element, from 0.")
+    strain_course: Floats = Field(description="Per element, like the fields below.")
     strain_wale: Floats
     shear_angle: Floats = Field(description="In radians.")
     stress_course: Floats = Field(description="N/mm.")
@@ -66,7 +64,7 @@ class PieceResult(PieceTestResult):
     """Equilibria of a piece under a growing load."""
 
     kind: Literal["piece"] = "piece"
-    share: Floats = Field(description="Of the load, per step.")
+    share: Floats = Field(description="Share of the load at each step.")
     area_mm2: float
     edges: list[LoadedEdge] = Field(description="In the order of the conditions.")
     shape: DeformedPiece | None
@@ -147,7 +145,7 @@ def _piece_file(piece: Path) -> dict[str, Any]:
 
 
 def _first(error: ValueError) -> str:
-    """What is wrong first, and where."""
+    """The first problem, and its place."""
     errors = getattr(error, "errors", None)
     if errors is None:
         return str(error)

@@ -21,13 +21,13 @@ from knitcore.segments import segment_map
 
 
 class PredictRequest(LawsRequest):
-    """A chart and its material; of a shaped piece, the largest rectangle inside counts."""
+    """A chart and its material; a shaped piece counts by the largest rectangle inside it."""
 
     chart: ChartInput
     material: MaterialName
     outline: OutlineInput = None
     gauge: GaugeInput | None = Field(
-        None, description="Relaxed size of the mean stitch; estimated if left out."
+        None, description="Measured gauge; the relaxed size is estimated if left out."
     )
     measures: list[ExtensionName] = Field(
         [], max_length=16, description="Further numbers, by the names of installed extensions."
@@ -51,9 +51,9 @@ class SegmentCountsResult(ResultModel):
 
 
 class PredictResult(ElasticConstants, Extensibility):
-    """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
+    """Effective elastic constants of the whole chart at small strain, with 90 % intervals."""
 
-    rows: int = Field(description="Of the stitches that the constants are of.")
+    rows: int = Field(description="Size of the chart that the constants describe.")
     columns: int
     segments: dict[Direction, SegmentCountsResult]
     modulus_course_interval_n_per_mm: Ends
@@ -61,7 +61,7 @@ class PredictResult(ElasticConstants, Extensibility):
     poisson_yx_interval: Ends
     poisson_xy_interval: Ends
     modulus_course_bounds_n_per_mm: Ends = Field(
-        description="Reuss and Voigt; wider where folds need it."
+        description="Reuss and Voigt bounds, widened where folds require it."
     )
     modulus_wale_bounds_n_per_mm: Ends
     shear_modulus_n_per_mm: float = Field(description="An assumption unless it was calibrated.")
@@ -75,11 +75,11 @@ class PredictResult(ElasticConstants, Extensibility):
     )
     method: str
     notes: list[str]
-    measures: list[MeasureResult] = Field([], description="Those that were asked for.")
+    measures: list[MeasureResult] = Field([], description="The measures that were asked for.")
 
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
-    """Effective constants with their 90 % intervals and where they come from."""
+    """Effective constants with their 90 % intervals and their source."""
     chart, material = to_chart(request.chart), context.material(request.material)
     notes = []
     if request.outline is not None:
@@ -87,7 +87,7 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         chart = StitchChart(chart.purl[largest_rectangle(shaped.stitch)])
         if not shaped.stitch.all():
             size = f"{chart.columns} x {chart.rows}"
-            notes.append(f"Of the largest rectangle inside the outline, {size} stitches.")
+            notes.append(f"For the largest rectangle inside the outline, {size} stitches.")
     found = choose(chart, material, request.gauge.relaxed_size() if request.gauge else None)
     segments = segment_map(chart)
     return PredictResult.of(

@@ -22,35 +22,35 @@ from knitcore.mechanics.pressure import limb_pressure, rest_circumference
 
 
 class PressureRequest(LawsRequest):
-    """A fabric of a material, or a law, as a tube on a limb."""
+    """A tube on a limb: its law, or a fabric of a material, and its sizes."""
 
     direction: Direction = Field(description="The material direction around the limb.")
     rest_mm: float | None = Field(None, description="Circumference of the unworn tube.")
     worn_mm: float = Field(description="Circumference of the limb.")
     target_mmhg: float | None = Field(
-        None, description="Instead of rest_mm: the pressure wanted, for which to size the tube."
+        None, description="Target pressure, in place of rest_mm: finds the size of the tube."
     )
     material: MaterialName | None = None
-    fabric: Fabric | None = Field(None, description="Of the material.")
+    fabric: Fabric | None = Field(None, description="A fabric of the material.")
     law: dict[str, float] | None = Field(None, description="Constants of a law, by name.")
 
 
 class PressureResult(ResultModel):
     """Mean pressure; no medical class."""
 
-    mmhg: Ends = Field(description="From axially free to axially fixed.")
+    mmhg: Ends = Field(description="Mean pressure, from axially free to axially fixed.")
     kpa: Ends
     mmhg_with_law_spread: Ends | None = Field(
-        description="The same, widened by the 90 % interval of the fabric's stress, where known."
+        description="That range, widened by the 90 % interval of the fabric's stress, if known."
     )
-    strain: float = Field(description="Around the limb.")
+    strain: float = Field(description="Strain around the limb.")
     rest_mm: float
     worn_mm: float
     tension_n_per_mm: Ends = Field(description="Hoop tension per worn length.")
     axial_strain_free: float
     lock_up_share: float = Field(description="Strain over lock-up strain.")
     rest_mm_for_target: Ends | None = Field(
-        description="Sizes that press by the target: axially free to axially fixed."
+        description="Sizes that give the target pressure, axially free to axially fixed."
     )
     warnings: list[str]
     law_source: str = Field(description="Where the law comes from; empty if unknown.")
@@ -119,7 +119,9 @@ def _of_law(
 
 
 @click.option(
-    "--law", type=click.Path(path_type=Path), help="LAW.json (see `knitcore fit`) instead."
+    "--law",
+    type=click.Path(path_type=Path),
+    help="LAW.json (see `knitcore fit`), in place of a material.",
 )
 def _command(request: PressureRequest, context: Context, law: Path | None) -> PressureResult:
     if law is None:
@@ -138,7 +140,7 @@ def _text(r: PressureResult) -> str:
     ]
     if r.mmhg_with_law_spread is not None:
         low, high = r.mmhg_with_law_spread
-        lines.append(f"          {low:.1f} to {high:.1f} mmHg with the law's spread")
+        lines.append(f"          {low:.1f} to {high:.1f} mmHg with the law's uncertainty")
     if r.rest_mm_for_target is not None:
         low, high = r.rest_mm_for_target
         lines.append(f"size      {low:.1f} to {high:.1f} mm unworn; middle shown above")

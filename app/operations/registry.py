@@ -1,4 +1,4 @@
-"""Operations, one module of this package each, and everything that is made of them.
+"""The registry of operations: one module of this package each.
 
 A module holds one ``OPERATION``. Routes (:mod:`app.api.operations`), commands
 (:mod:`app.cli.commands`), jobs (:mod:`app.jobs.kinds`), the client's methods
@@ -44,7 +44,7 @@ Result = TypeVar("Result", bound=BaseModel)
 
 @dataclass(frozen=True)
 class Command:
-    """How an operation is a command; its options are the fields of the request.
+    """An operation as a command, whose options are the fields of the request.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Command:
 
 @dataclass(frozen=True)
 class Operation(Generic[Request, Result]):
-    """Something that Knitcore does for page, programs and command line alike.
+    """Something that Knitcore does for the page, programs and the command line alike.
 
     Attributes
     ----------
@@ -97,18 +97,18 @@ class Operation(Generic[Request, Result]):
 
     @property
     def name(self) -> str:
-        """Of the client's method and of the kind of job."""
+        """Name of the client's method and of the kind of job."""
         return self.run.__name__.rstrip("_")
 
     @cached_property
     def request(self) -> type[Request]:
-        """The model of what is asked."""
+        """The model of the request."""
         first, *_ = get_type_hints(self.run).values()
         return cast("type[Request]", first)
 
     @cached_property
     def result(self) -> type[Result]:
-        """The model of the answer."""
+        """The model of the result."""
         told = get_type_hints(self.run)["return"]
         return cast("type[Result]", get_args(told)[0] if get_origin(told) is Viewed else told)
 
@@ -119,11 +119,11 @@ class Operation(Generic[Request, Result]):
 
     @property
     def description(self) -> str:
-        """Description in the reference of the API."""
+        """Description in the API's reference."""
         return (inspect.getdoc(self.run) or "").partition("\n\nRaises\n")[0]
 
     def key(self, request: BaseModel) -> str:
-        """A name made of everything that a caller can decide."""
+        """A key made of everything that a caller can choose."""
         content = f"{self.name}\0{request.model_dump_json()}"
         return hashlib.sha256(content.encode()).hexdigest()[:32]
 
@@ -137,7 +137,7 @@ def operations() -> dict[str, Operation[Any, Any]]:
 
 
 def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | None:
-    """The operation that a command is made of; loads no other."""
+    """The operation behind a command; loads no other."""
     module = f"{name}_" if keyword.iskeyword(name) else name
     if module not in _modules():
         return None
@@ -148,7 +148,7 @@ def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | No
 
 
 def commands(group: str = "") -> set[str]:
-    """Names of all commands that are made of operations."""
+    """Names of all commands made from operations."""
     found = set()
     for name in (module.removesuffix("_") for module in _modules()):
         with contextlib.suppress(ModuleNotFoundError):  # the light library has not all packages

@@ -35,7 +35,7 @@ class RelaxRequest(YarnLevelRequest):
 
 
 class StartResult(ResultModel):
-    """What became of one start; null where it failed."""
+    """The result from one starting shape; null where it failed."""
 
     name: str
     outcome: str
@@ -58,18 +58,18 @@ class RelaxResult(ResultModel):
         description="90 % interval for knitted cloth; null for a width that was held."
     )
     cell_wale_interval_mm: Ends | None
-    interval_source: str = Field(description="What the intervals rest on.")
+    interval_source: str = Field(description="Source of the intervals.")
     energy_n_mm: float
     bending_share: float
     contact_share: float
     yarn_length_mm: float
     force_course_n: float | None = Field(
-        description="What holds a prescribed width, per stitch; null in the published branch."
+        description="Force per stitch that holds a prescribed width; null in the published branch."
     )
     force_wale_n: float | None
     min_distance_mm: float | None
-    seconds: float = Field(description="CPU time of the solve, whenever it was.")
-    known: bool = Field(False, description="Whether it had been computed before.")
+    seconds: float = Field(description="CPU time of the solve, when it was first run.")
+    known: bool = Field(False, description="Whether the result was already stored.")
     evaluations: int
     converged: bool
     yarn: YarnResult
@@ -81,9 +81,8 @@ class RelaxResult(ResultModel):
 
 
 def relax(request: RelaxRequest, context: Context) -> RelaxResult:
-    """Shape of least energy of the repeat; stops when the caller goes away.
-
-    A relaxation that was run before is not computed again.
+    """Shape of least energy of the repeat; stops when the caller disconnects. A relaxation that was
+    run before is returned from storage.
     """
     return kept_or_made(RelaxResult, request, context, _relaxed)
 
@@ -128,7 +127,7 @@ def _text(r: RelaxResult) -> str:
             f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
             f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
             f"{'converged' if r.converged else 'NOT converged'}"
-            f"{'; known from before' if r.known else ''}",
+            f"{'; stored result' if r.known else ''}",
             *(f"note: {note}" for note in r.notes),
         ]
     )

@@ -16,7 +16,7 @@ from knitcore.mechanics.reduced_symmetry import rs_fabrics
 
 
 class RSRequest(RequestModel):
-    """A yarn whose shape the paper has: acrylic or cotton."""
+    """A yarn whose shape the paper gives: acrylic or cotton."""
 
     material: MaterialName
 
@@ -47,11 +47,11 @@ class RSResult(ResultModel):
 
     material: str
     fabrics: dict[Fabric, RSFabricResult]
-    interval_source: str = Field(description="What the intervals rest on.")
+    interval_source: str = Field(description="Source of the intervals.")
 
 
 def rs(request: RSRequest, context: Context) -> RSResult:
-    """Even and odd segments as springs in series and in parallel, with the paper's values."""
+    """Moduli from segments as springs in series and in parallel, with the paper's values."""
     del context
     fabrics = {}
     for fabric, found in rs_fabrics(request.material).items():
@@ -82,7 +82,12 @@ def _text(result: RSResult) -> str:
                 f"v {s.slope:.3f}{angle}"
             )
     factor = log_interval(1.0, RS_LOG_SD).high
-    return "\n".join([*lines, f"Y: times or over {factor:.1f} (90 %). {result.interval_source}"])
+    return "\n".join(
+        [
+            *lines,
+            f"90 % interval of Y: a factor of {factor:.1f} either way. {result.interval_source}",
+        ]
+    )
 
 
 OPERATION = Operation(

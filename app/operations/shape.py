@@ -1,4 +1,4 @@
-"""A chart that takes a wanted outline when it is stretched."""
+"""A chart that takes a target outline when it is stretched."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ Width = Annotated[float, Field(gt=0.05, lt=3, allow_inf_nan=False)] | None
 
 
 class ShapeRequest(LawsRequest):
-    """A profile of widths under a stretch."""
+    """A profile of widths at a stretch."""
 
     material: MaterialName
-    direction: Direction = Field(Direction.WALE, description="Of the pull.")
+    direction: Direction = Field(Direction.WALE, description="Direction of the pull.")
     strain: float = Field(
         gt=0, le=5, allow_inf_nan=False, description="From clamp to clamp: 0.3 is 30 %."
     )
@@ -44,16 +44,16 @@ class ShapeRequest(LawsRequest):
         min_length=3,
         max_length=1000,
         description="Stretched width over width at rest, line by line across the pull, from the "
-        "bottom (wale-wise) or the left (course-wise); null for no wish.",
+        "bottom (wale-wise) or the left (course-wise); null where any width will do.",
     )
-    across: int = Field(ge=3, le=1000, description="Stitches of a line.")
+    across: int = Field(ge=3, le=1000, description="Stitches in a line.")
     repeats: Extent = "small"
-    smallest_band: int = Field(4, ge=1, le=100, description="Lines of the narrowest band.")
+    smallest_band: int = Field(4, ge=1, le=100, description="Fewest lines in a band.")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
 
 
 class BandResult(ResultModel):
-    """Lines of one repeat."""
+    """A band of lines of one repeat."""
 
     repeat: str
     first: int = Field(description="From 1, at the bottom or the left.")
@@ -68,19 +68,17 @@ class ShapeResult(ResultModel):
     columns: int
     chart: str
     bands: list[BandResult]
-    width: Rounded = Field(
-        description="Width in the finite swatch, for comparison with the wanted one."
-    )
+    width: Rounded = Field(description="Width in the finite swatch, to compare with the target.")
     wanted: Gaps
-    rms: float = Field(description="Of the differences, as parts of the width at rest.")
+    rms: float = Field(description="Rms of the differences, over the width at rest.")
     largest: float
     force_n: float
-    pulls: int = Field(description="Swatches that were pulled on the way.")
+    pulls: int = Field(description="Number of swatches that were computed.")
     messages: list[str]
 
 
 def shape(request: ShapeRequest, context: Context) -> ShapeResult:
-    """Bands across the pull, chosen, pulled in the finite swatch and chosen again."""
+    """Bands of repeats across the pull, chosen, checked in the finite swatch and chosen again."""
     return _shaped(request, atlas_of(request.material, request.repeats, context), context)
 
 
@@ -117,7 +115,7 @@ def _command(
 
 
 def _read(file: Path) -> list[float | None]:
-    """The column ``width`` of a CSV; empty for no wish."""
+    """The column ``width`` of a CSV; an empty field means any width."""
     try:
         with file.open(newline="", encoding="utf-8") as stream:
             names, *rows = csv.reader(stream)
@@ -144,7 +142,7 @@ def _text(r: ShapeResult) -> str:
 OPERATION = Operation(
     shape,
     tag="design",
-    summary="A chart that takes a wanted outline when it is stretched",
+    summary="A chart that takes a target outline when it is stretched",
     example={
         "material": "acrylic",
         "strain": 0.2,
@@ -157,7 +155,7 @@ OPERATION = Operation(
         _text,
         help="Make a chart that, stretched, has the widths of PROFILE: a CSV with a column "
         "`width`, stretched width over width at rest, one line across the pull after the other "
-        "from the bottom (or the left); empty for no wish.",
+        "from the bottom (or the left); empty where any width will do.",
         names={"width": None},
         fields=_widths,
         run=_command,

@@ -30,9 +30,9 @@ from knitcore.swatch.margins import StretchMargins, sampled_steps, stretch_margi
 Array = NDArray[np.float32]
 
 MAX_STITCHES = 40_000
-"""Largest chart of a test over REST; the command line takes larger ones."""
+"""Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
 MAX_VALUES = 60 * MAX_STITCHES
-"""Most stitches times steps over REST, for the answer has three numbers for each."""
+"""Most stitches times steps over REST: the answer has three numbers for each."""
 NEAR_LOCK_UP = 0.95
 
 
@@ -56,13 +56,13 @@ class StretchRequest(LawsRequest):
         ge=1e-4,
         le=10,
         allow_inf_nan=False,
-        description="C_xyxy in N/mm (an assumption otherwise).",
+        description="C_xyxy in N/mm; that of the laws by default.",
     )
     width_mm: float | None = Field(
-        None, ge=1, le=10_000, description="Size course-wise; from the gauge otherwise."
+        None, ge=1, le=10_000, description="Size course-wise; from the gauge by default."
     )
     length_mm: float | None = Field(
-        None, ge=1, le=10_000, description="Size wale-wise; from the gauge otherwise."
+        None, ge=1, le=10_000, description="Size wale-wise; from the gauge by default."
     )
 
 
@@ -75,17 +75,19 @@ class StitchFields(ResultModel):
     strain_wale: list[list[float]]
     utilisation: list[list[float]] = Field(description="alpha * strain; 1 is the lock-up.")
     strain_margin: list[list[float]] = Field(
-        description="Of the strain along the pull: its 90 % interval is this much to either side."
+        description="Half width of the 90 % interval of the strain along the pull."
     )
-    utilisation_margin: list[list[float]] = Field(description="The same of the utilisation.")
+    utilisation_margin: list[list[float]] = Field(
+        description="Half width of the 90 % interval of the utilisation."
+    )
 
 
 class NearestLockUp(ResultModel):
-    """Where the swatch is nearest to its lock-up at the last step."""
+    """The place nearest to its lock-up at the last step."""
 
     utilisation: float
-    row: int = Field(description="From 1, bottom row first.")
-    column: int = Field(description="From 1, left wale first.")
+    row: int = Field(description="Row, from 1 at the bottom.")
+    column: int = Field(description="Column, from 1 at the left.")
     direction: Direction
     fabric: str
 
@@ -97,9 +99,11 @@ class StretchCurve(ResultModel):
     force_n: Floats
     force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
     force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
-    stress_n_per_mm: Floats = Field(description="Force per width, and as sure as the force.")
+    stress_n_per_mm: Floats = Field(
+        description="Force per width; its relative interval is that of the force."
+    )
     waist_strain: Floats
-    waist_margin: Floats = Field(description="90 % interval, to either side.")
+    waist_margin: Floats = Field(description="Half width of the 90 % interval.")
     iterations: list[int]
     converged: bool
     seconds: float
@@ -114,10 +118,10 @@ class StretchCurve(ResultModel):
 
 
 class StretchResult(StretchCurve):
-    """The curve of a test and the fields at its stitches."""
+    """The curve of a test, with fields at its stitches."""
 
     kind: Literal["stretch"] = "stretch"
-    id: str = Field(description="Names this test for the 3D view.")
+    id: str = Field(description="Name of this test, for the 3D view.")
     rows: int
     columns: int
     stitch_fields: StitchFields
@@ -147,9 +151,8 @@ class StretchView:
 
 
 def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
-    """Nonlinear strip test of the whole chart; stops when the caller goes away.
-
-    A test that was run a short while ago is answered from memory.
+    """Nonlinear strip test of the whole chart; stops when the caller disconnects. A test that was
+    run a short while ago is returned from memory.
 
     Raises
     ------
@@ -221,7 +224,7 @@ def _curve(
 
 
 def _messages(test: StripTest) -> list[str]:
-    """Warnings and notes about a test."""
+    """Warnings and notes on a test."""
     messages = [test.problem] if test.problem else []
     used = float(test.utilisation.max(initial=0.0))
     full = test.sheet.model.energy is EnergyModel.FULL
@@ -234,8 +237,8 @@ def _messages(test: StripTest) -> list[str]:
         )
     elif used >= 1:
         messages.append(
-            f"alpha times strain reaches {used:.2f}: the cloth locks at 1. The published model "
-            "leaves the lock-up out, so it goes on where no cloth can follow."
+            f"alpha times strain reaches {used:.2f}, and the cloth locks at 1. The published model "
+            "leaves out the lock-up, so it continues where real cloth cannot."
         )
     elif used >= NEAR_LOCK_UP:
         messages.append(f"Some stitches are at {used:.0%} of their lock-up.")
@@ -303,8 +306,8 @@ def _carried(
     strain: NDArray[np.float64],
     there: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Positions at each step, extrapolated from the nearest stitch where there is none, for
-    the loops of an edge are drawn by the distances to all neighbours.
+    """Positions at each step, extrapolated from the nearest stitch where there is none: the loops
+    at an edge are drawn from the distances to all neighbours.
     """
     row, column = distance_transform_edt(~there, return_distances=False, return_indices=True)
     stretched = (rest_mm - rest_mm[row, column]) * (1 + strain[:, row, column])
@@ -312,7 +315,7 @@ def _carried(
 
 
 def _rounded(values: NDArray[np.float64]) -> list[list[float]]:
-    """A list per step; four digits are finer than any colour."""
+    """A list per step, to four digits, which is finer than any colour scale shows."""
     lists: list[list[float]] = np.round(
         values.reshape(len(values), math.prod(values.shape[1:])), 4
     ).tolist()

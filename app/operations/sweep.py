@@ -1,4 +1,4 @@
-"""Stretching a repeat at the yarn level and the law fitted to it."""
+"""Stretching a repeat at the yarn level, and fitting a law to it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_l
 from knitcore.yarnlibrary.yarns import ChartYarn
 
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
-"""Where the stretch across, which the law needs too, ends unless its stress ends it before."""
+"""Largest strain of the stretch across, which the law also needs; a stress may end it before."""
 _FAR_POINTS = 60
 
 
@@ -76,7 +76,7 @@ class SweepResult(ResultModel):
         description="90 % interval of the strain of knitted cloth at each stress."
     )
     strain_high: Floats
-    interval_source: str = Field(description="What the interval rests on.")
+    interval_source: str = Field(description="Source of the interval.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
     energy_n_mm: Floats
@@ -87,16 +87,15 @@ class SweepResult(ResultModel):
     cell_wale_mm: float
     law: SweptLaw | None
     converged: bool
-    seconds: float = Field(description="CPU time of the solves, whenever they were.")
-    known: bool = Field(False, description="Whether it had been computed before.")
+    seconds: float = Field(description="CPU time of the solves, when they were first run.")
+    known: bool = Field(False, description="Whether the result was already stored.")
     yarn: YarnResult
     notes: list[str]
 
 
 def sweep(request: SweepRequest, context: Context) -> SweepResult:
-    """Stress-strain curve and fitted law of the repeat; stops when the caller goes away.
-
-    The law also needs the stretch across. A stretch that was run before is not computed again.
+    """Stress-strain curve and fitted law of the repeat; stops when the caller disconnects. The law
+    also needs the stretch across. A stretch that was run before is returned from storage.
     """
     return kept_or_made(SweepResult, request, context, _result)
 
@@ -171,7 +170,8 @@ def _text(r: SweepResult) -> str:
         )
     factor = math.exp(Z_SCORE * YARN_LEVEL_STRAIN_LOG_SD)
     lines.append(
-        f"strains of knitted cloth: times or over {factor:.1f} (90 %). {r.interval_source}"
+        f"90 % interval of the strains of knitted cloth: a factor of {factor:.1f} either way. "
+        f"{r.interval_source}"
     )
     return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
 

@@ -21,11 +21,18 @@ class TrellisRequest(PieceTestRequest):
     """A square and how far it is sheared."""
 
     angle_deg: float = Field(
-        gt=0, le=68, allow_inf_nan=False, description="By which the frame's right angle closes."
+        gt=0,
+        le=68,
+        allow_inf_nan=False,
+        description="How far the frame's right angle closes at the last step.",
     )
-    side_mm: Size = Field(100.0, description="Of the square.")
+    side_mm: Size = Field(100.0, description="Side of the square.")
     grain_deg: float = Field(
-        0.0, ge=-180, le=180, allow_inf_nan=False, description="From a bar to the rows."
+        0.0,
+        ge=-180,
+        le=180,
+        allow_inf_nan=False,
+        description="Angle from a bar of the frame to the rows.",
     )
 
 
@@ -34,11 +41,11 @@ class TrellisResult(PieceTestResult):
 
     kind: Literal["trellis"] = "trellis"
     angle_deg: Floats
-    force_n: Floats = Field(description="That pulls two opposite corners of the frame apart.")
+    force_n: Floats = Field(description="Force that pulls two opposite corners of the frame apart.")
     force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
     force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
-    moment_n_mm: Floats = Field(description="Work of the frame per shear angle in radians.")
-    shear_stress_n_per_mm: Floats = Field(description="The moment over the area at rest.")
+    moment_n_mm: Floats = Field(description="Moment about the hinges: work per radian of shear.")
+    shear_stress_n_per_mm: Floats = Field(description="Moment over the relaxed area.")
 
 
 def trellis(request: TrellisRequest, context: Context) -> TrellisResult:

@@ -1,4 +1,4 @@
-"""Which Knitcore answers."""
+"""The running version."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from app.version import VERSION
 
 
 class VersionResult(ResultModel):
-    """The program behind the address."""
+    """The program and its versions."""
 
-    version: str = Field(description="Of the program, as `knitcore --version` says.")
-    api: str = Field(description="Of the REST API: the part of its addresses after /api/.")
+    version: str = Field(description="Version of the program, as `knitcore --version` prints it.")
+    api: str = Field(description="Version of the REST API, as in its addresses after /api/.")
 
 
 def version(_: NoRequest, __: Context) -> VersionResult:
-    """What `knitcore --version` says on the service's machine."""
+    """The version of the program, as `knitcore --version` prints it on the service's machine."""
     return VersionResult(version=VERSION, api="v1")
 
 
-OPERATION = Operation(version, tag="service", summary="Which version answers", method="GET")
+OPERATION = Operation(version, tag="service", summary="The version of the service", method="GET")

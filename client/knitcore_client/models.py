@@ -97,12 +97,12 @@ Parity = Literal["even", "odd"]
 
 
 class AtlasRequest(TypedDict):
-    """Which atlas."""
+    """The atlas to compute."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     repeats: NotRequired[Literal["small", "all"]]
     """small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics."""
 
@@ -114,15 +114,15 @@ class BendRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     loop_length_mm: NotRequired[float | None]
-    """Yarn per stitch; the material's."""
+    """Yarn per stitch; the material's by default."""
     linear_density_g_per_m: NotRequired[float | None]
-    """Of the yarn; gives bending lengths."""
+    """Of the yarn; needed for the bending lengths."""
 
 
 class BendingRequest(TypedDict):
-    """Photos of hanging yarn, and facts that they do not show."""
+    """Photos of hanging yarn, with the lengths and weight needed to read them."""
 
     images: list[UploadedFile | Path]
     linear_density_g_per_m: float
@@ -140,21 +140,21 @@ class BiasRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     steps: NotRequired[int]
-    """Of the load."""
+    """Steps of the load."""
     shear_modulus_n_per_mm: NotRequired[float | None]
-    """C_xyxy; that of the laws otherwise."""
+    """C_xyxy; that of the laws by default."""
     mesh_mm: NotRequired[float | None]
     """Length of an element's side; by default there are about 600 elements."""
     strain: float
     """Last clamp-to-clamp strain: 0.5 is 50 %."""
     width_mm: NotRequired[float]
-    """Between the free sides."""
+    """Distance between the free sides."""
     length_mm: NotRequired[float]
-    """Between the clamps."""
+    """Distance between the clamps."""
     angle_deg: NotRequired[float]
-    """From the width to the rows: 0 pulls along columns, 90 along rows."""
+    """Angle from the width to the rows: 0 pulls along columns, 90 along rows."""
 
 
 class BiaxialRequest(TypedDict):
@@ -164,11 +164,11 @@ class BiaxialRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     steps: NotRequired[int]
-    """Of the load."""
+    """Steps of the load."""
     shear_modulus_n_per_mm: NotRequired[float | None]
-    """C_xyxy; that of the laws otherwise."""
+    """C_xyxy; that of the laws by default."""
     mesh_mm: NotRequired[float | None]
     """Length of an element's side; by default there are about 600 elements."""
     strain_x: float
@@ -180,7 +180,7 @@ class BiaxialRequest(TypedDict):
     length_mm: NotRequired[float]
     """Along y."""
     grain_deg: NotRequired[float]
-    """From the x axis to the rows."""
+    """Angle from the x axis to the rows."""
 
 
 class BoxInput(TypedDict):
@@ -193,16 +193,16 @@ class BoxInput(TypedDict):
 
 
 class CalibrateRequest(TypedDict):
-    """Where to start from, and tests whose forces the law should keep."""
+    """The law to start from, and tests whose forces the law has to match."""
 
     field: UploadedFile | Path
     """.npz: displacement (frames, 2, rows, columns), frame."""
     direction: Direction
-    """In which the fabric was pulled."""
+    """Direction in which the fabric was pulled."""
     frames: NotRequired[list[int] | None]
-    """Pictures to use; all otherwise."""
+    """Frames to use; all by default."""
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     fabric: Fabric
     tests: NotRequired[list[UploadedFile | Path]]
     """Stretch tests: of the direction (forces), or course and wale (forces and start)."""
@@ -225,7 +225,7 @@ class CharacteriseRequest(TypedDict):
     branch: NotRequired[Branch]
     convention: NotRequired[Convention]
     max_stress_n_per_mm: NotRequired[float]
-    """Laws end here."""
+    """Largest stress of the fitted laws."""
     material: NotRequired[str | None]
     yarn: NotRequired[YarnInput | None]
 
@@ -238,14 +238,14 @@ class CompareRequest(TypedDict):
     field: UploadedFile | Path
     """.npz: displacement (frames, 2, rows, columns), frame."""
     direction: Direction
-    """In which the fabric was pulled."""
+    """Direction in which the fabric was pulled."""
     frames: NotRequired[list[int] | None]
-    """Pictures to use; all otherwise."""
+    """Frames to use; all by default."""
     material: NotRequired[str | None]
     fabric: NotRequired[Fabric | None]
-    """Of the material."""
+    """A fabric of the material."""
     law: NotRequired[UploadedFile | Path | None]
-    """LAW.json, instead of material and fabric."""
+    """A law file, LAW.json, in place of material and fabric."""
     edges: NotRequired[Edges]
     model: NotRequired[EnergyModel]
 
@@ -255,9 +255,9 @@ class CompressionRequest(TypedDict):
 
     file: UploadedFile | Path
     yarn: NotRequired[str | None]
-    """Only the samples of this yarn (sheets named yarn-number)."""
+    """Use only the samples of this yarn (sheets named yarn-number)."""
     diameter_mm: NotRequired[float | None]
-    """The yarn's, if the file does not say."""
+    """Diameter of the yarn, if the file does not state it."""
     probe_width_mm: NotRequired[float]
 
 
@@ -266,11 +266,11 @@ class CurlRequest(TypedDict):
 
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     corners: NotRequired[bool]
-    """Give the corners of all stitches as well."""
+    """Also return the corners of all stitches."""
     time_limit_s: NotRequired[float]
-    """CPU time after which the shape is given as it is then, unconverged."""
+    """CPU time after which the current shape is returned, not converged."""
 
 
 class Curled(TypedDict):
@@ -287,7 +287,7 @@ class CurveRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     direction: Direction
     """Along rows, or along columns."""
     stress_n_per_mm: NotRequired[list[float]]
@@ -349,7 +349,7 @@ class DesignRepeat(BaseModel):
 
 
 class EstimateRequest(TypedDict):
-    """Known facts of the yarn and the product."""
+    """What is known of the yarn and the product."""
 
     bending_modulus_n_mm2: float
     """B of the yarn (`measure bending`)."""
@@ -361,7 +361,7 @@ class EstimateRequest(TypedDict):
 
 
 class ExportRequest(TypedDict):
-    """A chart and the format that it shall become."""
+    """A chart and the format to write it in."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
@@ -375,17 +375,17 @@ class ExportRequest(TypedDict):
     """knitout, knitspeak, png, svg, pdf, report, text, written, design, glb, stl, vtu, csv; or a
     format of an installed extension."""
     material: NotRequired[str]
-    """For sizes and values."""
+    """Gives sizes and values."""
     construction: NotRequired[Construction]
     first_side: NotRequired[Side]
-    """Side of row 1 in flat knitting."""
+    """The side of row 1, in flat knitting."""
     finish: NotRequired[Finish]
-    """How a knitout program ends."""
+    """The end of a knitout program."""
     name: NotRequired[str]
     note: NotRequired[str]
     """Printed."""
     linear_density_tex: NotRequired[float | None]
-    """Of the yarns, for their mass."""
+    """Linear density of the yarn, for its mass."""
 
 
 class FieldColours(TypedDict):
@@ -405,17 +405,17 @@ class FillRequest(TypedDict):
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     modulus_course_n_per_mm: NotRequired[list[list[float | None]] | None]
-    """[row][column], the bottom row first; null for no wish."""
+    """[row][column], the bottom row first; null where any value will do."""
     modulus_wale_n_per_mm: NotRequired[list[list[float | None]] | None]
     rows: NotRequired[int | None]
-    """Of the chart, with wishes."""
+    """Of the chart, if wishes are given."""
     columns: NotRequired[int | None]
     wishes: NotRequired[list[WishInput] | None]
-    """Instead of the two maps."""
+    """In place of the two maps."""
     chart: NotRequired[str | None]
-    """Stitches without a wish stay as they are here; filled, too, otherwise."""
+    """Stitches without a target stay as in this chart; otherwise they are filled."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     repeats: NotRequired[Literal["small", "all"]]
@@ -424,11 +424,11 @@ class FillRequest(TypedDict):
     seed: NotRequired[int]
     """The same seed gives the same chart."""
     check: NotRequired[bool]
-    """Pull the chart in the finite swatch, and choose again what departs there."""
+    """Pull the chart in the finite swatch; choose again where the result differs."""
 
 
 class FindRequest(TypedDict):
-    """Wishes, and the yarns to search."""
+    """Target properties, and the yarns to search."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
@@ -439,11 +439,11 @@ class FindRequest(TypedDict):
     """small: up to 3x3 and a choice of larger ones; all: up to 4x4 and stripes of two fabrics."""
     count: NotRequired[int]
     elsewhere: NotRequired[bool]
-    """Where nothing reaches the wishes, look into the other yarns too."""
+    """Search the other yarns too if nothing meets the targets."""
 
 
 class FingerSize(TypedDict):
-    """Of one finger."""
+    """Measurements of one finger."""
 
     length_mm: float
     circumference_mm: float
@@ -457,7 +457,7 @@ class FitRequest(TypedDict):
     test_wale: UploadedFile | Path
     """Pulled along the columns."""
     format: NotRequired[Literal["csv", "h5"] | None]
-    """Found out from the content if not given."""
+    """Recognised from the content if not given."""
     reduction: NotRequired[Reduction]
     """recommended: force and waist of the simulated test, clamp to clamp; uniform: clamp to
     clamp, as if the cloth strained evenly; published: as in the paper."""
@@ -483,27 +483,27 @@ class GarmentRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     garment: WristBrace | SockLeg | Limb | Glove
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     gauge: NotRequired[GaugeCount | None]
-    """The knitter's; else the material's."""
+    """The knitter's gauge; the material's by default."""
     linear_density_tex: NotRequired[float | None]
     """Linear density of the yarn (g/km), for its mass."""
     intarsia: NotRequired[bool]
-    """Give each fabric a yarn of its own."""
+    """Whether each fabric gets a yarn of its own."""
 
 
 class GaugeCount(TypedDict):
-    """A swatch's gauge, as it is counted."""
+    """A gauge counted on a swatch."""
 
     stitches: float
     rows: float
     per: NotRequired[Literal["10 cm", "4 in", "5 cm"]]
     fabric: NotRequired[Fabric]
-    """Of the swatch."""
+    """Repeat of the swatch."""
 
 
 class GaugeInput(TypedDict):
-    """A swatch's gauge: what you counted on your own relaxed cloth."""
+    """The gauge of a swatch, counted on your own relaxed cloth."""
 
     stitches_per_10_cm: float
     """Counted on your own relaxed swatch; give stitches and rows, or neither."""
@@ -512,11 +512,11 @@ class GaugeInput(TypedDict):
 
 
 class Glove(TypedDict):
-    """The therapeutic glove; an adult's hand unless measured."""
+    """The therapeutic glove; measurements default to an adult's hand."""
 
     ease: NotRequired[float]
     target_mmhg: NotRequired[float | None]
-    """Wanted pressure; before the ease."""
+    """Target pressure; takes precedence over the ease."""
     template: Literal["glove"]
     cuff_mm: NotRequired[float]
     wrist_mm: NotRequired[float]
@@ -550,11 +550,11 @@ class ImportRequest(TypedDict):
 
 
 class Limb(TypedDict):
-    """A sleeve along any limb."""
+    """A sleeve for any limb."""
 
     ease: NotRequired[float]
     target_mmhg: NotRequired[float | None]
-    """Wanted pressure; before the ease."""
+    """Target pressure; takes precedence over the ease."""
     template: Literal["limb"]
     profile: list[tuple[float, float]]
     """[position_mm, circumference_mm] along the limb."""
@@ -567,13 +567,13 @@ class LimbInput(TypedDict):
     """A tube on a limb."""
 
     rest_mm: float
-    """Of the unworn tube."""
+    """Circumference of the unworn tube."""
     worn_mm: float
-    """Of the limb."""
+    """Circumference of the limb."""
 
 
 class LimitsInput(TypedDict):
-    """Limits on the cost of knitting; null for no limit."""
+    """Limits on the effort of knitting; null for no limit."""
 
     transfers_per_stitch: NotRequired[float | None]
     """Loops moved between the beds, per stitch."""
@@ -590,14 +590,14 @@ class MarkRequest(TypedDict):
 
 
 class MaterialRequest(TypedDict):
-    """A material by its id."""
+    """A material by its identifier."""
 
     identifier: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
 
 
 class NoRequest(TypedDict):
-    """The request of an operation that needs none."""
+    """The request of an operation without inputs."""
 
 
 class Palette(TypedDict):
@@ -618,36 +618,36 @@ class ParseRequest(TypedDict):
 
 
 class PieceInput(TypedDict):
-    """A piece cut from cloth, and what is done to its edges in the end."""
+    """A piece cut from cloth, and the conditions on its edges at the last step."""
 
     outline: list[tuple[float, float]]
     """Corners in mm; side 1 goes from the first to the second."""
     holes: NotRequired[list[list[tuple[float, float]]]]
-    """Their sides are counted on."""
+    """Corners of each hole; their sides continue the numbering."""
     grain_deg: NotRequired[float]
-    """From the x axis to the rows, counter-clockwise: 45 is on the bias."""
+    """Angle from the x axis to the rows, counter-clockwise: 45 is on the bias."""
     edges: dict[str, list[int]]
     """Names of parts of the boundary, by the numbers of their sides."""
     conditions: list[HeldInput | PulledInput | TractionInput | SewnInput]
 
 
 class PieceRequest(TypedDict):
-    """Cloth, the piece that is cut from it, and what is done to its edges."""
+    """Cloth, the piece cut from it, and the conditions on its edges."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     steps: NotRequired[int]
-    """Of the load."""
+    """Steps of the load."""
     shear_modulus_n_per_mm: NotRequired[float | None]
-    """C_xyxy; that of the laws otherwise."""
+    """C_xyxy; that of the laws by default."""
     mesh_mm: NotRequired[float | None]
     """Length of an element's side; by default there are about 600 elements."""
     piece: PieceInput
     fields: NotRequired[bool]
-    """Whether to tell the shape and strains at the end."""
+    """Whether to return the final shape and strains."""
 
 
 class Placement(BaseModel):
@@ -660,23 +660,23 @@ class Placement(BaseModel):
 
 
 class PredictRequest(TypedDict):
-    """A chart and its material; of a shaped piece, the largest rectangle inside counts."""
+    """A chart and its material; a shaped piece counts by the largest rectangle inside it."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     gauge: NotRequired[GaugeInput | None]
-    """Relaxed size of the mean stitch; estimated if left out."""
+    """Measured gauge; the relaxed size is estimated if left out."""
     measures: NotRequired[list[str]]
     """Further numbers, by the names of installed extensions."""
 
 
 class PressureRequest(TypedDict):
-    """A fabric of a material, or a law, as a tube on a limb."""
+    """A tube on a limb: its law, or a fabric of a material, and its sizes."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
@@ -687,10 +687,10 @@ class PressureRequest(TypedDict):
     worn_mm: float
     """Circumference of the limb."""
     target_mmhg: NotRequired[float | None]
-    """Instead of rest_mm: the pressure wanted, for which to size the tube."""
+    """Target pressure, in place of rest_mm: finds the size of the tube."""
     material: NotRequired[str | None]
     fabric: NotRequired[Fabric | None]
-    """Of the material."""
+    """A fabric of the material."""
     law: NotRequired[dict[str, float] | None]
     """Constants of a law, by name."""
 
@@ -713,10 +713,10 @@ class PureFabricChart(TypedDict):
 
 
 class RSRequest(TypedDict):
-    """A yarn whose shape the paper has: acrylic or cotton."""
+    """A yarn whose shape the paper gives: acrylic or cotton."""
 
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
 
 
 class RelaxRequest(TypedDict):
@@ -724,9 +724,9 @@ class RelaxRequest(TypedDict):
 
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     loop_length_mm: NotRequired[float | None]
-    """Yarn per stitch; the material's."""
+    """Yarn per stitch; the material's by default."""
     loop_lengths_mm: NotRequired[list[list[float]] | None]
     """Instead of one length: a list for every row of the chart, the bottom row first, of one
     length for all its stitches or one for each."""
@@ -735,7 +735,7 @@ class RelaxRequest(TypedDict):
     branch: NotRequired[Branch]
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
-    """Compute it even if the result is known."""
+    """Compute again, even if the result is stored."""
     cell_course_mm: NotRequired[float | None]
     """Hold a stitch at this width."""
     cell_wale_mm: NotRequired[float | None]
@@ -760,28 +760,28 @@ class SewnInput(TypedDict):
     kind: Literal["sewn"]
     edge: str
     stiffness_n: float
-    """Its force over its strain."""
+    """Force of the tape over its strain."""
 
 
 class ShapeRequest(TypedDict):
-    """A profile of widths under a stretch."""
+    """A profile of widths at a stretch."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     direction: NotRequired[Direction]
-    """Of the pull."""
+    """Direction of the pull."""
     strain: float
     """From clamp to clamp: 0.3 is 30 %."""
     width: list[float | None]
     """Stretched width over width at rest, line by line across the pull, from the bottom (wale-
-    wise) or the left (course-wise); null for no wish."""
+    wise) or the left (course-wise); null where any width will do."""
     across: int
-    """Stitches of a line."""
+    """Stitches in a line."""
     repeats: NotRequired[Literal["small", "all"]]
     smallest_band: NotRequired[int]
-    """Lines of the narrowest band."""
+    """Fewest lines in a band."""
     seed: NotRequired[int]
     """The same seed gives the same chart."""
 
@@ -797,7 +797,7 @@ class SharedViewRequest(TypedDict):
 
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     colour: NotRequired[Colour]
@@ -834,7 +834,7 @@ class SockLeg(TypedDict):
 
     ease: NotRequired[float]
     target_mmhg: NotRequired[float | None]
-    """Wanted pressure; before the ease."""
+    """Target pressure; takes precedence over the ease."""
     template: Literal["sock-leg"]
     ankle_mm: float
     calf_mm: float
@@ -848,7 +848,7 @@ class StretchRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     direction: Direction
@@ -860,11 +860,11 @@ class StretchRequest(TypedDict):
     """Ends gripped, or free to slide along the clamps."""
     model: NotRequired[EnergyModel]
     shear_modulus_n_per_mm: NotRequired[float | None]
-    """C_xyxy in N/mm (an assumption otherwise)."""
+    """C_xyxy in N/mm; that of the laws by default."""
     width_mm: NotRequired[float | None]
-    """Size course-wise; from the gauge otherwise."""
+    """Size course-wise; from the gauge by default."""
     length_mm: NotRequired[float | None]
-    """Size wale-wise; from the gauge otherwise."""
+    """Size wale-wise; from the gauge by default."""
 
 
 class StretchStep(TypedDict):
@@ -900,9 +900,9 @@ class SweepRequest(TypedDict):
 
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     loop_length_mm: NotRequired[float | None]
-    """Yarn per stitch; the material's."""
+    """Yarn per stitch; the material's by default."""
     loop_lengths_mm: NotRequired[list[list[float]] | None]
     """Instead of one length: a list for every row of the chart, the bottom row first, of one
     length for all its stitches or one for each."""
@@ -911,7 +911,7 @@ class SweepRequest(TypedDict):
     branch: NotRequired[Branch]
     convention: NotRequired[Convention]
     fresh: NotRequired[bool]
-    """Compute it even if the result is known."""
+    """Compute again, even if the result is stored."""
     direction: Direction
     """Along rows, or along columns."""
     max_strain: float
@@ -923,7 +923,7 @@ class SweepRequest(TypedDict):
 
 
 class TargetInput(TypedDict):
-    """One wish for a fabric."""
+    """One target property of a fabric."""
 
     quantity: Quantity
     value: float
@@ -932,7 +932,7 @@ class TargetInput(TypedDict):
     """Relative (0.1 is 10 %); a difference for Poisson's ratios."""
     weight: NotRequired[float]
     load_n_per_mm: NotRequired[float]
-    """For a stretch, per width of the cloth."""
+    """Load at which a stretch is wanted, per width of cloth."""
     limb: NotRequired[LimbInput | None]
     """For a pressure."""
 
@@ -953,19 +953,19 @@ class TrellisRequest(TypedDict):
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     steps: NotRequired[int]
-    """Of the load."""
+    """Steps of the load."""
     shear_modulus_n_per_mm: NotRequired[float | None]
-    """C_xyxy; that of the laws otherwise."""
+    """C_xyxy; that of the laws by default."""
     mesh_mm: NotRequired[float | None]
     """Length of an element's side; by default there are about 600 elements."""
     angle_deg: float
-    """By which the frame's right angle closes."""
+    """How far the frame's right angle closes at the last step."""
     side_mm: NotRequired[float]
-    """Of the square."""
+    """Side of the square."""
     grain_deg: NotRequired[float]
-    """From a bar to the rows."""
+    """Angle from a bar of the frame to the rows."""
 
 
 class UploadedFile(TypedDict):
@@ -987,7 +987,7 @@ class ViewRequest(TypedDict):
 
     chart: str | PureFabricChart
     material: str
-    """Id of the library."""
+    """Identifier of a material of the library."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     colour: NotRequired[Colour]
@@ -1012,17 +1012,17 @@ class WishInput(TypedDict):
 
     name: NotRequired[str]
     runs: list[tuple[int, int, int]]
-    """[row, first column, length] of its stitches, row 0 at the bottom."""
+    """Its stitches as runs [row, first column, length], with row 0 at the bottom."""
     modulus_course_n_per_mm: NotRequired[float | None]
     modulus_wale_n_per_mm: NotRequired[float | None]
 
 
 class WristBrace(TypedDict):
-    """A brace knitted sideways and grafted."""
+    """A brace, knitted sideways and grafted."""
 
     ease: NotRequired[float]
     target_mmhg: NotRequired[float | None]
-    """Wanted pressure; before the ease."""
+    """Target pressure; takes precedence over the ease."""
     template: Literal["wrist-brace"]
     wrist_mm: float
     length_mm: float
@@ -1070,7 +1070,7 @@ class AtlasResult(BaseModel):
 
 
 class BandResult(BaseModel):
-    """Lines of one repeat."""
+    """A band of lines of one repeat."""
 
     repeat: str
     first: int
@@ -1087,10 +1087,10 @@ class BendResult(BaseModel):
     alone, the fabric curves with its face outside."""
     moment_wale_n: float
     bending_course_n_mm: float
-    """Bending rigidity, the other size free."""
+    """Bending rigidity, with the size across free to change."""
     bending_wale_n_mm: float
     bending_held_course_n_mm: float
-    """The same, the other size held."""
+    """Bending rigidity, with the size across held."""
     bending_held_wale_n_mm: float
     strain_across_course_mm: float
     """Strain across per curvature, bent along the rows."""
@@ -1101,23 +1101,23 @@ class BendResult(BaseModel):
     """D1 + 2 D66, from bending at 45°."""
     thickness_mm: float
     curl: str
-    """What free edges do."""
+    """How free edges curl."""
     curl_course: Curl
-    """Where the sides go."""
+    """The way the sides curl."""
     curl_wale: Curl
-    """Where top and bottom go."""
+    """The way the top and bottom curl."""
     bending_length_course_mm: float | None
     """Peirce's, of a strip cut along the rows; null where the weight is not known."""
     bending_length_wale_mm: float | None
     stable: bool
-    """Whether the state is a minimum without its symmetries."""
+    """Whether the state is still a minimum when it may lose its symmetries."""
     provenance: str
     yarn: YarnResult
     notes: list[str]
 
 
 class BendingPhotoResult(BaseModel):
-    """What one photo gave."""
+    """The result of one photo."""
 
     name: str
     bending_modulus_n_mm2: float
@@ -1125,7 +1125,7 @@ class BendingPhotoResult(BaseModel):
     px_per_mm: float
     yarn_width_mm: float
     rms_mm: float
-    """Distance of the traced line from the elastica."""
+    """Distance between the traced line and the fitted elastica."""
 
 
 class BendingResult(BaseModel):
@@ -1134,7 +1134,7 @@ class BendingResult(BaseModel):
     kind: Literal["bending"] = "bending"
     bending_modulus_n_mm2: float
     standard_deviation: float | None
-    """Of one photo, N·mm²; None for one."""
+    """Of a single photo, N·mm²; null if there is only one."""
     standard_error: float | None
     """Of the mean, N·mm²."""
     photos: list[BendingPhotoResult]
@@ -1145,7 +1145,7 @@ class BiasResult(BaseModel):
     """A simulated strip test at an angle, not a certified one."""
 
     energy_n_mm: list[float]
-    """Stored in the cloth."""
+    """Energy stored in the cloth."""
     converged: bool
     seconds: float
     nodes: int
@@ -1156,13 +1156,13 @@ class BiasResult(BaseModel):
     kind: Literal["bias"] = "bias"
     strain: list[float]
     force_n: list[float]
-    """Along the pull."""
+    """Force along the pull."""
     force_low_n: list[float]
     """Lower end of the 90 % interval."""
     force_high_n: list[float]
     """Upper end of the 90 % interval."""
     sideways_n: list[float]
-    """Across the pull: clamps hold cloth that would shear."""
+    """Force across the pull: the clamps keep the cloth from shearing sideways."""
     stress_n_per_mm: list[float]
     """Force per width."""
     waist_strain: list[float]
@@ -1172,7 +1172,7 @@ class BiaxialResult(BaseModel):
     """A simulated biaxial test: edges stay straight and slide along themselves."""
 
     energy_n_mm: list[float]
-    """Stored in the cloth."""
+    """Energy stored in the cloth."""
     converged: bool
     seconds: float
     nodes: int
@@ -1218,23 +1218,23 @@ class CalibrateResult(BaseModel):
     parameters: dict[str, float]
     standard_errors: dict[str, float]
     frames: list[int]
-    """Pictures that were used."""
+    """The frames that were fitted."""
     comparison: list[FrameErrorResult]
-    """All pictures, measured edges."""
+    """Errors at all frames, with the edges moved as measured."""
     force_strain: list[float]
     force_ratio: list[float]
-    """Simulated over measured force."""
+    """Simulated force over measured force."""
     evaluations: int
 
 
 class CandidateResult(BaseModel):
-    """A repeat and how near it comes."""
+    """A repeat, and how near it comes to the targets."""
 
     material: str
     chart: str
     """K/P lines of one repeat, the top row first."""
     values: dict[str, float | None]
-    """By quantity, with @load or @rest/worn; null beyond the lock-up."""
+    """Values by quantity, with @load or @rest/worn; null beyond the lock-up."""
     intervals: dict[str, tuple[float | None, float | None]]
     """90 % intervals; null where an end lies beyond the computed curve."""
     deviations: dict[str, float | None]
@@ -1245,7 +1245,7 @@ class CandidateResult(BaseModel):
     provenance: str
     transfers_per_stitch: float
     crossings_per_stitch: float
-    """Between face and back, or beds."""
+    """Moves of the yarn between face and back, or between beds, per stitch."""
     curl: float
     """Knits minus purls over all stitches; far from 0 it curls."""
 
@@ -1266,11 +1266,11 @@ class CharacteriseResult(BaseModel):
     material: MaterialDocument | None
     """A material file; null if no fabric has a law at the reference."""
     materials: dict[str, MaterialDocument]
-    """The same at every setting."""
+    """A material file for every setting, by its name."""
 
 
 class CharacterisedFabric(BaseModel):
-    """With its stress-strain curves."""
+    """A pure fabric at one stitch setting, with its stress-strain curves."""
 
     fabric: Fabric
     setting: str
@@ -1300,12 +1300,12 @@ class CharacterisedFabric(BaseModel):
     rms_wale_n_per_mm: float | None
     converged: bool | None
     remark: str
-    """Why something is missing, or what to know."""
+    """Cautions, and why anything is missing."""
     curves: dict[Direction, FabricCurve]
 
 
 class ChartResult(BaseModel):
-    """A chart, read and written again in the canonical form."""
+    """A chart in canonical form."""
 
     rows: int
     columns: int
@@ -1313,7 +1313,7 @@ class ChartResult(BaseModel):
 
 
 class CompareResult(BaseModel):
-    """Errors per picture, in the order of the stretch."""
+    """Errors of each frame, in the order of the stretch."""
 
     kind: Literal["compare"] = "compare"
     frames: list[FrameErrorResult]
@@ -1338,7 +1338,7 @@ class CompressionResult(BaseModel):
 
     kind: Literal["compression"] = "compression"
     k_n_per_mm3: float | None
-    """Mean of the yarn; null if there are several, which have one each in `mean`."""
+    """Mean of the yarn; null if there are several yarns, whose means are in `mean`."""
     p: float | None
     """The same."""
     mean: dict[str, CompressionMeanResult]
@@ -1348,7 +1348,7 @@ class CompressionResult(BaseModel):
 
 
 class CompressionSampleResult(BaseModel):
-    """What one test gave; the errors are those of the fit."""
+    """The result of one test, with the standard errors of its fit."""
 
     name: str
     yarn: str
@@ -1366,7 +1366,7 @@ class CurlResult(BaseModel):
 
     kind: Literal["curl"] = "curl"
     id: str
-    """The shape, for views."""
+    """Name of the shape, for 3D views."""
     rows: int
     columns: int
     width_mm: float
@@ -1376,13 +1376,13 @@ class CurlResult(BaseModel):
     curl_course_mm: float
     """Height of the sides above the fabric next to them; negative to the back."""
     curl_wale_mm: float
-    """The same of top and bottom."""
+    """Height of the top and bottom above the fabric next to them."""
     flat_width_mm: float
-    """Extent if it lay flat."""
+    """Extent of the piece laid flat."""
     flat_height_mm: float
     thickness_mm: float
     converged: bool
-    """Where it is false, the shape is a preview."""
+    """If false, the shape is only a preview."""
     seconds: float
     """CPU time."""
     corners_mm: list[list[tuple[float, float, float]]] | None = None
@@ -1411,7 +1411,7 @@ class CurveResult(BaseModel):
     stress_low_n_per_mm: list[float]
     """Lower end of the 90 % interval of the stress at each strain, N/mm."""
     stress_high_n_per_mm: list[float]
-    """Upper end of it, at most 10 N/mm."""
+    """Upper end of that interval, at most 10 N/mm."""
     provenance: str
 
 
@@ -1423,9 +1423,9 @@ class DeformedPiece(BaseModel):
     moved_mm: list[tuple[float, float]]
     """Displacement of each corner."""
     elements: list[list[int]]
-    """Numbers of corners, from 0."""
+    """Corner numbers of each element, from 0."""
     strain_course: list[float]
-    """Per element, as all that follow."""
+    """Per element, like the fields below."""
     strain_wale: list[float]
     shear_angle: list[float]
     """In radians."""
@@ -1518,7 +1518,7 @@ class DeviationDocument(BaseModel):
 
 
 class Estimate(BaseModel):
-    """A value and its 90 % interval (of no width where it is measured)."""
+    """A value and its 90 % interval, which has no width if the value is measured."""
 
     value: float
     interval: tuple[float, float]
@@ -1541,7 +1541,7 @@ class ExportResult(BaseModel):
     columns: int
     bytes: int
     transfers: int | None = None
-    """Of a knitout program, without finishing."""
+    """Of a knitout program, without the finish."""
     carriers: int | None = None
     """Of a knitout program, without waste."""
     notes: list[str]
@@ -1579,13 +1579,13 @@ class FabricCurve(BaseModel):
     bending_share: list[float]
     contact_share: list[float]
     contact_overtakes_at_strain: float | None
-    """Where contact first holds half of the energy."""
+    """Strain at which contact first holds half of the energy."""
     jumps: list[int]
     notes: list[str]
 
 
 class FabricDetail(BaseModel):
-    """A pure fabric of a material, with everything that is known of it."""
+    """A pure fabric of a material in full."""
 
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float
@@ -1626,7 +1626,7 @@ class FabricDocument(BaseModel):
 
 
 class FabricEstimateResult(BaseModel):
-    """One fabric: extension under load first, because it is predicted best."""
+    """One fabric; extension under load comes first because it is predicted best."""
 
     strain_at_0_1_n_per_mm: dict[Direction, Estimate]
     modulus_n_per_mm: dict[Direction, Estimate]
@@ -1638,7 +1638,7 @@ class FabricEstimateResult(BaseModel):
 
 
 class FabricSummary(BaseModel):
-    """A pure fabric of a material, in short."""
+    """A summary of a pure fabric of a material."""
 
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float
@@ -1673,30 +1673,30 @@ class FigureResult(BaseModel):
 
 
 class FillResult(BaseModel):
-    """A chart, and how near it comes."""
+    """A chart, and how near it comes to the targets."""
 
     kind: Literal["fill"] = "fill"
     rows: int
     columns: int
     chart: str
     off_share: float
-    """Share of the stitches with a wish that are off by more than 10 %."""
+    """Share of the stitches with a target that miss it by more than 10 %."""
     patches: list[PatchResult]
     messages: list[str]
 
 
 class FindResult(BaseModel):
-    """Ranked repeats; the best first."""
+    """Ranked repeats, the best first."""
 
     kind: Literal["find"] = "find"
     reached: bool
     message: str
     searched: int
     ranges: dict[str, tuple[float, float]]
-    """What all repeats span."""
+    """Range of each quantity over all repeats."""
     candidates: list[CandidateResult]
     elsewhere: list[CandidateResult]
-    """Nearest in yarns that were not asked for, if those asked for reach nothing."""
+    """Nearest fabrics in other yarns, if none of those asked for meets the targets."""
 
 
 class FitResult(BaseModel):
@@ -1724,11 +1724,11 @@ class FitResult(BaseModel):
     kind: Literal["fit"] = "fit"
     standard_errors: LawErrors
     rms_n_per_mm: float
-    """Of all residuals."""
+    """Rms of all residuals."""
     rms_course_n_per_mm: float
     rms_wale_n_per_mm: float
     largest_strain: dict[Direction, float]
-    """Up to where the law was fitted."""
+    """Largest strain of the fit."""
     runs: dict[Direction, int]
     """Pulls used."""
     reduction: Reduction
@@ -1742,7 +1742,7 @@ class FitResult(BaseModel):
 
 
 class FrameErrorResult(BaseModel):
-    """Simulated minus measured displacement of one picture, in percent of the width."""
+    """Simulated minus measured displacement at one frame, in per cent of the width."""
 
     frame: int
     applied_stretch: float
@@ -1774,12 +1774,12 @@ class GarmentResult(BaseModel):
     """90 % interval."""
     yarn_interval_g: tuple[float, float] | None
     interval_source: str
-    """What the intervals rest on."""
+    """Source of the intervals."""
     notes: list[str]
     warnings: list[str]
-    """Where regions of unlike gauge meet."""
+    """Notes on borders between regions of different gauge."""
     design: DesignFile
-    """The same as a project file, ready to be edited."""
+    """The garment as a project file, ready to edit."""
 
 
 class GaugeResult(BaseModel):
@@ -1813,7 +1813,7 @@ class ImportResult(BaseModel):
     columns: int
     repeat: ChartResult
     notes: list[str] = []
-    """What may not be as meant, such as a lost region."""
+    """What may have been read wrongly or lost, such as a region."""
 
 
 class JobPage(BaseModel):
@@ -1885,7 +1885,7 @@ class LawErrors(BaseModel):
     poisson_xy: float
     """Contraction course-wise when pulled wale-wise."""
     shear_modulus_n_per_mm: float | None = None
-    """Recommended reduction only, and mostly its prior's: a factor of 1.5."""
+    """Recommended reduction only; mostly that of its prior, a factor of 1.5."""
     kappa_xx: float | None = None
     kappa_yy: float | None = None
 
@@ -1909,7 +1909,7 @@ class LawResult(BaseModel):
 
 
 class LeftOutResult(BaseModel):
-    """How well the library's yarns are predicted when they are left out; factors of the rms."""
+    """Errors for the library's yarns when each is left out; rms errors are factors."""
 
     measured: list[Fabric]
     values: int
@@ -1926,25 +1926,25 @@ class LeftOutResult(BaseModel):
 
 
 class LoadedEdge(BaseModel):
-    """What was done to an edge, per step."""
+    """Force and motion of an edge at each step."""
 
     edge: str
     kind: str
     force_x_n: list[float]
-    """On the whole edge; 0 of a tape."""
+    """Force on the whole edge; 0 for a tape."""
     force_y_n: list[float]
     moved_x_mm: list[float]
-    """Mean of the edge."""
+    """Mean displacement of the edge."""
     moved_y_mm: list[float]
     force_x_margin_n: float
-    """The last step's 90 % interval is this much to either side."""
+    """Half width of the 90 % interval at the last step."""
     force_y_margin_n: float
     moved_x_margin_mm: float
     moved_y_margin_mm: float
 
 
 class MaterialDetail(BaseModel):
-    """A material, with everything that is known of it."""
+    """A material in full."""
 
     id: str
     name: str
@@ -1956,11 +1956,11 @@ class MaterialDetail(BaseModel):
     compression_exponent: float | None
     fabrics: dict[Fabric, FabricDetail]
     stitch_table: StitchTableResult | None
-    """None for a material that lacks one of the four fabrics."""
+    """Null for a material that lacks one of the four fabrics."""
     curves: dict[Fabric, dict[Direction, LawCurve]]
-    """Of the laws."""
+    """Curves of the laws."""
     measured: dict[Fabric, dict[Direction, CurveDocument]]
-    """Of the stretch tests, where they are kept with the material."""
+    """Curves of the stretch tests, if they are stored with the material."""
 
 
 class MaterialDocument(BaseModel):
@@ -1976,7 +1976,7 @@ class MaterialDocument(BaseModel):
 
 
 class MaterialSummary(BaseModel):
-    """A material, in short."""
+    """A summary of a material."""
 
     id: str
     name: str
@@ -2012,13 +2012,13 @@ class ModelReport(BaseModel):
 
 
 class NearestLockUp(BaseModel):
-    """Where the swatch is nearest to its lock-up at the last step."""
+    """The place nearest to its lock-up at the last step."""
 
     utilisation: float
     row: int
-    """From 1, bottom row first."""
+    """Row, from 1 at the bottom."""
     column: int
-    """From 1, left wale first."""
+    """Column, from 1 at the left."""
     direction: Direction
     fabric: str
 
@@ -2057,13 +2057,13 @@ class PatchResult(BaseModel):
     repeat: str
     stitches: int
     row: int
-    """Of its first stitch, from 1 at the bottom left."""
+    """Position of its first stitch, from 1 at the bottom left."""
     column: int
     deviation_course: float | None
-    """Of the repeat; null without a wish."""
+    """Of the repeat; null without a target."""
     deviation_wale: float | None
     swatch_course: float | None
-    """The same of the patch as the finite swatch has it; null if it was not pulled."""
+    """Of the patch in the finite swatch; null if it was not pulled."""
     swatch_wale: float | None
 
 
@@ -2087,7 +2087,7 @@ class PieceResult(BaseModel):
     """Equilibria of a piece under a growing load."""
 
     energy_n_mm: list[float]
-    """Stored in the cloth."""
+    """Energy stored in the cloth."""
     converged: bool
     seconds: float
     nodes: int
@@ -2097,7 +2097,7 @@ class PieceResult(BaseModel):
     messages: list[str]
     kind: Literal["piece"] = "piece"
     share: list[float]
-    """Of the load, per step."""
+    """Share of the load at each step."""
     area_mm2: float
     edges: list[LoadedEdge]
     """In the order of the conditions."""
@@ -2105,7 +2105,7 @@ class PieceResult(BaseModel):
 
 
 class PredictResult(BaseModel):
-    """Effective elastic constants of the whole chart at small strain; intervals cover 90 %."""
+    """Effective elastic constants of the whole chart at small strain, with 90 % intervals."""
 
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
@@ -2116,7 +2116,7 @@ class PredictResult(BaseModel):
     poisson_xy: float
     """Contraction course-wise when pulled wale-wise."""
     rows: int
-    """Of the stitches that the constants are of."""
+    """Size of the chart that the constants describe."""
     columns: int
     segments: dict[Direction, SegmentCountsResult]
     modulus_course_interval_n_per_mm: tuple[float, float]
@@ -2124,7 +2124,7 @@ class PredictResult(BaseModel):
     poisson_yx_interval: tuple[float, float]
     poisson_xy_interval: tuple[float, float]
     modulus_course_bounds_n_per_mm: tuple[float, float]
-    """Reuss and Voigt; wider where folds need it."""
+    """Reuss and Voigt bounds, widened where folds require it."""
     modulus_wale_bounds_n_per_mm: tuple[float, float]
     shear_modulus_n_per_mm: float
     """An assumption unless it was calibrated."""
@@ -2140,19 +2140,19 @@ class PredictResult(BaseModel):
     method: str
     notes: list[str]
     measures: list[MeasureResult] = []
-    """Those that were asked for."""
+    """The measures that were asked for."""
 
 
 class PressureResult(BaseModel):
     """Mean pressure; no medical class."""
 
     mmhg: tuple[float, float]
-    """From axially free to axially fixed."""
+    """Mean pressure, from axially free to axially fixed."""
     kpa: tuple[float, float]
     mmhg_with_law_spread: tuple[float, float] | None
-    """The same, widened by the 90 % interval of the fabric's stress, where known."""
+    """That range, widened by the 90 % interval of the fabric's stress, if known."""
     strain: float
-    """Around the limb."""
+    """Strain around the limb."""
     rest_mm: float
     worn_mm: float
     tension_n_per_mm: tuple[float, float]
@@ -2161,7 +2161,7 @@ class PressureResult(BaseModel):
     lock_up_share: float
     """Strain over lock-up strain."""
     rest_mm_for_target: tuple[float, float] | None
-    """Sizes that press by the target: axially free to axially fixed."""
+    """Sizes that give the target pressure, axially free to axially fixed."""
     warnings: list[str]
     law_source: str
     """Where the law comes from; empty if unknown."""
@@ -2201,7 +2201,7 @@ class RSResult(BaseModel):
     material: str
     fabrics: dict[Fabric, RSFabricResult]
     interval_source: str
-    """What the intervals rest on."""
+    """Source of the intervals."""
 
 
 class RSSegment(BaseModel):
@@ -2226,7 +2226,7 @@ class RSSegment(BaseModel):
 
 
 class RegionResult(BaseModel):
-    """One region: the fabric's repeat, its colour, its size, and means over its stitches."""
+    """One region: its repeat, colour and size, and means over its stitches."""
 
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
@@ -2241,10 +2241,10 @@ class RegionResult(BaseModel):
     rows: int
     """Rows of its longest column."""
     width_mm: float
-    """Of that many stitches at rest."""
+    """Relaxed size of that many stitches."""
     height_mm: float
     width_interval_mm: tuple[float, float]
-    """90 %, by the gauge."""
+    """90 % interval, from that of the gauge."""
     height_interval_mm: tuple[float, float]
     yarn_m: float
     yarn_g: float | None
@@ -2267,19 +2267,19 @@ class RelaxResult(BaseModel):
     """90 % interval for knitted cloth; null for a width that was held."""
     cell_wale_interval_mm: tuple[float, float] | None
     interval_source: str
-    """What the intervals rest on."""
+    """Source of the intervals."""
     energy_n_mm: float
     bending_share: float
     contact_share: float
     yarn_length_mm: float
     force_course_n: float | None
-    """What holds a prescribed width, per stitch; null in the published branch."""
+    """Force per stitch that holds a prescribed width; null in the published branch."""
     force_wale_n: float | None
     min_distance_mm: float | None
     seconds: float
-    """CPU time of the solve, whenever it was."""
+    """CPU time of the solve, when it was first run."""
     known: bool = False
-    """Whether it had been computed before."""
+    """Whether the result was already stored."""
     evaluations: int
     converged: bool
     yarn: YarnResult
@@ -2323,14 +2323,14 @@ class ShapeResult(BaseModel):
     chart: str
     bands: list[BandResult]
     width: list[float]
-    """Width in the finite swatch, for comparison with the wanted one."""
+    """Width in the finite swatch, to compare with the target."""
     wanted: list[float | None]
     rms: float
-    """Of the differences, as parts of the width at rest."""
+    """Rms of the differences, over the width at rest."""
     largest: float
     force_n: float
     pulls: int
-    """Swatches that were pulled on the way."""
+    """Number of swatches that were computed."""
     messages: list[str]
 
 
@@ -2369,7 +2369,7 @@ class SignedIn(BaseModel):
 
 
 class StartResult(BaseModel):
-    """What became of one start; null where it failed."""
+    """The result from one starting shape; null where it failed."""
 
     name: str
     outcome: str
@@ -2387,9 +2387,9 @@ class StitchFields(BaseModel):
     utilisation: list[list[float]]
     """alpha * strain; 1 is the lock-up."""
     strain_margin: list[list[float]]
-    """Of the strain along the pull: its 90 % interval is this much to either side."""
+    """Half width of the 90 % interval of the strain along the pull."""
     utilisation_margin: list[list[float]]
-    """The same of the utilisation."""
+    """Half width of the 90 % interval of the utilisation."""
 
 
 class StitchKind(BaseModel):
@@ -2418,13 +2418,13 @@ class StitchKinds(BaseModel):
 
 
 class StitchTableResult(BaseModel):
-    """Values of all kinds of stitch."""
+    """Values for all 16 kinds of stitch."""
 
     codes: list[StitchKind]
 
 
 class StretchResult(BaseModel):
-    """The curve of a test and the fields at its stitches."""
+    """The curve of a test, with fields at its stitches."""
 
     strain: list[float]
     force_n: list[float]
@@ -2433,10 +2433,10 @@ class StretchResult(BaseModel):
     force_high_n: list[float]
     """Upper end of the 90 % interval."""
     stress_n_per_mm: list[float]
-    """Force per width, and as sure as the force."""
+    """Force per width; its relative interval is that of the force."""
     waist_strain: list[float]
     waist_margin: list[float]
-    """90 % interval, to either side."""
+    """Half width of the 90 % interval."""
     iterations: list[int]
     converged: bool
     seconds: float
@@ -2449,7 +2449,7 @@ class StretchResult(BaseModel):
     messages: list[str]
     kind: Literal["stretch"] = "stretch"
     id: str
-    """Names this test for the 3D view."""
+    """Name of this test, for the 3D view."""
     rows: int
     columns: int
     stitch_fields: StitchFields
@@ -2466,7 +2466,7 @@ class SweepResult(BaseModel):
     """90 % interval of the strain of knitted cloth at each stress."""
     strain_high: list[float]
     interval_source: str
-    """What the interval rests on."""
+    """Source of the interval."""
     transverse_strain: list[float]
     stress_n_per_mm: list[float]
     energy_n_mm: list[float]
@@ -2480,9 +2480,9 @@ class SweepResult(BaseModel):
     law: SweptLaw | None
     converged: bool
     seconds: float
-    """CPU time of the solves, whenever they were."""
+    """CPU time of the solves, when they were first run."""
     known: bool = False
-    """Whether it had been computed before."""
+    """Whether the result was already stored."""
     yarn: YarnResult
     notes: list[str]
 
@@ -2516,7 +2516,7 @@ class TrellisResult(BaseModel):
     """A simulated trellis (picture frame) test."""
 
     energy_n_mm: list[float]
-    """Stored in the cloth."""
+    """Energy stored in the cloth."""
     converged: bool
     seconds: float
     nodes: int
@@ -2527,15 +2527,15 @@ class TrellisResult(BaseModel):
     kind: Literal["trellis"] = "trellis"
     angle_deg: list[float]
     force_n: list[float]
-    """That pulls two opposite corners of the frame apart."""
+    """Force that pulls two opposite corners of the frame apart."""
     force_low_n: list[float]
     """Lower end of the 90 % interval."""
     force_high_n: list[float]
     """Upper end of the 90 % interval."""
     moment_n_mm: list[float]
-    """Work of the frame per shear angle in radians."""
+    """Moment about the hinges: work per radian of shear."""
     shear_stress_n_per_mm: list[float]
-    """The moment over the area at rest."""
+    """Moment over the relaxed area."""
 
 
 class Use(BaseModel):
@@ -2559,12 +2559,12 @@ class Version(BaseModel):
 
 
 class VersionResult(BaseModel):
-    """The program behind the address."""
+    """The program and its versions."""
 
     version: str
-    """Of the program, as `knitcore --version` says."""
+    """Version of the program, as `knitcore --version` prints it."""
     api: str
-    """Of the REST API: the part of its addresses after /api/."""
+    """Version of the REST API, as in its addresses after /api/."""
 
 
 class VersionSummary(BaseModel):
@@ -2622,7 +2622,7 @@ class YarnDocument(BaseModel):
 
 
 class YarnResult(BaseModel):
-    """The yarn that was used and where its numbers come from."""
+    """The yarn that was used, and the source of its numbers."""
 
     bending_modulus_n_mm2: float
     contact_stiffness_n_per_mm3: float

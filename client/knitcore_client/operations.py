@@ -171,7 +171,7 @@ class AsyncOperations:
         return await self._ask(ImportResult, "POST", "/import", request)
 
     async def material(self, **request: Unpack[MaterialRequest]) -> MaterialDetail:
-        """Everything known of a material."""
+        """Everything known about a material."""
         return await self._ask(MaterialDetail, "GET", "/materials/{identifier}", request)
 
     async def materials(self) -> Materials:
@@ -207,7 +207,7 @@ class AsyncOperations:
         return await self._ask(RSResult, "GET", "/rs/{material}", request)
 
     async def shape(self, **request: Unpack[ShapeRequest]) -> ShapeResult:
-        """A chart that takes a wanted outline when it is stretched."""
+        """A chart that takes a target outline when it is stretched."""
         return await self._ask(ShapeResult, "POST", "/shape", request)
 
     async def stretch(self, **request: Unpack[StretchRequest]) -> StretchResult:
@@ -223,7 +223,7 @@ class AsyncOperations:
         return await self._ask(TrellisResult, "POST", "/trellis", request)
 
     async def version(self) -> VersionResult:
-        """Which version answers."""
+        """The version of the service."""
         return await self._ask(VersionResult, "GET", "/version", {})
 
     @overload
@@ -454,7 +454,7 @@ class Operations:
         return self._ask(ImportResult, "POST", "/import", request)
 
     def material(self, **request: Unpack[MaterialRequest]) -> MaterialDetail:
-        """Everything known of a material."""
+        """Everything known about a material."""
         return self._ask(MaterialDetail, "GET", "/materials/{identifier}", request)
 
     def materials(self) -> Materials:
@@ -490,7 +490,7 @@ class Operations:
         return self._ask(RSResult, "GET", "/rs/{material}", request)
 
     def shape(self, **request: Unpack[ShapeRequest]) -> ShapeResult:
-        """A chart that takes a wanted outline when it is stretched."""
+        """A chart that takes a target outline when it is stretched."""
         return self._ask(ShapeResult, "POST", "/shape", request)
 
     def stretch(self, **request: Unpack[StretchRequest]) -> StretchResult:
@@ -506,7 +506,7 @@ class Operations:
         return self._ask(TrellisResult, "POST", "/trellis", request)
 
     def version(self) -> VersionResult:
-        """Which version answers."""
+        """The version of the service."""
         return self._ask(VersionResult, "GET", "/version", {})
 
     @overload
