@@ -1,1 +1,1 @@
-"""From wishes to fabrics: all small repeats, their laws, and a search among them."""
+"""Inverse design: from target properties to repeats and charts."""

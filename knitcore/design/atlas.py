@@ -159,7 +159,7 @@ class Atlas:
         return _each(self.curves[:, 1, direction.axis], stress_n_per_mm)
 
     def index_of(self, repeat: StitchChart) -> int | None:
-        """Where a repeat stands, whichever of its images is given; None if it is not here."""
+        """Index of a repeat, given as any of its images; None if it is not in the atlas."""
         return self._index.get(repeat.canonical().key)
 
     def chart(self, index: int) -> StitchChart:
@@ -168,7 +168,7 @@ class Atlas:
 
     @cached_property
     def costs(self) -> tuple[KnittingCost, ...]:
-        """What knitting each repeat asks."""
+        """Cost of knitting each repeat."""
         return tuple(knitting_cost(self.chart(k)) for k in range(len(self)))
 
     @cached_property
@@ -205,7 +205,7 @@ def _each(curves: Array, stress_n_per_mm: Array) -> Array:
 
 def _stresses(curves: Array, strain: float) -> Array:
     """Stress at a strain by each curve of strains."""
-    # A curve at its lock-up hardly grows any more; an inverse needs it to grow.
+    # Curves are nearly flat at the lock-up; interpolation needs them to increase.
     rising = np.maximum.accumulate(curves, axis=1) + 1e-9 * np.arange(len(STRESS_N_PER_MM))
     found = [
         PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain) for curve in rising

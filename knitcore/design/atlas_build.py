@@ -1,4 +1,4 @@
-"""Build the atlas of a material: here or on a cluster, and go on where it was stopped."""
+"""Build the atlas of a material, here or on a cluster; a stopped build can be continued."""
 
 from __future__ import annotations
 
@@ -118,8 +118,8 @@ def predict_repeats(task: AtlasTask) -> dict[str, Any]:
 def predict_repeat(
     repeat: StitchChart, material: Material, swept: SweptChart | None = None
 ) -> Answer:
-    """What a large cloth of a repeat does, by its sweep on the yarn level if there is one."""
-    # twice, so that its edges are not a swatch's
+    """Answer for a large cloth of a repeat, from its yarn-level sweep if there is one."""
+    # two repeats each way, so that it is not read as a swatch with edges
     return choose(repeat.tile(2, 2), material, swept=swept)
 
 

@@ -1,8 +1,8 @@
-"""The yarn level's say in an atlas: repeats relaxed and stretched one by one, small ones first.
+"""Yarn-level results for an atlas: repeats relaxed and stretched one by one, small ones first.
 
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
 in a folder beside the atlas, and the run can be stopped at any point and taken up again. The pure
-fabrics of the same yarn carry what was found to the measured material
+fabrics of the same yarn relate the results to the measured material
 (:mod:`knitcore.answer.swept`).
 """
 
@@ -62,7 +62,7 @@ def improve_atlas(
     InputError
         If the file is not an atlas of this material, or the yarn's parameters are unknown.
     """
-    load_atlas(file)  # a missing one is named before anything is computed
+    load_atlas(file)  # a missing fabric is reported before anything is computed
     entries = known_entries(file, material_fingerprint(material))
     tasks = yarn_level_tasks(material, entries, most_stitches)
     keep = yarn_level_folder(file)

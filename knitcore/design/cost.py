@@ -14,9 +14,9 @@ class KnittingCost:
 
     Attributes
     ----------
-    transfers_per_stitch : loops that a V-bed machine moves between its beds.
-    crossings_per_stitch : times that the yarn passes between face and back, from bed to bed on a
-        machine. Every stitch is knitted with the one yarn, so nothing floats.
+    transfers_per_stitch : loops that a V-bed machine transfers between its beds.
+    crossings_per_stitch : passes of the yarn between face and back, from bed to bed on a machine.
+        Every stitch is knitted with the one yarn, so there are no floats.
     curl : knits minus purls on the face, over all stitches; far from 0 the cloth curls.
     """
 
@@ -32,7 +32,7 @@ class CostLimits:
     Attributes
     ----------
     transfers_per_stitch, crossings_per_stitch : see :class:`KnittingCost`.
-    curl : of its size, whichever side there is more of.
+    curl : of its absolute value.
     """
 
     transfers_per_stitch: float | None = None

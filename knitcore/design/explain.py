@@ -1,4 +1,4 @@
-"""Which wishes a filled chart meets, patch by patch, and alternatives to the others."""
+"""Which targets a filled chart meets, patch by patch, and alternatives for the others."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class Patch:
     Attributes
     ----------
     repeat : its key.
-    stitches : how many.
+    stitches : number of its stitches.
     row, column : of its first stitch, from 1 at the bottom left.
     deviation_course, deviation_wale : the repeat's effective modulus over the median of the
-        wanted ones, minus one; NaN without a wish.
-    swatch_course, swatch_wale : the same for the patch in the finite swatch, where its size and its
-        neighbours count; NaN without a wish, or if it was not pulled.
+        wanted ones, minus one; NaN without a target. swatch_course, swatch_wale : the same for the
+    patch in the finite swatch, where its size and its neighbours have an effect; NaN without a
+        target, or if it was not pulled.
     """
 
     repeat: str
@@ -40,12 +40,12 @@ class Patch:
 
 
 def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) -> list[str]:
-    """Messages about wishes that were not met, with alternatives.
+    """Messages about targets that were not met, with alternatives.
 
     Parameters
     ----------
     regions : the patches.
-    wishes : (patches, 2) logarithms of the wanted moduli, NaN where there is no wish.
+    wishes : (patches, 2) logarithms of the wanted moduli, NaN where there is no target.
     off : (patches, 2) relative deviations.
     have : (repeats, 2) logarithms of the moduli of all repeats.
     """
@@ -70,7 +70,7 @@ def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) 
 
 
 def _reach(wish: Array, direction: Direction, have: Array) -> str:
-    """What would work."""
+    """What this yarn can reach."""
     own, other = direction.axis, direction.other.axis
     whole = np.exp(have[:, own])
     text = f"This yarn reaches {whole.min():.3g} to {whole.max():.3g} N/mm {direction}-wise"

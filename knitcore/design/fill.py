@@ -1,12 +1,12 @@
-"""Fill a field: a chart whose local moduli follow a map of wanted ones.
+"""Fill a field: a chart whose local moduli follow a map of targets.
 
 A map that is (nearly) some chart's own gives that chart back (:mod:`knitcore.design.readback`). Any
-other map is filled by patches (:mod:`knitcore.design.patches`): every region gets the repeat whose
-effective moduli are nearest, from an atlas or between those of an atlas
+other map is filled by patches (:mod:`knitcore.design.patches`): every region gets the repeat with
+the nearest effective moduli, from an atlas or a mixture of two of its repeats
 (:mod:`knitcore.design.mixtures`). Patches are fitted to their neighbours
 (:mod:`knitcore.design.placing`), measured in the finite swatch
-(:mod:`knitcore.design.patch_check`), and where one departs from its wish there, chosen again. The
-same seed gives the same chart.
+(:mod:`knitcore.design.patch_check`), and chosen again where one misses its target there. The same
+seed gives the same chart.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ from knitcore.swatch.grid import check_cloth
 Labels = NDArray[np.intp]
 
 CLOSE = 0.03
-"""A repeat of the atlas that is nearer (in logarithms) is not improved."""
+"""A repeat of the atlas nearer than this (in logarithms) is taken as it is."""
 MOST_MIXED = 8
-"""Patches that may hold a mixture of two repeats, the largest ones."""
+"""Most patches that may hold a mixture of two repeats; the largest come first."""
 LEAST_MIXED = 48
-"""Stitches of the smallest of them."""
+"""Fewest stitches of a patch with a mixture."""
 MOST_CHECKED = 10_000
 """Stitches of the largest chart that is pulled in the finite swatch."""
 _CHECKS = 3
 _NEARLY = 0.25
 """Largest rms deviation (in logarithms) of a map that is nearly a chart's own."""
 _AS_GOOD = 1.25
-"""A chart read back stitch by stitch may depart so much more from the map than patches do: it needs
-no choice of repeats that fit a rough map by chance. But no more than the map departs from an even
-one inside the patches: what is even there is a wish for one stiffness, not a rough chart."""
+"""A chart read back stitch by stitch may miss the map by this much more than patches do, as it
+cannot fit a rough map by chance, but by no more than the map varies inside the patches: where a map
+is even it asks for one stiffness, not for a rough chart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,15 +58,15 @@ class FilledField:
     Attributes
     ----------
     chart : the stitches.
-    patches : number of the patch of every stitch, into ``regions``; one beyond them for stitches
-        that were kept.
+    patches : number of the patch of every stitch, into ``regions``; the number after the last for
+        stitches that were kept.
     regions : the patches; none if the map is (nearly) a chart's own and was read back.
     local : local moduli of the chart.
-    off_share : share of the stitches with a wish that are off by more than 10 % in a wanted
-        direction: of patches by their effective moduli in the swatch beside the wish at each stitch
-        (of a single patch in a large cloth: the edges of its swatch are none of its own), of a
-        chart that was read back by its local moduli.
-    messages : wishes that were not met.
+    off_share : share of the stitches with a target that miss it by more than 10 % in either
+        direction. Patches are judged by their effective moduli in the swatch (a single patch by
+        those in a large cloth, because free edges are not part of it), a chart that was read back
+        by its local moduli.
+    messages : on targets that were not met.
     """
 
     chart: StitchChart
@@ -91,28 +91,27 @@ def fill_field(
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> FilledField:
-    """A chart for wanted moduli.
+    """A chart for target moduli.
 
     Parameters
     ----------
-    modulus_course_n_per_mm, modulus_wale_n_per_mm : (rows, columns), row 0 at the bottom; NaN
-        where nothing is wanted.
-    material : one yarn for the whole chart.
+    modulus_course_n_per_mm, modulus_wale_n_per_mm : (rows, columns), row 0 at the bottom; NaN where
+    there is no target. material : one yarn for the whole chart.
     atlas : of that material.
-    kept : the chart whose stitches without a wish stay as they are; the others are fitted to them
-        and judged among them. Without it they are filled to match their neighbours.
-    stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere nothing is wanted,
-        and nothing stands beside the others. All by default.
+    kept : a chart whose stitches without a target stay as they are; the others are fitted to them
+        and judged among them. Without it all stitches are filled.
+    stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere there is no target
+        and no neighbour. All by default.
     smallest_patch : smallest side of a patch in stitches.
     seed : of the order in which stitches are tried.
-    check : pull the chart in the finite swatch, and choose again what departs there.
+    check : pull the chart in the finite swatch, and choose again where the result differs.
     progress : called with the share done.
     cancelled : asked between steps.
 
     Raises
     ------
     InputError
-        If the maps do not fit, wish for nothing, or the atlas is another material's.
+        If the maps do not fit or have no target, or the atlas is another material's.
     CancelledError
         If it was asked to stop.
     """
@@ -121,13 +120,13 @@ def fill_field(
         rows, columns = wanted[0].shape
         raise InputError(
             "chart",
-            f"it has {kept.columns}x{kept.rows} stitches, the wishes are for {columns}x{rows}.",
-            "Give the chart that the wishes were drawn on.",
+            f"it has {kept.columns}x{kept.rows} stitches, the targets are for {columns}x{rows}.",
+            "Give the chart that the targets were drawn on.",
         )
     if stitch is not None:
         check_cloth(stitch, *wanted[0].shape)
         if np.isnan(wanted[:, stitch]).all():
-            raise InputError("target", "nothing is wanted inside the outline.", "Paint there.")
+            raise InputError("target", "there is no target inside the outline.", "Paint there.")
     if atlas.material != material.identifier:
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
@@ -155,7 +154,7 @@ class _Trial:
 
 
 class _Fill:
-    """One run."""
+    """One fill."""
 
     def __init__(
         self,
@@ -184,14 +183,14 @@ class _Fill:
         own = self._beside_kept(nearest_chart(self._wanted, self._table))
         exact = float(np.nanmax(np.abs(deviation(own, self._wanted, self._table))))
         if exact <= EXACT:
-            return self._read_back(own, "The map is that of a chart, which was read back.")
+            return self._read_back(own, "The map is exactly that of a chart, which was read back.")
         uneven = unevenness(self._atlas, self._table)
         chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
         labels = smooth(cost, smallest_patch)
         effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
         patches = patches_of(np.where(self._fixed, len(chosen), labels))
         count = len(np.unique(patches[~self._fixed]))
-        patches[self._fixed] = count  # labels come in order, so these were the last ones
+        patches[self._fixed] = count  # labels are in order, so these were last
         first = np.unique(patches, return_index=True)[1][:count]
         medians = _spread(self._wishes(patches, count), patches)
         rough = self._rms(deviation(own, self._wanted, self._table))
@@ -219,7 +218,7 @@ class _Fill:
         return _Choice(self._atlas.chart(entry), self._atlas.log_moduli[entry])
 
     def _mixed(self, patches: Labels, choices: list[_Choice]) -> list[_Choice]:
-        """Mixtures where they come nearer than the atlas."""
+        """Mixtures, where they come nearer than repeats of the atlas."""
         wishes = self._wishes(patches, len(choices))
         off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - wishes)).max(axis=1)
         sizes = np.bincount(patches.ravel())
@@ -250,7 +249,7 @@ class _Fill:
         return _Choice(mixture.repeat, mixture.log_moduli)
 
     def _chosen_again(self, patches: Labels, last: _Trial) -> list[_Choice] | None:
-        """The nearest of the atlas to what the swatch asks of each repeat; None if none changes."""
+        """The nearest repeats, given each patch's factors in the swatch; None if none changes."""
         wishes = self._wishes(patches, len(last.choices)) - last.factors
         if self._is_alone(last.choices):
             return None
@@ -294,7 +293,7 @@ class _Fill:
         return _Trial(chart, tuple(choices), factors, self._off_share(off) + 0.1 * self._rms(off))
 
     def _wishes(self, patches: Labels, count: int) -> Array:
-        """(patches, 2) medians of the wanted logarithms, NaN where a patch has no wish."""
+        """(patches, 2) medians of the targets' logarithms, NaN where a patch has none."""
         found = np.full((count, 2), np.nan)
         for patch in range(count):
             for axis, wish in enumerate(self._wanted):
@@ -342,7 +341,7 @@ class _Fill:
         )
 
     def _beside_kept(self, chart: StitchChart) -> StitchChart:
-        """The chart or its K/P exchange where there are wishes; the kept chart elsewhere."""
+        """The chart, or its K/P exchange, where there are targets; the kept chart elsewhere."""
         if not self._fixed.any():
             return chart
         charts = [
@@ -352,16 +351,16 @@ class _Fill:
         return min(charts, key=lambda c: self._rms(deviation(c, self._wanted, self._table)))
 
     def _off_share(self, off: Array) -> float:
-        """Share of stitches with a wish that are off by more than 10 % (logarithms)."""
+        """Share of stitches with a target that miss it by more than 10 % (logarithms)."""
         missed = (np.abs(np.expm1(off)) > OFF).any(axis=0)
         return float(np.mean(missed, where=self._has_wish))
 
     def _is_alone(self, choices: Sequence[_Choice]) -> bool:
-        """Whether there is one patch without neighbours."""
+        """Whether a single patch covers all stitches."""
         return len(choices) == 1 and not self._fixed.any()
 
     def _judged(self, choices: Sequence[_Choice], factors: Array) -> Array:
-        """(patches, 2) logarithms of moduli: in the swatch, but of a patch alone in a large one."""
+        """(patches, 2) logarithms of moduli in the swatch; of a lone patch, in a large cloth."""
         moduli = np.stack([choice.log_moduli for choice in choices])
         return moduli if self._is_alone(choices) else moduli + factors
 
@@ -384,10 +383,10 @@ def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
     check_size(*maps[0].shape)
     both = np.stack(maps)
     if np.isnan(both).all():
-        raise InputError("target", "nothing is wanted anywhere.", "Paint at least one stitch.")
+        raise InputError("target", "there is no target anywhere.", "Paint at least one stitch.")
     given = both[~np.isnan(both)]
     if not (np.isfinite(given).all() and (given > 0).all()):
-        raise InputError("target", "a wanted modulus is not positive.", "Give N/mm above 0.")
+        raise InputError("target", "a target modulus is not positive.", "Give N/mm above 0.")
     if not 1 <= smallest_patch <= 100:
         raise InputError("smallest_patch", f"{smallest_patch} is not a size.", "Give 1 to 100.")
     logarithms: Array = np.log(both)

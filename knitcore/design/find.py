@@ -1,4 +1,4 @@
-"""Find a fabric: the repeats of one or more atlases that come nearest to what is wanted."""
+"""Find a fabric: the repeats of one or more atlases that come nearest to the targets."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from knitcore.materials.library import INCONSISTENT
 __all__ = ["Candidate", "FoundFabrics", "Limb", "Quantity", "Target", "find_fabric"]
 
 _LONG = 24
-"""Keys longer than this are not spelt out in sentences."""
+"""Longest key that is spelt out in a sentence."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A repeat and how near it comes.
+    """A repeat, and how near it comes to the targets.
 
     Attributes
     ----------
     material : whose atlas.
     repeat : key of the repeat.
-    values : the wanted quantities, predicted, by the targets' labels; NaN where the repeat has
-        none, such as a pressure beyond its lock-up.
+    values : predictions by the targets' labels; NaN where there is none, such as a pressure beyond
+        the lock-up.
     intervals : 90 % intervals of these.
     deviations : predicted over wanted, minus one; the difference for Poisson's ratios.
     misfit : weighted rms of the deviations in units of their tolerances (logarithms).
@@ -79,26 +79,29 @@ def find_fabric(
     count: int = 10,
     limits: CostLimits | None = None,
 ) -> FoundFabrics:
-    """Rank all repeats by their distance from the wishes; ties go to the simpler knitting.
+    """Rank all repeats by their distance from the targets; of equal ones the simpler to knit comes
+    first.
 
     Parameters
     ----------
     atlases : one, or several to search across yarns and needles.
-    targets : at most one of a quantity (at one load, on one limb).
+    targets : at most one for each quantity (at one load, on one limb).
     count : how many candidates to return.
-    limits : repeats that ask for more are left out.
+    limits : repeats that cost more are left out.
 
     Raises
     ------
     InputError
-        If there is no atlas or no wish, something is wanted twice, or no repeat keeps within the
+        If there is no atlas or no target, a target is given twice, or no repeat keeps within the
         limits.
     """
     if not atlases or not any(len(atlas) for atlas in atlases):
         raise InputError("atlas", "there is no repeat to choose from.", "Build an atlas first.")
     labels = [target.label for target in targets]
     if not targets or len(set(labels)) < len(labels):
-        raise InputError("targets", "wishes are missing or doubled.", "Give each quantity once.")
+        raise InputError(
+            "targets", "targets are missing or given twice.", "Give each quantity once."
+        )
     allowed = [_allowed(atlas, limits) for atlas in atlases]
     if not any(len(indices) for indices in allowed):
         raise InputError("limits", "no repeat keeps within them.", _easiest(atlases))
@@ -117,7 +120,7 @@ def find_fabric(
         [_doubtful(atlases[k], int(i), targets) for k, i in zip(owner, index, strict=True)]
     )
     # What is within all tolerances comes first even if its mean deviation is larger; what rests on
-    # figures that contradict each other never does.
+    # contradictory figures never does.
     order = np.lexsort((stitches, misfit.round(3), worst > 1, doubtful))[:count]
     candidates = tuple(
         _candidate(
@@ -139,8 +142,8 @@ def find_fabric(
 
 
 def _doubtful(atlas: Atlas, index: int, targets: Sequence[Target]) -> bool:
-    """Whether a repeat is a fabric of which published figures contradict each other, in a
-    direction that is asked for.
+    """Whether a repeat is a pure fabric whose published figures contradict each other in a
+    direction of the targets.
     """
     asked = {target.quantity.direction for target in targets}
     return any(

@@ -24,11 +24,11 @@ from knitcore.materials import Material
 from knitcore.phases import quarter_phases
 
 CLOSE = 0.02
-"""A mixture that is nearer than this (in logarithms) is taken at once."""
+"""A mixture nearer than this (in logarithms) is taken at once."""
 MOST_PREDICTED = 100
-"""Mixtures predicted for one wish."""
+"""Most mixtures that are predicted for one target."""
 MOST_TURNED = 200
-"""Charts with something turned that are predicted for one wish, if no mixture is near."""
+"""Most charts with turned stitches that are predicted for one target, if no mixture is near."""
 NEAR = 0.045
 """Nothing is turned if a mixture is nearer than this."""
 _PARTNERS = 140
@@ -44,7 +44,7 @@ class Mixture:
     ----------
     repeat : the stripes, once.
     modulus_course_n_per_mm, modulus_wale_n_per_mm : predicted.
-    off : largest deviation from the wishes, in logarithms.
+    off : largest deviation from the targets, in logarithms.
     """
 
     repeat: StitchChart
@@ -82,7 +82,7 @@ class Mixer:
         most_columns: int = _MOST_SIDE,
         look: Callable[[], None] = lambda: None,
     ) -> Mixture | None:
-        """The mixture that comes nearest to a wish (NaN is none); None if there is no room.
+        """The mixture nearest to a target (NaN is none); None if there is no room for one.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class Mixer:
         most: tuple[int, int],
         look: Callable[[], None],
     ) -> Mixture | None:
-        """The best of mixtures and atlas with a stitch, row or column turned, again and again."""
+        """The best mixtures and repeats, improved by turning a stitch, row or column at a time."""
         rng = np.random.default_rng(0)
         near = np.argsort(np.nan_to_num(np.abs(self._atlas.log_moduli - wish)).max(axis=1))[:4]
         starts = [self._atlas.chart(int(k)) for k in near]
@@ -142,7 +142,7 @@ class Mixer:
     def _next(
         self, tables: list[_Estimates], wish: Array, tried: set[StitchChart]
     ) -> tuple[StitchChart, Array] | None:
-        """The nearest stripes by estimate that were not tried yet."""
+        """The stripes with the nearest estimates that have not been tried."""
         ranked: list[tuple[float, StitchChart, Array]] = []
         for table in tables:
             off = np.nan_to_num(np.abs(table.log_moduli - wish)).max(axis=1)
@@ -168,7 +168,7 @@ class Mixer:
         return StitchChart(np.concatenate(grids, axis=0)).repeat()
 
     def _estimate(self, direction: Direction) -> _Estimates:
-        """Moduli of all stripes that follow each other along a direction."""
+        """Moduli of all stripes stacked along a direction."""
         atlas, chosen = self._atlas, self._partners
         along, across = direction, direction.other
         both = np.clip(atlas.column("poisson_yx") * atlas.column("poisson_xy"), 0, 0.95)
@@ -202,7 +202,7 @@ class Mixer:
 
 @dataclass(frozen=True, eq=False)
 class _Estimates:
-    """Stripes that follow each other along a direction, arrays of one length."""
+    """Stripes stacked along a direction, arrays of one length."""
 
     direction: Direction
     partners: NDArray[np.intp]
@@ -211,7 +211,7 @@ class _Estimates:
     log_moduli: Array
 
     def within(self, most_rows: int, most_columns: int) -> _Estimates:
-        """Those that fit."""
+        """The stripes that fit."""
         course = self.direction is Direction.COURSE
         length, side = (most_columns, most_rows) if course else (most_rows, most_columns)
         fits = (self.widths.sum(axis=1) <= length) & (self.side <= side)
@@ -225,7 +225,7 @@ class _Estimates:
 
 
 def _turn_some(chart: StitchChart, most: tuple[int, int], rng: np.random.Generator) -> StitchChart:
-    """A stitch, or a whole row or column, of a chart turned; small charts are tiled first."""
+    """Charts with a stitch, or a whole row or column, turned; small charts are tiled first."""
     rows, columns = (
         side * int(rng.integers(1, max(min(limit, 8) // side, 1) + 1))
         for side, limit in zip((chart.rows, chart.columns), most, strict=True)

@@ -2,8 +2,8 @@
 
 A patch is small, its repeat may be cut off, and its neighbours hold it. The swatch is pulled a
 little along the course and along the wale; the mean stresses and strains of a patch in both pulls
-give its own stiffness, and so its moduli. Divided by those of its repeat's flat composite (which
-is what the swatch is made of) they tell by how much the patch departs from a large cloth of it.
+give its own stiffness, and so its moduli. Divided by those of its repeat's flat composite, of which
+the swatch is made, they give the factor between the patch and a large cloth of its repeat.
 """
 
 from __future__ import annotations
@@ -38,11 +38,10 @@ def finite_size(
     Parameters
     ----------
     chart : of the patches.
-    patches : (rows, columns) number of each stitch's patch; numbers without a repeat are none.
+    patches : (rows, columns) number of each stitch's patch; numbers without a repeat are not
+        patches.
     repeats : of each patch.
-    stitch : (rows, columns), where there are stitches at all.
-
-    Raises
+    stitch : (rows, columns), where there are stitches. Raises
     ------
     CancelledError
         If ``cancelled`` returned True.
@@ -82,7 +81,7 @@ def _flat_moduli(repeat: StitchChart, material: Material) -> tuple[float, float]
 
 
 def _stitch_areas(fields: Fields) -> Array:
-    """Rest areas (rows, columns): every stitch is two quarter cells wide and high."""
+    """Relaxed areas (rows, columns): every stitch is two quarter cells wide and high."""
     width = np.diff(fields.x_mm[0, ::2])
     height = np.diff(fields.y_mm[::2, 0])
     areas: Array = np.outer(height, width)

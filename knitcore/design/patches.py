@@ -1,4 +1,4 @@
-"""Patches: which repeat of an atlas goes where, so that a map of wanted moduli is met."""
+"""Patches: which repeat of an atlas goes where, so that a map of target moduli is met."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from knitcore.phases import surroundings
 Labels = NDArray[np.intp]
 
 MOST_LABELS = 48
-"""Repeats that one chart may mix."""
+"""Most repeats in one chart."""
 _BIN = 0.02
-"""Targets that differ by less (in logarithms) are looked up together."""
+"""Targets that differ by less than this (in logarithms) are looked up together."""
 _EVENNESS = 0.002
-"""Price of unevenness: at most as much as 4.5 % of one modulus."""
+"""Weight of unevenness: it counts at most as much as an error of 4.5 % in one modulus."""
 _SWEEPS = 6
 
 
 def unevenness(atlas: Atlas, table: StitchTable) -> Array:
-    """How much the local moduli inside each repeat differ from its own, at most 1.
+    """How much the local moduli in each repeat differ from its effective ones, at most 1.
 
     Mean squares of logarithms: 0 for pure fabrics, large where unlike stitches alternate.
     """
@@ -38,13 +38,13 @@ def unevenness(atlas: Atlas, table: StitchTable) -> Array:
 def wanted_labels(
     atlas: Atlas, uneven: Array, log_course: Array, log_wale: Array
 ) -> tuple[Labels, Array]:
-    """The best repeats for a map, and what each would cost at every stitch.
+    """The best repeats for a map, and the cost of each at every stitch.
 
     Parameters
     ----------
     atlas : repeats to choose from.
-    uneven : see :func:`unevenness`; of repeats that are about as near the evener one is taken.
-    log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN for no wish.
+    uneven : see :func:`unevenness`; of repeats about equally near the most even one is taken.
+    log_course, log_wale : (rows, columns) logarithms of the wanted moduli; NaN without a target.
 
     Returns
     -------

@@ -17,7 +17,7 @@ Grid = NDArray[np.bool_]
 Look = Callable[[float], None]
 
 BORDER = 2
-"""Stitches on each side of a border that may be turned one by one."""
+"""Stitches on each side of a border that may be turned singly."""
 _SWEEPS = 6
 _ENOUGH = 1e-12
 
@@ -40,12 +40,12 @@ def placed(
     patches : (rows, columns) number of each stitch's patch; a number without a repeat means that
         the stitch stays as it is in ``kept``.
     repeats : of each patch.
-    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN where there is no wish.
+    wanted : (2, rows, columns) logarithms of the wanted moduli, NaN where there is no target.
     table : of the material.
     kept : stitches of the chart where there is no repeat.
-    stitch : (rows, columns), where there are stitches at all.
-    seed : of the order in which patches and stitches are tried.
-    look : called now and then with the share done; may raise to stop.
+    stitch : (rows, columns), where there are stitches. seed : of the order in which patches and
+    stitches are tried.
+    look : called from time to time with the share done; may raise to stop.
     """
     rng = np.random.default_rng(seed)
     local = _LocalCost(wanted, table, stitch)

@@ -10,7 +10,7 @@ from knitcore.errors import CancelledError
 
 @dataclass
 class Progress:
-    """Progress that never falls back, and the wish to stop."""
+    """Progress that never decreases, and a request to stop."""
 
     progress: Callable[[float], None] | None
     cancelled: Callable[[], bool] | None

@@ -35,7 +35,7 @@ def nearest_chart(wanted: Array, table: StitchTable) -> StitchChart:
 
     Parameters
     ----------
-    wanted : (2, rows, columns) logarithms; NaN where there is no wish.
+    wanted : (2, rows, columns) logarithms; NaN where there is no target.
     table : of the material.
     """
     have = table.log_moduli
@@ -53,7 +53,7 @@ def nearest_chart(wanted: Array, table: StitchTable) -> StitchChart:
 
 
 def _given(costs: Array, across: Odd) -> Array:
-    """Costs (lines, stitches, before, after) if the segments across the lines are known.
+    """Costs (lines, stitches, before, after), given the segments across the lines.
 
     ``costs`` is (lines, stitches, before, after, below, above); ``across`` (stitches, lines - 1)
     holds the segments from line to line.

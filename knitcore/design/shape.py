@@ -1,12 +1,11 @@
-"""A chart that takes a wanted outline when it is stretched.
-
-The swatch is pulled between two clamps, and its width is wanted line by line: row by row under a
+"""A chart that takes a target outline when it is stretched. The swatch is pulled between two
+clamps, and the target is its width, line by line: row by row under a
 wale-wise pull, column by column under a course-wise one. It is made of bands across the pull, each
 of one repeat of the atlas. All bands carry one force, so each stretches by its own curve and
 narrows by its Poisson ratio: that gives the first choice. The finite swatch is then pulled, the
-wish of each band is shifted by its error in the swatch, and the bands are chosen again; at
-last single bands are changed where that helps. What counts is the outline of the swatch, never the
-estimate.
+target of each band is shifted by its error in the swatch, and the bands are chosen again; finally
+single bands are changed where that helps. Results are judged by the outline of the swatch, never by
+the estimate.
 """
 
 from __future__ import annotations
@@ -27,17 +26,17 @@ from knitcore.materials import Material
 from knitcore.swatch import strip_test
 
 FORCES_N_PER_MM = (0.01, 0.05, 0.2)
-"""First guesses of the common force: soft bands and stiff ones can narrow alike."""
+"""First guesses of the common force, since soft and stiff bands can narrow alike."""
 ROUNDS = 4
-"""Times that all bands are chosen and pulled, from each first guess."""
+"""Rounds of choosing and pulling all bands, from each first guess."""
 TRIES = 72
-"""Changes of one or two bands that are pulled after that."""
+"""Changes of one or two bands that are tried after that."""
 _STEPS = 4
 _PALETTE = 40
 _DAMPING = 0.8
 _MOST_STITCHES = 10_000
 OFF = 0.03
-"""Error of a width, relative to the width at rest, from which a message says so."""
+"""Smallest error of a width, over the width at rest, that a message reports."""
 
 
 @dataclass(frozen=True)
@@ -64,11 +63,10 @@ class ShapedSwatch:
     chart : the stitches.
     bands : of one repeat each, from the bottom or the left.
     width : (lines,) stretched width over width at rest, from the swatch.
-    wanted : what was wanted, NaN where nothing was.
+    wanted : the target, NaN where there was none.
     rms, largest : of the differences.
     force_n : at the clamps.
-    pulls : how many swatches were pulled.
-    messages : wishes that were not met.
+    pulls : number of swatches that were pulled. messages : on targets that were not met.
     """
 
     chart: StitchChart
@@ -99,13 +97,13 @@ def fill_shape(
 
     Parameters
     ----------
-    width : wanted width over width at rest of every line across the pull, from the bottom or the
-        left; NaN where nothing is wanted. Near 1 at the clamps, which hold the ends.
+    width : target width over width at rest of every line across the pull, from the bottom or the
+        left; NaN where there is none. Near 1 at the clamps, which hold the ends.
     across : stitches of a line.
     direction : of the pull.
     strain : from clamp to clamp.
     material, atlas : of one yarn.
-    smallest_band : lines of the narrowest band.
+    smallest_band : fewest lines in a band.
     seed : of the order in which bands are changed.
     progress : called with the share done.
     cancelled : asked between and within pulls.
@@ -138,7 +136,7 @@ class _Pulled:
 
 
 class _Run:
-    """One search."""
+    """A search for the bands."""
 
     def __init__(
         self,
@@ -183,7 +181,7 @@ class _Run:
                 aim = wish
             pulled = self._pull(self._choose(aim, FORCES_N_PER_MM[turn // ROUNDS]))
             if pulled is None:
-                aim = _DAMPING * aim  # too far for some band: ask for less
+                aim = _DAMPING * aim  # too far for some band: try less
                 continue
             if best is None or pulled.error < best.error:
                 best = pulled
@@ -191,7 +189,7 @@ class _Run:
         if best is None:
             raise InputError(
                 "strain",
-                f"no swatch of this yarn that narrows so can be stretched to {self._strain:g} "
+                f"no swatch of this yarn with this outline can be stretched to {self._strain:g} "
                 f"{self._direction}-wise.",
                 "Ask for a smaller strain.",
             )
@@ -201,7 +199,7 @@ class _Run:
         return self._result(best)
 
     def _choose(self, aim: Array, force: float) -> tuple[int, ...]:
-        """Labels whose narrowing at the common force is nearest to the aims."""
+        """Labels whose narrowing at the common force is nearest to the targets."""
         heights = np.diff(self._edges)
         labels = np.zeros(len(aim), dtype=int)
         for _ in range(4):
@@ -255,7 +253,7 @@ class _Run:
     def _change_bands(
         self, best: _Pulled, rng: np.random.Generator, look: Callable[[int], None]
     ) -> _Pulled:
-        """Change a band, or two, to a repeat that narrows a little more or less, or to any."""
+        """Change one or two bands to a repeat that narrows slightly more or less, or any other."""
         narrowing = self._poisson * self._strains(0.05)
         rank = np.argsort(narrowing, kind="stable")
         place = np.argsort(rank)
@@ -290,7 +288,7 @@ class _Run:
         return StitchChart(np.concatenate(parts, axis=1 if course else 0))
 
     def _by_band(self, values: Array) -> Array:
-        """Means over the lines of each band, NaN where all are."""
+        """Means over the lines of each band, NaN where all lines are NaN."""
         return np.array(
             [
                 np.nan if np.isnan(part).all() else float(np.nanmean(part))
@@ -338,14 +336,14 @@ class _Run:
 
 
 def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> NDArray[np.intp]:
-    """Repeats that differ in how they stretch and narrow."""
+    """Repeats that stretch and narrow differently."""
     shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
     side = shapes[:, 0] if direction is Direction.COURSE else shapes[:, 1]
     usable = np.flatnonzero((side <= across) & (shapes.max(axis=1) <= 4))
     stretch = atlas.strain_at(direction, 0.05)[usable]
     narrowing = atlas.poisson(direction)[usable] * np.minimum(stretch, 2 * strain)
     points = np.stack([np.log(stretch), 3 * narrowing / max(np.ptp(narrowing), 1e-9)], axis=1)
-    # Farthest-point choice: each next one is the least like those already chosen.
+    # Farthest-point choice: each one is the least like those already chosen.
     pure = [atlas.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) for fabric in Fabric]
     chosen = [k for k, entry in enumerate(usable.tolist()) if entry in pure] or [0]
     while len(chosen) < min(_PALETTE, len(usable)):
@@ -374,7 +372,7 @@ def _checked(
     if across < 3 or across * len(wanted) > _MOST_STITCHES:
         raise InputError(
             "across",
-            f"{across} x {len(wanted)} stitches cannot be pulled again and again.",
+            f"{across} x {len(wanted)} stitches are too many to pull repeatedly.",
             f"Use at least 3 across and at most {_MOST_STITCHES} stitches.",
         )
     if not 0 < strain <= 5:

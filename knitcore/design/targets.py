@@ -35,7 +35,7 @@ class Quantity(StrEnum):
 
     @property
     def direction(self) -> Direction:
-        """Along which it is measured; the course for the anisotropy."""
+        """The direction along which it is measured; the course for the anisotropy."""
         wale = self is Quantity.POISSON_WALE or "wale" in self.value
         return Direction.WALE if wale else Direction.COURSE
 
@@ -46,12 +46,12 @@ class Quantity(StrEnum):
 
     @property
     def needs_load(self) -> bool:
-        """Whether it is asked at a load."""
+        """Whether it needs a load."""
         return self in (Quantity.STRETCH_COURSE, Quantity.STRETCH_WALE)
 
     @property
     def needs_limb(self) -> bool:
-        """Whether it is asked on a limb."""
+        """Whether it needs a limb."""
         return self in (Quantity.PRESSURE_COURSE, Quantity.PRESSURE_WALE)
 
 
@@ -71,30 +71,29 @@ class Limb:
         if not (math.isfinite(self.worn_mm) and 0 < self.rest_mm < self.worn_mm <= 5000):
             raise InputError(
                 "limb",
-                f"{self.rest_mm:g} mm on {self.worn_mm:g} mm presses nothing.",
+                f"{self.rest_mm:g} mm on {self.worn_mm:g} mm exerts no pressure.",
                 "Give a tube that is smaller than the limb, both in mm.",
             )
 
     @property
     def strain(self) -> float:
-        """Around the limb."""
+        """Strain around the limb."""
         return self.worn_mm / self.rest_mm - 1
 
 
 @dataclass(frozen=True)
 class Target:
-    """One wish.
+    """A target value of a quantity.
 
     Attributes
     ----------
-    quantity : of what; the anisotropy is Y_course / Y_wale, stretch is a strain (0.5 = 50 %) free
+    quantity : what is sought; the anisotropy is Y_course / Y_wale, stretch is a strain (0.5 = 50 %)
+        free
         across the pull, pressure that of a tube, its direction around the limb.
-    value : wanted; above 0 but for Poisson's ratios.
+    value : the target; above 0 except for Poisson's ratios.
     tolerance : relative deviation that still counts as reached (0.1 = 10 %); for Poisson's ratios
         the difference.
-    weight : relative to the other wishes.
-    load_n_per_mm : of a stretch.
-    limb : of a pressure.
+    weight : relative to the other targets. load_n_per_mm : for a stretch. limb : for a pressure.
     """
 
     quantity: Quantity
@@ -150,16 +149,15 @@ class Target:
             away = np.abs(values - self.value) / self.tolerance
         else:
             away = np.abs(np.log(values / self.value)) / math.log1p(self.tolerance)
-        found: Array = np.where(np.isnan(away), np.inf, away) - 1e-12  # a hair for rounding
+        found: Array = np.where(np.isnan(away), np.inf, away) - 1e-12  # allows for rounding
         return found
 
 
 def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:
     """Predicted value of every repeat, and the ends of its interval; NaN where there is none.
 
-    Intervals are of 90 %. That of a stretch takes the uncertainty of the modulus as one of the
-    whole scale of stress; that of a pressure goes from axially free to axially fixed, widened by
-    it.
+    Intervals cover 90 %. That of a stretch applies the uncertainty of the modulus to the whole
+    scale of stress; that of a pressure goes from axially free to axially fixed, widened by it.
     """
     quantity, direction = target.quantity, target.quantity.direction
     course, wale = (

@@ -1,4 +1,4 @@
-"""Wishes for parts of a chart, as maps of wanted moduli."""
+"""Targets for parts of a chart, as maps of moduli."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from knitcore.errors import InputError
 
 @dataclass(frozen=True)
 class Wish:
-    """Stiffness wanted in one part of a chart.
+    """Target stiffness of one part of a chart.
 
     Attributes
     ----------
     name : for messages.
     runs : (row, first column, length) of its stitches, row 0 at the bottom; of any shape.
-    course_n_per_mm, wale_n_per_mm : wanted moduli; None for no wish.
+    course_n_per_mm, wale_n_per_mm : target moduli; None where any value will do.
     """
 
     name: str
@@ -34,12 +34,12 @@ class Wish:
 def wanted_maps(
     wishes: Sequence[Wish], rows: int, columns: int, *, smallest_patch: int = 1
 ) -> tuple[Array, Array]:
-    """Maps (rows, columns) of the wanted moduli, NaN where nothing is wanted.
+    """Maps (rows, columns) of the target moduli, NaN where there is none.
 
     Raises
     ------
     InputError
-        If a wish lies outside the chart, is narrower than a patch, or contradicts another.
+        If a part lies outside the chart, is narrower than a patch, or contradicts another.
     """
     check_size(rows, columns)
     maps = np.full((2, rows, columns), np.nan)
@@ -74,7 +74,9 @@ def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:
     values = (wish.course_n_per_mm, wish.wale_n_per_mm)
     if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
         raise InputError(
-            "wishes", f"“{wish.name}” wants a stiffness that is not positive.", "Give N/mm above 0."
+            "wishes",
+            f"“{wish.name}” has a target stiffness that is not positive.",
+            "Give N/mm above 0.",
         )
     return cells
 

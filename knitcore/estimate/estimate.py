@@ -2,7 +2,7 @@
 
 The model is :mod:`knitcore.estimate.model`; its intervals cover 90 % of the values of
 yarns left out. They do not cover another tightness: swatch and product share the needle or
-stitch setting. Eight yarns only, five of them from one machine. The extension under load is what is
+stitch setting. There are only eight yarns, five of them from one machine. Extension under load is
 predicted best, so it comes first.
 """
 
@@ -34,7 +34,7 @@ from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials.measured import MeasuredCurve
 
 LOOP_LENGTH_TOLERANCE = 0.1
-"""A swatch whose loops differ by more is of another tightness."""
+"""A swatch whose loop length differs by more than this is of another tightness."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class FabricEstimate:
 
 @dataclass(frozen=True)
 class YarnEstimate:
-    """All four fabrics of a new yarn, and what to know before relying on them.
+    """All four fabrics of a new yarn, with warnings.
 
     Attributes
     ----------
@@ -173,7 +173,7 @@ def _own_values(swatches: Sequence[MeasuredSwatch], bending: float) -> dict[str,
     for swatch in swatches:
         i = FABRICS.index(swatch.fabric)
         for d in DIRECTIONS:
-            # The floors only matter for a swatch that shows no stiffening at all.
+            # The floors only matter for a swatch without any stiffening.
             scale = bending / swatch.loop_length_mm**3
             own["modulus"][i, d.axis] = math.log(swatch.law.modulus(d) / scale)
             own["alpha"][i, d.axis] = math.log(max(swatch.law.alpha(d), 0.05))

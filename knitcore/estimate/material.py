@@ -10,7 +10,7 @@ from knitcore.materials import FabricRecord, LawUncertainty, Material, Origin, Y
 from knitcore.materials.uncertainty import Z_SCORE
 
 MEASURED_LOG_SD = 0.1
-"""Of the moduli of a measured swatch: the paper's median."""
+"""Relative standard deviation of the moduli of a measured swatch: the paper's median."""
 
 
 def estimated_material(found: YarnEstimate, identifier: str, name: str = "") -> Material:

@@ -24,11 +24,11 @@ from knitcore.materials import Material, load_library
 from knitcore.materials.uncertainty import COVERAGE
 
 LOAD_N_PER_MM = 0.1
-"""Load at which the extension is shown: a garment pulled on by hand."""
+"""Load at which the extension is shown: that of a garment pulled on by hand."""
 FABRICS = tuple(Fabric)
 DIRECTIONS = tuple(Direction)
 QUANTITIES = ("modulus", "alpha", "beta")
-"""Predicted by a mixed model each."""
+"""Quantities that are each predicted by a mixed model."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class LeftOut:
     Attributes
     ----------
     measured : fabrics of the left-out yarn that were given.
-    modulus_rms_factor, modulus_median_factor, modulus_within_two : over all other fabrics.
+    modulus_rms_factor, modulus_median_factor, modulus_within_two : moduli of all other fabrics.
     strain_rms_factor : extension at 0.1 N/mm.
     alpha_rms_factor, beta_rms_factor : constants of the stiffening.
     modulus_coverage, strain_coverage : share of left-out values inside intervals that were

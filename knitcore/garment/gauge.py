@@ -14,7 +14,7 @@ from knitcore.fabric import Fabric
 from knitcore.materials import Material
 
 SWATCH_LOG_SD = RelaxedSize.log_sd
-"""Of a knitter's own gauge."""
+"""Standard deviation of the logarithm of a knitter's own gauge."""
 
 
 class GaugeLength(Enum):
@@ -32,8 +32,7 @@ class Gauge:
     Attributes
     ----------
     stitch_course_mm, stitch_wale_mm : width of a stitch and height of a row.
-    source : where they come from, in words.
-    log_sd : standard deviation of the logarithm of both.
+    source : of the sizes, in words. log_sd : standard deviation of the logarithm of both.
     """
 
     stitch_course_mm: float
@@ -111,7 +110,8 @@ class GaugeSet:
     ----------
     gauges : by fabric; the material may lack some.
     material : its identifier.
-    length_factor : loop lengths over the material's own, by the root of a stitch's area.
+    length_factor : loop lengths over the material's own: the square root of the ratio of stitch
+        areas.
     """
 
     gauges: Mapping[Fabric, Gauge]
@@ -127,7 +127,7 @@ class GaugeSet:
     ) -> GaugeSet:
         """The gauges of a material, or of a knitter who knits ``fabric`` at a swatch's gauge.
 
-        The other fabrics are scaled alike: a looser hand is looser in all of them.
+        The other fabrics are scaled alike, as a loose knitter is loose in all of them.
 
         Raises
         ------
@@ -138,7 +138,7 @@ class GaugeSet:
         if swatch is None:
             return cls(found, material.identifier)
         if fabric not in found:
-            Gauge.of_material(material, fabric)  # raises if something is missing
+            Gauge.of_material(material, fabric)  # raises if the material lacks the fabric
         own = found[fabric]
         across = swatch.stitch_course_mm / own.stitch_course_mm
         along = swatch.stitch_wale_mm / own.stitch_wale_mm

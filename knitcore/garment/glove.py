@@ -1,7 +1,7 @@
 """The therapeutic glove (Note 10): one flat piece, knitted sideways around the hand and grafted.
 
-Columns run from the forearm to the finger tips, rows around the hand: half of the thumb, the
-fingers' backs from index to little finger, their fronts back to the index, and the other half of
+Columns run from the forearm to the finger tips, rows around the hand: half of the thumb, the backs
+of the fingers from index to little finger, their fronts in the reverse order, and the other half of
 the thumb, which is grafted to the first row. Stockinette lies around the wrist along its stiff
 direction, the wales; ribs let the fingers bend, garter the hand close, seed the thumb move both
 ways. Between fingers a few rows end at the crotch, and between thumb and hand a gusset of seed
@@ -33,7 +33,7 @@ STUDY_GLOVE = "glove-wool:glove"
 
 @dataclass(frozen=True)
 class Finger:
-    """Length from its crotch, and circumference, in mm."""
+    """A finger: length from its crotch, and circumference, in mm."""
 
     length_mm: float
     circumference_mm: float
@@ -121,10 +121,10 @@ def glove(
     Parameters
     ----------
     hand : its measurements.
-    material : gives gauges and laws; ``glove-wool:glove`` is the study's.
+    material : gives gauges and laws; ``glove-wool:glove`` is the paper's.
     ease : of fingers and thumb.
-    mmhg : wanted pressure of the wrist support; a note says how many rows it takes.
-    gauges : the knitter's; the material's own if left out.
+    mmhg : target pressure of the wrist support; a note says how many rows that takes. gauges : the
+    knitter's; by default the material's own.
     linear_density_tex : for the mass of yarn.
 
     Notes
@@ -230,8 +230,8 @@ def _notes(
         "Knit the wrist support on 2.0 mm needles (US 0) and all else on 2.75 mm (US 2), as the "
         "study did: each row changes needles at the support's edges."
         if material.sample == STUDY_GLOVE
-        else "The study knitted the wrist support on 2.0 mm needles and all else on 2.75 mm; "
-        f"{STUDY_GLOVE} is measured so, {material.identifier} is of one needle."
+        else "The paper's glove has the wrist support on 2.0 mm needles and all else on 2.75 mm; "
+        f"{STUDY_GLOVE} was measured so, {material.identifier} on one needle size."
     ]
     wanted = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / wanted - 1) > PALM_TOLERANCE:
@@ -245,14 +245,14 @@ def _notes(
 def _wrist_notes(
     pressed: Worn, gauge: Gauge, material: Material, rows: int, mmhg: float | None
 ) -> tuple[str, ...]:
-    """How many rows the wrist support takes to press, and how to come by them."""
+    """A note on the rows that the wrist support needs for a pressure."""
     if pressed.pressure is None:
         loose = (
             f"The wrist support is {pressed.rest_mm:.0f} mm around, the wrist "
-            f"{pressed.worn_mm:.0f} mm: it does not press."
+            f"{pressed.worn_mm:.0f} mm: it exerts no pressure."
         )
         if mmhg is None:
-            return (f"{loose} Give a wanted pressure to learn how many rows it takes.",)
+            return (f"{loose} Give a target pressure to see how many rows that takes.",)
     if mmhg is None:
         return ()
     rest = Fit(mmhg=mmhg).rest_mm(pressed.worn_mm, material, Fabric.STOCKINETTE, Direction.WALE)

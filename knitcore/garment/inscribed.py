@@ -1,4 +1,4 @@
-"""The largest rectangle of stitches inside an outline: what effective moduli can be given for."""
+"""The largest rectangle of stitches inside an outline, for which effective moduli can be given."""
 
 from __future__ import annotations
 

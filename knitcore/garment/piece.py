@@ -23,7 +23,7 @@ class PieceYarn:
 
 
 MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
-"""What knits stitches for which no yarn is named."""
+"""The yarn of stitches for which none is named."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Piece:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it is a rectangle of the main yarn: nothing but its chart."""
+        """Whether it is a rectangle of the main yarn, with nothing beyond its chart."""
         return self.is_rectangle and self.yarns == (MAIN_YARN,)
 
     def stretches(self, row: int) -> tuple[Stretch, ...]:
@@ -100,7 +100,7 @@ class Piece:
         return cells
 
     def cropped(self) -> Piece:
-        """Without columns in which no row has a stitch."""
+        """The piece without columns that have no stitch."""
         used = np.flatnonzero(self.shaped.stitch.any(axis=0))
         columns = slice(int(used[0]), int(used[-1]) + 1)
         shaped = ShapedChart(
@@ -109,7 +109,7 @@ class Piece:
         return Piece(shaped, self.yarns, self.yarn_of[:, columns])
 
     def __eq__(self, other: object) -> bool:
-        """Alike in every stitch: its kind and its yarn's name and colour."""
+        """Equal if every stitch has the same kind, and a yarn of the same name and colour."""
         if not isinstance(other, Piece) or self.shaped != other.shaped:
             return False
         mine, theirs = set(self.yarns), set(other.yarns)

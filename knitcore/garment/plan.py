@@ -1,4 +1,4 @@
-"""A garment plan: outline, regions and everything that is known of them."""
+"""A garment plan: outline, regions, and what follows from them."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class GarmentPlan:
     fabrics : of the regions.
     gauges : of its fabrics.
     around : which material direction runs around the limb.
-    worn : how it presses, place by place; empty where nothing is known of the limb.
+    worn : its pressure, place by place; empty where the limb is not known.
     closing : how the piece is closed, in words.
     notes : of shaping and assumptions.
-    misfits : where regions of unlike gauge meet.
+    misfits : borders between regions of different gauge.
     numbers : extensibility by region.
     yarn : length and mass needed.
     """
@@ -68,7 +68,7 @@ class GarmentPlan:
     def yarn_of(
         self, region: Region, material: Material, linear_density_tex: float | None = None
     ) -> YarnUse:
-        """What one region takes."""
+        """The size and yarn of one region."""
         use = yarn_use(
             self.shaped, material, linear_density_tex=linear_density_tex, cells=region.cells
         )
@@ -102,7 +102,7 @@ def make_plan(
     Raises
     ------
     InputError
-        From the outline, the regions or the material.
+        If the outline, the regions or the material cannot be used.
     """
     used = tuple(part for part in parts if (part.cells & stitch).any())
     regions = tuple(

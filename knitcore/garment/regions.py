@@ -1,4 +1,4 @@
-"""Regions of a garment, what fills them, and what happens where they meet."""
+"""Regions of a garment, their fills, and the borders between them."""
 
 from __future__ import annotations
 
@@ -43,14 +43,13 @@ class Region:
 
 @dataclass(frozen=True)
 class Misfit:
-    """Two regions of unlike gauge that share an edge.
+    """Two regions of different gauge that share an edge.
 
     Attributes
     ----------
     first, second : the regions.
-    stitches : how many pairs of stitches meet there.
-    difference : of the size that both should have in common, relative to the smaller.
-    text : the misfit in words.
+    stitches : number of pairs of stitches that meet there. difference : of the size that should be
+    equal on both sides, over the smaller. text : a description in words.
     """
 
     first: str
@@ -103,7 +102,7 @@ def fill_regions(stitch: NDArray[np.bool_], regions: Sequence[Region]) -> Shaped
 def misfits(
     regions: Sequence[Region], gauges: Sequence[Gauge], stitch: NDArray[np.bool_]
 ) -> tuple[Misfit, ...]:
-    """Where regions of unlike gauge meet.
+    """Borders between regions of different gauge.
 
     Regions side by side share row heights; regions above each other share stitch widths.
     """
@@ -159,12 +158,12 @@ def region_numbers(
 
 
 LOOP_LENGTH_LOG_SD = 0.05
-"""Of a loop's length: the median of what the paper prints for 37 fabrics."""
+"""Relative standard deviation of a loop length: the median of the 37 that the paper prints."""
 
 
 @dataclass(frozen=True)
 class YarnUse:
-    """Yarn that a chart takes.
+    """Yarn needed for a chart.
 
     Attributes
     ----------
@@ -182,7 +181,7 @@ class YarnUse:
 
     @property
     def mass_interval_g(self) -> Interval | None:
-        """The same of the mass."""
+        """90 % interval of the mass."""
         return None if self.mass_g is None else log_interval(self.mass_g, LOOP_LENGTH_LOG_SD)
 
 
@@ -193,7 +192,7 @@ def yarn_use(
     linear_density_tex: float | None = None,
     cells: NDArray[np.bool_] | None = None,
 ) -> YarnUse:
-    """Yarn of all stitches; each takes the mean loop length of its four quarters' fabrics.
+    """Yarn of all stitches; each needs the mean loop length of its four quarters' fabrics.
 
     Parameters
     ----------

@@ -21,14 +21,14 @@ class ShapedChart:
 
     Parameters
     ----------
-    chart : K/P of every cell; what stands at "no stitch" means nothing.
+    chart : K/P of every cell; its value at "no stitch" has no meaning.
     stitch : bool (rows, columns), row 0 at the bottom.
 
     Raises
     ------
     InputError
         If the outline cannot be knitted as one piece: an empty row, a row in two parts, or a row
-        that hangs on nothing.
+        that does not overlap the one below.
     """
 
     chart: StitchChart

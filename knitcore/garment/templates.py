@@ -50,9 +50,9 @@ def limb_tube(
     ----------
     name : of the garment.
     profile : circumferences along the limb, from where the knitting begins.
-    material : its laws press the limb.
-    fit : ease, or a wanted pressure of the body.
-    gauges : the knitter's; the material's own if left out. Sizes follow the body's fabric.
+    material : gives the laws for the pressure.
+    fit : ease, or a target pressure of the body. gauges : the knitter's; by default the material's
+    own. Sizes follow the body's fabric.
     body, hem : fabrics of the middle, and of the first and last ``hem_mm``.
     notes : added to the plan's own.
     linear_density_tex : for the mass of yarn.
@@ -142,7 +142,7 @@ def sock_leg(
         gauges=gauges,
         notes=(
             "The leg only: a heel is turned with short rows and a foot is a tube of its own, which "
-            "one chart of whole rows cannot hold. Knit them on from the ankle's stitches.",
+            "a chart of whole rows cannot show. Knit them on from the ankle's stitches.",
         ),
         linear_density_tex=linear_density_tex,
     )
@@ -158,16 +158,16 @@ def wrist_brace(
     edge_mm: float = 15.0,
     linear_density_tex: float | None = None,
 ) -> GarmentPlan:
-    """A brace knitted sideways and grafted, so that wales, stockinette's stiff way, go around.
+    """A brace knitted sideways and grafted, so that wales, stockinette's stiff direction, go
+    around.
 
     Parameters
     ----------
     wrist_mm : circumference of the wrist.
     length_mm : along the arm.
-    material : its law presses the wrist.
-    fit : ease, or a wanted pressure.
-    gauges : the knitter's; the material's own if left out.
-    edge_mm : width of the garter edges, which give way around the arm.
+    material : gives the law for the pressure. fit : ease, or a target pressure. gauges : the
+    knitter's; by default the material's own.
+    edge_mm : width of the garter edges, which stretch around the arm.
     linear_density_tex : for the mass of yarn.
     """
     _check_length("wrist_mm", wrist_mm)
@@ -207,7 +207,7 @@ def wrist_brace(
 
 
 def _limit_changes(counts: Sequence[int]) -> list[int]:
-    """The largest counts that nowhere exceed these and change slowly enough."""
+    """The largest counts that never exceed these and change slowly enough."""
     limited = list(counts)
     for order in (range(1, len(limited)), range(len(limited) - 2, -1, -1)):
         for row in order:

@@ -1,6 +1,6 @@
 """Rows of a piece as they are worked, with increases and decreases at their edges.
 
-It does for outlines and yarns what :mod:`knitcore.worked` does for charts, and uses its rules.
+The counterpart of :mod:`knitcore.worked`, whose rules it uses, for outlines and yarns.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _check_rounds(rows: Sequence[PieceRow]) -> None:
         if len(set(row.yarns)) > 1:
             raise InputError(
                 "construction",
-                f"round {number} is of several yarns: intarsia leaves each at the wrong end.",
+                f"round {number} has several yarns: intarsia leaves each at the wrong end.",
                 "Work it flat, or change yarns only between rounds.",
             )
         if max(abs(row.first), abs(row.last)) > 1:

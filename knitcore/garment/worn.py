@@ -1,4 +1,4 @@
-"""How a garment presses where it is worn, and how wide it must be knitted to press by a target."""
+"""The pressure of a garment where it is worn, and the width that gives a target pressure."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Worn:
     at_mm : along the limb, from where the garment begins.
     part : of the garment there.
     rest_mm, worn_mm : circumferences of the garment unworn, and of the limb.
-    pressure : None where the piece does not press.
-    problem : why it cannot, such as a loose fit, or a strain beyond the lock-up; else empty.
+    pressure : None where there is none.
+    problem : why there is none, such as a loose fit or a strain beyond the lock-up; else empty.
     """
 
     at_mm: float
@@ -33,7 +33,7 @@ class Worn:
 
     @property
     def ease(self) -> float:
-        """Rest over worn circumference, minus one: negative where it presses."""
+        """Rest over worn circumference, minus one: negative where the garment is stretched."""
         return self.rest_mm / self.worn_mm - 1
 
 
@@ -57,12 +57,12 @@ def worn(
 
 @dataclass(frozen=True)
 class Fit:
-    """How tight a garment is: by its ease, or by a pressure that it shall have.
+    """How tight a garment is: by its ease, or by a target pressure.
 
     Parameters
     ----------
     ease : rest circumference over the limb's, minus one; negative is tighter.
-    mmhg : wanted pressure; it goes before the ease.
+    mmhg : target pressure; takes precedence over the ease.
     """
 
     ease: float = -0.15
@@ -77,7 +77,7 @@ class Fit:
     def rest_mm(
         self, worn_mm: float, material: Material, fabric: Fabric, around: Direction
     ) -> float:
-        """The rest circumference for a limb's: the middle of those that may reach the pressure.
+        """The rest circumference for a limb; for a pressure, the middle of the interval of sizes.
 
         Raises
         ------

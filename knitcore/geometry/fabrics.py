@@ -1,8 +1,8 @@
 """Relaxed centre lines of the four pure fabrics, in the sizes of a material.
 
-They come from the packaged store of the yarn level, which holds acrylic and cotton. Other
-materials take the acrylic's, scaled to their own stitches: an estimate, and it says so. Where the
-store has no line of a fabric its geometric loop stands in (:mod:`knitcore.geometry.loops`).
+They come from the packaged store of the yarn level, which holds acrylic and cotton. Other materials
+get those of acrylic, scaled to their own stitches, and labelled as an estimate. Where the store has
+no line of a fabric, a geometric loop is used (:mod:`knitcore.geometry.loops`).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class FabricLines:
 
 
 def stored_material(material: Material) -> str:
-    """The material of the store whose stitches stand for a material's."""
+    """The material of the store whose stitches are used for a material."""
     return material.sample if material.sample in STORED else STORED[0]
 
 

@@ -1,4 +1,4 @@
-"""A fabric as a few meshes and the places of their copies, for renderers with instancing."""
+"""A fabric as a few meshes and the positions of their copies, for renderers with instancing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float32]
 LEVELS = ((1_500, 48, 8), (10_000, 16, 6), (40_000, 10, 4))
 """(largest number of stitches, points, sides): how finely each stitch is drawn."""
 OVERLAP = 0.012
-"""Tubes reach this share of a stitch into the next: no light falls through the joins."""
+"""Tubes overlap the next by this share of a stitch, so that joins show no gap."""
 MOST_STITCHES = LEVELS[-1][0]
 
 
@@ -42,14 +42,14 @@ class StitchMeshes:
     def fits(self, sizes_mm: Array, depth: float, tolerance: float) -> bool:
         """Whether stitches of these mean sizes may be shown by scaling the tubes.
 
-        Scaling makes the yarn itself thicker or thinner, so it may not go far.
+        Scaling makes the yarn itself thicker or thinner, so only little of it is allowed.
         """
         ratios = np.append(np.log(sizes_mm / self.sizes_mm), np.log(depth / self.depth))
         return bool(np.abs(ratios).max() <= tolerance)
 
 
 def level_of(stitches: int) -> tuple[int, int]:
-    """Points and sides of a tube where so many stitches are drawn."""
+    """Points and sides of a tube, for a number of stitches."""
     return next((p, s) for most, p, s in LEVELS if stitches <= most)
 
 
@@ -71,7 +71,7 @@ def stitch_meshes(
 
 
 def resampled(lines: Array, points: int) -> Array:
-    """Lines (n, P, 3) with another number of points, their ends kept."""
+    """Lines (n, P, 3) resampled to another number of points, with the same ends."""
     place = np.linspace(0.0, lines.shape[1] - 1, points)
     before = np.minimum(place.astype(int), lines.shape[1] - 2)
     share = (place - before)[:, None]
@@ -80,7 +80,7 @@ def resampled(lines: Array, points: int) -> Array:
 
 
 def quaternions(placement: Placement) -> Floats:
-    """(rows * columns, 4) w, x, y, z of the turn of every stitch."""
+    """Rotation of every stitch as a quaternion w, x, y, z, (rows * columns, 4)."""
     if placement.frames is not None:
         turns = Rotation.from_matrix(placement.frames.reshape(-1, 3, 3))
         return turns.as_quat(scalar_first=True).astype(np.float32)

@@ -1,4 +1,4 @@
-"""Where the stitches of a chart lie in the plane: on a straight lattice, or drawn in."""
+"""Positions of the stitches of a chart in the plane: on a straight lattice, or drawn in."""
 
 from __future__ import annotations
 
@@ -42,9 +42,8 @@ def stitch_sizes_mm(material: Material) -> Array:
 
 
 def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
-    """The chart as a flat sheet: every wale as wide, every course as high, as its stitches' mean.
-
-    It is a picture's lattice, not an equilibrium; the swatch solves for that.
+    """The chart as a flat sheet: the width of a wale and the height of a course are means over its
+    stitches. A lattice for pictures, not an equilibrium, which the swatch solves for.
 
     Raises
     ------
@@ -62,8 +61,7 @@ def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
 
 def resting_lattice(chart: StitchChart, material: Material) -> Lattice:
     """The chart as it lies at rest with free edges: textures of different gauge draw each other in.
-
-    Every stitch wants the size that its surroundings give it
+    Every stitch tends to the size that its surroundings give it
     (:mod:`knitcore.answer.neighbourhood`), and shear holds rows and columns together: the places x
     of the edges between stitches minimise the sum of (step along the course - width)² + weight
     (step along the wale)², and y likewise; the weights are shear over Young's modulus. Both are
@@ -106,7 +104,7 @@ def _edges(wanted: Array, weight: float) -> Array:
 
 
 def course_angles(centres_mm: Array) -> Array:
-    """How far each course runs off the horizontal at each stitch, radians, (rows, columns)."""
+    """Slope of each course at each stitch, radians, (rows, columns)."""
     if centres_mm.shape[1] < 2:
         return np.zeros(centres_mm.shape[:2])
     along = np.gradient(centres_mm, axis=1)

@@ -3,7 +3,7 @@
 The loop has the right topology for any neighbours: feet go behind the loops of the row below, legs
 pass in front, the head passes behind the legs of the row above; a purl is the mirror image. Only
 its proportions are drawn, not computed: lengths and contacts are those of the stitch cell and the
-yarn's diameter. It is also where relaxations of the yarn level start from.
+yarn's diameter. Relaxations at the yarn level also start from it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SELF, LEFT, RIGHT, ABOVE = 1, 2, 4, 8
 """Bits of a kind of loop: that stitch is a purl."""
 
 _NECK = 0.17
-"""How far legs lean out at the head and in at the neck, in stitch widths (0 = a plain cosine)."""
+"""How far legs lean out at the head and in at the neck, in stitch widths (0: a cosine)."""
 _REACH = 0.78
 """Half the height of a loop in row heights: loops reach through those of the row below."""
 _KNOTS = np.array([0.0, 0.08, 0.21, 0.29, 0.42, 0.5])

@@ -1,4 +1,4 @@
-"""Where each stitch's shape goes: at rest, or carried along by a swatch's displacement."""
+"""Position of each stitch's shape: at rest, or moved with a swatch's displacement."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def at_rest(shapes: StitchShapes) -> Placement:
 
 
 def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placement:
-    """The fabric where a stretched sheet has taken its stitches.
+    """The fabric moved with a stretched sheet.
 
     Loops turn with their course and grow or shrink with the distances to their neighbours. The
     yarn is as long as before, so a fabric that grows in the plane becomes thinner.
@@ -127,7 +127,7 @@ def placed_lines(shapes: StitchShapes, placement: Placement) -> Array:
 
 
 def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:
-    """The change of thickness that keeps the yarn's length, within bounds."""
+    """The change of thickness that conserves the yarn's length, within bounds."""
     number = np.bincount(shapes.index.ravel(), minlength=len(shapes.lines))
     rest = mean_sizes_mm(shapes, at_rest(shapes))
     now = mean_sizes_mm(shapes, Placement(sizes_mm, sizes_mm, sizes_mm[..., 0], 1.0))

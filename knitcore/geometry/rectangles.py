@@ -1,7 +1,8 @@
-"""Extensibility rectangles (Fig. 4d): how far the fabric gives along its two principal directions.
+"""Extensibility rectangles (Fig. 4d): extensibility along the fabric's two principal directions.
 
 Stitches are orthotropic along course and wale, so the rectangles lie along them, and turn with the
-cloth when it is stretched. They can stand for single stitches, for blocks of them or for regions.
+cloth when it is stretched. A rectangle may represent a single stitch, a block of stitches or a
+region.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from knitcore.phases import surroundings
 Labels = NDArray[np.intp]
 
 FILL = 0.94
-"""Largest side over what there is room for."""
+"""Largest side, over the size of its group."""
 LARGEST = 12.0
 """A region's rectangle is never larger than this many stitches."""
 

@@ -1,7 +1,7 @@
 """Centre lines of every stitch of a chart, as few different shapes as there are.
 
 Where the chart repeats a cell that was relaxed at the yarn level, its stitches are that cell's. All
-other charts are put together like their mechanics, from quarters: each quarter of a stitch touches
+other charts are assembled like their mechanics, from quarters: each quarter of a stitch touches
 one course-wise and one wale-wise segment and follows the relaxed line of the pure fabric with those
 parities (:mod:`knitcore.phases`). Along the line of a stitch the four fabrics are blended smoothly,
 
@@ -46,11 +46,11 @@ from knitcore.phases import (
 from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
 
 MOST_STORED = 36
-"""Larger repeats are not looked for in the store."""
+"""Stitches of the largest repeats that are looked up in the store."""
 MOST_SHAPES = 192
 """With more shapes than this, crossings with the rows above and below are drawn less exactly."""
 FULLNESS = 1.1
-"""Yarn is soft: it is drawn a little thicker than lets strands that touch pass each other."""
+"""Yarn is soft, so it is drawn a little thicker than the distance of touching strands allows."""
 FOOT = (0.12, 0.20)
 """Part of a stitch, from its end, that hangs in the head below; before it the course's join."""
 HEAD = 0.28
@@ -85,8 +85,7 @@ def stitch_shapes(chart: StitchChart, material: Material, *, folded: bool = True
 
     Parameters
     ----------
-    folded : repeats that were relaxed may bring their folds along; not where the sheet that the
-        stitches lie on has them.
+    folded : whether relaxed repeats keep their folds; False where the sheet itself is folded.
 
     Raises
     ------
@@ -118,7 +117,7 @@ def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | Non
 def _of_stored(
     chart: StitchChart, material: Material, stored: StoredStitch, radius_mm: float
 ) -> StitchShapes:
-    """The repeat's own cell, as much larger or smaller as the fabric it resembles."""
+    """The repeat's own cell, scaled like the fabric it resembles."""
     reference = reference_fabric(stored.chart)
     like = stored_stitch(StitchChart.of_fabric(reference, rows=2, columns=2), stored.material)
     record = material.record(reference)
@@ -182,7 +181,7 @@ def _parities(chart: StitchChart) -> NDArray[np.int64]:
 
 
 def _beside(values: NDArray[np.int64], up: int, right: int) -> NDArray[np.int64]:
-    """Values of the stitches that lie so many rows up and columns to the right; edges go on."""
+    """Values of the stitches so many rows up and columns to the right; edge values are repeated."""
     rows, columns = values.shape
     row = np.clip(np.arange(rows) + up, 0, rows - 1)
     column = np.clip(np.arange(columns) + right, 0, columns - 1)
@@ -190,7 +189,7 @@ def _beside(values: NDArray[np.int64], up: int, right: int) -> NDArray[np.int64]
 
 
 def _weights(kinds: NDArray[np.int64]) -> Array:
-    """(shapes, POINTS, 4) how much of each fabric the lines of some shapes follow."""
+    """(shapes, POINTS, 4) share of each fabric in the lines of some shapes."""
     u = np.linspace(0.0, 1.0, POINTS)
     _, left, right, below, above, left_below, right_below = kinds.T[:7]
     foot_left, foot_right, head_left, head_right = kinds.T[7:]

@@ -48,8 +48,7 @@ def tube_vertices(
     """Vertices of tubes around many lines of equally many points, (lines, points * sides, 3).
 
     The cross-sections are carried along a line without twist, and turned a little on the way so
-    that they begin and end with a corner towards +y: tubes that follow each other meet corner to
-    corner.
+    that they begin and end with a corner towards +y and successive tubes meet corner to corner.
 
     Parameters
     ----------

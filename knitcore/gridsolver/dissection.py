@@ -4,8 +4,8 @@ The tangent of a swatch couples the two unknowns of a corner with those of its e
 a rectangular grid. Halving the grid again and again (nested dissection) gives the elimination
 order with the least fill, and because the grid is known beforehand no ordering has to be searched.
 Each box of the tree owns a dense front: the unknowns that only it holds (eliminated here) and
-those on its border with other boxes (passed to the parent as a Schur complement). LAPACK does the
-dense work. For a comparison with general sparse solvers see ``docs/swatch.md``.
+those on its border with other boxes (passed to the parent as a Schur complement). Dense work is
+done by LAPACK. For a comparison with general sparse solvers see ``docs/swatch.md``.
 
 The factor serves as a preconditioner of conjugate gradients in double precision, so single
 precision is enough for it: half the memory and half the time. Only where single precision cannot
@@ -30,11 +30,11 @@ Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
 
 LEAF_CELLS = 8
-"""Boxes are not halved below this many cells a side (measured optimum, flat from 6 to 10)."""
+"""Boxes are not halved below this many cells a side (a flat optimum from 6 to 10)."""
 
 
 SIDE_BY_SIDE = 500
-"""Boxes from which on the two branches of the tree are worth two threads."""
+"""Fewest boxes for which two threads pay off, one for each branch of the tree."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class GridFactor:
             else:
                 return
         self._eliminate(cell_matrices, np.dtype(np.float64))
-        self._single = False  # single precision was not enough here, nor will it be later
+        self._single = False  # single precision fails here, and would fail again
 
     def solve(self, right_hand_side: Array) -> Array:
         """Solution (2 * corners,) to the factor's precision; 0 at the fixed unknowns."""
@@ -135,7 +135,8 @@ class GridFactor:
             elimination.forward(0, count, *tree, v, x)
             elimination.backward(0, count, *tree, v, x)
             return x.astype(np.float64)
-        # Both branches add to the unknowns of the root, so each has its own copy on the way up.
+        # Both branches add to the unknowns of the root, so each has a copy of its own on the way
+        # up.
         root, second = self._boxes[-1].eliminated, self._second
         other = x.copy()
         other[root] = 0.0
@@ -190,7 +191,7 @@ class GridFactor:
             raise IndefiniteTangentError
 
     def _flatten(self) -> None:
-        """The tree as plain tables, for compiled code."""
+        """The tree as tables, for compiled code."""
         self._eliminated = _concatenate([box.eliminated for box in self._boxes])
         self._border = _concatenate([box.border for box in self._boxes])
         self._table = np.full((len(self._boxes), 10), -1, dtype=np.int64)

@@ -1,6 +1,6 @@
 """Compiled elimination and substitution on the tree of a dissected grid.
 
-LAPACK does the dense work and is called without Python in between: a tree has thousands of small
+Dense work is done by LAPACK, called without Python in between: a tree has thousands of small
 fronts, and two threads can work on two of its branches without the interpreter lock.
 
 Matrices are views [column, row] of Fortran's order; only lower triangles are kept.

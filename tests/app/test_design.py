@@ -218,7 +218,7 @@ def test_the_values_of_a_chart_give_the_chart_back(
         ("row,column,modulus_wale_n_per_mm\n1,x,1\n", "line 2 holds no numbers"),
         ("row,column,modulus_wale_n_per_mm\n0,1,1\n", "row 0, column 1"),
         ("row,column,modulus_wale_n_per_mm\n", "holds no stitch"),
-        ("row,column,modulus_wale_n_per_mm\n1,1,\n", "nothing is wanted"),
+        ("row,column,modulus_wale_n_per_mm\n1,1,\n", "there is no target"),
     ],
 )
 def test_unreadable_maps_are_refused(

@@ -256,7 +256,7 @@ def test_patches_are_connected() -> None:
     ("course", "wale", "says"),
     [
         (np.ones((2, 3)), np.ones((3, 2)), "differ in size"),
-        (np.full((2, 2), np.nan), np.full((2, 2), np.nan), "nothing is wanted"),
+        (np.full((2, 2), np.nan), np.full((2, 2), np.nan), "there is no target"),
         (np.zeros((2, 2)), np.ones((2, 2)), "not positive"),
         (np.full((2, 2), np.inf), np.ones((2, 2)), "not positive"),
     ],
