@@ -1,7 +1,6 @@
-"""Many computations that do not need each other: on this machine, or unchanged on a Dask cluster.
-
-A batch is a function and named tasks for it. Results are kept as one JSON document a task, so
-a batch that was stopped, however hard, goes on where it was.
+"""Many independent computations: on this machine, or unchanged on a Dask cluster. A batch is a
+function and named tasks for it. Results are stored as one JSON document for each task, so a batch
+that was stopped, even by force, continues where it left off.
 """
 
 from __future__ import annotations
@@ -31,13 +30,13 @@ Document = dict[str, Any]
 LOOK_EVERY_S = 0.5
 CONNECT_S = 10
 MOST_LOSSES = 3
-"""A task whose process was lost this often is given up: it may be what kills them."""
+"""A task is given up after its process was lost this often, since the task may be the cause."""
 _KEY = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,119}")
 
 
 @dataclass(frozen=True)
 class BatchProgress:
-    """How far a batch is.
+    """Progress of a batch.
 
     Attributes
     ----------
@@ -55,12 +54,12 @@ class BatchProgress:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """What came of a batch.
+    """The outcome of a batch.
 
     Attributes
     ----------
-    results : a JSON document for each task that succeeded, in the order of the tasks.
-    failures : what went wrong, for each of the others.
+    results : a JSON document for each task that succeeded, in the order of the tasks. failures :
+    the error of each of the others.
     """
 
     results: dict[str, Document]
@@ -81,14 +80,14 @@ def run_batch(
 
     Parameters
     ----------
-    function : importable by name; takes one picklable task, gives what JSON can hold.
-    tasks : by key, begun in this order. With `keep`, a key names everything that decides the
-        result, for a result found under it is taken as it is.
+    function : importable by name; takes one picklable task and returns a JSON value.
+    tasks : by key, begun in this order. With `keep`, a key must name everything that decides the
+        result, because a result found under it is used as it is.
     scheduler : address of a Dask cluster (``"tcp://host:port"``); processes here if left out.
     workers : processes here, all cores if left out; 1 works in this process.
     keep : folder of finished results. Tasks that failed are tried again by the next run.
     on_progress : called after every task.
-    should_stop : asked about twice a second, in this process between tasks.
+    should_stop : called about twice a second, or between tasks if they run in this process.
 
     Raises
     ------
@@ -148,7 +147,7 @@ def _outcomes(
     workers: int | None,
     look: Callable[[], None],
 ) -> Iterator[tuple[str, Document | Exception]]:
-    """Every task with what came of it, as they end; `look` may raise between any two."""
+    """Every task with its outcome, as they end; `look` may raise between any two."""
     if scheduler is None and (workers == 1 or len(tasks) <= 1):
         for key, task in tasks.items():
             look()
@@ -173,7 +172,7 @@ def _outcomes(
                         lost.append(key)
                     else:
                         yield key, error if isinstance(error, Exception) else future.result()
-        for key in lost:  # one of them ended the processes of all; each is tried again
+        for key in lost:  # one task ended the processes of all; each is tried again
             losses[key] += 1
             if losses[key] < MOST_LOSSES:
                 waiting.appendleft(key)
@@ -182,7 +181,7 @@ def _outcomes(
 
 
 def _attempt(function: Callable[[Task], Document], task: Task) -> Document | Exception:
-    """A failure is an outcome like any other: no traceback has to survive between machines."""
+    """Failures are returned as outcomes, so that no traceback has to cross machines."""
     try:
         outcome = function(task)
         json.dumps(outcome, allow_nan=False)
@@ -193,7 +192,7 @@ def _attempt(function: Callable[[Task], Document], task: Task) -> Document | Exc
 
 @contextmanager
 def _executor(scheduler: str | None, workers: int | None) -> Iterator[tuple[Executor, int]]:
-    """Where functions are called, and how many at once keep everybody busy."""
+    """The executor, and the number of tasks that keeps all workers busy."""
     if scheduler is not None:
         with _cluster(scheduler) as found:
             yield found
@@ -232,7 +231,7 @@ def _cluster(scheduler: str) -> Iterator[tuple[Executor, int]]:
 
 
 class _Folder:
-    """Finished results, a file each, written as a whole or not at all."""
+    """Finished results, one file each, written as a whole or not at all."""
 
     def __init__(self, path: Path | None) -> None:
         self._path = path

@@ -1,4 +1,4 @@
-"""Names of which a caller chooses one."""
+"""Choices by name."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from knitcore.errors import InputError
 
 
 class Choice(StrEnum):
-    """A closed set of names; an input of this kind is called as the class is, in small letters."""
+    """A closed set of names; errors name an input of this kind by the class, in small letters."""
 
     @classmethod
     def parse(cls, name: str) -> Self:

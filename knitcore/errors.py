@@ -35,7 +35,7 @@ class InputError(KnitcoreError, ValueError):
     def __reduce__(
         self,
     ) -> tuple[type[InputError], tuple[str, str, str], dict[str, float | None]]:
-        # survives between processes
+        # so that it can be pickled between processes
         return type(self), (self.field, self.problem, self.remedy), {"most": self.most}
 
 

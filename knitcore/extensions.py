@@ -1,8 +1,8 @@
 """Extensions: patterns, yarns, exporters and measures of other installed packages.
 
 A package offers them by entry points (``importlib.metadata``) of the groups in :class:`Group`. Each
-names a function without arguments that returns a list of what the group holds. Nothing of it is
-imported before somebody asks for something that is not built in, or for a list of all there is.
+names a function without arguments that returns a list of what the group holds. An extension is
+imported only when something is requested that is not built in, or a list of everything.
 An extension that cannot be used is left out with a warning; the others are not affected.
 """
 
@@ -36,7 +36,7 @@ class Group(StrEnum):
 
 
 class Offer(Protocol):
-    """What an extension offers has a name by which it is asked for."""
+    """A thing that an extension offers, with a name for requests."""
 
     @property
     def identifier(self) -> str:
@@ -72,7 +72,7 @@ class Extension:
     package: str
 
     def load(self, kind: type[Kind]) -> tuple[Kind, ...]:
-        """What it offers.
+        """The things that it offers.
 
         Raises
         ------
@@ -93,7 +93,7 @@ class Extension:
         return found
 
     def error(self, problem: str) -> ExtensionError:
-        """An error about it."""
+        """An error that names the entry point."""
         return ExtensionError(
             f"extension {self.name!r} ({self.group}, {self.target}) of {self.package} cannot be "
             f"used: {problem}. Update or uninstall that package."
@@ -136,7 +136,7 @@ def offered(group: Group, kind: type[Kind], built_in: Container[str] = ()) -> di
 
 @contextmanager
 def running(group: Group, identifier: str) -> Iterator[None]:
-    """While code of an extension runs: its errors name what failed.
+    """A context for code of an extension, which turns its errors into ones that name the extension.
 
     Raises
     ------

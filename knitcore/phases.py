@@ -2,8 +2,8 @@
 
 A stitch has four quarters. A quarter touches exactly one course-wise segment (left or right) and
 one wale-wise segment (below or above), so their parities put it in exactly one of four phases,
-named after the pure fabric whose segments are all like that. The four parities around a stitch,
-its surroundings code, hold all that the composite knows of it: there are only 16 kinds of stitch.
+named after the pure fabric whose segments are all like that. The four parities around a stitch, its
+surroundings code, determine its part of the composite: there are only 16 kinds of stitch.
 """
 
 from __future__ import annotations

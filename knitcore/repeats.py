@@ -1,7 +1,8 @@
 """All K/P repeats of a size, one of each kind.
 
 Repeats that differ by a translation, by a mirror (left to right) or by turning the cloth over are
-one fabric. Upside down is another one: loops point upwards. A repeat is primitive if no smaller
+the same fabric. Upside down it is another one, because loops point upwards. A repeat is primitive
+if no smaller
 rectangle tiles it.
 """
 

@@ -1,8 +1,8 @@
 """Even and odd connecting segments: the symmetry of the yarn between neighbouring stitches.
 
 Two like neighbours (K-K, P-P) are joined by a segment of even symmetry, unlike ones (K-P) by an
-odd one (the paper's Fig. 3a, b). Everything that the reduced-symmetry model knows of a chart is in
-these two maps.
+odd one (the paper's Fig. 3a, b). These two maps are all that the reduced-symmetry model uses of a
+chart.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from knitcore.fabric import Direction
 
 @dataclass(frozen=True)
 class SegmentCounts:
-    """How many segments of one direction are even and odd."""
+    """Numbers of even and odd segments of one direction."""
 
     even: int
     odd: int

@@ -1,4 +1,4 @@
-"""Small pictures and tables in HTML, by which results show themselves in a notebook.
+"""Small pictures and tables in HTML, with which notebooks display results.
 
 SVG and tables without scripts, fonts or addresses. Lines and text have the colour of the page
 around them, light or dark. Objects use them in ``_repr_html_``.
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 INKS = ("#3f74b5", "#d98032")
 """Colours of the first and the second curve."""
 MOST_CELLS = 80
-"""Rows or columns of a chart that are drawn."""
+"""Most rows or columns of a chart that are drawn."""
 WIDTH, HEIGHT = 300, 200
 _LEFT, _BOTTOM, _RIGHT, _TOP = 46, 34, 10, 22
 

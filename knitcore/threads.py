@@ -1,7 +1,7 @@
 """One thread for small matrices.
 
-A second BLAS thread only waits at the sizes of our blocks, and waiting threads burn the cores that
-other work needs: measured, up to 200 times the time.
+At the sizes of these blocks a second BLAS thread only waits, and waiting threads occupy cores that
+other work needs: times of up to 200 times were measured.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ Result = TypeVar("Result")
 def side_by_side(first: Callable[[], Result], second: Callable[[], Result]) -> list[Result]:
     """Results of two functions that work in two threads where there are two cores.
 
-    Only of use for compiled code that lets go of the interpreter's lock. What the functions raise
-    is raised here, the first one's before the second one's.
+    Only useful for compiled code that releases the interpreter's lock. Exceptions of the functions
+    are raised here, the first one's before the second one's.
     """
     if (os.cpu_count() or 1) < 2:
         return [first(), second()]
@@ -47,12 +47,12 @@ def side_by_side(first: Callable[[], Result], second: Callable[[], Result]) -> l
 
 
 def one_blas_thread() -> AbstractContextManager[Any]:
-    """A context in which BLAS uses one thread; the caller's setting is back afterwards."""
+    """A context in which BLAS uses one thread; the caller's setting is restored afterwards."""
     limited: AbstractContextManager[Any] = _controller().limit(limits=1, user_api="blas")
     return limited
 
 
 @cache
 def _controller() -> ThreadpoolController:
-    """Looking for the loaded libraries takes longer than a small solve, so it is done once."""
+    """The controller of the loaded libraries; finding them takes longer than a small solve."""
     return ThreadpoolController()

@@ -18,11 +18,11 @@ from knitcore.law.response import Response, stress_at_strain
 from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
 
 GAUGE = "gauge"
-"""Source of a relaxed size that the caller gave."""
+"""Name of the source of a relaxed size given by the caller."""
 
 
 SHOWN_STRESS_N_PER_MM = 0.2
-"""Up to which an answer's curves are drawn."""
+"""Stress up to which an answer's curves are drawn."""
 
 
 class Source(StrEnum):
@@ -37,7 +37,7 @@ class Source(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """Response to a pull along one direction, with the other direction free unless said.
+    """Response to a pull along one direction, with the other direction free unless stated.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Answer:
         return self.course if direction is Direction.COURSE else self.wale
 
     def with_size(self, relaxed: RelaxedSize) -> Answer:
-        """The same stretch from a measured relaxed size."""
+        """The answer with a measured relaxed size, and the same stretch from it."""
         course, wale = (
             replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
             for d in Direction
@@ -200,12 +200,12 @@ class Answer:
 
     @property
     def modulus_course_interval_n_per_mm(self) -> Interval:
-        """Of the modulus along the courses."""
+        """90 % interval of the modulus along the courses."""
         return self.course.modulus_interval_n_per_mm
 
     @property
     def modulus_wale_interval_n_per_mm(self) -> Interval:
-        """Of the modulus along the wales."""
+        """90 % interval of the modulus along the wales."""
         return self.wale.modulus_interval_n_per_mm
 
     @property
@@ -240,12 +240,12 @@ class Answer:
 
     @property
     def poisson_yx_interval(self) -> Interval:
-        """Of :attr:`poisson_yx`."""
+        """90 % interval of :attr:`poisson_yx`."""
         return self.course.poisson_interval
 
     @property
     def poisson_xy_interval(self) -> Interval:
-        """Of :attr:`poisson_xy`."""
+        """90 % interval of :attr:`poisson_xy`."""
         return self.wale.poisson_interval
 
     @property
@@ -260,12 +260,12 @@ class Answer:
 
     @property
     def relaxed_course_interval_mm(self) -> Interval:
-        """Of the width."""
+        """90 % interval of the width."""
         return self.course.relaxed_interval_mm
 
     @property
     def relaxed_wale_interval_mm(self) -> Interval:
-        """Of the height."""
+        """90 % interval of the height."""
         return self.wale.relaxed_interval_mm
 
 

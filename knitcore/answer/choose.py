@@ -3,11 +3,11 @@
 1. A chart that is one pure fabric has that fabric's own law and gauge (*measured*; *estimated* or
    *swept* if the record is).
 2. A chart with a yarn-level sweep of its own has that sweep's correction of the mixture of its pure
-   fabrics (*swept*). The caller gives the sweep; for a simulated material, whose truth the yarn
-   level is, it is also looked up among the packaged ones.
+   fabrics (*swept*). The caller gives the sweep; for a simulated material, which the yarn level
+   defines, it is also looked up among the packaged ones.
 3. Any other chart is a mixture of the pure fabrics with a correction learned from yarn-level
-   simulations of mixed charts (*learned*). It comes near to every simulated repeat and is
-   continuous in the shares of a chart's stitches, so one stitch more or less changes little.
+   simulations of mixed charts (*learned*). It is close to every simulated repeat and continuous in
+   the shares of a chart's stitches, so one stitch more or less changes little.
 4. A chart too large for one repeat is answered patch by patch (:mod:`knitcore.answer.patches`).
 5. A known gauge replaces the relaxed size and narrows the intervals of the stretch (*learned with
    known size*).

@@ -32,7 +32,7 @@ from knitcore.fabric import PHASES
 _LAGS = ((0, 2), (0, 3), (0, 4), (2, 0), (3, 0), (4, 0), (1, 2), (2, 1), (2, 2))
 """Rows up and columns right. Those of (0, 1), (1, 0) and (1, 1) follow from the shares."""
 _PAIRS = ((1, 0), (2, 0), (0, 2))
-"""Lags from one pair of neighbours in a row to another."""
+"""Lags between two pairs of neighbours in a row."""
 _SMOOTHED_OVER = (1.5, 4.0)
 """Standard deviations, in stitches, of the weights that smooth s."""
 _BEDS = (0.3, 0.9)
@@ -51,7 +51,7 @@ _FEW_CROSSINGS = 0.1
 """Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""
 
 _FEW_OTHERS = 0.05
-"""Share of other fabrics at which a chart is about as unsure as a mixed one."""
+"""Share of other fabrics at which a chart is about as uncertain as a mixed one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,13 +75,13 @@ class Densities:
 
     @property
     def arrays(self) -> tuple[Array, Array, Array, Array]:
-        """All four."""
+        """All features."""
         return self.shares, self.excess, self.straight, self.ways
 
     @property
     def mixed(self) -> Array:
-        """(…,) 0 in a pure fabric, nearly 1 from a tenth of other fabrics on: the part of what
-        remains unknown of a mixed chart that is unknown of this one.
+        """(…,) 0 in a pure fabric, nearly 1 from a tenth of other fabrics on: the model's
+        uncertainty for this chart over that for a mixed one.
         """
         return np.asarray(1 - np.exp((self.shares.max(axis=-1) - 1) / _FEW_OTHERS))
 
@@ -179,7 +179,7 @@ def _weights(k: Array, length: float) -> Array:
 
 
 def _odd_sides(sign: Array, axis: int) -> Array:
-    """How many of the two segments of each stitch along an axis are odd."""
+    """Number of odd segments of each stitch along an axis, 0 to 2."""
     odd = sign != np.roll(sign, -1, axis=axis)
     return np.asarray(odd + np.roll(odd, 1, axis=axis).astype(float))
 
@@ -202,5 +202,5 @@ def _leaning(slope: Array) -> Array:
 
 
 def _mean(values: NDArray[np.generic]) -> Array:
-    """Over the stitches."""
+    """Mean over the stitches."""
     return np.asarray(values.mean(axis=(-2, -1)))

@@ -50,7 +50,7 @@ class Samples:
 
 
 _PURE_NOISE = 1e-3
-"""Of a pure fabric, as a part of the others'."""
+"""Noise of a pure fabric, as a fraction of the noise of others."""
 
 
 def covariance(settings: KernelSettings, first: Samples, second: Samples) -> Array:

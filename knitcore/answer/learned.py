@@ -52,7 +52,7 @@ _TOE = 0.15
 
 @dataclass(frozen=True, eq=False)
 class SweptChart:
-    """What a sweep of a chart says where the regressions would say what they learned.
+    """The result of a sweep, used in place of the regressions.
 
     Attributes
     ----------
@@ -104,8 +104,7 @@ class LearnedAnswer:
     def held_strain(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Strain at stresses (N/mm, at least 0) while the width is held.
 
-        The yarn level was not stretched like that: the same share of the free strain as the
-        mixture's.
+        No sweep holds the width, so this takes the mixture's ratio of held to free strain.
         """
         share = self.mixture.shares_of_strain(direction, stress_n_per_mm)[1]
         return np.asarray(share * self.strain(direction, stress_n_per_mm))
@@ -159,7 +158,7 @@ def learned(
 
 @dataclass(frozen=True, eq=False)
 class LearnedModel:
-    """Both regressions with what belongs to them.
+    """Both regressions, with their samples and scales.
 
     Attributes
     ----------
@@ -196,8 +195,8 @@ class LearnedModel:
     ) -> LearnedAnswer:
         """Size and response of a chart with these densities.
 
-        A sweep takes the place of what was learned. Its variance is the regressions' noise: what
-        densities do not explain, such as which of several shapes the simulation settled in.
+        A sweep takes the place of the regressions. Its variance is their noise: whatever densities
+        do not explain, such as which of several shapes the simulation settled in.
         """
         mixture = Mixture.of(found.shares, material)
         sample = self.sample(found.features[None], mixture.numbers)
@@ -217,7 +216,7 @@ class LearnedModel:
         slopes = self.slopes * follows(mixture)
         values = means[0] + slopes @ fold
         spread = found.ways @ self.unfolding_scale
-        spread[:12] *= found.mixed  # next to a pure fabric little is left to learn
+        spread[:12] *= found.mixed  # near a pure fabric little remains to be learned
         deviations = np.sqrt(spread**2 * variance[0] + slopes**2 @ fold_sd**2)
         return LearnedAnswer(
             size_mm=flat_mm * np.exp(fold),
@@ -282,7 +281,7 @@ class LearnedModel:
         )
 
     def sample(self, features: Array, numbers: Array | None) -> Samples:
-        """Charts (m, features) with their yarn's numbers, in the units of the samples."""
+        """Features of charts (m, features) and their yarn's numbers, in the units of the samples."""
         yarn = self.number_centre if numbers is None else numbers
         scaled = (np.atleast_2d(yarn) - self.number_centre) / self.number_scale
         return Samples(
@@ -305,7 +304,7 @@ def packaged_model(left_out: frozenset[str] = frozenset()) -> LearnedModel:
 
     Parameters
     ----------
-    left_out : keys of charts (:attr:`StitchChart.key`, canonical) to do without, for a test.
+    left_out : keys of charts (:attr:`StitchChart.key`, canonical) to leave out, for tests.
     """
     path = files("knitcore.answer") / "data" / "learned.npz"
     with path.open("rb") as stream, np.load(stream) as found:

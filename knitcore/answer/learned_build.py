@@ -40,8 +40,8 @@ _FIRST_SLOPE = -0.8
 _TUNED = [2, 3, 4, 8, 9, 10]
 """Outputs that decide the settings: strains from 0.05 N/mm on, where stored laws are right."""
 _FOLDING_COVERAGE = 0.94
-"""Errors of folding have long tails, and strains inherit them several times over; with this part of
-the sizes inside, their strains' intervals cover 90 %."""
+"""Share of left-out sizes inside their intervals. Errors of folding have long tails, which strains
+amplify; with this share the strains' intervals cover 90 %."""
 _WEIGHTS = {
     "shares": 4.0,
     "sides": 1.0,
@@ -50,11 +50,11 @@ _WEIGHTS = {
     "plates": 3.0,
     "smoothed": 0.7,
 }
-"""What kinds of features count in units of their spread: of largest marginal likelihood, rounded,
-and about alike for both regressions."""
+"""Weights of the kinds of features, in units of their spread: rounded from the largest marginal
+likelihood, and similar for both regressions."""
 _START = KernelSettings(1.0, 0.1, 0.5, 2.0, 2.0, 0.05)
 _BOUNDS = ((-8, 5), (-8, 3), (-8, 5), (-1.5, 5), (-1.5, 5), (-6, 1))
-"""Of the logarithms of the settings."""
+"""Bounds of the logarithms of the settings."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +186,7 @@ def _row(
 
 
 def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
-    """Everything that the model is made of."""
+    """All arrays of the model."""
     features = np.array([row.features for row in found])
     scale = features.std(axis=0)
     scale /= np.repeat([_WEIGHTS[kind] for kind in FEATURES], list(FEATURES.values()))
@@ -349,7 +349,7 @@ def _factors(logs: Array, spread: Array) -> str:
 
 
 def main() -> None:
-    """Entry of ``python -m knitcore.answer.learned_build``."""
+    """Run ``python -m knitcore.answer.learned_build``."""
     arrays = arrays_of(rows())
     for line in report(arrays):
         sys.stdout.write(line + "\n")

@@ -18,10 +18,8 @@ class Measure:
 
     Attributes
     ----------
-    identifier : by which it is asked for.
-    unit : of its value; empty for a ratio.
-    description : one sentence.
-    of : computes it; may raise InputError where the material lacks what it needs.
+    identifier : name used in requests. unit : of its value; empty for a ratio. description : one
+    sentence. of : computes it; may raise InputError if the material lacks something.
     """
 
     identifier: str

@@ -1,4 +1,4 @@
-"""The pure fabrics of a material, mixed by their shares in a chart, wherever they are.
+"""The pure fabrics of a material, mixed by their shares in a chart whatever their arrangement.
 
 Strain at equal stress (the Reuss bound), size and Poisson's ratio are means over the quarter cells.
 :mod:`knitcore.answer.learned` corrects this mixture.
@@ -28,7 +28,7 @@ from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.yarns import yarn_for
 
 USUAL_STRESS_N_PER_MM = 2e-5
-"""B / L³ of a yarn that is not known well enough: about the middle of the library."""
+"""B / L³ of a yarn without known B: about the middle of the library."""
 _NOTHING = 1e-9
 """Shares below this are rounding errors."""
 
@@ -68,7 +68,7 @@ class Mixture:
 
     @property
     def simulated(self) -> bool:
-        """Whether all of it comes from the yarn level."""
+        """Whether all of its fabrics are simulated at the yarn level."""
         return all(record.origin is Origin.SIMULATED for _, record in self.parts)
 
     @property
@@ -109,7 +109,7 @@ class Mixture:
     def log_sd(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:
         """Standard deviation of the log strain from the uncertainty of the pure fabrics' laws.
 
-        That uncertainty is one of a law's scale of stress, so it changes strains less near lock-up.
+        It applies to a law's scale of stress, so it changes strains less near the lock-up.
         """
         strains = np.array(self._strains(direction, stress_n_per_mm))
         total = strains.sum(axis=0)
@@ -186,7 +186,7 @@ def present(shares: Array) -> NDArray[np.int64]:
 
 
 def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array | None:
-    """(phases, 5) numbers of the yarn in each pure fabric; None where too little is known of it."""
+    """(phases, 5) numbers of the yarn in each pure fabric; None where too little is known."""
     charts = [StitchChart.of_fabric(PHASES[phase], 2, 2) for phase in phases]
     try:
         used = [yarn_for(material, chart) for chart in charts]

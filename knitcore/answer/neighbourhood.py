@@ -3,8 +3,8 @@
 The relaxed size of a stitch depends on the texture around it. The piece is divided into windows
 that overlap by half. Each is a chart of its own, whose learned folding
 (:mod:`knitcore.answer.learned`) gives the width and height of its stitches; between the centres of
-windows, sizes vary linearly. So a ribbed hem is narrow, the stockinette above it wide, and one
-passes gradually into the other. Beyond the edges of the piece, the chart is continued as its mirror
+windows, sizes vary linearly. So a ribbed hem is narrow, the stockinette above it is wide, and the
+transition is gradual. Beyond the edges of the piece, the chart is continued as its mirror
 image, not as its repeat.
 """
 
@@ -77,7 +77,7 @@ def neighbourhood_folds(chart: StitchChart, material: Material) -> Array:
 
 
 def _seen(chart: StitchChart, of: Callable[[Densities], Array]) -> Array:
-    """What a function of densities (windows, 2) gives for every stitch, (rows, columns, 2)."""
+    """Values of a function of densities (windows, 2) at every stitch, (rows, columns, 2)."""
     counted = list(product(*(_windows(count) for count in chart.purl.shape)))
     return np.asarray(sum(_interpolated(chart, of, *each) for each in counted) / len(counted))
 
@@ -85,7 +85,7 @@ def _seen(chart: StitchChart, of: Callable[[Densities], Array]) -> Array:
 def _interpolated(
     chart: StitchChart, of: Callable[[Densities], Array], rows: Windows, columns: Windows
 ) -> Array:
-    """The values that windows at these places give."""
+    """The values of windows at these places."""
     around = chart.purl[np.ix_(rows.stitches, columns.stitches)]
     windows = sliding_window_view(around, (WINDOW, WINDOW))[::HALF, ::HALF]
     count, windows = windows.shape[:2], windows.reshape(-1, WINDOW, WINDOW)

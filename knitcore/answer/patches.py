@@ -35,7 +35,7 @@ from knitcore.phases import pure_fabric
 Array = NDArray[np.float64]
 
 SIDE = 16
-"""Stitches along the side of a patch, about."""
+"""Approximate number of stitches along the side of a patch."""
 MOST_A_SIDE = 8
 """Patches along each side of a chart, at most; they are larger where that is not enough."""
 
@@ -62,7 +62,7 @@ class Patches:
 
     @property
     def _share(self) -> Array:
-        """Of each patch in the chart's stitches."""
+        """Share of each patch in the chart's stitches."""
         counts = np.outer(np.diff(self.rows), np.diff(self.columns)).ravel()
         return np.asarray(counts / counts.sum())
 
@@ -168,8 +168,8 @@ def patches_of(
     swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
         of the packaged samples.
 
-    gradual : whether the patches of a chart that has just outgrown one are still much alike. A
-        swatch, which has its textures where they are, takes them as they are.
+    gradual : whether patches of a chart slightly larger than one are nearly alike. A swatch, whose
+        textures have positions, does not use this.
 
     Raises
     ------
@@ -193,7 +193,7 @@ def patches_of(
     parts = [repeat.region(*cell) for cell in cells]
     found = [densities(part) for part in parts]
     moved = _difference(densities(repeat), found, [part.purl.size for part in parts])
-    # a chart that has just outgrown one patch is answered almost as one
+    # a chart slightly larger than one patch gets almost the answer of one patch
     apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0) if gradual else 1.0
     shifted = [_sum(own, moved) for own in found]
     if apart < 1:

@@ -49,7 +49,7 @@ SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
 """Stresses (N/mm) at which the model's own error is kept."""
 _FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
 _MOST_POISSON = 0.9
-"""Of the product of both Poisson ratios, so that the law is stable."""
+"""Limit of the product of both Poisson ratios, so that the law is stable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
 
 
 def _records(cells: NDArray[np.uint8], material: Material) -> list[FabricRecord]:
-    """Of the four phases; one that does not occur counts as one that does."""
+    """Records of the four phases; one that does not occur is replaced by one that does."""
     present = np.unique(cells)
     return [material.record(PHASES[k if k in present else present[0]]) for k in range(4)]
 

@@ -55,5 +55,5 @@ class RelaxedSize:
         return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm)
 
     def extent_mm(self, direction: Direction) -> float:
-        """Size along a direction."""
+        """Relaxed size along a direction, mm."""
         return self.course_mm if direction is Direction.COURSE else self.wale_mm

@@ -1,9 +1,9 @@
-"""Charts that were relaxed and stretched on the yarn level themselves, carried to a material.
+"""Charts that were themselves relaxed and stretched at the yarn level, applied to a material.
 
 The yarn level has no friction and an idealised yarn: its pure fabrics differ from measured ones by
 up to a factor of two. So a sweep is compared with the mixture of pure fabrics of the same yarn *on
 the yarn level*, and the ratios correct the mixture of the material's own pure fabrics, as those of
-the learned model do (:mod:`knitcore.answer.learned`); knitted fabric folds less here as there.
+the learned model do (:mod:`knitcore.answer.learned`); and as there, knitted fabric folds less.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from knitcore.materials.uncertainty import LawUncertainty
 STRESS = np.geomspace(0.005, 0.33, 24)
 """Stresses (N/mm) at which curves are compared."""
 LEAST_REACHED_N_PER_MM = 0.1
-"""A curve that ends at a smaller stress, as wide ribs' do at a strain of 3, says too little."""
+"""Curves that end below this stress, as those of wide ribs do at a strain of 3, are not used."""
 
 
 def swept_chart(
@@ -37,7 +37,7 @@ def swept_chart(
     pure: Mapping[Fabric, FabricRecord],
     material: Material,
 ) -> SweptChart:
-    """What a sweep says of a chart.
+    """The correction of a chart's mixture by a sweep.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def over_mixture(
     strains: Sequence[Array],
     poisson: tuple[float, float],
 ) -> tuple[Array, Array]:
-    """What a simulation says over the mixture of the pure fabrics of the same yarn.
+    """A simulation compared with the mixture of the pure fabrics of the same yarn.
 
     Parameters
     ----------
@@ -95,6 +95,6 @@ def simulated_record(
     law: ConstitutiveLaw,
     loop_length_mm: float | None = None,
 ) -> FabricRecord:
-    """A pure fabric as the yarn level has it."""
+    """A pure fabric as simulated at the yarn level."""
     exact = LawUncertainty(0.0, 0.0, 0.0, 0.0, "yarn level")
     return FabricRecord(fabric, law, *size_mm, exact, Origin.SIMULATED, loop_length_mm)

@@ -27,7 +27,7 @@ from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
 Array = NDArray[np.float64]
 
 DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01
-"""C_xyxy assumed by the paper (Note 9); never measured there, so it is an assumption."""
+"""C_xyxy assumed by the paper (Note 9), which does not measure it."""
 
 
 class Symmetrisation(StrEnum):

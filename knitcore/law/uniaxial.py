@@ -16,7 +16,7 @@ from knitcore.law.stiffening import StiffeningForm, stiffening
 Array = NDArray[np.float64]
 
 _HALVINGS = 52
-"""Halvings that bring an interval to the rounding of a double."""
+"""Halvings that reduce an interval to the rounding error of a double."""
 _NEWTON_STEPS = 200
 
 
@@ -134,7 +134,7 @@ def _pair(direction: Direction, along: Array, across: Array) -> tuple[Array, Arr
 
 
 def _by_halving(carried: Callable[[Array], Array], wanted: Array, low: Array, high: Array) -> Array:
-    """Where a stress that grows with the strain is the wanted one."""
+    """Strain at which an increasing stress has a given value."""
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
         less = carried(middle) < wanted

@@ -209,7 +209,7 @@ _SHARED = (
     "yarn_diameter_mm",
     "setting",
 )
-"""Fields that a record has, too."""
+"""Fields shared with a record."""
 
 
 class YarnDocument(_Model):

@@ -29,7 +29,7 @@ has the clamp measured twice in place of the width, so stress, C_xxxx, beta_xx a
 1.8 times too high, and its loop length (10.55 mm) contradicts its stitch area (7.98 mm²)."""
 
 _DEFAULT_POISSON_SD = 0.02
-"""Upper end of the ± printed for acrylic and cotton."""
+"""Largest ± printed for acrylic and cotton."""
 
 
 @cache
@@ -123,7 +123,7 @@ def material(identifier: str, laws: Laws | str | None = None) -> Material:
 
 
 def offered_materials() -> dict[str, Material]:
-    """Materials of extensions by identifier; their laws are theirs, so there is no choice of them.
+    """Materials of extensions by identifier; each has only its own laws.
 
     Warns
     -----
@@ -134,7 +134,7 @@ def offered_materials() -> dict[str, Material]:
 
 
 def _with_laws(materials: Mapping[str, Material], laws: Laws) -> dict[str, Material]:
-    """Materials with published laws as they are, marked; or with those refitted."""
+    """Materials with published laws, marked as such, or with refitted ones."""
     if laws is Laws.PUBLISHED:
         return {
             key: replace(m, identifier=laws.of(m.identifier))
@@ -235,7 +235,7 @@ def _aspects() -> Mapping[Fabric, tuple[float, str]]:
 
 
 def _uncertainty(printed: Mapping[str, Figure], law: ConstitutiveLaw) -> LawUncertainty:
-    """From the printed ±, or from the spread of those that are printed."""
+    """Uncertainty from the printed ±, or from the median of those that are printed."""
     moduli = (printed["Y_x"], printed["Y_y"])
     stated = all(figure.standard_deviation is not None for figure in moduli)
     course, wale = (

@@ -84,10 +84,10 @@ class FabricRecord:
     inconsistent : directions in which the paper's own figures contradict each other.
     printed : the paper's figures behind it, by quantity; empty for other materials.
     loop_length_mm : yarn per stitch (None if unknown).
-    hand_loop_length_mm : the same of the hand-knit comparison sample, where the paper has one.
+    hand_loop_length_mm : that of the hand-knit comparison sample, where the paper has one.
     yarn_diameter_mm, hand_yarn_diameter_mm : measured in the fabric (None if unmeasured).
     stitch_course_mm, stitch_wale_mm : relaxed width and height of one stitch.
-    stitch_size_source : where these two come from.
+    stitch_size_source : of these two sizes, in words.
     setting : machine and stitch setting, or needle.
     origin : measured, simulated, fitted or estimated.
     uncertainty : standard deviations of the linear constants.
@@ -147,7 +147,7 @@ class Material:
         object.__setattr__(self, "fabrics", MappingProxyType(dict(self.fabrics)))
 
     def record(self, fabric: Fabric) -> FabricRecord:
-        """Everything known of one pure fabric.
+        """The record of one pure fabric.
 
         Raises
         ------

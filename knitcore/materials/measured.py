@@ -1,4 +1,4 @@
-"""Measured stress–strain curves that are kept with a material."""
+"""Measured stress–strain curves that are stored with a material."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from knitcore.errors import InputError
 
 MOST_POINTS = 100
-"""Points of a kept curve: more than a plot shows, and few compared with the rest of a file."""
+"""Most points of a stored curve: more than a plot shows."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class MeasuredCurve:
                 f"Give 2 to {MOST_POINTS} points, a stress for each strain.",
             )
         if not np.all(np.isfinite([self.strain, self.stress_n_per_mm])):
-            raise InputError("measured", "a curve is not finite.", "Leave lost points out.")
+            raise InputError("measured", "a curve is not finite.", "Leave out lost points.")
         if np.any(np.diff(self.strain) <= 0):
             raise InputError(
                 "measured", "the strains of a curve do not increase.", "Give a pull, not a cycle."

@@ -4,7 +4,7 @@ The paper takes strain between the middle of the sample and the lower clamp; fro
 is smaller. Acrylic's four fabrics are refitted from the authors' raw tests. Cotton, pulled on the
 same rig, is converted by the ratio found there. The lace and glove yarns were pulled on a testing
 machine, clamp to clamp: their laws stay. ``scripts/refit_laws.py`` writes the file;
-``docs/fit-a-law.md`` says how far it can be trusted.
+``docs/fit-a-law.md`` gives the errors.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ COLUMNS = (
 
 
 def refitted(record: FabricRecord) -> FabricRecord:
-    """A measured record of the paper with its refitted law; others as they are."""
+    """A measured record of the paper with its refitted law; other records unchanged."""
     if record.origin is not Origin.MEASURED or "C_xxxx" not in record.printed:
         return record
     figure = record.printed["C_xxxx"]

@@ -33,11 +33,12 @@ error that its phases have in common; half of the rest, in logarithms, is kept."
 
 
 YARN_LEVEL_SIZE_LOG_SD = 0.16
-"""Of a relaxed width or height: rms of yarn-level over knitted sizes, the four pure fabrics of
+"""Standard deviation of the logarithm of a relaxed width or height: rms of yarn-level over knitted
+sizes, the four pure fabrics of
 acrylic and cotton (``benchmarks/against_knitted.py``)."""
 
 YARN_LEVEL_STRAIN_LOG_SD = 0.41
-"""Of the strain at 0.05 to 0.3 N/mm, from the same comparison."""
+"""Standard deviation of the logarithm of the strain at 0.05 to 0.3 N/mm, likewise."""
 
 YARN_LEVEL_ERRORS = (
     "The yarn level against knitted fabric: the four pure fabrics of acrylic and cotton. Mixed "
@@ -45,23 +46,23 @@ YARN_LEVEL_ERRORS = (
 )
 
 RS_LOG_SD = 0.72
-"""Of a modulus of the reduced-symmetry model, against the same measured fabrics."""
+"""Standard deviation of the logarithm of a modulus of the reduced-symmetry model, likewise."""
 
 RS_ERRORS = "The model against the measured moduli of the pure fabrics of acrylic and cotton."
 
 QUIET_STRESS_N_PER_MM = 0.03
-"""Stress below which a stretch test tells more about slack than about the curve."""
+"""Stress below which a stretch test shows slack rather than the law."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A range, in the unit of the value it belongs to; of 90 % unless said."""
+    """An interval, in the unit of its value; it covers 90 % unless stated."""
 
     low: float
     high: float
 
     def scaled(self, factor: float) -> Interval:
-        """In another unit."""
+        """The interval in another unit."""
         return Interval(self.low * factor, self.high * factor)
 
 
@@ -112,7 +113,7 @@ class LawUncertainty:
         return self.poisson_yx if direction is Direction.COURSE else self.poisson_xy
 
     def curve(self, direction: Direction) -> CurveUncertainty:
-        """Of the stress-strain curve in a direction."""
+        """Uncertainty of the stress-strain curve in a direction."""
         known = self.curve_course if direction is Direction.COURSE else self.curve_wale
         return known or CurveUncertainty(self.log_modulus(direction))
 

@@ -74,7 +74,7 @@ class SheetGrid:
         )
 
     def merged_along_x(self) -> SheetGrid:
-        """Neighbouring columns joined in pairs, exactly as laminates; an odd last one stays."""
+        """Neighbouring columns joined in pairs, as exact laminates; an odd last one is unchanged."""
         first = slice(0, None, 2)
         missing = self.shape[1] % 2
         width = np.append(self.width_mm, np.zeros(missing)).reshape(-1, 2)

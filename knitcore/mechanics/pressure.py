@@ -32,7 +32,7 @@ TESTED_SHARE = 0.7
 """Share of the lock-up strain that stretch tests typically reach (0.6 to 0.8 in the paper's)."""
 MAXIMUM_CIRCUMFERENCE_MM = 5000.0
 LEAST_LENGTH = 0.05
-"""Share of its length that an axially free tube keeps at least: laws are not meant for less."""
+"""Least share of its length that an axially free tube keeps; laws do not apply beyond."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class LimbPressure:
     strain : around the limb.
     kpa, mmhg : pressure.
     tension_n_per_mm : hoop tension per worn length.
-    axial_strain_free : along the limb if nothing holds the tube.
+    axial_strain_free : strain along the limb if the tube is free to shorten.
     utilisation : strain over lock-up strain.
     warnings : in sentences.
     """

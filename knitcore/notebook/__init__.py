@@ -1,7 +1,7 @@
 """For notebooks: interactive figures, a view in space, and an editor for charts.
 
 Needs the extra ``knitcore[notebook]`` (plotly, anywidget). Charts, materials, answers, curves,
-relaxed cells, swatches and curled pieces show themselves without it.
+relaxed cells, swatches and curled pieces display without it.
 """
 
 from importlib import import_module

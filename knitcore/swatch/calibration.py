@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 FIELD_NOISE_PERCENT = 0.12
 """Error of a measured displacement in percent of the width: half the left-right asymmetry."""
 INDEPENDENT_POINTS = 50
-"""Neighbouring points err alike; a picture counts as so many independent ones."""
+"""Errors of neighbouring points are correlated; a frame counts as this many independent points."""
 FORCE_NOISE = 0.03
 """Relative error of a measured force."""
 FORCE_POINTS = 12
@@ -100,7 +100,7 @@ class Calibration:
     ----------
     law : the constants, with shear modulus and coupling of the stiffening.
     parameters, standard_errors : the fitted unknowns by name; factors are on the law given.
-    frames : pictures that were used.
+    frames : those that were fitted.
     force_ratio : simulated over measured force at ``force_strain`` (empty without a curve).
     evaluations : simulated tests.
     """
@@ -135,7 +135,7 @@ def calibrate(
     Raises
     ------
     InputError
-        If the law cannot follow the pictures to their stretch at all.
+        If the law locks up before the largest stretch of the frames.
     CancelledError
         If ``cancelled`` returned True.
     """
@@ -269,7 +269,7 @@ class _Problem:
 
 
 def _to_unknowns(values: Array) -> Array:
-    """Logarithms of all but kappa (the third)."""
+    """Unknowns of values: logarithms of all except kappa (the third)."""
     out = np.log(np.maximum(values, 1e-12))
     out[2] = values[2]
     return np.asarray(out)

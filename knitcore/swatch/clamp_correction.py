@@ -38,7 +38,7 @@ class ClampCorrection:
     def of(
         cls, centre: StretchTest, clamps: StretchTest, law: ConstitutiveLaw, direction: Direction
     ) -> ClampCorrection:
-        """From one test read both ways, and its published law."""
+        """The ratios from one test, read both ways, and its published law."""
         published = _median(run.strain_along.max() for run in centre.runs)
         held = _median(run.strain_along.max() for run in clamps.runs)
         waist = _median(run.strain_across[np.argmax(run.strain_along)] for run in clamps.runs)
@@ -47,7 +47,7 @@ class ClampCorrection:
 
     @classmethod
     def mean(cls, found: Sequence[ClampCorrection]) -> ClampCorrection:
-        """The geometric mean."""
+        """The geometric mean of several corrections."""
         logs = np.log([(c.strain_ratio, c.waist_ratio) for c in found])
         strain, waist = np.exp(logs.mean(axis=0)).tolist()
         return cls(strain, waist)

@@ -49,7 +49,7 @@ class FrameError:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """All pictures that could be computed, and why others could not."""
+    """Differences of all frames that could be computed, and the reason if some could not."""
 
     frames: tuple[FrameError, ...]
     problem: str | None
@@ -163,7 +163,7 @@ def _prescribed(frame: Frame, grid: QuarterGrid, direction: Direction, edges: Ed
 
 
 def _along(x: Array, values: Array, where: Array) -> Array:
-    """Values along an edge; beyond its ends they go on along the slope of the outer tenth."""
+    """Values along an edge, extrapolated beyond its ends with the slope of the outer tenth."""
     out = np.interp(where, x, values)
     tenth = max(len(x) // 10, 2)
     for end, outside in ((slice(None, tenth), where < x[0]), (slice(-tenth, None), where > x[-1])):

@@ -1,4 +1,4 @@
-"""The compiled heart: energy, forces and condensed tangent of all quarter cells in one pass.
+"""The compiled kernel: energy, forces and condensed tangent of all quarter cells in one pass.
 
 A cell is a rectangle with four corners and a centre node, cut into four linear triangles (the
 "crossed" pattern). In each triangle the images ``a = F X`` and ``b = F Y`` of the unit vectors
@@ -48,7 +48,7 @@ _full: Callable[[float], Stiffening] = _compiled(stiffening.full)
 _published: Callable[[float], Stiffening] = _compiled(stiffening.published)
 
 Law = Any
-"""A record of :data:`knitcore.swatch.models.LAW`."""
+"""A law, as a record of :data:`knitcore.swatch.models.LAW`."""
 
 
 class Nodes(NamedTuple):
@@ -65,7 +65,7 @@ class Nodes(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """What the cells of a sheet are, row by row.
+    """The cells of a sheet, row by row.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Cells(NamedTuple):
 
 
 class Tangent(NamedTuple):
-    """Tangents of the cells with their centres eliminated, and what recovers the centres.
+    """Tangents of the cells with their centres eliminated, and the blocks that recover the centres.
 
     Attributes
     ----------
@@ -372,8 +372,8 @@ def assemble(
 
     Adds to the corners' ``force``, the full gradient, and writes those of the centres and
     ``tangent``. All is 0 where there is no cloth, and where the law is all 0. Energy and forces
-    are linear in the laws' stiffnesses and betas. Returns the energy (N·mm), infinite where a
-    fibre has collapsed to a point; nothing else that is written then means anything.
+    are linear in the laws' stiffnesses and betas. Returns the energy (N·mm), infinite where a fibre
+    has collapsed to a point, in which case the other output is meaningless.
 
     Parameters
     ----------

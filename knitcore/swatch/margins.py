@@ -28,7 +28,7 @@ class StretchMargins:
 
     Attributes
     ----------
-    force_factor : (steps,), force and stress times or divided by it.
+    force_factor : (steps,), factor between force or stress and either end of its interval.
     waist : (steps,).
     strain, utilisation : (steps, rows, columns) at the stitches; the strain along the pull.
     """

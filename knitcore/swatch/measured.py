@@ -84,7 +84,7 @@ class MeasuredField:
         return MeasuredField(self.width, self.length, kept)
 
     def thinned(self, points: int) -> MeasuredField:
-        """The same test with at most so many points a picture, evenly taken."""
+        """The same test with at most so many points a frame, evenly chosen."""
         frames = []
         for frame in self.frames:
             step = slice(None, None, max(1, -(-len(frame.points) // points)))
@@ -144,7 +144,7 @@ def measured_field(
         raise InputError("field", "frame numbers repeat.", "Number each picture once.")
     if not (np.isfinite(pitch_px) and pitch_px > 0):
         raise InputError("field", f"pitch_px is {pitch_px}.", "Give a distance above 0 px.")
-    lost = ~np.isfinite(displacement).all(axis=1, keepdims=True)  # some programs mark it so
+    lost = ~np.isfinite(displacement).all(axis=1, keepdims=True)  # some programs write NaN
     displacement = np.where(lost, 0.0, displacement)
     largest = np.abs(displacement).max(axis=(1, 2, 3))
     samples = [_samples(u, pitch_px) for u in displacement]

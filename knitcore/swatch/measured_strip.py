@@ -80,7 +80,7 @@ class MeasuredStrip:
 
     @property
     def pulls(self) -> int:
-        """How many there are."""
+        """Number of levels."""
         return len(self.stress_n_per_mm)
 
     @property

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 RELAXATION_STAGES = 10
 BALANCED = Tolerance(absolute_n=1e-6)
-"""A free swatch has no clamp force to measure its residual by."""
+"""Absolute tolerance, since a free swatch has no clamp force to compare its residual with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
     Parameters
     ----------
     sheet : with natural sizes, as ``chart_sheet(..., draw_in=True)`` makes it.
-    cancelled : called now and then; True stops the relaxation.
+    cancelled : called from time to time; True stops the relaxation.
 
     Returns
     -------

@@ -44,14 +44,14 @@ LAW = np.dtype(
 
 
 class EnergyModel(StrEnum):
-    """Which sheet energy is meant."""
+    """The energy of a sheet."""
 
     PUBLISHED = "published"
     FULL = "full"
 
 
 class Coupling(StrEnum):
-    """How C_xxyy and C_yyxx become the one coupling that an energy needs.
+    """The rule that makes C_xxyy and C_yyxx the one coupling that an energy needs.
 
     ``geometric`` keeps both Young's moduli and nu_xy nu_yx; ``arithmetic`` follows the paper's text
     and ``script`` (C_xxyy alone) the authors' script.

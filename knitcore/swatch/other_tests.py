@@ -45,7 +45,7 @@ def pull_with_force(
 ) -> StripTest:
     """A strip test in which the clamps are pulled with given forces (N, increasing).
 
-    The strain that goes with a force is found by secant steps on the clamp force of strain-driven
+    The strain for a force is found by secant steps on the clamp force of strain-driven
     equilibria. A force beyond 98 % of the lock-up strain ends the test as not converged.
 
     Raises

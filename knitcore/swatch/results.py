@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class LockUp:
-    """Where a swatch is nearest to its lock-up.
+    """The place in a swatch that is nearest to its lock-up.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class LockUp:
 
 @dataclass(frozen=True, eq=False)
 class SwatchTest:
-    """Load steps of a test, as far as they converged.
+    """The load steps of a test that converged.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class SwatchTest:
     states : node positions at each step.
     energy_n_mm : stored energy per step.
     iterations : linear systems solved per step.
-    converged : whether every step that was asked for is here.
+    converged : whether all requested steps converged.
     problem : why the test ended early, else None.
     seconds : wall-clock time of the solution.
     """

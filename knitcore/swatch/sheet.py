@@ -19,7 +19,7 @@ from knitcore.threads import side_by_side
 Array = NDArray[np.float64]
 
 SIDE_BY_SIDE = 5_000
-"""Cells from which on two threads assemble."""
+"""Fewest cells that are assembled in two threads."""
 
 
 class State(Nodes):
@@ -48,7 +48,7 @@ class Linearisation:
     columns: int
 
     def with_force(self, force: Nodes) -> Linearisation:
-        """The same tangent beside other forces."""
+        """The same tangent with other forces."""
         return replace(self, force=force)
 
     def condensed_force(self) -> Array:
@@ -72,8 +72,9 @@ class Sheet:
     grid : the mesh.
     laws : laws by code (``grid.law_of_cell``); codes that do not occur may repeat any law.
     model : the energy model and its assumptions.
-    stress_log_sd : (2, stresses) how unsure the laws of a chart's cells are beside their materials,
-        as :class:`knitcore.answer.quarter_laws.QuarterLaws` has it; None where they are not.
+    stress_log_sd : (2, stresses) model error of the laws of a chart's cells, beyond the uncertainty
+        of their material, as in :class:`knitcore.answer.quarter_laws.QuarterLaws`; None where there
+        is none.
 
     Examples
     --------
@@ -130,7 +131,7 @@ class Sheet:
         return self._assemble(self.parameters, state, _empty_like(state), None)
 
     def law_force(self, laws: NDArray[np.void], state: State) -> Nodes:
-        """Force (N) that other laws would make.
+        """Force (N) under other laws.
 
         Parameters
         ----------
@@ -149,7 +150,7 @@ class Sheet:
         return np.asarray(change.reshape(2, self.grid.rows, self.grid.columns))
 
     def linearise(self, state: State, reuse: Linearisation | None = None) -> Linearisation:
-        """Energy, forces and tangent; ``reuse`` gives its arrays away."""
+        """Energy, forces and tangent; the arrays of ``reuse`` are overwritten."""
         if reuse is None:
             cells = len(state.centres)
             force, tangent = (
@@ -172,7 +173,7 @@ class Sheet:
 
         if count < SIDE_BY_SIDE:
             return assemble(force, 0, count)
-        # both halves add to the corners between them, so each has its own
+        # both halves add to the corners between them, so each has an array of its own
         other = Nodes(np.empty_like(force.corners), force.centres)
         lower, upper = side_by_side(
             lambda: assemble(force, 0, count // 2), lambda: assemble(other, count // 2, count)

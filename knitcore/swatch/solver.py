@@ -37,7 +37,7 @@ HISTORY = 4
 
 @dataclass(frozen=True)
 class Tolerance:
-    """When a state counts as balanced.
+    """The condition for balance.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Equilibrium:
     state : positions.
     energy : N·mm.
     reaction : N, (corners, 2), force that holds the prescribed unknowns; 0 elsewhere.
-    iterations : linear systems solved on the way here since the last level.
+    iterations : linear systems solved since the last level.
     """
 
     state: State
@@ -78,7 +78,7 @@ class PathSolver:
     ----------
     sheet : the sheet.
     fixed : bool array (corners, 2)
-        Unknowns that are prescribed. They must at least take away the rigid motions. Corners
+        Unknowns that are prescribed. They must at least exclude rigid motions. Corners
         without fabric are prescribed in any case.
     tolerance : when a state counts as balanced.
     cancelled : called between linear solves; True stops with :class:`CancelledError`.
@@ -197,12 +197,12 @@ class PathSolver:
         )
 
     def _is_close(self, lin: Linearisation) -> bool:
-        """Whether an extrapolated state is near enough to balance to start from it."""
+        """Whether an extrapolated state is near enough to balance to start from."""
         free, limit = self._residual(lin)
         return free * self.tolerance.relative <= CLOSE * limit
 
     def _along_tangent(self, state: State, prescribed: Array) -> State:
-        """The state to which the tangent of a balanced one points; its factor is at hand."""
+        """Prediction along the tangent of a balanced state, whose factor is available."""
         lin = self._linearise(state)
         move = np.where(self.fixed, prescribed - state.corners, 0.0)
         force = lin.condensed_force() + lin.apply(move)
@@ -269,7 +269,7 @@ class PathSolver:
         return lin
 
     def _factorise(self, lin: Linearisation) -> None:
-        self._has_factor = False  # one that fails half-way is of no use
+        self._has_factor = False  # a factorisation that failed half-way is useless
         self.factor.factorise(lin.tangent.matrix)
         self.factorisations += 1
         self._has_factor = True

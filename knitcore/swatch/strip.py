@@ -33,7 +33,7 @@ LOCK_UP_SHARE = 0.98
 
 
 class Clamps(Choice):
-    """How the ends are held: gripped, or free to slide along the clamp."""
+    """Ends of a strip: gripped, or free to slide along the clamp."""
 
     CLAMPED = "clamped"
     SLIDING = "sliding"
@@ -78,7 +78,7 @@ def strip_test(
         :func:`knitcore.answer.choose.choose`.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
     progress : called with (steps done, steps in all).
-    cancelled : called now and then; True stops the test.
+    cancelled : called from time to time; True stops the test.
 
     Returns
     -------
@@ -161,7 +161,7 @@ def chart_sheet(
 def _local_laws(
     chart: StitchChart, material: Material, stitch: NDArray[np.bool_] | None
 ) -> QuarterLaws:
-    """Laws of a piece; a shaped one counts as the rectangle around it, filled with its pattern."""
+    """Laws of a piece; a shaped one counts as its bounding rectangle, filled with its pattern."""
     if stitch is None or np.all(stitch):
         return quarter_laws(chart, material)
     inside = np.asarray(stitch, dtype=bool)
@@ -207,7 +207,7 @@ def _period(purl: NDArray[np.bool_], stitch: NDArray[np.bool_]) -> int:
 def sheet_model(
     model: EnergyModel | str | SheetModel, shear_modulus: float | None = None
 ) -> SheetModel:
-    """A model by name or as it is, with a shear modulus."""
+    """A model, given by name or as an object, with a shear modulus."""
     if isinstance(model, SheetModel):
         if shear_modulus is not None:
             raise InputError(

@@ -1,11 +1,10 @@
-"""How far a law fitted to stretch tests can be trusted, to first order about the fit.
-
-An interval of a curve is for the next test of the same fabric, knitted and pulled alike. How far
-such a test is off is seen from the tests themselves: each pull is predicted from the others, and
-the error, which holds the scatter between pulls and the misfit of the law, is squared and averaged.
-A few pulls tell little about their own scatter, so the typical error counts as one pull more.
-Another sample has its width read anew (:data:`LOG_WIDTH_READING`); strain is a ratio of lengths in
-one picture and needs no scale.
+"""Uncertainty of a law fitted to stretch tests, to first order about the fit. An interval of a
+curve is for the next test of the same fabric, knitted and pulled alike. Its error is estimated from
+the tests themselves: each pull is predicted from the others, and the squared errors, which include
+the scatter between pulls and the misfit of the law, are averaged. A few pulls say little about
+their own scatter, so the typical error counts as one more pull. The width of another sample is a
+new reading (:data:`LOG_WIDTH_READING`); strain is a ratio of lengths in one picture and needs no
+scale.
 
 Standard errors of single constants are those of the jackknife over pulls, of the scatter about the
 fit, a few neighbouring points counting as one, and of the widths.
@@ -30,10 +29,10 @@ Array = NDArray[np.float64]
 LOG_WIDTH_READING = 0.03
 """Standard deviation of the logarithm of a clamped width read from a picture."""
 TYPICAL_LOG_ERROR = 0.046
-"""Of the force of a pull predicted from the others: rms over acrylic's eight tests
+"""Error of the force of a pull predicted from the others: rms over acrylic's eight tests
 (``benchmarks/true_to_tests.py --left-out`` prints it)."""
 NEIGHBOURS = 3.5
-"""Neighbouring points err alike; so many count as one."""
+"""Errors of neighbouring points are correlated; this many count as one."""
 
 _DERIVED = ("poisson_yx", "poisson_xy", "modulus_course", "modulus_wale")
 _NAMES = (*(field.name for field in fields(ConstitutiveLaw)), *_DERIVED)
@@ -63,7 +62,7 @@ class LinearFit:
 
     @cached_property
     def covariance(self) -> Array:
-        """Of the unknowns: between pulls, scatter, and readings of width."""
+        """Covariance of the unknowns: between pulls, scatter, and readings of width."""
         scatter = float(self.residuals @ self.residuals)
         scatter /= max(len(self.residuals) - len(self.unknowns), 1)
         weak = self.jacobian.copy()
@@ -95,7 +94,7 @@ class LinearFit:
 
     @property
     def uncertainty(self) -> LawUncertainty:
-        """Of moduli, curves and Poisson ratios, the latter such that the waists come out."""
+        """Uncertainty of moduli, curves and Poisson ratios, such that the waists are covered."""
         law, errors = self.law_of(self.unknowns), self.errors
         curves, waists = [], []
         for test, strip in enumerate(self.strips):
@@ -154,13 +153,13 @@ class LinearFit:
             yield index, self._step(test, np.nan_to_num(np.concatenate(moved)))
 
     def _step(self, test: int, shift: Array) -> Array:
-        """Of the unknowns, when a test's force and waist change by ``shift`` (in their noise)."""
+        """Step of the unknowns if a test's force and waist change by ``shift`` (in their noise)."""
         inverse = np.linalg.pinv(self.jacobian.T @ self.jacobian)
         return np.asarray(inverse @ (self.jacobian[self._rows(test)].T @ shift))
 
     @staticmethod
     def _rows(test: int) -> slice:
-        """Of a test's forces and waists among the residuals."""
+        """Rows of a test's forces and waists among the residuals."""
         return slice(2 * LEVELS * test, 2 * LEVELS * (test + 1))
 
 

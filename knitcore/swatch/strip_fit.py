@@ -4,9 +4,11 @@ A strip held by its clamps strains unevenly, and how much depends on its size. S
 C_xxxx, C_yyyy, one coupling, alpha, beta and kappa of both directions, and the shear modulus - are
 chosen such that the finite elements of :mod:`knitcore.swatch`, on a strip of the measured width and
 length, give the measured force and the measured waist at the measured clamp-to-clamp strains, in
-both tests at once (least squares, priors on kappa and the shear modulus, which tests along course
-and wale hardly see). Where the distance of the clamps is unknown the ends are left free to narrow,
-so that the strip strains evenly. :mod:`knitcore.swatch.strip_errors` says how sure the result is.
+both tests at once (least squares, priors on kappa and the shear modulus, to which tests along
+course and wale are hardly sensitive). Where the distance of the clamps is unknown the ends are left
+free to narrow,
+so that the strip strains evenly. :mod:`knitcore.swatch.strip_errors` estimates the errors of the
+result.
 """
 
 from __future__ import annotations
@@ -54,7 +56,7 @@ give or take a factor of 1.5."""
 KAPPA_PRIOR = (0.2, 0.5)
 """Mean and standard deviation."""
 COUPLING_PRIOR = (0.3, 1.0)
-"""The same of artanh(C_xxyy / sqrt(C_xxxx C_yyyy))."""
+"""Mean and standard deviation of artanh(C_xxyy / sqrt(C_xxxx C_yyyy))."""
 ALPHA_SHARE = 0.97
 """Largest alpha times the largest strain, so that the law can follow the whole test."""
 STOPPED_SHORT = 3.0
@@ -108,7 +110,7 @@ def fit_tests(
     reduction : how points become constants.
     file_format : ``"h5"`` or ``"csv"``; found out from the content if None.
     width_course_mm, width_wale_mm : clamped widths, in place of those in the files.
-    cancelled : asked between simulated tests.
+    cancelled : called between simulated tests.
 
     Raises
     ------
@@ -150,7 +152,7 @@ def fit_simulated(
                 " fabric is taken to narrow evenly."
             )
         if strip.pulls == 1:
-            notes.append(f"{test.source} has one pull: the spread between pulls is missing.")
+            notes.append(f"{test.source} has one pull, so the scatter between pulls is unknown.")
     found = fit_strips(strips, cancelled=cancelled)
     residuals = {
         d: _residuals(test, strip, simulated)
@@ -188,7 +190,7 @@ def fit_strips(
     Parameters
     ----------
     strips : the tests.
-    cancelled : asked between simulated tests.
+    cancelled : called between simulated tests.
 
     Raises
     ------
@@ -213,7 +215,7 @@ def fit_strips(
 
 
 class _Problem:
-    """Residuals of the unknowns, each about 1 where the fit is as good as it may be."""
+    """Residuals of a set of unknowns, each about 1 in a good fit."""
 
     def __init__(self, strips: tuple[MeasuredStrip, ...], cancelled: Callable[[], bool]) -> None:
         self.strips, self.cancelled = strips, cancelled
@@ -236,7 +238,7 @@ class _Problem:
 
     @property
     def starts(self) -> tuple[Array, ...]:
-        """From each direction separately, straining evenly, and several couplings."""
+        """Starts: each direction fitted separately, straining evenly, with several couplings."""
         logs = []
         for strip in self.strips:
             stress, waist = strip.means
@@ -261,7 +263,7 @@ class _Problem:
         return np.array(low, dtype=float), np.array(high, dtype=float)
 
     def residuals(self, unknowns: Array, cells: int) -> Array:
-        """Of force and waist of all tests, and of the priors."""
+        """Residuals of force and waist of all tests, and of the priors."""
         if self.cancelled():
             raise CancelledError("The caller stopped the fit.")
         self.evaluations += 1
@@ -272,7 +274,7 @@ class _Problem:
 
 
 def _residual(strip: MeasuredStrip, law: ConstitutiveLaw, cells: int) -> tuple[Array, Array]:
-    """Of force and waist; where the simulation stops short, of a strip that strains evenly."""
+    """Residuals of force and waist; beyond the simulation's end, of a strip that strains evenly."""
     stress, waist = strip.simulate(law, cells=cells)
     failed = ~np.isfinite(stress)
     if failed.any():

@@ -11,7 +11,7 @@ with the tangent K and the internal forces R of the equilibrium, and variances o
 parameters add up. The parameters are
 
 - the logarithm of each fabric's scale of stress along course and wale (C_aaaa and beta together),
-  as unsure as the curve is at the test's stress;
+  as uncertain as the curve at the test's stress;
 - each fabric's coupling, at fixed moduli, with the deviation of its Poisson ratios;
 - the logarithm of each fabric's shear modulus, and of all where it is the assumed one;
 - the model's own error, where fabrics are mixed: for the force that of the chart's answer
@@ -50,9 +50,9 @@ Array = NDArray[np.float64]
 
 
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
-"""The composite's own error, stitches of mixed quarters and of one fabric."""
+"""The composite's own error, for stitches of mixed quarters and of one fabric."""
 STEP = 1e-3
-"""Of a parameter, for differences of forces."""
+"""Step of a parameter, for differences of forces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +210,7 @@ def model_log_sd(sheet: Sheet) -> float:
 
 
 def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
-    """Of the logarithm of the lock-up strain, course-wise and wale-wise, (laws, 2)."""
+    """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
     codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth])
     found = np.zeros((len(sheet.laws), 2))
     for code in codes:
@@ -224,7 +224,7 @@ def law_parameters(
 ) -> list[LawParameter]:
     """The uncertain parameters of a sheet's laws, one by one, and of the assumed shear modulus.
 
-    ``stress_n_per_mm`` is about the stress that the cloth carries.
+    ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
     found = []
     codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
@@ -299,7 +299,7 @@ def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
 
 
 def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:
-    """Of r, by those of the measured Poisson ratios that the model's rule makes it of."""
+    """Standard deviation of r, from those of the Poisson ratios that the model's rule uses."""
     nu_yx, nu_xy = measured.poisson_yx, measured.poisson_xy
     if rule is Coupling.GEOMETRIC and nu_yx * nu_xy > 0:  # r = sqrt(nu_yx nu_xy)
         aspect = math.sqrt(nu_yx / nu_xy)

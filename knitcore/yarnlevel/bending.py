@@ -25,7 +25,7 @@ OBLIQUE = np.pi / 4.0
 
 
 class Curl(Choice):
-    """Where the free edges across a direction go."""
+    """How the free edges across a direction curl."""
 
     FLAT = "flat"
     FRONT = "front"
@@ -56,12 +56,12 @@ class FabricBending:
 
     @property
     def curl_course(self) -> Curl:
-        """Where the sides go."""
+        """How the sides curl."""
         return self._curl(self.course)
 
     @property
     def curl_wale(self) -> Curl:
-        """Where top and bottom go."""
+        """How the top and bottom curl."""
         return self._curl(self.wale)
 
     @property

@@ -1,4 +1,4 @@
-"""A relaxed cell that is bent into a cylinder or skewed, and how it answers.
+"""The response of a relaxed cell that is bent into a cylinder or skewed.
 
 The periodic cell is bent into a cylinder: its neighbours become rotated images instead of shifted
 ones. In unrolled coordinates (s the bent direction, o across it, z the height) the yarn stays
@@ -11,7 +11,7 @@ exactly periodic, and with g = 1 + κz its derivatives in the local frame of the
 from which the rod's energy follows as in the flat cell. κ > 0 puts the face (+z) outside, and κ is
 measured on the surface of mean height zero.
 
-At the relaxed flat state the yarn answers linearly. With L the Lagrangian of the cell (energy and
+At the relaxed flat state the response is linear. With L the Lagrangian of the cell (energy and
 held lengths c), r = (∂²L/∂x∂κ, ∂c/∂κ) and K the matrix of the relaxed state,
 
     m₀ = L_κ / A,    D = (L_κκ − rᵀ K⁻¹ r) / A − m₀ ε,    dx/dκ = −K⁻¹ r
@@ -45,7 +45,7 @@ from knitcore.yarnlevel.tiling import refined_state, tiled_state
 _STEP = 1e-3
 """Curvature times loop length of the central differences."""
 _SKEW_STEP = 1e-5
-"""Skew of the central differences: hard cores leave the yarn little room to move straight."""
+"""Skew of the central differences, small because hard cores leave the yarn little room."""
 _REACH = 1.05
 """Pairs are listed to this many diameters, so that none is missed in the bent cell."""
 GRID = SplineGrid(controls=24, per_span=5)
@@ -274,7 +274,7 @@ class Lagrangian:
 
 
 class _Frame:
-    """Derivatives of the yarn on the cylinder, and the way back (see the head of this module)."""
+    """Derivatives of the yarn on the cylinder, and back (see the module's docstring)."""
 
     def __init__(self, curve: Array, angle: float, curvature_per_mm: float) -> None:
         cos, sin = np.cos(angle), np.sin(angle)

@@ -171,7 +171,7 @@ def free_cell(chart: StitchChart, grid: SplineGrid) -> YarnCell:
 
 
 def plain_cell(chart: StitchChart, grid: SplineGrid) -> YarnCell:
-    """The chart as it stands, nothing reduced and nothing imposed."""
+    """The chart as it stands, not reduced and without symmetries."""
     return YarnCell(chart.purl, False, False, None, grid)
 
 

@@ -26,8 +26,8 @@ PENALTY_PER_BENDING = 3e4
 """Stiffness of the augmented length constraint in units of B / L³."""
 
 REGULARISATION_PER_BENDING = 4e-4
-"""Largest C, in units of B L²: the paper's constant C is for worsted yarn, and would be stiffer
-than the bending of a lace yarn. None of the paper's samples reaches the limit."""
+"""Largest C, in units of B L²: the paper's constant C is for worsted yarn and would exceed the
+bending stiffness of a lace yarn. None of the paper's samples reaches the limit."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class CellEnergy:
 
     @cached_property
     def contact_law(self) -> kernels.ContactLaw:
-        """The contact as the kernels take it."""
+        """The contact's parameters for the kernels."""
         return kernels.ContactLaw(
             weight=self.convention.unordered_pair_factor / self.cell.grid.samples**2,
             stiffness=self.yarn.contact_stiffness_n_per_mm3,
@@ -154,7 +154,7 @@ class CellEnergy:
 
     @cached_property
     def rod_law(self) -> kernels.RodLaw:
-        """Bending, regularisation and gauge penalty as the kernels take them."""
+        """Parameters of bending, regularisation and gauge penalty for the kernels."""
         return kernels.RodLaw(
             bend=self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
             regular=self.convention.regularisation_factor * self.regularisation_n_mm4,
@@ -274,7 +274,7 @@ class CellEnergy:
         return rows
 
     def _by_tangent(self, by_speed: Array) -> Array:
-        """Gradient by the unknowns of what depends on d1 as given."""
+        """Gradient by the unknowns, given the slopes by d1."""
         slopes = np.zeros((len(by_speed), 3, 3))
         slopes[:, 0] = by_speed
         return self.gathered(np.zeros((len(by_speed), 3)), slopes)

@@ -25,7 +25,7 @@ from knitcore.yarnlevel.yarn import YarnModel
 _FIRST_OPENING = 0.2
 """Opening of the nearest contact (in shells) with the first core: enough room for smooth steps."""
 _OPENING = 0.02
-"""The same for later cores."""
+"""Opening of the nearest contact (in shells) with later cores."""
 _STIFFENED = 20.0
 """Factor on the contact stiffness while the core grows."""
 _STAGES = 40

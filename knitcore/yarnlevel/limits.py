@@ -14,7 +14,7 @@ MAX_POINTS = 1000
 """Most points of a sweep."""
 MIN_LENGTH_PER_RADIUS = 10.0
 MIN_LENGTH_PER_CORE = 27.0
-"""A shorter stitch has no room for its own yarn (the paper's tightest: 13 radii, 34 core radii)."""
+"""Shortest loop: a shorter stitch has no room for its own yarn (paper: 13 radii, 34 core radii)."""
 MAX_LENGTH_PER_RADIUS = 120.0
 
 

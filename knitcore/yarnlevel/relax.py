@@ -93,7 +93,7 @@ def relax(
     flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
     grid : resolution; by default finer for small cells.
     starts : by default two, and four in the free branch (fewer for large cells).
-    time_limit_s : refuse a cell that will probably take more CPU time.
+    time_limit_s : refuse a cell that would probably take more CPU time.
     cancel : called before every step; True stops with CancelledError.
 
     Raises

@@ -1,4 +1,4 @@
-"""The eight samples of the paper's simulations, with figures as printed and as really used."""
+"""The eight samples of the paper's simulations, with figures as printed and as used."""
 
 from __future__ import annotations
 

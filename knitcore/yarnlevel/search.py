@@ -23,9 +23,9 @@ Cancel = Callable[[], bool]
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this are the same minimum."""
 OVERLONG = 1e-4
-"""Error of the length, as a part of it, beyond which a state does not count."""
+"""Relative error of the length beyond which a state does not count."""
 _STRAIGHT = 0.9
-"""A stitch of this part of its loop length is pulled straight."""
+"""Size over loop length at which a stitch is pulled straight."""
 
 _REMEDY = (
     "Give the stitches more yarn, a thinner yarn, or a core of .25 to .6 of the radius, as the "
@@ -115,7 +115,7 @@ class Search:
             self.found.append(found)
 
     def best(self) -> Minimum:
-        """The lowest state that counts.
+        """The lowest state of the fabric.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Search:
         return min(settled, key=lambda m: m.terms.energy)
 
     def refined(self, energy: CellEnergy, options: Options) -> Minimum:
-        """The best state, on a finer grid.
+        """The lowest state, on a finer grid.
 
         Raises
         ------

@@ -5,8 +5,8 @@ energy is not convex, H + mu I is factorised with increasing mu until a factor e
 (Levenberg-Marquardt). The length of each course is a constraint: a step and the change of the
 tensions follow from one system (Newton on the Lagrangian), and the augmented Lagrangian with these
 tensions is the merit function, which must fall. Inextensible yarn makes its valley narrow and
-curved, so that a step along it leaves it; steps with the factor of the last Hessian lead back into
-it at a fraction of the cost.
+curved, so that a step along it leaves it; steps with the factor of the last Hessian return to it at
+a fraction of the cost.
 
 On convergence the Hessian distinguishes a minimum from a saddle, where a state can be trapped by a
 symmetry of the first shape; a saddle is left along its direction of most negative curvature.
@@ -38,10 +38,11 @@ _LEAST_DAMPING = 1e-6
 _INDEFINITE_DAMPING = 0.05
 """Least damping that is tried where the Hessian is not positive definite, relative to the first."""
 _SINGLE_FROM = 450
-"""Systems of so many unknowns are factored in single precision, in half the time. With its diagonal
+"""Systems of at least this many unknowns are factored in single precision, in half the time. With
+its diagonal
 scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two digits."""
 _LEAST_DAMPING_SINGLE = 1e-3
-"""Least damping that a factor in single precision bears, relative to the first."""
+"""Least damping for a factor in single precision, relative to the first."""
 _TRIALS = 60
 _WORTH = 0.2
 """A step with an old factor that gains less than this part of the step before is the last."""
@@ -77,7 +78,7 @@ class Options:
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """End of a minimisation.
+    """The result of a minimisation.
 
     Attributes
     ----------
@@ -210,7 +211,7 @@ class _Descent:
         if not moving:
             self._take_chord_steps(system, predicted)
         terms = trajectory.here.terms
-        # rounding moves the yarn along itself, which lengthens it: no further step does better
+        # rounding moves the yarn along itself, which lengthens it: further steps bring no gain
         slack = (10.0 if rounding else 1.0) * self.options.slack
         self.converged = bool(
             taken.fraction == 1.0
@@ -230,7 +231,7 @@ class _Descent:
         energy, trajectory = self.energy, self.trajectory
         here = trajectory.here
         self.damping = 2.0 * _STABLE * self.first_damping
-        while not system.factorise(self.damping):  # the nearer it is, the faster is the iteration
+        while not system.factorise(self.damping):  # the nearer the shift, the faster the iteration
             self._damp(2.0)
         step = system.softest() * energy.yarn.radius_mm
         before = energy.merit(here.terms, self.tension)
@@ -272,7 +273,7 @@ class _Descent:
         self.damping = max(factor * self.damping, least * self.first_damping)
 
     def minimum(self) -> Minimum:
-        """The current result."""
+        """The result so far."""
         here = self.trajectory.here
         slope = self.trajectory.slope(self.tension, hessian=False)
         return Minimum(

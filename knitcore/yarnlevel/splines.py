@@ -42,11 +42,11 @@ ROUGH_FROM = 12
 _EXPLORED = 1e-5
 """Tolerance of a shape that will be refined, and of its lengths."""
 FINE_UP_TO = 2
-"""Cells of so many stitches are solved on the fine grid (energy within 1e-4), others coarse."""
+"""Cells of up to this many stitches are solved on the fine grid (energy within 1e-4)."""
 SEVERAL_UP_TO = 9
-"""Cells of so many stitches get more than one start."""
+"""Cells of up to this many stitches get more than one start."""
 SECONDS_PER_START = 0.12
-"""CPU time of one start: this times the stitches to the power 1.5 (measured, on the high side)."""
+"""CPU time of one start: this times the stitches to the power 1.5 (measured, an upper estimate)."""
 _STRIDE = 0.03
 """Longest step to a prescribed size, as a part of the loop length."""
 
@@ -292,7 +292,7 @@ def _loop_lengths(loop_length_mm: ArrayLike, chart: StitchChart) -> tuple[Stitch
 
 @cache
 def _compile() -> None:
-    """Compile (or load) the kernels once, so that later solves are timed without it."""
+    """Compile (or load) the kernels once, so that the times of solves do not include it."""
     yarn = YarnModel(0.045, 6e-4, 2.4, 0.74, 0.1)
     cell = mirrored_cell(StitchChart.parse("K"), SplineGrid(8, 4))
     found = grow(

@@ -42,7 +42,7 @@ class Stretch(Protocol):
 
     @property
     def note(self) -> str:
-        """Note on what holds the yarn besides its lengths; empty if nothing does."""
+        """Note on the yarn that is held besides its length; empty if none is."""
         ...
 
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:

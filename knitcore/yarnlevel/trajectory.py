@@ -1,4 +1,4 @@
-"""Motion of a state through the shapes of a cell, along certified steps only."""
+"""Motion of a state of a cell along certified steps only."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.topology import Guard
 
 SKIN = 0.9
-"""How much farther than 2r the list of near pairs reaches when it is made, in radii."""
+"""Reach of a new list of near pairs beyond 2r, in radii."""
 RENEW = 0.4
-"""The list is made anew when it is only known to reach so far beyond 2r."""
+"""Least certain reach of the list beyond 2r, in radii, before it is made anew."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class Trajectory:
         )
 
     def certified(self, step: Array) -> CertifiedStep:
-        """As much of a step as is certified."""
+        """The part of a step that is certified."""
         here = self.here
         state = here.state + step
         if state[-2] <= 0.0 or state[-1] <= 0.0:

@@ -1,4 +1,4 @@
-"""The yarn as the yarn-level model sees it: a rod with a soft shell around a hard core."""
+"""The yarn in the yarn-level model: a rod with a soft shell around a hard core."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ class YarnModel:
     Raises
     ------
     InputError
-        If a value is not finite, has the wrong sign, or lies so far out that its unit is wrong.
+        If a value is not finite, has the wrong sign, or is so far out of range that its unit must
+        be wrong.
 
     Examples
     --------

@@ -73,7 +73,7 @@ def _certified(stitch: Stitch, start: Array, end: Array, halvings: int) -> bool:
 
 
 def _without_drift(line: Array, place: Array, unknowns: Array) -> Array:
-    """Samples as the pair list takes them: (n, 4, 3), x without the drift of the cell."""
+    """Samples for the pair list: (n, 4, 3), x without the drift of the cell."""
     curve = np.zeros((len(line), 4, 3))
     curve[:, 0] = line
     curve[:, 0, 0] -= float(unknowns[-2]) * place

@@ -50,7 +50,7 @@ _HIGH = 5.0
 _TYPICAL = {1.0: 0.1, 0.0: 1.0, -1.0: 10.0}
 """Usual size of an unknown by its power of length, in loop lengths."""
 _TYPICAL_SPEED = 0.4
-"""And of the speeds alpha at the ends of curves: they hardly move the yarn, in flat valleys."""
+"""Usual size of the speeds alpha at the ends of curves, which hardly move the yarn."""
 _REACH = 0.3
 """Largest change in one round of the optimiser, in those sizes."""
 _ROUNDS, _NEAR_ROUNDS = 8, 6
@@ -135,7 +135,7 @@ def minimise(
     constraints : besides the loop length.
     tolerance : of the energy, in units of 60 B over the loop length.
     max_iterations : of the optimiser, for each of its rounds.
-    near : the start is an equilibrium of a neighbouring state, so give up early.
+    near : whether the start is an equilibrium of a neighbouring state; then give up early.
     """
     problem = _Problem(stitch, loop_length_mm, constraints)
     lower, upper = problem.bounds()
@@ -173,7 +173,7 @@ def minimise(
         if converged or stuck or (near and energy > _HIGH):
             break
     iterates.append(x * problem.scale)
-    # any way without a meeting will do: the straight one, else the one that was taken
+    # any path without contact will do: the straight one, else the one that was taken
     certified = is_certified(stitch, start, iterates[-1]) or all(
         is_certified(stitch, *leg) for leg in pairwise(iterates)
     )
@@ -233,7 +233,7 @@ class _Problem:
         return self._last
 
     def energy(self, x: Array) -> float:
-        """Energy over 60 B/L; its logarithm far above a stitch's, so that no step is thrown far."""
+        """Energy over 60 B/L; far above a stitch's energy its logarithm, to limit steps."""
         energy = self.evaluate(x).energy_n_mm / self.energy_scale
         if not np.isfinite(energy):
             return 1e6

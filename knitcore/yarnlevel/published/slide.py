@@ -1,7 +1,7 @@
 """Slide quenching: yarn that may not slide through its contacts (paper, Simulation method).
 
 The paper keeps the length of yarn between the middles of neighbouring crossovers as it is at rest,
-for seed stretched along the course only. Its equations and the authors' code hold different pieces
+for seed stretched along the course only. Its equations and the authors' code hold different lengths
 of yarn.
 """
 

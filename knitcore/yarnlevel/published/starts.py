@@ -41,7 +41,7 @@ def _packaged() -> dict[Fabric, tuple[Array, ...]]:
 
 
 def first_shapes(stitch: Stitch, loop_length_mm: float, count: int) -> list[Array]:
-    """Starts for a minimisation: the packaged shapes, then random ones near them.
+    """Starts for a minimisation: the packaged shape, then random ones near it.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ def pure_fabric(chart: StitchChart) -> Fabric:
             return fabric
     raise InputError(
         "branch",
-        "the published branch knows the four pure fabrics only.",
+        "the published branch covers the four pure fabrics only.",
         "Use mirrored or free for this chart.",
     )
 
@@ -49,7 +49,7 @@ class Evaluation:
     gradient : derivative of the sum, N or N·mm by unknown, shape (unknowns,).
     lengths_mm : lengths of the eight curves in yarn order, mm.
     length_gradient : their derivatives, shape (8, unknowns).
-    closest_mm : smallest distance of two points of yarn that feel each other, mm (huge if none do).
+    closest_mm : smallest distance of two points of yarn that interact, mm (huge if none do).
     """
 
     bending_n_mm: float
