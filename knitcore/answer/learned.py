@@ -281,7 +281,7 @@ class LearnedModel:
         )
 
     def sample(self, features: Array, numbers: Array | None) -> Samples:
-        """Features of charts (m, features) and their yarn's numbers, in the units of the samples."""
+        """Features of charts (m, features) and the yarn's numbers, in the samples' units."""
         yarn = self.number_centre if numbers is None else numbers
         scaled = (np.atleast_2d(yarn) - self.number_centre) / self.number_scale
         return Samples(

@@ -74,7 +74,7 @@ class SheetGrid:
         )
 
     def merged_along_x(self) -> SheetGrid:
-        """Neighbouring columns joined in pairs, as exact laminates; an odd last one is unchanged."""
+        """Neighbouring columns joined in pairs, as exact laminates; an odd last one is kept."""
         first = slice(0, None, 2)
         missing = self.shape[1] % 2
         width = np.append(self.width_mm, np.zeros(missing)).reshape(-1, 2)
