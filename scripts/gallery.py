@@ -29,8 +29,8 @@ KINDS = {
 }
 HEAD = """# Gallery
 
-Ten designs, each of 24 × 24 stitches, with their mechanics and files to continue from. The chart is on
-the left, its extensibility beside it (as wide as it gives along the rows, as high as along the
+Ten designs, each of 24 × 24 stitches, with their mechanics and files to continue from. The chart is
+on the left, its extensibility beside it (as wide as it gives along the rows, as high as along the
 columns, one scale for each), and on the right its stress–strain curves with their 90 % intervals.
 The design opens in [the studio](studio.md); the knitout program has been knitted on a virtual
 machine. Made by `make gallery`.
