@@ -6,9 +6,10 @@ import { Painter } from "./chart/painter.js";
 import { ChartView } from "./chart/view.js";
 import { ChartDocument } from "./core/document.js";
 import { exampleGrid } from "./core/example.js";
-import { Grid, isChartText } from "./core/grid.js";
+import { isChartText } from "./core/grid.js";
 import { Ink } from "./core/ink.js";
 import { Latest } from "./core/latest.js";
+import { motifGrid } from "./core/motif.js";
 import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/store.js";
 import { byId, firstPaint, isTyping } from "./dom.js";
 import { openAddressed } from "./keeping/address.js";
@@ -127,8 +128,8 @@ const loadLists = async () => {
     const [{ materials }, { patterns }] = await Promise.all([api.materials(), api.patterns()]);
     studio.materials.value = materials;
     studio.shelf.value = patterns
-      .filter(({ chart: text }) => isChartText(text))
-      .map(({ id, name, chart: text, note }) => new Ink(id, name, Grid.fromText(text), note));
+      .filter(({ repeat }) => isChartText(repeat.replaceAll("/", "\n")))
+      .map(({ id, name, repeat, note }) => new Ink(id, name, motifGrid(repeat), note));
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (error.offline) studio.online.value = false;

@@ -204,6 +204,13 @@ export class Studio {
     return this.stretchDirection() === "course" ? fields?.strain_course : fields?.strain_wale;
   }
 
+  /** @param {"strain" | "utilisation"} name of values at the stitches; low and high ends by step */
+  interval(name) {
+    const fields = this.currentStretch()?.stitch_fields;
+    if (name === "utilisation") return fields?.utilisation_interval;
+    return fields?.[this.stretchDirection() === "course" ? "strain_course_interval" : "strain_wale_interval"];
+  }
+
   /**
    * Show a message to the user.
    *

@@ -14,15 +14,11 @@ export interface AtlasRequest {
 export interface AtlasResult {
   kind: "atlas";
   material: string;
-  /** Rows from the top, separated by /. */
   repeats: string[];
   modulus_course_n_per_mm: number[];
-  /** Low and high: the ends of 90 % intervals. */
-  modulus_course_low_n_per_mm: number[];
-  modulus_course_high_n_per_mm: number[];
+  modulus_course_interval_n_per_mm: [number[], number[]];
   modulus_wale_n_per_mm: number[];
-  modulus_wale_low_n_per_mm: number[];
-  modulus_wale_high_n_per_mm: number[];
+  modulus_wale_interval_n_per_mm: [number[], number[]];
   poisson_yx: number[];
   poisson_xy: number[];
   /** Strain at 0.1 N/mm. */
@@ -40,8 +36,9 @@ export interface AtlasResult {
 
 /** A band of lines of one repeat. */
 export interface BandResult {
+  /** A repeat: K/P, the top row first, rows separated by /. */
   repeat: string;
-  /** From 1, at the bottom or the left. */
+  /** Its first line: from 1, at the bottom or the left. */
   first: number;
   lines: number;
 }
@@ -167,10 +164,7 @@ export interface BiasResult {
   strain: number[];
   /** Force along the pull. */
   force_n: number[];
-  /** Lower end of the 90 % interval. */
-  force_low_n: number[];
-  /** Upper end of the 90 % interval. */
-  force_high_n: number[];
+  force_interval_n: [number[], number[]];
   /** Force across the pull: the clamps keep the cloth from shearing sideways. */
   sideways_n: number[];
   /** Force per width. */
@@ -218,15 +212,9 @@ export interface BiaxialResult {
   strain_x: number[];
   strain_y: number[];
   force_x_n: number[];
-  /** Lower end of the 90 % interval. */
-  force_x_low_n: number[];
-  /** Upper end of the 90 % interval. */
-  force_x_high_n: number[];
+  force_x_interval_n: [number[], number[]];
   force_y_n: number[];
-  /** Lower end of the 90 % interval. */
-  force_y_low_n: number[];
-  /** Upper end of the 90 % interval. */
-  force_y_high_n: number[];
+  force_y_interval_n: [number[], number[]];
   /** Force per length of the edge. */
   stress_x_n_per_mm: number[];
   stress_y_n_per_mm: number[];
@@ -297,8 +285,8 @@ export type CameraSide = "face" | "back" | "edge" | "angle";
 /** A repeat, and how near it comes to the targets. */
 export interface CandidateResult {
   material: string;
-  /** K/P lines of one repeat, the top row first. */
-  chart: string;
+  /** A repeat: K/P, the top row first, rows separated by /. */
+  repeat: string;
   /** Values by quantity, with @load or @rest/worn; null beyond the lock-up. */
   values: Record<string, number | null>;
   /** 90 % intervals; null where an end lies beyond the computed curve. */
@@ -387,10 +375,11 @@ export interface CharacterisedFabric {
 export interface ChartResult {
   rows: number;
   columns: number;
+  /** K/P lines, the top row first, as seen from the face. */
   text: string;
 }
 
-/** How the ends are held: gripped, or free to slide along the clamp. */
+/** Ends of a strip: gripped, or free to slide along the clamp. */
 export type Clamps = "clamped" | "sliding";
 
 /** The quantity that colours the stitches. */
@@ -476,7 +465,7 @@ export type Construction = "flat" | "round";
 /** A reading of the paper's energy. */
 export type Convention = "published" | "paper" | "authors-code";
 
-/** Where the free edges across a direction go. */
+/** How the free edges across a direction curl. */
 export type Curl = "flat" | "front" | "back";
 
 /** A whole piece with free edges. */
@@ -550,14 +539,14 @@ export interface CurveResult {
   kind: "curve";
   stress_n_per_mm: number[];
   strain: number[];
-  /** Lower end of the 90 % interval. */
-  strain_low: number[];
-  /** Upper end of the 90 % interval. */
-  strain_high: number[];
-  /** Lower end of the 90 % interval of the stress at each strain, N/mm. */
-  stress_low_n_per_mm: number[];
-  /** Upper end of that interval, at most 10 N/mm. */
-  stress_high_n_per_mm: number[];
+  /** At each stress. */
+  strain_interval: [number[], number[]];
+  /** At each strain; at most 10 N/mm. */
+  stress_interval_n_per_mm: [number[], number[]];
+  /** The low end of `stress_interval_n_per_mm`, by its earlier name. */
+  stress_low: number[];
+  /** The high end. */
+  stress_high: number[];
   provenance: string;
 }
 
@@ -608,7 +597,7 @@ export interface DesignDocument {
   version: 2;
   name: string;
   material: string;
-  /** K/P lines, the top row first, as seen from the face. */
+  /** K/P lines, the top row first, as seen from the face. A / may end a line, too. */
   chart: string;
   note: string;
 }
@@ -710,14 +699,8 @@ export type Direction = "course" | "wale";
 /** Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps). */
 export type Edges = "measured" | "rigid";
 
-/** Which sheet energy is meant. */
+/** The energy of a sheet. */
 export type EnergyModel = "published" | "full";
-
-/** A value and its 90 % interval, which has no width if the value is measured. */
-export interface Estimate {
-  value: number;
-  interval: [number, number];
-}
 
 /** What is known of the yarn and the product. */
 export interface EstimateRequest {
@@ -858,10 +841,15 @@ export interface FabricDocument {
 
 /** One fabric; extension under load comes first because it is predicted best. */
 export interface FabricEstimateResult {
-  strain_at_0_1_n_per_mm: Record<Direction, Estimate>;
-  modulus_n_per_mm: Record<Direction, Estimate>;
-  alpha: Record<Direction, Estimate>;
-  beta_n_per_mm: Record<Direction, Estimate>;
+  strain_at_0_1_n_per_mm: Record<Direction, number>;
+  /** Of no width where it is measured, as all intervals here. */
+  strain_at_0_1_n_per_mm_interval: Record<Direction, [number, number]>;
+  modulus_n_per_mm: Record<Direction, number>;
+  modulus_interval_n_per_mm: Record<Direction, [number, number]>;
+  alpha: Record<Direction, number>;
+  alpha_interval: Record<Direction, [number, number]>;
+  beta_n_per_mm: Record<Direction, number>;
+  beta_interval_n_per_mm: Record<Direction, [number, number]>;
   law: LawResult;
   loop_length_mm: number;
   measured: boolean;
@@ -923,7 +911,7 @@ export interface FillRequest {
   columns?: number | null;
   /** In place of the two maps. */
   wishes?: WishInput[] | null;
-  /** Stitches without a target stay as in this chart; otherwise they are filled. */
+  /** K/P lines, the top row first: stitches without a target stay as in this chart; otherwise they are filled. */
   chart?: string | null;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
@@ -941,6 +929,7 @@ export interface FillResult {
   kind: "fill";
   rows: number;
   columns: number;
+  /** K/P lines, the top row first, as seen from the face. */
   chart: string;
   /** Share of the stitches with a target that miss it by more than 10 %. */
   off_share: number;
@@ -1043,9 +1032,11 @@ export interface FitResult {
   curves: Record<Direction, CurveDocument>;
 }
 
-/** A stitch; row 0 is the bottom one. */
+/** A stitch. */
 export interface Focus {
+  /** From 0, the bottom row. */
   row: number;
+  /** From 0, at the left. */
   column: number;
 }
 
@@ -1079,8 +1070,9 @@ export interface GarmentResult {
   name: string;
   rows: number;
   columns: number;
+  /** K/P lines, the top row first, as seen from the face. */
   chart: string;
-  /** Lines of x (stitch) and . (no stitch), the top row first. */
+  /** Lines of x (there) and . (not), the top row first. */
   outline: string;
   stitches: number;
   /** The material direction around the limb. */
@@ -1176,7 +1168,7 @@ export interface ImportResult {
   regions: DesignRegion[];
   repeats: DesignRepeat[];
   shelf: ShelfPattern[];
-  /** K/P lines, the top row first. */
+  /** K/P lines, the top row first, as seen from the face. */
   chart: string;
   /** Of a design. */
   name: string | null;
@@ -1338,11 +1330,10 @@ export interface LoadedEdge {
   /** Mean displacement of the edge. */
   moved_x_mm: number[];
   moved_y_mm: number[];
-  /** Half width of the 90 % interval at the last step. */
-  force_x_margin_n: number;
-  force_y_margin_n: number;
-  moved_x_margin_mm: number;
-  moved_y_margin_mm: number;
+  force_x_interval_n: [number[], number[]];
+  force_y_interval_n: [number[], number[]];
+  moved_x_interval_mm: [number[], number[]];
+  moved_y_interval_mm: [number[], number[]];
 }
 
 /** What to outline. */
@@ -1421,9 +1412,9 @@ export interface ModelReport {
 /** The place nearest to its lock-up at the last step. */
 export interface NearestLockUp {
   utilisation: number;
-  /** Row, from 1 at the bottom. */
+  /** From 0, the bottom row. */
   row: number;
-  /** Column, from 1 at the left. */
+  /** From 0, at the left. */
   column: number;
   direction: Direction;
   fabric: string;
@@ -1468,7 +1459,7 @@ export type Parity = "even" | "odd";
 
 /** A chart as typed text. */
 export interface ParseRequest {
-  /** K/P lines, the top row first, as seen from the face. */
+  /** K/P lines, the top row first, as seen from the face. A / may end a line, too. */
   text: string;
 }
 
@@ -1476,16 +1467,19 @@ export interface ParseRequest {
 export interface ParsedChart {
   rows: number;
   columns: number;
+  /** K/P lines, the top row first, as seen from the face. */
   text: string;
   repeat: ChartResult;
 }
 
 /** A region of one repeat. */
 export interface PatchResult {
+  /** A repeat: K/P, the top row first, rows separated by /. */
   repeat: string;
   stitches: number;
-  /** Position of its first stitch, from 1 at the bottom left. */
+  /** Of its first stitch: from 0, the bottom row. */
   row: number;
+  /** From 0, at the left. */
   column: number;
   /** Of the repeat; null without a target. */
   deviation_course: number | null;
@@ -1499,8 +1493,8 @@ export interface PatchResult {
 export interface PatternResult {
   id: string;
   name: string;
-  /** K/P lines of one repeat, the top row first. */
-  chart: string;
+  /** A repeat: K/P, the top row first, rows separated by /. */
+  repeat: string;
   note: string;
 }
 
@@ -1562,7 +1556,9 @@ export interface PieceResult {
 
 /** Where a linked repeat lies. */
 export interface Placement {
+  /** From 0, the bottom row or the left column. */
   row: number;
+  /** From 0, the bottom row or the left column. */
   column: number;
   rows: number;
   columns: number;
@@ -1753,6 +1749,7 @@ export interface RegionResult {
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
   name: string;
+  /** A repeat: K/P, the top row first, rows separated by /. */
   fill: string;
   colour: string;
   stitches: number;
@@ -1768,7 +1765,7 @@ export interface RegionResult {
   height_interval_mm: [number, number];
   yarn_m: number;
   yarn_g: number | null;
-  /** Lines of x (in the region) and ., the top row first. */
+  /** Lines of x (there) and . (not), the top row first. */
   cells: string;
 }
 
@@ -1841,9 +1838,9 @@ export interface ResidualPoints {
 
 /** Adjacent stitches of one kind in a row. */
 export interface Run {
-  /** 0 is the bottom row. */
+  /** From 0, the bottom row. */
   row: number;
-  /** First stitch, 0 at the left. */
+  /** First stitch; from 0, at the left. */
   column: number;
   stitches: string;
 }
@@ -1896,6 +1893,7 @@ export interface ShapeResult {
   kind: "shape";
   rows: number;
   columns: number;
+  /** K/P lines, the top row first, as seen from the face. */
   chart: string;
   bands: BandResult[];
   /** Width in the finite swatch, to compare with the target. */
@@ -2011,10 +2009,10 @@ export interface StitchFields {
   strain_wale: number[][];
   /** alpha * strain; 1 is the lock-up. */
   utilisation: number[][];
-  /** Half width of the 90 % interval of the strain along the pull. */
-  strain_margin: number[][];
-  /** Half width of the 90 % interval of the utilisation. */
-  utilisation_margin: number[][];
+  /** Of the strain along the pull only. */
+  strain_course_interval: [number[][], number[][]] | null;
+  strain_wale_interval: [number[][], number[][]] | null;
+  utilisation_interval: [number[][], number[][]];
 }
 
 /** One of the 16 kinds of stitch, by its odd segments: left 1, right 2, below 4, above 8. */
@@ -2032,9 +2030,9 @@ export interface StitchKind {
 
 /** Kinds of the stitches in a box; a material's `stitches` table says what each kind does. */
 export interface StitchKinds {
-  /** Bottom row of the box, from 0. */
+  /** Bottom row of the box; from 0, the bottom row of the chart. */
   row: number;
-  /** Left column of the box, from 0. */
+  /** Left column of the box; from 0, at the left. */
   column: number;
   /** A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15. */
   kinds: string[];
@@ -2074,15 +2072,11 @@ export interface StretchRequest {
 export interface StretchResult {
   strain: number[];
   force_n: number[];
-  /** Lower end of the 90 % interval. */
-  force_low_n: number[];
-  /** Upper end of the 90 % interval. */
-  force_high_n: number[];
+  force_interval_n: [number[], number[]];
   /** Force per width; its relative interval is that of the force. */
   stress_n_per_mm: number[];
   waist_strain: number[];
-  /** Half width of the 90 % interval. */
-  waist_margin: number[];
+  waist_strain_interval: [number[], number[]];
   iterations: number[];
   converged: boolean;
   seconds: number;
@@ -2156,9 +2150,8 @@ export interface SweepResult {
   direction: Direction;
   branch: Branch;
   strain: number[];
-  /** 90 % interval of the strain of knitted cloth at each stress. */
-  strain_low: number[];
-  strain_high: number[];
+  /** Of knitted cloth, at each stress. */
+  strain_interval: [number[], number[]];
   /** Source of the interval. */
   interval_source: string;
   transverse_strain: number[];
@@ -2263,10 +2256,7 @@ export interface TrellisResult {
   angle_deg: number[];
   /** Force that pulls two opposite corners of the frame apart. */
   force_n: number[];
-  /** Lower end of the 90 % interval. */
-  force_low_n: number[];
-  /** Upper end of the 90 % interval. */
-  force_high_n: number[];
+  force_interval_n: [number[], number[]];
   /** Moment about the hinges: work per radian of shear. */
   moment_n_mm: number[];
   /** Moment over the relaxed area. */

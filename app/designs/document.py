@@ -83,8 +83,10 @@ class DesignPatch(RequestModel):
 class Run(RequestModel):
     """Adjacent stitches of one kind in a row."""
 
-    row: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="0 is the bottom row.")
-    column: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch, 0 at the left.")
+    row: int = Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="From 0, the bottom row.")
+    column: int = Field(
+        ge=0, lt=MAX_STITCHES_PER_SIDE, description="First stitch; from 0, at the left."
+    )
     stitches: str = Field(pattern=r"^[KP]+$", max_length=MAX_STITCHES_PER_SIDE, examples=["KKP"])
 
 
@@ -99,8 +101,8 @@ class Strokes(RequestModel):
 class StitchKinds(BaseModel):
     """Kinds of the stitches in a box; a material's `stitches` table says what each kind does."""
 
-    row: int = Field(description="Bottom row of the box, from 0.")
-    column: int = Field(description="Left column of the box, from 0.")
+    row: int = Field(description="Bottom row of the box; from 0, the bottom row of the chart.")
+    column: int = Field(description="Left column of the box; from 0, at the left.")
     kinds: list[str] = Field(
         description="A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15."
     )

@@ -42,8 +42,9 @@ def page(title: str, content: str) -> str:
 
 
 def prose(text: str, tag: str = "p") -> str:
-    """Text with `names` in it; a paragraph each, or without a tag in a line."""
+    """Text with `names` and **words** in it; a paragraph each, or without a tag in a line."""
     marked = re.sub(r"`+([^`]+)`+", r"<code>\1</code>", escape(text))
+    marked = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", marked)
     if not tag:
         return marked
     return "".join(f"<{tag}>{part}</{tag}>" for part in marked.split("\n\n") if part)

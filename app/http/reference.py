@@ -59,6 +59,7 @@ def reference(schema: Schema) -> str:
 (<code>Content-Type: application/json</code>). Every refusal is a
 <a href="{FOLDER}">problem</a> that names the field and the remedy
 (<a href="#Problem">its shape</a>). For programs: <a href="/openapi.json">openapi.json</a>.</p>
+{prose(schema["info"]["description"])}
 <nav>{links}</nav>
 {"".join(parts)}
 <h2 id="shapes">shapes</h2>

@@ -40,6 +40,18 @@ TAGS = {
     "session": "Who you are, and where you are signed in.",
     "service": "The service itself.",
 }
+CONVENTIONS = """\
+**Charts** are lines of K and P, the top row first, as seen from the face: `KP` over `PK`.
+**Repeats** are the same in one line, `KP/PK`. Requests take either. Outlines and other cells are
+lines of `x` and `.`, the top row first.
+
+**Rows** count from the bottom wherever they have a number or stand in a list: `row` 0, or the
+first row of a list, is the bottom row, and column 0 the left one. In files and texts for people
+they count from 1.
+
+**Intervals** are 90 % intervals, `[low, high]`. Each end has the unit and the shape of its value,
+after which its field is named: `force_n: [1, 2]` and `force_interval_n: [[0.8, 1.7], [1.2, 2.3]]`.
+A strain of 0.5 is 50 %."""
 HEADERS = {
     "ETag": "The state that was answered, for `If-None-Match` and `If-Match`.",
     "Location": "Address of what was made.",
@@ -85,6 +97,7 @@ def install_schema(app: FastAPI) -> None:
                     if parameter["in"] == "path":
                         parameter["example"] = found["parameters"].get(parameter["name"])
             schema["components"]["schemas"]["Problem"]["examples"] = [EXAMPLE]
+            schema["info"]["description"] = CONVENTIONS
             schema["tags"] = [{"name": n, "description": text} for n, text in TAGS.items()]
             schema["components"]["headers"] = {
                 name: {"description": text, "schema": {"type": "string"}}

@@ -8,6 +8,7 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic.config import JsonDict
 
 from knitcore.errors import InputError
 
@@ -83,7 +84,12 @@ def _known(value: Any) -> Any:
 Floats = Annotated[list[float], BeforeValidator(_listed)]
 """An array of the library."""
 Ends = Annotated[tuple[float, float], BeforeValidator(_ends)]
-"""An interval, as [low, high]."""
+"""An interval is [low, high] everywhere, each end in the shape and the unit of its value, and its
+field is named after that of the value: ``force_interval_n`` belongs to ``force_n``."""
+EndsOfList = Annotated[tuple[Floats, Floats], BeforeValidator(_ends)]
+"""The same of a list of values: the list of low ends, and that of high ends."""
+EARLIER_NAME: JsonDict = {"deprecated": True}
+"""Of a field that is there for programs written when it was the only one."""
 Known = Annotated[float | None, BeforeValidator(_known)]
 """A number, null where the library's is not finite."""
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]

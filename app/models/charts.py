@@ -26,10 +26,26 @@ ChartText = Annotated[
     str,
     Field(
         max_length=MAX_TEXT,
-        description="K/P lines, the top row first, as seen from the face.",
+        description="K/P lines, the top row first, as seen from the face. A / may end a line, too.",
         examples=["KPKP\nPKPK"],
     ),
 ]
+ChartLines = Annotated[
+    str, Field(description="K/P lines, the top row first, as seen from the face.")
+]
+"""A chart in an answer."""
+RepeatText = Annotated[
+    str,
+    Field(
+        description="A repeat: K/P, the top row first, rows separated by /.",
+        examples=["KPKP/PKPK"],
+    ),
+]
+"""A repeat in an answer, spelled as in a design."""
+CellLines = Annotated[str, Field(description="Lines of x (there) and . (not), the top row first.")]
+"""Which stitches are meant, in an answer."""
+Row = Annotated[int, Field(ge=0, description="From 0, the bottom row.")]
+Column = Annotated[int, Field(ge=0, description="From 0, at the left.")]
 TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
 """Tags of the two ways to give a chart; errors leave them out of the field's name."""
 

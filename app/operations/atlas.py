@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -13,12 +12,12 @@ from pydantic import BeforeValidator, Field
 
 from app.cli.options import out_option
 from app.models.base import ResultModel
-from app.models.charts import MaterialName
+from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
-from knitcore.design.atlas import Atlas
+from knitcore.design.atlas import VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import improve_atlas
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
@@ -47,15 +46,11 @@ class AtlasResult(ResultModel):
 
     kind: Literal["atlas"] = "atlas"
     material: str
-    repeats: list[str] = Field(description="Rows from the top, separated by /.")
+    repeats: list[RepeatText]
     modulus_course_n_per_mm: Column
-    modulus_course_low_n_per_mm: Column = Field(
-        description="Low and high: the ends of 90 % intervals."
-    )
-    modulus_course_high_n_per_mm: Column
+    modulus_course_interval_n_per_mm: tuple[Column, Column]
     modulus_wale_n_per_mm: Column
-    modulus_wale_low_n_per_mm: Column
-    modulus_wale_high_n_per_mm: Column
+    modulus_wale_interval_n_per_mm: tuple[Column, Column]
     poisson_yx: Column
     poisson_xy: Column
     stretch_course: Column = Field(description="Strain at 0.1 N/mm.")
@@ -68,7 +63,7 @@ class AtlasResult(ResultModel):
     provenance: list[str]
 
 
-COLUMNS = [name for name in AtlasResult.model_fields if name.startswith(("mod", "poi", "relaxed"))]
+COLUMNS = [name for name in AtlasResult.model_fields if name in VALUES]
 COSTS = ("transfers_per_stitch", "crossings_per_stitch", "curl")
 
 
@@ -77,16 +72,17 @@ def atlas(request: AtlasRequest, context: Context) -> AtlasResult:
     return _result(atlas_of(request.material, request.repeats, context))
 
 
-def _of_library(column: str) -> str:
-    """The name of a column in the atlas, whose ends of intervals have no unit in theirs."""
-    return re.sub("_(low|high)_n_per_mm$", r"_\1", column)
-
-
 def _result(found: Atlas) -> AtlasResult:
     return AtlasResult.of(
         found,
         repeats=found.keys,
-        **{name: found.column(_of_library(name)) for name in COLUMNS},
+        **{name: found.column(name) for name in COLUMNS},
+        **{
+            f"modulus_{d}_interval_n_per_mm": [
+                found.column(f"modulus_{d}_{end}") for end in ("low", "high")
+            ]
+            for d in Direction
+        },
         **{name: [getattr(cost, name) for cost in found.costs] for name in COSTS},
         **{f"stretch_{d}": found.strain_at(d, USUAL_LOAD_N_PER_MM) for d in Direction},
     )

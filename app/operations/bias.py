@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.models.base import Floats
+from app.models.base import EndsOfList, Floats
 from app.models.charts import to_repeat
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
 from app.operations.context import Context
@@ -38,8 +38,7 @@ class BiasResult(PieceTestResult):
     kind: Literal["bias"] = "bias"
     strain: Floats
     force_n: Floats = Field(description="Force along the pull.")
-    force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
-    force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    force_interval_n: EndsOfList
     sideways_n: Floats = Field(
         description="Force across the pull: the clamps keep the cloth from shearing sideways."
     )
@@ -64,16 +63,16 @@ def bias(request: BiasRequest, context: Context) -> BiasResult:
         angle_deg=request.angle_deg,
         **request.options(context),
     )
-    low, high = interval(test.force_n, test.force_log_sd)
-    return BiasResult.of(test, force_low_n=low, force_high_n=high, **of_test(test.test))
+    ends = interval(test.force_n, test.force_log_sd)
+    return BiasResult.of(test, force_interval_n=ends, **of_test(test.test))
 
 
 def _text(r: BiasResult) -> str:
     columns = {
         "strain": r.strain,
         "force N": r.force_n,
-        "low N": r.force_low_n,
-        "high N": r.force_high_n,
+        "low N": r.force_interval_n[0],
+        "high N": r.force_interval_n[1],
         "sideways N": r.sideways_n,
         "waist": r.waist_strain,
     }

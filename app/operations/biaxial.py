@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.models.base import Floats
+from app.models.base import EndsOfList, Floats
 from app.models.charts import to_repeat
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
 from app.operations.context import Context
@@ -34,11 +34,9 @@ class BiaxialResult(PieceTestResult):
     strain_x: Floats
     strain_y: Floats
     force_x_n: Floats
-    force_x_low_n: Floats = Field(description="Lower end of the 90 % interval.")
-    force_x_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    force_x_interval_n: EndsOfList
     force_y_n: Floats
-    force_y_low_n: Floats = Field(description="Lower end of the 90 % interval.")
-    force_y_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    force_y_interval_n: EndsOfList
     stress_x_n_per_mm: Floats = Field(description="Force per length of the edge.")
     stress_y_n_per_mm: Floats
 
@@ -61,14 +59,10 @@ def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
         grain_deg=request.grain_deg,
         **request.options(context),
     )
-    x_low, x_high = interval(test.force_x_n, test.force_x_log_sd)
-    y_low, y_high = interval(test.force_y_n, test.force_y_log_sd)
     return BiaxialResult.of(
         test,
-        force_x_low_n=x_low,
-        force_x_high_n=x_high,
-        force_y_low_n=y_low,
-        force_y_high_n=y_high,
+        force_x_interval_n=interval(test.force_x_n, test.force_x_log_sd),
+        force_y_interval_n=interval(test.force_y_n, test.force_y_log_sd),
         **of_test(test.test),
     )
 
@@ -78,11 +72,11 @@ def _text(r: BiaxialResult) -> str:
         "strain x": r.strain_x,
         "strain y": r.strain_y,
         "force x N": r.force_x_n,
-        "low N": r.force_x_low_n,
-        "high N": r.force_x_high_n,
+        "low N": r.force_x_interval_n[0],
+        "high N": r.force_x_interval_n[1],
         "force y N": r.force_y_n,
-        "low  N": r.force_y_low_n,
-        "high  N": r.force_y_high_n,
+        "low  N": r.force_y_interval_n[0],
+        "high  N": r.force_y_interval_n[1],
     }
     return table(columns, r.messages)
 

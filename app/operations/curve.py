@@ -8,7 +8,7 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.models.base import Floats, ResultModel
+from app.models.base import EARLIER_NAME, EndsOfList, Floats, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
@@ -40,12 +40,13 @@ class CurveResult(ResultModel):
     kind: Literal["curve"] = "curve"
     stress_n_per_mm: Floats
     strain: Floats
-    strain_low: Floats = Field(description="Lower end of the 90 % interval.")
-    strain_high: Floats = Field(description="Upper end of the 90 % interval.")
-    stress_low_n_per_mm: Floats = Field(
-        description="Lower end of the 90 % interval of the stress at each strain, N/mm."
+    strain_interval: EndsOfList = Field(description="At each stress.")
+    stress_interval_n_per_mm: EndsOfList = Field(description="At each strain; at most 10 N/mm.")
+    stress_low: Floats = Field(
+        description="The low end of `stress_interval_n_per_mm`, by its earlier name.",
+        json_schema_extra=EARLIER_NAME,
     )
-    stress_high_n_per_mm: Floats = Field(description="Upper end of that interval, at most 10 N/mm.")
+    stress_high: Floats = Field(description="The high end.", json_schema_extra=EARLIER_NAME)
     provenance: str
 
 
@@ -55,8 +56,11 @@ def curve(request: CurveRequest, context: Context) -> CurveResult:
         raise CancelledError("The caller stopped the curve.")
     size = request.gauge.relaxed_size() if request.gauge else None
     chart, material = to_chart(request.chart), context.material(request.material)
+    found = chart_curve(chart, material, request.direction, request.stress_n_per_mm, gauge=size)
     return CurveResult.of(
-        chart_curve(chart, material, request.direction, request.stress_n_per_mm, gauge=size)
+        found,
+        strain_interval=(found.strain_low, found.strain_high),
+        stress_interval_n_per_mm=(found.stress_low, found.stress_high),
     )
 
 
@@ -74,7 +78,7 @@ def _stresses(max_stress: float, points: int) -> dict[str, Any]:
 
 def _text(r: CurveResult) -> str:
     lines = [f"{'N/mm':>8} {'strain':>8}   90 % interval"]
-    columns = (r.stress_n_per_mm, r.strain, r.strain_low, r.strain_high)
+    columns = (r.stress_n_per_mm, r.strain, *r.strain_interval)
     lines += [
         f"{s:8.4f} {e:8.4f}   {a:.4f} to {b:.4f}" for s, e, a, b in zip(*columns, strict=True)
     ]

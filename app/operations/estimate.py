@@ -6,18 +6,23 @@ from pathlib import Path
 from typing import Any
 
 import click
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from app.cli.common import emit, json_option, user_data_dir
 from app.cli.options import out_option
-from app.models.base import Ends, RequestModel, ResultModel
+from app.models.base import UNIT, Ends, RequestModel, ResultModel
 from app.models.laws import LawResult
 from app.operations.context import Context
 from app.operations.estimate_report import LeftOutResult, report, text_of_left_out
 from app.operations.estimate_report import text as report_text
 from app.operations.registry import Operation
 from knitcore.errors import InputError
-from knitcore.estimate.estimate import MeasuredSwatch, YarnEstimate, estimate_yarn
+from knitcore.estimate.estimate import (
+    FabricEstimate,
+    MeasuredSwatch,
+    YarnEstimate,
+    estimate_yarn,
+)
 from knitcore.estimate.material import estimated_material
 from knitcore.estimate.model import left_out
 from knitcore.fabric import Direction, Fabric
@@ -45,27 +50,19 @@ class EstimateRequest(RequestModel):
     )
 
 
-class Estimate(ResultModel):
-    """A value and its 90 % interval, which has no width if the value is measured."""
-
-    value: float
-    interval: Ends
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_library(cls, value: Any) -> Any:
-        if not hasattr(value, "low"):
-            return value
-        return {"value": value.value, "interval": (value.low, value.high)}
-
-
 class FabricEstimateResult(ResultModel):
     """One fabric; extension under load comes first because it is predicted best."""
 
-    strain_at_0_1_n_per_mm: dict[Direction, Estimate]
-    modulus_n_per_mm: dict[Direction, Estimate]
-    alpha: dict[Direction, Estimate]
-    beta_n_per_mm: dict[Direction, Estimate]
+    strain_at_0_1_n_per_mm: dict[Direction, float]
+    strain_at_0_1_n_per_mm_interval: dict[Direction, Ends] = Field(
+        description="Of no width where it is measured, as all intervals here."
+    )
+    modulus_n_per_mm: dict[Direction, float]
+    modulus_interval_n_per_mm: dict[Direction, Ends]
+    alpha: dict[Direction, float]
+    alpha_interval: dict[Direction, Ends]
+    beta_n_per_mm: dict[Direction, float]
+    beta_interval_n_per_mm: dict[Direction, Ends]
     law: LawResult
     loop_length_mm: float
     measured: bool
@@ -103,11 +100,25 @@ def _result(found: YarnEstimate) -> EstimateResult:
     return EstimateResult.of(
         found,
         fabrics={
-            fabric: FabricEstimateResult.of(f, strain_at_0_1_n_per_mm=f.strain_at_load)
-            for fabric, f in found.fabrics.items()
+            fabric: FabricEstimateResult.of(f, **_values(f)) for fabric, f in found.fabrics.items()
         },
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,
     )
+
+
+def _values(found: FabricEstimate) -> dict[str, Any]:
+    """Central values and intervals, by direction."""
+    by_name = {
+        ("strain_at_0_1_n_per_mm", ""): found.strain_at_load,
+        ("modulus", UNIT): found.modulus,
+        ("alpha", ""): found.alpha,
+        ("beta", UNIT): found.beta,
+    }
+    values = {
+        f"{name}{unit}": {d: estimate.value for d, estimate in known.items()}
+        for (name, unit), known in by_name.items()
+    }
+    return values | {f"{name}_interval{unit}": known for (name, unit), known in by_name.items()}
 
 
 @click.command("estimate")
@@ -226,21 +237,16 @@ def _text(r: EstimateResult) -> str:
     for fabric, f in r.fabrics.items():
         kind = " (measured)" if f.measured else ""
         for d in Direction:
-            strain = _percent(f.strain_at_0_1_n_per_mm[d])
-            modulus = f.modulus_n_per_mm[d]
-            low, high = modulus.interval
+            low, high = f.strain_at_0_1_n_per_mm_interval[d]
+            strain = f"{f.strain_at_0_1_n_per_mm[d]:.0%} ({low:.0%} to {high:.0%})"
+            low, high = f.modulus_interval_n_per_mm[d]
             lines.append(
-                f"{fabric + kind:22} {d:6} {strain:24} {modulus.value:.4f}"
+                f"{fabric + kind:22} {d:6} {strain:24} {f.modulus_n_per_mm[d]:.4f}"
                 f" ({low:.4f} to {high:.4f})"
             )
     if r.left_out is not None:
         lines += ["", text_of_left_out(r.left_out)]
     return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
-
-
-def _percent(e: Estimate) -> str:
-    low, high = e.interval
-    return f"{e.value:.0%} ({low:.0%} to {high:.0%})"
 
 
 OPERATION = Operation(

@@ -13,7 +13,15 @@ from pydantic import Field
 from app.cli.common import resolve_chart
 from app.cli.options import atlas_option, design_option, write_design_of
 from app.models.base import Known, RequestModel, ResultModel
-from app.models.charts import ChartText, MaterialName, OutlineInput
+from app.models.charts import (
+    ChartLines,
+    ChartText,
+    Column,
+    MaterialName,
+    OutlineInput,
+    RepeatText,
+    Row,
+)
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -76,7 +84,8 @@ class FillRequest(LawsRequest):
     )
     chart: ChartText | None = Field(
         None,
-        description="Stitches without a target stay as in this chart; otherwise they are filled.",
+        description="K/P lines, the top row first: stitches without a target stay as in this "
+        "chart; otherwise they are filled.",
     )
     outline: OutlineInput = None
     repeats: Extent = "small"
@@ -91,10 +100,10 @@ class FillRequest(LawsRequest):
 class PatchResult(ResultModel):
     """A region of one repeat."""
 
-    repeat: str
+    repeat: RepeatText
     stitches: int
-    row: int = Field(description="Position of its first stitch, from 1 at the bottom left.")
-    column: int
+    row: Row = Field(description="Of its first stitch: from 0, the bottom row.")
+    column: Column
     deviation_course: Known = Field(description="Of the repeat; null without a target.")
     deviation_wale: Known
     swatch_course: Known = Field(
@@ -109,7 +118,7 @@ class FillResult(ResultModel):
     kind: Literal["fill"] = "fill"
     rows: int
     columns: int
-    chart: str
+    chart: ChartLines
     off_share: float = Field(
         description="Share of the stitches with a target that miss it by more than 10 %."
     )

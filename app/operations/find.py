@@ -11,7 +11,7 @@ import click
 from pydantic import Field
 
 from app.models.base import Ends, Known, KnownEnds, RequestModel, ResultModel
-from app.models.charts import MaterialName
+from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -95,7 +95,7 @@ class CandidateResult(ResultModel):
     """A repeat, and how near it comes to the targets."""
 
     material: str
-    chart: str = Field(description="K/P lines of one repeat, the top row first.")
+    repeat: RepeatText
     values: dict[str, Known] = Field(
         description="Values by quantity, with @load or @rest/worn; null beyond the lock-up."
     )
@@ -181,7 +181,7 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
 
 
 def _candidate(found: Candidate) -> CandidateResult:
-    return CandidateResult.of(found, found.cost, chart=found.repeat.replace("/", "\n"))
+    return CandidateResult.of(found, found.cost)
 
 
 _TARGET = re.compile(
@@ -262,7 +262,7 @@ def _text(r: FindResult) -> str:
 def _line(c: CandidateResult) -> str:
     values = "  ".join(_value(c, label) for label in c.values)
     return (
-        f"{c.chart.replace(chr(10), '/'):20} {c.material}: {values}; "
+        f"{c.repeat:20} {c.material}: {values}; "
         f"{c.transfers_per_stitch:.2f} transfers and {c.crossings_per_stitch:.2f} crossings a "
         f"stitch, curl {c.curl:+.2f}; {c.provenance}"
     )

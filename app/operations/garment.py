@@ -11,7 +11,7 @@ from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import Ends, RequestModel, ResultModel
-from app.models.charts import MaterialName
+from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText
 from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -186,7 +186,7 @@ class RegionResult(Moduli, Extensibility):
     """One region: its repeat, colour and size, and means over its stitches."""
 
     name: str
-    fill: str
+    fill: RepeatText
     colour: str
     stitches: int
     columns: int = Field(description="Stitches of its longest row.")
@@ -197,7 +197,7 @@ class RegionResult(Moduli, Extensibility):
     height_interval_mm: Ends
     yarn_m: float
     yarn_g: float | None
-    cells: str = Field(description="Lines of x (in the region) and ., the top row first.")
+    cells: CellLines
 
 
 class GaugeResult(ResultModel):
@@ -233,8 +233,8 @@ class GarmentResult(ResultModel):
     name: str
     rows: int
     columns: int
-    chart: str
-    outline: str = Field(description="Lines of x (stitch) and . (no stitch), the top row first.")
+    chart: ChartLines
+    outline: CellLines
     stitches: int
     around: Direction = Field(description="The material direction around the limb.")
     closing: str
@@ -298,7 +298,7 @@ def _regions(plan: GarmentPlan, material: Material, tex: float | None) -> list[R
             RegionResult.of(
                 numbers[region.name],
                 region,
-                fill=region.fill.text,
+                fill=region.fill.key,
                 columns=columns,
                 rows=rows,
                 width_mm=columns * gauge.stitch_course_mm,

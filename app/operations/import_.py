@@ -7,6 +7,7 @@ from pathlib import Path
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
+from app.models.charts import ChartLines
 from app.models.uploads import UploadedFile, stored
 from app.operations.context import Context
 from app.operations.parse import ChartResult
@@ -29,7 +30,7 @@ class ImportRequest(RequestModel):
 class FoundDesign(DesignLayout, ResultModel):
     """A design, or the parts of one that a file of another kind holds."""
 
-    chart: str = Field(description="K/P lines, the top row first.")
+    chart: ChartLines
     name: str | None = Field(None, description="Of a design.")
     material: str | None = None
     note: str | None = None

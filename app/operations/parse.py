@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartText
+from app.models.charts import ChartLines, ChartText
 from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.chart import StitchChart
@@ -20,7 +20,7 @@ class ChartResult(ResultModel):
 
     rows: int
     columns: int
-    text: str
+    text: ChartLines
 
 
 class ParsedChart(ChartResult):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from pydantic import Field
-
 from app.models.base import NoRequest, ResultModel
+from app.models.charts import RepeatText
 from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore import patterns as library
@@ -15,7 +14,7 @@ class PatternResult(ResultModel):
 
     id: str
     name: str
-    chart: str = Field(description="K/P lines of one repeat, the top row first.")
+    repeat: RepeatText
     note: str
 
 
@@ -30,7 +29,7 @@ def patterns(request: NoRequest, context: Context) -> Patterns:
     del request, context
     return Patterns(
         patterns=[
-            PatternResult.of(p, id=p.identifier, chart=p.chart.text) for p in library.patterns()
+            PatternResult.of(p, id=p.identifier, repeat=p.chart.key) for p in library.patterns()
         ]
     )
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
 import click
-import numpy as np
 from pydantic import Field
 
 from app.cli.options import out_option
-from app.models.base import Floats, ResultModel
+from app.models.base import EndsOfList, Floats, ResultModel
 from app.models.charts import to_repeat
 from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
 from app.operations.context import Context
@@ -20,7 +20,7 @@ from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.piece import PieceTest, cloth_under, solve, write_piece_test
 from knitcore.piece.results import SUFFIXES
-from knitcore.piece.spread import piece_spread
+from knitcore.piece.spread import piece_spreads
 
 
 class PieceRequest(PieceTestRequest):
@@ -39,10 +39,10 @@ class LoadedEdge(ResultModel):
     force_y_n: Floats
     moved_x_mm: Floats = Field(description="Mean displacement of the edge.")
     moved_y_mm: Floats
-    force_x_margin_n: float = Field(description="Half width of the 90 % interval at the last step.")
-    force_y_margin_n: float
-    moved_x_margin_mm: float
-    moved_y_margin_mm: float
+    force_x_interval_n: EndsOfList
+    force_y_interval_n: EndsOfList
+    moved_x_interval_mm: EndsOfList
+    moved_y_interval_mm: EndsOfList
 
 
 class DeformedPiece(ResultModel):
@@ -94,21 +94,15 @@ def _test(request: PieceRequest, material: Material, context: Context) -> PieceT
 
 
 def _result(request: PieceRequest, test: PieceTest, material: Material) -> PieceResult:
-    force, moved = test.force_n, test.moved_mm
-    margins = np.zeros((2, len(test.conditions), 2))
-    if test.found:
-        spread = piece_spread(test, material)
-        margins = Z_SCORE * np.array([spread.force_n, spread.moved_mm])
+    values = {"force": ("n", test.force_n), "moved": ("mm", test.moved_mm)}
+    margins = dict(zip(values, Z_SCORE * piece_spreads(test, material), strict=True))
     edges = []
     for i, given in enumerate(request.piece.conditions):
         found: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
-        for axis, letter in enumerate("xy"):
-            found |= {
-                f"force_{letter}_n": force[:, i, axis],
-                f"moved_{letter}_mm": moved[:, i, axis],
-                f"force_{letter}_margin_n": margins[0, i, axis],
-                f"moved_{letter}_margin_mm": margins[1, i, axis],
-            }
+        for (name, (unit, told)), (axis, letter) in product(values.items(), enumerate("xy")):
+            value, margin = told[:, i, axis], margins[name][:, i, axis]
+            found[f"{name}_{letter}_{unit}"] = value
+            found[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
         edges.append(found)
     return PieceResult.of(
         test,
@@ -168,12 +162,18 @@ def _text(r: PieceResult) -> str:
     for e in r.edges if r.share else []:
         lines += [
             f"{e.edge} ({e.kind})",
-            f"  x {e.force_x_n[-1]:9.3f} ± {e.force_x_margin_n:.3f} N"
-            f" {e.moved_x_mm[-1]:9.3f} ± {e.moved_x_margin_mm:.3f} mm",
-            f"  y {e.force_y_n[-1]:9.3f} ± {e.force_y_margin_n:.3f} N"
-            f" {e.moved_y_mm[-1]:9.3f} ± {e.moved_y_margin_mm:.3f} mm",
+            f"  x {_last(e.force_x_n, e.force_x_interval_n)} N"
+            f" {_last(e.moved_x_mm, e.moved_x_interval_mm)} mm",
+            f"  y {_last(e.force_y_n, e.force_y_interval_n)} N"
+            f" {_last(e.moved_y_mm, e.moved_y_interval_mm)} mm",
         ]
     return "\n".join([*lines, *r.messages])
+
+
+def _last(values: list[float], ends: tuple[list[float], list[float]]) -> str:
+    """The last value and half the width of its interval."""
+    low, high = ends
+    return f"{values[-1]:9.3f} ± {(high[-1] - low[-1]) / 2:.3f}"
 
 
 OPERATION = Operation(

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 
 from app.cli.options import atlas_option, design_option, write_design_of
 from app.models.base import Known, ResultModel
-from app.models.charts import MaterialName
+from app.models.charts import ChartLines, MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -55,8 +55,8 @@ class ShapeRequest(LawsRequest):
 class BandResult(ResultModel):
     """A band of lines of one repeat."""
 
-    repeat: str
-    first: int = Field(description="From 1, at the bottom or the left.")
+    repeat: RepeatText
+    first: int = Field(ge=1, description="Its first line: from 1, at the bottom or the left.")
     lines: int
 
 
@@ -66,7 +66,7 @@ class ShapeResult(ResultModel):
     kind: Literal["shape"] = "shape"
     rows: int
     columns: int
-    chart: str
+    chart: ChartLines
     bands: list[BandResult]
     width: Rounded = Field(description="Width in the finite swatch, to compare with the target.")
     wanted: Gaps

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,16 @@ from pydantic import Field
 from scipy.ndimage import distance_transform_edt
 
 from app.cli.options import out_option
-from app.models.base import Floats, ResultModel
-from app.models.charts import ChartInput, MaterialName, OutlineInput, PureFabricChart, to_chart
+from app.models.base import EndsOfList, Floats, ResultModel
+from app.models.charts import (
+    ChartInput,
+    Column,
+    MaterialName,
+    OutlineInput,
+    PureFabricChart,
+    Row,
+    to_chart,
+)
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
@@ -32,7 +40,7 @@ Array = NDArray[np.float32]
 MAX_STITCHES = 40_000
 """Largest chart of a test over REST, in stitches; the command line accepts larger ones."""
 MAX_VALUES = 60 * MAX_STITCHES
-"""Most stitches times steps over REST: the answer has three numbers for each."""
+"""Most stitches times steps over REST: the answer has seven numbers for each."""
 NEAR_LOCK_UP = 0.95
 
 
@@ -66,28 +74,31 @@ class StretchRequest(LawsRequest):
     )
 
 
+StitchValues = list[list[float]]
+StitchEnds = tuple[StitchValues, StitchValues]
+
+
 class StitchFields(ResultModel):
     """Values at the stitches: [step][row * columns + column], bottom row first; 0 where there is
     no stitch.
     """
 
-    strain_course: list[list[float]]
-    strain_wale: list[list[float]]
-    utilisation: list[list[float]] = Field(description="alpha * strain; 1 is the lock-up.")
-    strain_margin: list[list[float]] = Field(
-        description="Half width of the 90 % interval of the strain along the pull."
+    strain_course: StitchValues
+    strain_wale: StitchValues
+    utilisation: StitchValues = Field(description="alpha * strain; 1 is the lock-up.")
+    strain_course_interval: StitchEnds | None = Field(
+        None, description="Of the strain along the pull only."
     )
-    utilisation_margin: list[list[float]] = Field(
-        description="Half width of the 90 % interval of the utilisation."
-    )
+    strain_wale_interval: StitchEnds | None = None
+    utilisation_interval: StitchEnds
 
 
 class NearestLockUp(ResultModel):
     """The place nearest to its lock-up at the last step."""
 
     utilisation: float
-    row: int = Field(description="Row, from 1 at the bottom.")
-    column: int = Field(description="Column, from 1 at the left.")
+    row: Row
+    column: Column
     direction: Direction
     fabric: str
 
@@ -97,13 +108,12 @@ class StretchCurve(ResultModel):
 
     strain: Floats
     force_n: Floats
-    force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
-    force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    force_interval_n: EndsOfList
     stress_n_per_mm: Floats = Field(
         description="Force per width; its relative interval is that of the force."
     )
     waist_strain: Floats
-    waist_margin: Floats = Field(description="Half width of the 90 % interval.")
+    waist_strain_interval: EndsOfList
     iterations: list[int]
     converged: bool
     seconds: float
@@ -214,9 +224,11 @@ def _curve(
     return StretchCurve.of(
         test,
         test.sheet.grid,
-        force_low_n=test.force_n / margins.force_factor,
-        force_high_n=test.force_n * margins.force_factor,
-        waist_margin=margins.waist,
+        force_interval_n=(
+            test.force_n / margins.force_factor,
+            test.force_n * margins.force_factor,
+        ),
+        waist_strain_interval=_around(test.waist_strain, margins.waist),
         shear_modulus_assumed=request.shear_modulus_n_per_mm is None,
         nearest_lock_up=_nearest(chart, test),
         messages=_messages(test),
@@ -278,18 +290,16 @@ def _stitches(
     y = _carried(test.y_mm[1::2, 1::2], uy, yy, there)
     for values in (xx, yy, used):
         values[:, ~there] = 0.0
-    fields = {
-        "strain_course": xx,
-        "strain_wale": yy,
-        "utilisation": used,
-        "strain_margin": margins.strain,
-        "utilisation_margin": margins.utilisation,
-    }
+    fields = {"strain_course": xx, "strain_wale": yy, "utilisation": used}
+    margin = {f"strain_{request.direction}": margins.strain, "utilisation": margins.utilisation}
+    told: dict[str, Any] = {name: _rounded(values) for name, values in fields.items()}
+    for name, width in margin.items():
+        told[f"{name}_interval"] = [_rounded(ends) for ends in _around(fields[name], width)]
     result = StretchResult.of(
         _curve(chart, request, test, margins),
         chart,
         id=OPERATION.key(request),
-        stitch_fields={name: _rounded(values) for name, values in fields.items()},
+        stitch_fields=told,
     )
     view = StretchView(
         direction=request.direction,
@@ -322,6 +332,13 @@ def _rounded(values: NDArray[np.float64]) -> list[list[float]]:
     return lists
 
 
+def _around(
+    values: NDArray[np.float64], margin: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """An interval by its half width."""
+    return values - margin, values + margin
+
+
 def _nearest(chart: StitchChart, test: StripTest) -> NearestLockUp | None:
     spot = test.nearest_lock_up
     if spot is None:
@@ -331,8 +348,8 @@ def _nearest(chart: StitchChart, test: StripTest) -> NearestLockUp | None:
     row = int(np.searchsorted(grid.row_lines[::2], spot.y_mm))
     return NearestLockUp(
         utilisation=spot.utilisation,
-        row=min(max(row, 1), chart.rows),
-        column=min(max(column, 1), chart.columns),
+        row=min(max(row, 1), chart.rows) - 1,
+        column=min(max(column, 1), chart.columns) - 1,
         direction=spot.direction,
         fabric=spot.fabric,
     )
@@ -354,8 +371,7 @@ def _text(curve: StretchCurve) -> str:
     rows = zip(
         curve.strain,
         curve.force_n,
-        curve.force_low_n,
-        curve.force_high_n,
+        *curve.force_interval_n,
         curve.stress_n_per_mm,
         curve.waist_strain,
         strict=True,
@@ -368,7 +384,7 @@ def _text(curve: StretchCurve) -> str:
         spot = curve.nearest_lock_up
         lines.append(
             f"nearest to lock-up: {spot.utilisation:.0%} {spot.direction}-wise in {spot.fabric}, "
-            f"row {spot.row}, stitch {spot.column}"
+            f"row {spot.row + 1}, stitch {spot.column + 1}"
         )
     return "\n".join([*lines, *curve.messages])
 

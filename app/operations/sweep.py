@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from app.cli.options import loop_lengths
-from app.models.base import Floats, ResultModel
+from app.models.base import EndsOfList, Floats, ResultModel
 from app.models.laws import ElasticConstants
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
@@ -72,10 +72,7 @@ class SweepResult(ResultModel):
     direction: Direction
     branch: Branch
     strain: Floats
-    strain_low: Floats = Field(
-        description="90 % interval of the strain of knitted cloth at each stress."
-    )
-    strain_high: Floats
+    strain_interval: EndsOfList = Field(description="Of knitted cloth, at each stress.")
     interval_source: str = Field(description="Source of the interval.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
@@ -136,8 +133,7 @@ def _result(
     return SweepResult.of(
         main,
         zero,
-        strain_low=main.strain / factor,
-        strain_high=main.strain * factor,
+        strain_interval=(main.strain / factor, main.strain * factor),
         interval_source=YARN_LEVEL_ERRORS,
         branch=request.branch,
         law=None if law is None else SweptLaw.of(law, law.law),

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.models.base import Floats
+from app.models.base import EndsOfList, Floats
 from app.models.charts import to_repeat
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
 from app.operations.context import Context
@@ -42,8 +42,7 @@ class TrellisResult(PieceTestResult):
     kind: Literal["trellis"] = "trellis"
     angle_deg: Floats
     force_n: Floats = Field(description="Force that pulls two opposite corners of the frame apart.")
-    force_low_n: Floats = Field(description="Lower end of the 90 % interval.")
-    force_high_n: Floats = Field(description="Upper end of the 90 % interval.")
+    force_interval_n: EndsOfList
     moment_n_mm: Floats = Field(description="Moment about the hinges: work per radian of shear.")
     shear_stress_n_per_mm: Floats = Field(description="Moment over the relaxed area.")
 
@@ -64,12 +63,10 @@ def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
         grain_deg=request.grain_deg,
         **request.options(context),
     )
-    low, high = interval(test.force_n, test.force_log_sd)
     return TrellisResult.of(
         test,
         angle_deg=np.degrees(test.shear_angle),
-        force_low_n=low,
-        force_high_n=high,
+        force_interval_n=interval(test.force_n, test.force_log_sd),
         **of_test(test.test),
     )
 
@@ -78,8 +75,8 @@ def _text(r: TrellisResult) -> str:
     columns = {
         "angle °": r.angle_deg,
         "force N": r.force_n,
-        "low N": r.force_low_n,
-        "high N": r.force_high_n,
+        "low N": r.force_interval_n[0],
+        "high N": r.force_interval_n[1],
         "N·mm": r.moment_n_mm,
         "N/mm": r.shear_stress_n_per_mm,
     }

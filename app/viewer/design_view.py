@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
 from app.models.base import RequestModel
-from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
+from app.models.charts import (
+    ChartInput,
+    Column,
+    MaterialName,
+    OutlineInput,
+    Row,
+    to_chart,
+)
 from app.operations.context import Context
 from app.operations.curl import CurlView
 from app.operations.stretch import StretchView
@@ -56,10 +63,10 @@ class Curled(RequestModel):
 
 
 class Focus(RequestModel):
-    """A stitch; row 0 is the bottom one."""
+    """A stitch."""
 
-    row: int = Field(ge=0)
-    column: int = Field(ge=0)
+    row: Row
+    column: Column
 
 
 class ViewRequest(RequestModel):

@@ -308,7 +308,7 @@ class DesignDocument(BaseModel):
     name: str
     material: str
     chart: str
-    """K/P lines, the top row first, as seen from the face."""
+    """K/P lines, the top row first, as seen from the face. A / may end a line, too."""
     note: str = ""
 
 
@@ -415,7 +415,8 @@ class FillRequest(TypedDict):
     wishes: NotRequired[list[WishInput] | None]
     """In place of the two maps."""
     chart: NotRequired[str | None]
-    """Stitches without a target stay as in this chart; otherwise they are filled."""
+    """K/P lines, the top row first: stitches without a target stay as in this chart; otherwise
+    they are filled."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     repeats: NotRequired[Literal["small", "all"]]
@@ -470,10 +471,12 @@ class FitRequest(TypedDict):
 
 
 class Focus(TypedDict):
-    """A stitch; row 0 is the bottom one."""
+    """A stitch."""
 
     row: int
+    """From 0, the bottom row."""
     column: int
+    """From 0, at the left."""
 
 
 class GarmentRequest(TypedDict):
@@ -614,7 +617,7 @@ class ParseRequest(TypedDict):
     """A chart as typed text."""
 
     text: str
-    """K/P lines, the top row first, as seen from the face."""
+    """K/P lines, the top row first, as seen from the face. A / may end a line, too."""
 
 
 class PieceInput(TypedDict):
@@ -654,7 +657,9 @@ class Placement(BaseModel):
     """Where a linked repeat lies."""
 
     row: int
+    """From 0, the bottom row or the left column."""
     column: int
+    """From 0, the bottom row or the left column."""
     rows: int
     columns: int
 
@@ -748,9 +753,9 @@ class Run(TypedDict):
     """Adjacent stitches of one kind in a row."""
 
     row: int
-    """0 is the bottom row."""
+    """From 0, the bottom row."""
     column: int
-    """First stitch, 0 at the left."""
+    """First stitch; from 0, at the left."""
     stitches: str
 
 
@@ -1046,14 +1051,10 @@ class AtlasResult(BaseModel):
     kind: Literal["atlas"] = "atlas"
     material: str
     repeats: list[str]
-    """Rows from the top, separated by /."""
     modulus_course_n_per_mm: list[float]
-    modulus_course_low_n_per_mm: list[float]
-    """Low and high: the ends of 90 % intervals."""
-    modulus_course_high_n_per_mm: list[float]
+    modulus_course_interval_n_per_mm: tuple[list[float], list[float]]
     modulus_wale_n_per_mm: list[float]
-    modulus_wale_low_n_per_mm: list[float]
-    modulus_wale_high_n_per_mm: list[float]
+    modulus_wale_interval_n_per_mm: tuple[list[float], list[float]]
     poisson_yx: list[float]
     poisson_xy: list[float]
     stretch_course: list[float]
@@ -1073,8 +1074,9 @@ class BandResult(BaseModel):
     """A band of lines of one repeat."""
 
     repeat: str
+    """A repeat: K/P, the top row first, rows separated by /."""
     first: int
-    """From 1, at the bottom or the left."""
+    """Its first line: from 1, at the bottom or the left."""
     lines: int
 
 
@@ -1157,10 +1159,7 @@ class BiasResult(BaseModel):
     strain: list[float]
     force_n: list[float]
     """Force along the pull."""
-    force_low_n: list[float]
-    """Lower end of the 90 % interval."""
-    force_high_n: list[float]
-    """Upper end of the 90 % interval."""
+    force_interval_n: tuple[list[float], list[float]]
     sideways_n: list[float]
     """Force across the pull: the clamps keep the cloth from shearing sideways."""
     stress_n_per_mm: list[float]
@@ -1184,15 +1183,9 @@ class BiaxialResult(BaseModel):
     strain_x: list[float]
     strain_y: list[float]
     force_x_n: list[float]
-    force_x_low_n: list[float]
-    """Lower end of the 90 % interval."""
-    force_x_high_n: list[float]
-    """Upper end of the 90 % interval."""
+    force_x_interval_n: tuple[list[float], list[float]]
     force_y_n: list[float]
-    force_y_low_n: list[float]
-    """Lower end of the 90 % interval."""
-    force_y_high_n: list[float]
-    """Upper end of the 90 % interval."""
+    force_y_interval_n: tuple[list[float], list[float]]
     stress_x_n_per_mm: list[float]
     """Force per length of the edge."""
     stress_y_n_per_mm: list[float]
@@ -1231,8 +1224,8 @@ class CandidateResult(BaseModel):
     """A repeat, and how near it comes to the targets."""
 
     material: str
-    chart: str
-    """K/P lines of one repeat, the top row first."""
+    repeat: str
+    """A repeat: K/P, the top row first, rows separated by /."""
     values: dict[str, float | None]
     """Values by quantity, with @load or @rest/worn; null beyond the lock-up."""
     intervals: dict[str, tuple[float | None, float | None]]
@@ -1310,6 +1303,7 @@ class ChartResult(BaseModel):
     rows: int
     columns: int
     text: str
+    """K/P lines, the top row first, as seen from the face."""
 
 
 class CompareResult(BaseModel):
@@ -1404,14 +1398,14 @@ class CurveResult(BaseModel):
     kind: Literal["curve"] = "curve"
     stress_n_per_mm: list[float]
     strain: list[float]
-    strain_low: list[float]
-    """Lower end of the 90 % interval."""
-    strain_high: list[float]
-    """Upper end of the 90 % interval."""
-    stress_low_n_per_mm: list[float]
-    """Lower end of the 90 % interval of the stress at each strain, N/mm."""
-    stress_high_n_per_mm: list[float]
-    """Upper end of that interval, at most 10 N/mm."""
+    strain_interval: tuple[list[float], list[float]]
+    """At each stress."""
+    stress_interval_n_per_mm: tuple[list[float], list[float]]
+    """At each strain; at most 10 N/mm."""
+    stress_low: list[float]
+    """The low end of `stress_interval_n_per_mm`, by its earlier name."""
+    stress_high: list[float]
+    """The high end."""
     provenance: str
 
 
@@ -1515,13 +1509,6 @@ class DeviationDocument(BaseModel):
     modulus_wale: float | None = None
     poisson_yx: float | None = None
     poisson_xy: float | None = None
-
-
-class Estimate(BaseModel):
-    """A value and its 90 % interval, which has no width if the value is measured."""
-
-    value: float
-    interval: tuple[float, float]
 
 
 class EstimateResult(BaseModel):
@@ -1628,10 +1615,15 @@ class FabricDocument(BaseModel):
 class FabricEstimateResult(BaseModel):
     """One fabric; extension under load comes first because it is predicted best."""
 
-    strain_at_0_1_n_per_mm: dict[Direction, Estimate]
-    modulus_n_per_mm: dict[Direction, Estimate]
-    alpha: dict[Direction, Estimate]
-    beta_n_per_mm: dict[Direction, Estimate]
+    strain_at_0_1_n_per_mm: dict[Direction, float]
+    strain_at_0_1_n_per_mm_interval: dict[Direction, tuple[float, float]]
+    """Of no width where it is measured, as all intervals here."""
+    modulus_n_per_mm: dict[Direction, float]
+    modulus_interval_n_per_mm: dict[Direction, tuple[float, float]]
+    alpha: dict[Direction, float]
+    alpha_interval: dict[Direction, tuple[float, float]]
+    beta_n_per_mm: dict[Direction, float]
+    beta_interval_n_per_mm: dict[Direction, tuple[float, float]]
     law: LawResult
     loop_length_mm: float
     measured: bool
@@ -1679,6 +1671,7 @@ class FillResult(BaseModel):
     rows: int
     columns: int
     chart: str
+    """K/P lines, the top row first, as seen from the face."""
     off_share: float
     """Share of the stitches with a target that miss it by more than 10 %."""
     patches: list[PatchResult]
@@ -1759,8 +1752,9 @@ class GarmentResult(BaseModel):
     rows: int
     columns: int
     chart: str
+    """K/P lines, the top row first, as seen from the face."""
     outline: str
-    """Lines of x (stitch) and . (no stitch), the top row first."""
+    """Lines of x (there) and . (not), the top row first."""
     stitches: int
     around: Direction
     """The material direction around the limb."""
@@ -1804,7 +1798,7 @@ class ImportResult(BaseModel):
     repeats: list[DesignRepeat] = []
     shelf: list[ShelfPattern] = []
     chart: str
-    """K/P lines, the top row first."""
+    """K/P lines, the top row first, as seen from the face."""
     name: str | None = None
     """Of a design."""
     material: str | None = None
@@ -1936,11 +1930,10 @@ class LoadedEdge(BaseModel):
     moved_x_mm: list[float]
     """Mean displacement of the edge."""
     moved_y_mm: list[float]
-    force_x_margin_n: float
-    """Half width of the 90 % interval at the last step."""
-    force_y_margin_n: float
-    moved_x_margin_mm: float
-    moved_y_margin_mm: float
+    force_x_interval_n: tuple[list[float], list[float]]
+    force_y_interval_n: tuple[list[float], list[float]]
+    moved_x_interval_mm: tuple[list[float], list[float]]
+    moved_y_interval_mm: tuple[list[float], list[float]]
 
 
 class MaterialDetail(BaseModel):
@@ -2016,9 +2009,9 @@ class NearestLockUp(BaseModel):
 
     utilisation: float
     row: int
-    """Row, from 1 at the bottom."""
+    """From 0, the bottom row."""
     column: int
-    """Column, from 1 at the left."""
+    """From 0, at the left."""
     direction: Direction
     fabric: str
 
@@ -2048,6 +2041,7 @@ class ParsedChart(BaseModel):
     rows: int
     columns: int
     text: str
+    """K/P lines, the top row first, as seen from the face."""
     repeat: ChartResult
 
 
@@ -2055,10 +2049,12 @@ class PatchResult(BaseModel):
     """A region of one repeat."""
 
     repeat: str
+    """A repeat: K/P, the top row first, rows separated by /."""
     stitches: int
     row: int
-    """Position of its first stitch, from 1 at the bottom left."""
+    """Of its first stitch: from 0, the bottom row."""
     column: int
+    """From 0, at the left."""
     deviation_course: float | None
     """Of the repeat; null without a target."""
     deviation_wale: float | None
@@ -2072,8 +2068,8 @@ class PatternResult(BaseModel):
 
     id: str
     name: str
-    chart: str
-    """K/P lines of one repeat, the top row first."""
+    repeat: str
+    """A repeat: K/P, the top row first, rows separated by /."""
     note: str
 
 
@@ -2234,6 +2230,7 @@ class RegionResult(BaseModel):
     modulus_wale_n_per_mm: float
     name: str
     fill: str
+    """A repeat: K/P, the top row first, rows separated by /."""
     colour: str
     stitches: int
     columns: int
@@ -2249,7 +2246,7 @@ class RegionResult(BaseModel):
     yarn_m: float
     yarn_g: float | None
     cells: str
-    """Lines of x (in the region) and ., the top row first."""
+    """Lines of x (there) and . (not), the top row first."""
 
 
 class RelaxResult(BaseModel):
@@ -2321,6 +2318,7 @@ class ShapeResult(BaseModel):
     rows: int
     columns: int
     chart: str
+    """K/P lines, the top row first, as seen from the face."""
     bands: list[BandResult]
     width: list[float]
     """Width in the finite swatch, to compare with the target."""
@@ -2386,10 +2384,10 @@ class StitchFields(BaseModel):
     strain_wale: list[list[float]]
     utilisation: list[list[float]]
     """alpha * strain; 1 is the lock-up."""
-    strain_margin: list[list[float]]
-    """Half width of the 90 % interval of the strain along the pull."""
-    utilisation_margin: list[list[float]]
-    """Half width of the 90 % interval of the utilisation."""
+    strain_course_interval: tuple[list[list[float]], list[list[float]]] | None = None
+    """Of the strain along the pull only."""
+    strain_wale_interval: tuple[list[list[float]], list[list[float]]] | None = None
+    utilisation_interval: tuple[list[list[float]], list[list[float]]]
 
 
 class StitchKind(BaseModel):
@@ -2410,9 +2408,9 @@ class StitchKinds(BaseModel):
     """Kinds of the stitches in a box; a material's `stitches` table says what each kind does."""
 
     row: int
-    """Bottom row of the box, from 0."""
+    """Bottom row of the box; from 0, the bottom row of the chart."""
     column: int
-    """Left column of the box, from 0."""
+    """Left column of the box; from 0, at the left."""
     kinds: list[str]
     """A hexadecimal digit for each stitch, bottom row first: its kind, 0 to 15."""
 
@@ -2428,15 +2426,11 @@ class StretchResult(BaseModel):
 
     strain: list[float]
     force_n: list[float]
-    force_low_n: list[float]
-    """Lower end of the 90 % interval."""
-    force_high_n: list[float]
-    """Upper end of the 90 % interval."""
+    force_interval_n: tuple[list[float], list[float]]
     stress_n_per_mm: list[float]
     """Force per width; its relative interval is that of the force."""
     waist_strain: list[float]
-    waist_margin: list[float]
-    """Half width of the 90 % interval."""
+    waist_strain_interval: tuple[list[float], list[float]]
     iterations: list[int]
     converged: bool
     seconds: float
@@ -2462,9 +2456,8 @@ class SweepResult(BaseModel):
     direction: Direction
     branch: Branch
     strain: list[float]
-    strain_low: list[float]
-    """90 % interval of the strain of knitted cloth at each stress."""
-    strain_high: list[float]
+    strain_interval: tuple[list[float], list[float]]
+    """Of knitted cloth, at each stress."""
     interval_source: str
     """Source of the interval."""
     transverse_strain: list[float]
@@ -2528,10 +2521,7 @@ class TrellisResult(BaseModel):
     angle_deg: list[float]
     force_n: list[float]
     """Force that pulls two opposite corners of the frame apart."""
-    force_low_n: list[float]
-    """Lower end of the 90 % interval."""
-    force_high_n: list[float]
-    """Upper end of the 90 % interval."""
+    force_interval_n: tuple[list[float], list[float]]
     moment_n_mm: list[float]
     """Moment about the hinges: work per radian of shear."""
     shear_stress_n_per_mm: list[float]

@@ -15,7 +15,7 @@ export function figure(value, digits = 3) {
 /**
  * Both ends with as many decimals as the larger one needs.
  *
- * @param {readonly [number, number] | null | undefined} interval
+ * @param {readonly number[] | null | undefined} interval
  */
 export function range(interval) {
   if (!interval || !interval.every(Number.isFinite)) return "";
@@ -24,15 +24,13 @@ export function range(interval) {
 }
 
 /**
- * The ends of a share's interval that reaches so far to either side, in percent; "" if not known.
+ * The ends of a share's interval in percent; "" if not known.
  *
- * @param {number} share
- * @param {number | undefined} margin
+ * @param {readonly (number | undefined)[]} ends
  * @param {number} [decimals]
  */
-export function percentRange(share, margin, decimals = 0) {
-  if (margin === undefined) return "";
-  return [share - margin, share + margin].map((end) => percent(end, decimals).slice(0, -2)).join(" – ");
+export function percentRange(ends, decimals = 0) {
+  return ends.map((end) => (end === undefined ? "" : percent(end, decimals).slice(0, -2))).join(" – ");
 }
 
 /**

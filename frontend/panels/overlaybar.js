@@ -172,16 +172,15 @@ function describe(studio, cell) {
   const { id } = shownOverlay(studio);
   const strain = studio.field("strain")?.[i];
   const used = studio.field("utilisation")?.[i];
-  /** @param {"strain" | "utilisation"} name @param {number} share @param {number} [decimals] */
-  const within = (name, share, decimals) => {
-    const margin = studio.currentStretch()?.stitch_fields[`${name}_margin`]?.[studio.step.value]?.[i];
-    const interval = percentRange(share, margin, decimals);
-    return interval && ` (${interval})`;
+  /** @param {"strain" | "utilisation"} name @param {number} [decimals] */
+  const within = (name, decimals) => {
+    const ends = studio.interval(name)?.map((end) => end[studio.step.value]?.[i]);
+    return ends ? ` (${percentRange(ends, decimals)})` : "";
   };
   if (id === "strain" && strain !== undefined) {
-    parts.push(`stretch ${percent(strain, 1)}${within("strain", strain, 1)}`);
+    parts.push(`stretch ${percent(strain, 1)}${within("strain", 1)}`);
   } else if (id === "utilisation" && used !== undefined) {
-    parts.push(`${percent(used)}${within("utilisation", used)} of lock-up`);
+    parts.push(`${percent(used)}${within("utilisation")} of lock-up`);
   } else if (kind) {
     const value = (/** @type {"course" | "wale"} */ direction) => {
       const interval = range(kind[`modulus_${direction}_interval_n_per_mm`]);

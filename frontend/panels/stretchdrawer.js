@@ -164,7 +164,8 @@ export function stretchdrawer(host, studio, stretcher) {
       return;
     }
     slider.setAttribute("aria-valuetext", `stretched by ${percent(value.strain[i])}`);
-    const [low = NaN, high = NaN] = [value.force_low_n?.[i], value.force_high_n?.[i]];
+    const at = (/** @type {number[]} */ ends) => ends[i];
+    const [low, high] = value.force_interval_n.map(at);
     const widths = value.stress_n_per_mm[i] / value.force_n[i];
     /** @param {string} term @param {string} text @param {string} hint @param {string} [interval] */
     const pair = (term, text, hint, interval) =>
@@ -187,7 +188,7 @@ export function stretchdrawer(host, studio, stretcher) {
         "Waist",
         percent(value.waist_strain[i], 1),
         "Change of width half way between the clamps",
-        percentRange(value.waist_strain[i], value.waist_margin?.[i], 1),
+        percentRange(value.waist_strain_interval.map(at), 1),
       ),
     );
   };

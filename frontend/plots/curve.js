@@ -145,8 +145,7 @@ function traces(studio, own) {
     };
   });
   const stress = own?.stress_n_per_mm ?? [];
-  const low = upTo(own?.strain_low ?? [], stress);
-  const high = upTo(own?.strain_high ?? [], stress);
+  const [low, high] = (own?.strain_interval ?? [[], []]).map((ends) => upTo(ends, stress));
   result.push(
     {
       name: "90 % interval",
@@ -210,13 +209,13 @@ function traces(studio, own) {
  * @param {StretchResult | null} stretch
  */
 function stressBand(stretch) {
-  if (!stretch?.force_low_n || !stretch.force_high_n) return { x: [], y: [] };
-  const { force_n: force, stress_n_per_mm: stress, force_low_n: low, force_high_n: high } = stretch;
+  if (!stretch) return { x: [], y: [] };
+  const { force_n: force, stress_n_per_mm: stress } = stretch;
   const strain = stretch.strain.map((one) => 100 * one);
-  const scaled = (/** @type {number[]} */ ends) => ends.map((end, i) => (end * stress[i]) / force[i]);
+  const [low, high] = stretch.force_interval_n.map((ends) => ends.map((end, i) => (end * stress[i]) / force[i]));
   return {
     x: [0, ...strain, ...strain.toReversed()],
-    y: [0, ...scaled(low), ...scaled(high).toReversed()],
+    y: [0, ...low, ...high.toReversed()],
   };
 }
 

@@ -22,7 +22,7 @@ class Patch:
     ----------
     repeat : its key.
     stitches : number of its stitches.
-    row, column : of its first stitch, from 1 at the bottom left.
+    row, column : of its first stitch, from 0 at the bottom left.
     deviation_course, deviation_wale : the repeat's effective modulus over the median of the
         wanted ones, minus one; NaN without a target. swatch_course, swatch_wale : the same for the
     patch in the finite swatch, where its size and its neighbours have an effect; NaN without a
@@ -54,8 +54,8 @@ def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) 
         for axis, direction in enumerate(Direction):
             if abs(away[axis]) > OFF:
                 said.append(
-                    f"The patch of {region.stitches} stitches from row {region.row}, column "
-                    f"{region.column} is {away[axis]:+.0%} off {direction}-wise: "
+                    f"The patch of {region.stitches} stitches from row {region.row + 1}, column "
+                    f"{region.column + 1} is {away[axis]:+.0%} off {direction}-wise: "
                     f"{region.repeat} is the nearest. {_reach(wish, direction, have)}"
                 )
     if len(regions) == 1:

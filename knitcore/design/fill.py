@@ -326,8 +326,7 @@ class _Fill:
         regions = []
         for patch, choice in enumerate(trial.choices):
             cells = patches == patch
-            row, column = (int(k) + 1 for k in np.argwhere(cells)[0])
-            place = int(cells.sum()), row, column
+            place = int(cells.sum()), *map(int, np.argwhere(cells)[0])
             regions.append(Patch(choice.repeat.key, *place, *off[patch], *there[patch]))
         judged = self._judged(trial.choices, trial.factors)
         self._progress.look(1.0)

@@ -35,7 +35,10 @@ Motif = Annotated[
         examples=["KP/PK"],
     ),
 ]
-Place = Annotated[int, Field(ge=0, lt=MAX_STITCHES_PER_SIDE)]
+Place = Annotated[
+    int,
+    Field(ge=0, lt=MAX_STITCHES_PER_SIDE, description="From 0, the bottom row or the left column."),
+]
 Length = Annotated[int, Field(ge=1, le=MAX_STITCHES_PER_SIDE)]
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from knitcore.answer.quarter_laws import SPREAD_AT
 from knitcore.arrays import Array
@@ -52,6 +53,26 @@ def piece_spread(test: PieceTest, material: Material, step: int = -1) -> PieceSp
     own = _model_log_sd(test, step)
     force += (own * constraints.forces(test.found[step].internal, 0.0)) ** 2
     return PieceSpread(np.sqrt(force), np.sqrt(moved))
+
+
+def piece_spreads(test: PieceTest, material: Material) -> Array:
+    """Standard deviations at every step, (2, steps, conditions, 2): of the forces in N and of the
+    mean displacements in mm, along x and y.
+
+    They are computed at a few steps, and interpolated between them.
+
+    Raises
+    ------
+    InputError
+        As :func:`piece_spread`.
+    """
+    steps = sampled_steps(len(test.found))
+    if not steps:
+        return np.empty((2, 0, len(test.conditions), 2))
+    found = [piece_spread(test, material, step) for step in steps]
+    known = np.array([[at.force_n for at in found], [at.moved_mm for at in found]])
+    between = make_interp_spline(steps, known, k=min(1, len(steps) - 1), axis=1)
+    return np.asarray(between(np.arange(len(test.found))))
 
 
 def force_log_sd(

@@ -18,7 +18,7 @@ def test_patterns_are_repeats_without_a_smaller_one(client: TestClient) -> None:
     shelf = client.get("/api/v1/patterns").json()["patterns"]
     assert [p["id"] for p in shelf] == [p.identifier for p in PATTERNS]
     for pattern in shelf:
-        chart = StitchChart.parse(pattern["chart"])
+        chart = StitchChart.parse(pattern["repeat"])
         assert chart.repeat() == chart
 
 

@@ -24,10 +24,10 @@ def test_a_pure_fabric_has_its_law(client: TestClient) -> None:
     expected = [strain_at_stress(law, Direction.WALE, s) for s in told["stress_n_per_mm"]]
     assert told["strain"] == pytest.approx(expected)
     assert told["provenance"] == "measured"
-    assert told["strain_low"][0] == told["strain_high"][0] == 0
-    for low, strain, high in zip(
-        told["strain_low"][1:], told["strain"][1:], told["strain_high"][1:], strict=True
-    ):
+    lows, highs = told["strain_interval"]
+    assert lows[0] == highs[0] == 0
+    assert [told["stress_low"], told["stress_high"]] == told["stress_interval_n_per_mm"]
+    for low, strain, high in zip(lows[1:], told["strain"][1:], highs[1:], strict=True):
         assert low < strain < high < law.lock_up_strain(Direction.WALE)
     body = {"chart": "K\nP", "material": "acrylic", "direction": "wale"}
     body["stress_n_per_mm"] = told["stress_n_per_mm"]

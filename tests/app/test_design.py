@@ -36,7 +36,7 @@ def test_rest_and_command_line_find_the_same(
     asked = client.post("/api/v1/find", json=request)
     assert asked.status_code == 200, asked.text
     assert asked.json()["reached"]
-    assert asked.json()["candidates"][0]["chart"] in ("K\nP", "P\nK")
+    assert asked.json()["candidates"][0]["repeat"] in ("K/P", "P/K")
     assert asked.json()["searched"] == len(repeats_of("small"))
 
     find = [

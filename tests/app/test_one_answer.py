@@ -93,10 +93,11 @@ def test_command_line_rest_and_report_give_the_same(
         own = curve(chart, used, direction, LOADS)
         asked = body | {"direction": direction, "stress_n_per_mm": LOADS}
         served = client.post("/api/v1/curve", json=asked).json()
-        for name in ("strain", "strain_low", "strain_high"):
-            assert served[name] == getattr(own, name).tolist()
-        for name in ("stress_low", "stress_high"):
-            assert served[f"{name}_n_per_mm"] == getattr(own, name).tolist()
+        assert served["strain"] == own.strain.tolist()
+        ends = [own.strain_low.tolist(), own.strain_high.tolist()]
+        assert served["strain_interval"] == ends
+        ends = [own.stress_low.tolist(), own.stress_high.tolist()]
+        assert served["stress_interval_n_per_mm"] == ends
         shown = _run(
             "curve", str(file), "--material", yarn, "--direction", str(direction),
             "--max-stress", "0.2", "--points", "2",

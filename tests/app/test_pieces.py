@@ -52,9 +52,11 @@ def test_a_piece_is_loaded(context: Context) -> None:
     assert told.share == [0.5, 1.0]
     hem, top, hole = told.edges
     assert (hem.force_x_n[-1], hem.force_y_n[-1]) == pytest.approx((-0.1, -1.0))
-    assert (top.force_y_n[-1], top.force_y_margin_n) == (1.0, 0.0)
+    assert (top.force_y_n[-1], top.force_y_interval_n) == (1.0, ([0.5, 1.0], [0.5, 1.0]))
     assert top.moved_y_mm[-1] > 3 * hole.moved_y_mm[-1] > 0
-    assert 0 < top.moved_y_margin_mm < top.moved_y_mm[-1]
+    low, high = np.array(top.moved_y_interval_mm)
+    assert np.all(low < top.moved_y_mm)
+    assert np.all((low > 0) & (top.moved_y_mm < high))
     assert told.shape is not None
     assert len(told.shape.elements) == len(told.shape.strain_wale) == told.elements
     assert len(told.shape.moved_mm) == len(told.shape.corners_mm)
@@ -91,9 +93,7 @@ def test_a_file_that_is_no_piece_is_refused(tmp_path: Path, written: str | None,
 
 def test_a_bias_strip_has_an_interval(context: Context) -> None:
     told = bias(BiasRequest.model_validate(ASKED | {"strain": 0.2}), context)
-    low, force, high = (
-        np.array(values) for values in (told.force_low_n, told.force_n, told.force_high_n)
-    )
+    (low, high), force = np.array(told.force_interval_n), np.array(told.force_n)
     assert np.all(low < force)
     assert np.all(force < high)
     assert told.waist_strain[-1] < -0.2
@@ -104,7 +104,8 @@ def test_equal_pulls_of_seed_stitch_in_both_directions(context: Context) -> None
     told = biaxial(BiaxialRequest.model_validate(ASKED | request), context)
     turned = biaxial(BiaxialRequest.model_validate(ASKED | request | {"grain_deg": 90}), context)
     assert told.force_x_n == pytest.approx(turned.force_y_n, rel=1e-6)
-    assert told.force_x_low_n == pytest.approx(turned.force_y_low_n, rel=1e-3)
+    for end, other in zip(told.force_x_interval_n, turned.force_y_interval_n, strict=True):
+        assert end == pytest.approx(other, rel=1e-3)
 
 
 def test_a_frame_tells_the_shear_modulus(context: Context) -> None:

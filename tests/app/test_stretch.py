@@ -35,7 +35,7 @@ def test_force_waist_and_stitches_have_intervals(client: TestClient) -> None:
     cloth is known better. No other source of doubt matters as much.
     """
     answer = client.post("/api/v1/stretch", json=ASKED | {"steps": 9}).json()
-    low, force, high = (np.array(answer[f"force_{name}n"]) for name in ("low_", "", "high_"))
+    (low, high), force = np.array(answer["force_interval_n"]), np.array(answer["force_n"])
     assert np.all(low < force)
     assert np.all(force < high)
     asked = {"chart": GARTER, "material": "acrylic"}
@@ -43,22 +43,24 @@ def test_force_waist_and_stitches_have_intervals(client: TestClient) -> None:
     ends = np.array(modulus["modulus_wale_interval_n_per_mm"]) / modulus["modulus_wale_n_per_mm"]
     assert high[0] / force[0] == pytest.approx(ends[1], rel=0.05)
     assert np.all(np.diff(high / force) < 0)
-    assert np.all(np.array(answer["waist_margin"]) > 0)
-    for name in ("strain_margin", "utilisation_margin"):
-        margins = np.array(answer["stitch_fields"][name])
-        assert margins.shape == (9, 54)
-        assert 0 < margins[-1].max() < 0.1
+    waist_low, waist_high = np.array(answer["waist_strain_interval"])
+    assert np.all((waist_low < answer["waist_strain"]) & (answer["waist_strain"] < waist_high))
+    for name in ("strain_wale", "utilisation"):
+        ends = np.array(answer["stitch_fields"][f"{name}_interval"])
+        assert ends.shape == (2, 9, 54)
+        assert ends.mean(axis=0) == pytest.approx(np.array(answer["stitch_fields"][name]), abs=1e-4)
+        assert 0 < np.ptp(ends, axis=0)[-1].max() < 0.2
+    assert answer["stitch_fields"]["strain_course_interval"] is None
 
 
 def test_intervals_between_the_computed_steps_are_as_computed(client: TestClient) -> None:
     chart = "\n".join(["KPKPKKKK"] * 4 + ["KKKKPKPK"] * 4)
     many = client.post("/api/v1/stretch", json=ASKED | {"chart": chart, "steps": 20}).json()
     few = client.post("/api/v1/stretch", json=ASKED | {"chart": chart, "steps": 4}).json()
-    for name in ("strain_margin", "utilisation_margin"):
-        computed = np.array(few["stitch_fields"][name])
-        between = np.array(many["stitch_fields"][name])[4::5]
+    for name in ("strain_wale_interval", "utilisation_interval"):
+        computed, between = (np.ptp(told["stitch_fields"][name], axis=0) for told in (few, many))
         widest = computed.max(axis=1, keepdims=True)
-        assert np.all(np.abs(between - computed) <= 0.06 * widest)
+        assert np.all(np.abs(between[4::5] - computed) <= 0.06 * widest)
 
 
 def test_the_command_line_gives_the_same_curve(client: TestClient, tmp_path: Path) -> None:

@@ -150,12 +150,12 @@ export function atlasTab(studio, context) {
           row(
             "Along rows",
             `${figure(table.modulus_course_n_per_mm[k])} N/mm`,
-            range([table.modulus_course_low_n_per_mm[k], table.modulus_course_high_n_per_mm[k]]),
+            range(table.modulus_course_interval_n_per_mm.map((ends) => ends[k])),
           ),
           row(
             "Along columns",
             `${figure(table.modulus_wale_n_per_mm[k])} N/mm`,
-            range([table.modulus_wale_low_n_per_mm[k], table.modulus_wale_high_n_per_mm[k]]),
+            range(table.modulus_wale_interval_n_per_mm.map((ends) => ends[k])),
           ),
           row(
             "Stretch at 0.1 N/mm",

@@ -253,7 +253,7 @@ export function findTab(studio, context) {
 
   /** @param {CandidateResult} candidate */
   const item = (candidate) => {
-    const key = candidate.chart.replaceAll("\n", "/");
+    const key = candidate.repeat;
     const name = studio.materials.value.find(({ id }) => id === candidate.material)?.name ?? candidate.material;
     const picture = h("div", { class: "inverse-handle", title: "Drag it onto the chart" }, repeatPicture(key, 60));
     picture.addEventListener("pointerdown", (event) =>

@@ -132,8 +132,8 @@ export function scatter({ onHover, onPress, onChoose, onApply }) {
     const bottom = canvas.clientHeight - PAD.bottom;
     context.strokeStyle = palette.accent;
     context.lineWidth = 1.5;
-    const across = [table.modulus_course_low_n_per_mm[index], table.modulus_course_high_n_per_mm[index]];
-    const up = [table.modulus_wale_low_n_per_mm[index], table.modulus_wale_high_n_per_mm[index]];
+    const across = table.modulus_course_interval_n_per_mm.map((ends) => ends[index]);
+    const up = table.modulus_wale_interval_n_per_mm.map((ends) => ends[index]);
     const [x0, x1] = across.map((v) => clip(scales.x.at(v), PAD.left, right));
     const [y0, y1] = up.map((v) => clip(scales.y.at(v), PAD.top, bottom));
     stroke(context, x0, y, x1, y);
