@@ -21,7 +21,7 @@ import numpy as np
 from knitcore import StitchChart, predict
 from knitcore.fabric import Fabric
 from knitcore.formats.chart_files import read_piece
-from knitcore.formats.export import SUFFIXES, ExportKind, ExportOptions, export_chart
+from knitcore.formats.export import FORMATS, ExportKind, ExportOptions, export_chart
 from knitcore.formats.garment_design import design_of_plan
 from knitcore.garment.gauge import Gauge, GaugeSet
 from knitcore.garment.glove import Hand, glove
@@ -46,7 +46,7 @@ def timed(work: Callable[[], Any]) -> tuple[Any, float]:
 def there_and_back(chart: StitchChart, kind: ExportKind) -> bool:
     """Whether a chart comes back from a file."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / f"chart{SUFFIXES[kind][0]}"
+        file = Path(folder) / f"chart{FORMATS[kind].suffix}"
         file.write_bytes(export_chart(chart, kind, WOOL).content)
         return read_piece(file).chart == chart
 

@@ -1,9 +1,10 @@
-"""One door to all files that a chart can become."""
+"""All files that a chart can be written to."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from contextlib import nullcontext
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from knitcore.chart import StitchChart
@@ -56,32 +57,6 @@ class ExportKind(StrEnum):
     CSV = "csv"
 
 
-SUFFIXES = {
-    ExportKind.KNITOUT: (".k", "text/plain; charset=utf-8"),
-    ExportKind.KNITSPEAK: (".ks", "text/plain; charset=utf-8"),
-    ExportKind.PNG: (".png", "image/png"),
-    ExportKind.SVG: (".svg", "image/svg+xml"),
-    ExportKind.PDF: (".pdf", "application/pdf"),
-    ExportKind.REPORT: (".pdf", "application/pdf"),
-    ExportKind.TEXT: (".txt", "text/plain; charset=utf-8"),
-    ExportKind.WRITTEN: (".txt", "text/plain; charset=utf-8"),
-    ExportKind.DESIGN: (".json", "application/json"),
-    ExportKind.GLB: (".glb", "model/gltf-binary"),
-    ExportKind.STL: (".stl", "model/stl"),
-    ExportKind.VTU: (".vtu", "application/xml"),
-    ExportKind.CSV: (".csv", "text/csv; charset=utf-8"),
-}
-"""Usual suffix and media type of each kind."""
-
-
-RECTANGULAR_KINDS = frozenset({ExportKind.TEXT, ExportKind.KNITSPEAK})
-"""Formats that do not know "no stitch"."""
-COLOURLESS_KINDS = frozenset(
-    {ExportKind.TEXT, ExportKind.KNITSPEAK, ExportKind.GLB, ExportKind.STL}
-)
-"""Formats that do not know yarns."""
-
-
 @dataclass(frozen=True)
 class ExportOptions:
     """How a chart is worked and finished, where that matters.
@@ -112,49 +87,45 @@ class ExportedFile:
 
     Attributes
     ----------
-    kind : which format.
+    kind : the format's name.
     content : the bytes.
+    suffix, media_type : of the file.
     notes : for the user.
     transfers : loops moved between beds, of a knitout program.
     carriers : yarn carriers, of a knitout program.
-    ends : suffix and media type of an extension's format.
     """
 
     kind: str
     content: bytes
-    notes: tuple[str, ...] = field(default=())
+    suffix: str
+    media_type: str
+    notes: tuple[str, ...] = ()
     transfers: int | None = None
     carriers: int | None = None
-    ends: tuple[str, str] | None = None
-
-    @property
-    def suffix(self) -> str:
-        """Usual end of the file's name."""
-        return (self.ends or SUFFIXES[ExportKind(self.kind)])[0]
-
-    @property
-    def media_type(self) -> str:
-        """For HTTP."""
-        return (self.ends or SUFFIXES[ExportKind(self.kind)])[1]
 
 
 @dataclass(frozen=True)
 class Exporter:
-    """A format of an extension (:mod:`knitcore.extensions`).
+    """A format: built in, or that of an extension (:mod:`knitcore.extensions`).
 
     Attributes
     ----------
     identifier : the name of the format.
     suffix, media_type : of its files, such as ``.txt`` and ``text/plain; charset=utf-8``.
-    write : the content of a file; may raise InputError for a piece that the format cannot hold.
+    write : the content of a file, or the file with notes of its own; may raise InputError for a
+        piece that the format cannot hold.
     notes : for the user, about every file.
+    holds_outlines : whether it can hold "no stitch"; other charts are refused.
+    holds_yarns : whether it can hold several yarns; they are left out otherwise, with a note.
     """
 
     identifier: str
     suffix: str
     media_type: str
-    write: Callable[[Piece, Material, ExportOptions], bytes]
+    write: Callable[[Piece, Material, ExportOptions], bytes | ExportedFile]
     notes: tuple[str, ...] = ()
+    holds_outlines: bool = True
+    holds_yarns: bool = True
 
 
 def exporters() -> dict[str, Exporter]:
@@ -195,40 +166,30 @@ def export_chart(
     """
     options = options or ExportOptions()
     piece = piece_of(chart, options.layout)
-    if kind not in set(ExportKind):
-        return _by_extension(piece, kind, material, options)
-    kind = ExportKind(kind)
-    if kind in RECTANGULAR_KINDS and not piece.is_rectangle:
-        known = ", ".join(k for k in ExportKind if k not in RECTANGULAR_KINDS)
+    exporter = FORMATS.get(kind) or _of_extension(kind)
+    if not exporter.holds_outlines and not piece.is_rectangle:
+        known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
         raise InputError(
             "to",
             f"{kind} cannot hold a chart with an outline, and its stitches must not be made up.",
             f"Export {known}, or a rectangular part.",
         )
-    file = _WRITERS[kind](piece, material, options)
-    if kind in COLOURLESS_KINDS and len(piece.yarns) > 1:
-        return replace(file, notes=(*file.notes, f"{kind} has no colours: the yarns are left out."))
-    return file
+    with nullcontext() if kind in FORMATS else running(Group.EXPORTERS, kind):
+        content = exporter.write(piece, material, options)
+    if isinstance(content, ExportedFile):
+        return content
+    notes = exporter.notes
+    if not exporter.holds_yarns and len(piece.yarns) > 1:
+        notes = (*notes, f"{kind} has no colours: the yarns are left out.")
+    return ExportedFile(kind, bytes(content), exporter.suffix, exporter.media_type, notes)
 
 
-def _by_extension(
-    piece: Piece, kind: str, material: Material, options: ExportOptions
-) -> ExportedFile:
+def _of_extension(kind: str) -> Exporter:
     found = exporters()
     if kind not in found:
-        known = ", ".join([*ExportKind, *found])
-        raise InputError("to", f"{kind!r} is no format.", f"Use one of {known}.")
-    exporter = found[kind]
-    with running(Group.EXPORTERS, kind):
-        content = bytes(exporter.write(piece, material, options))
-    ends = exporter.suffix, exporter.media_type
-    return ExportedFile(kind, content, exporter.notes, ends=ends)
-
-
-_Writer = Callable[[Piece, Material, ExportOptions], ExportedFile]
-
-_LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
-_DRAWN = ("A drawn loop on the flat lattice, not a relaxed yarn.",)
+        known = ", ".join([*FORMATS, *found])
+        raise InputError("to", f"{kind!r} is not a format.", f"Use one of {known}.")
+    return found[kind]
 
 
 def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
@@ -237,49 +198,31 @@ def _knitout(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
     if not piece.is_rectangle:
         notes.append(f"{program.shaping_transfers} further transfers shape the edges.")
     if program.carriers > 1:
-        notes.append(
-            f"Intarsia with {program.carriers} carriers: "
-            + "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
-            + "."
-        )
+        yarns = "; ".join(f"{y.name} ({y.colour})" for y in piece.yarns)
+        notes.append(f"Intarsia with {program.carriers} carriers: {yarns}.")
     return ExportedFile(
         ExportKind.KNITOUT,
         program.text.encode(),
+        FORMATS[ExportKind.KNITOUT].suffix,
+        _TEXT,
         tuple(notes),
         transfers=program.transfers,
         carriers=program.carriers,
     )
 
 
-def _svg(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
-    drawing = chart_drawing.chart_svg(piece, _style(piece, material, options))
-    return ExportedFile(ExportKind.SVG, drawing.encode())
-
-
-def _pdf(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
-    drawing = chart_drawing.chart_pdf(piece, _style(piece, material, options))
-    return ExportedFile(ExportKind.PDF, drawing)
-
-
-def _report(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
     style = _style(piece, material, options)
-    pages = report.design_report(piece, material, options.name, style, options.layout.regions)
-    return ExportedFile(ExportKind.REPORT, pages)
+    return report.design_report(piece, material, options.name, style, options.layout.regions)
 
 
-def _written(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    rows = written.write_rows(piece, options.construction, first_side=options.first_side)
-    return ExportedFile(ExportKind.WRITTEN, rows.encode())
-
-
-def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> ExportedFile:
-    rows = knitspeak.write_knitspeak(
+def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> bytes:
+    return knitspeak.write_knitspeak(
         piece.chart, options.construction, first_side=options.first_side
-    )
-    return ExportedFile(ExportKind.KNITSPEAK, rows.encode())
+    ).encode()
 
 
-def _design(piece: Piece, material: Material, options: ExportOptions) -> ExportedFile:
+def _design(piece: Piece, material: Material, options: ExportOptions) -> bytes:
     document = design.DesignFile(
         name=options.name,
         material=material.identifier,
@@ -287,23 +230,7 @@ def _design(piece: Piece, material: Material, options: ExportOptions) -> Exporte
         note=options.note,
         **layout_fields(options.layout),
     )
-    return ExportedFile(ExportKind.DESIGN, design.write_design(document).encode())
-
-
-def _glb(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.GLB, yarn_mesh.write_glb(piece, material), _DRAWN)
-
-
-def _stl(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.STL, yarn_mesh.write_stl(piece, material), _DRAWN)
-
-
-def _vtu(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.VTU, stitch_values.write_vtu(piece, material), _LOCAL)
-
-
-def _csv(piece: Piece, material: Material, _: ExportOptions) -> ExportedFile:
-    return ExportedFile(ExportKind.CSV, stitch_values.write_csv(piece, material).encode(), _LOCAL)
+    return design.write_design(document).encode()
 
 
 def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
@@ -365,18 +292,74 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
     return tuple(facts)
 
 
-_WRITERS: dict[ExportKind, _Writer] = {
-    ExportKind.KNITOUT: _knitout,
-    ExportKind.PNG: lambda piece, _, __: ExportedFile(ExportKind.PNG, png.write_png(piece)),
-    ExportKind.SVG: _svg,
-    ExportKind.PDF: _pdf,
-    ExportKind.REPORT: _report,
-    ExportKind.TEXT: lambda p, _, __: ExportedFile(ExportKind.TEXT, f"{p.chart.text}\n".encode()),
-    ExportKind.WRITTEN: _written,
-    ExportKind.KNITSPEAK: _knitspeak,
-    ExportKind.DESIGN: _design,
-    ExportKind.GLB: _glb,
-    ExportKind.STL: _stl,
-    ExportKind.VTU: _vtu,
-    ExportKind.CSV: _csv,
-}
+_TEXT = "text/plain; charset=utf-8"
+_LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
+_DRAWN = ("A drawn loop on the flat lattice, not a relaxed yarn.",)
+
+_BUILT_IN = (
+    Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout),
+    Exporter(
+        ExportKind.KNITSPEAK, ".ks", _TEXT, _knitspeak, holds_outlines=False, holds_yarns=False
+    ),
+    Exporter(ExportKind.PNG, ".png", "image/png", lambda p, _, __: png.write_png(p)),
+    Exporter(
+        ExportKind.SVG,
+        ".svg",
+        "image/svg+xml",
+        lambda p, m, o: chart_drawing.chart_svg(p, _style(p, m, o)).encode(),
+    ),
+    Exporter(
+        ExportKind.PDF,
+        ".pdf",
+        "application/pdf",
+        lambda p, m, o: chart_drawing.chart_pdf(p, _style(p, m, o)),
+    ),
+    Exporter(ExportKind.REPORT, ".pdf", "application/pdf", _report),
+    Exporter(
+        ExportKind.TEXT,
+        ".txt",
+        _TEXT,
+        lambda p, _, __: f"{p.chart.text}\n".encode(),
+        holds_outlines=False,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.WRITTEN,
+        ".txt",
+        _TEXT,
+        lambda p, _, o: written.write_rows(p, o.construction, first_side=o.first_side).encode(),
+    ),
+    Exporter(ExportKind.DESIGN, ".json", "application/json", _design),
+    Exporter(
+        ExportKind.GLB,
+        ".glb",
+        "model/gltf-binary",
+        lambda p, m, _: yarn_mesh.write_glb(p, m),
+        _DRAWN,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.STL,
+        ".stl",
+        "model/stl",
+        lambda p, m, _: yarn_mesh.write_stl(p, m),
+        _DRAWN,
+        holds_yarns=False,
+    ),
+    Exporter(
+        ExportKind.VTU,
+        ".vtu",
+        "application/xml",
+        lambda p, m, _: stitch_values.write_vtu(p, m),
+        _LOCAL,
+    ),
+    Exporter(
+        ExportKind.CSV,
+        ".csv",
+        "text/csv; charset=utf-8",
+        lambda p, m, _: stitch_values.write_csv(p, m).encode(),
+        _LOCAL,
+    ),
+)
+FORMATS = {exporter.identifier: exporter for exporter in _BUILT_IN}
+"""Built-in formats by name."""

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.operations.export import MAX_STITCHES
-from knitcore.formats.export import SUFFIXES, ExportKind
+from knitcore.formats.export import FORMATS, ExportKind
 
 CHART = "KPKK\nPPKP\nKKPP"
 
@@ -28,7 +28,7 @@ def run(*arguments: str) -> dict[str, Any]:
 
 @pytest.mark.parametrize("kind", list(ExportKind))
 def test_export_writes_the_file(kind: ExportKind, tmp_path: Path) -> None:
-    out = tmp_path / f"chart{SUFFIXES[kind][0]}"
+    out = tmp_path / f"chart{FORMATS[kind].suffix}"
     facts = run("export", "garter", "--size", "6x4", "--to", kind.value, "-o", str(out))
     assert facts["bytes"] == out.stat().st_size
     assert (facts["columns"], facts["rows"]) == (6, 4)
@@ -52,7 +52,7 @@ def test_what_was_exported_is_imported(
     asked = client.post("/api/v1/export", json={"chart": CHART, "to": kind, "name": "A/b"})
     assert asked.status_code == 200, asked.text
     file = asked.json()
-    assert file["name"] == "A-b" + SUFFIXES[kind][0]
+    assert file["name"] == "A-b" + FORMATS[kind].suffix
 
     upload = {"file": {"name": file["name"], "content": file["content"]}}
     told = client.post("/api/v1/import", json=upload)

@@ -22,9 +22,7 @@ from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.chart_key import HEAVY, ChartStyle, RegionMark, tinted
 from knitcore.formats.drawing import Box, Label, Page, to_svg
 from knitcore.formats.export import (
-    COLOURLESS_KINDS,
-    RECTANGULAR_KINDS,
-    SUFFIXES,
+    FORMATS,
     ExportKind,
     ExportOptions,
     export_chart,
@@ -54,7 +52,7 @@ WHOLE = (ExportKind.PNG, ExportKind.WRITTEN, ExportKind.DESIGN)
 
 
 def round_trip(chart: StitchChart, kind: ExportKind, folder: Path) -> StitchChart:
-    file = folder / f"chart{SUFFIXES[kind][0]}"
+    file = folder / f"chart{FORMATS[kind].suffix}"
     file.write_bytes(export_chart(chart, kind, ACRYLIC).content)
     return read_chart(file)
 
@@ -85,7 +83,7 @@ def test_round_trips_of_large_charts(
 @given(piece=pieces())
 def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
     options = ExportOptions(layout=layout_of(piece))
-    file = tmp_path / f"piece{SUFFIXES[kind][0]}"
+    file = tmp_path / f"piece{FORMATS[kind].suffix}"
     file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
     found = read_piece(file)
     assert found == (piece.cropped() if kind is ExportKind.WRITTEN else piece)
@@ -98,7 +96,7 @@ def test_outlines_and_yarns_come_back(kind: ExportKind, piece: Piece, tmp_path: 
 @given(piece=pieces(most_rows=200, most_columns=200))
 def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) -> None:
     options = ExportOptions(layout=layout_of(piece))
-    file = tmp_path / f"piece{SUFFIXES[kind][0]}"
+    file = tmp_path / f"piece{FORMATS[kind].suffix}"
     file.write_bytes(export_chart(piece.chart, kind, ACRYLIC, options).content)
     assert read_piece(file).cropped() == piece.cropped()
 
@@ -106,12 +104,12 @@ def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) 
 def test_what_a_format_cannot_hold_is_told() -> None:
     chart = StitchChart.of_fabric("seed", rows=3, columns=4)
     shaped = ExportOptions(layout=DesignLayout(outline="xxx.\nxxxx\nxxxx"))
-    for kind in RECTANGULAR_KINDS:
+    for kind in (k for k, f in FORMATS.items() if not f.holds_outlines):
         with pytest.raises(InputError, match="cannot hold a chart with an outline"):
             export_chart(chart, kind, ACRYLIC, shaped)
     region = DesignRegion(id="a", name="A", colour="#112233", yarn="navy", runs=[(0, 0, 2)])
     coloured = ExportOptions(layout=DesignLayout(regions=[region]))
-    for kind in COLOURLESS_KINDS:
+    for kind in (k for k, f in FORMATS.items() if not f.holds_yarns):
         assert "no colours" in export_chart(chart, kind, ACRYLIC, coloured).notes[-1]
     apart = ExportOptions(layout=DesignLayout(outline="xx..\n..xx\nxxxx"))
     with pytest.raises(InputError, match="the outline is in several parts"):
