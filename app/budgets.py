@@ -6,7 +6,7 @@ import contextlib
 import math
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from pydantic import BaseModel
@@ -44,6 +44,7 @@ class Budgets:
     versions : versions kept of one design.
     links : open links to one design.
     kept_bytes : designs and their versions together.
+    body_bytes : bodies of requests that are open, together.
     """
 
     connections: int = 128
@@ -58,6 +59,7 @@ class Budgets:
     versions: int = 500
     links: int = 100
     kept_bytes: int = 1_000_000_000
+    body_bytes: int = 128_000_000
 
 
 BUDGETS = Budgets()
@@ -164,5 +166,27 @@ class InUse:
             yield
         finally:
             self._held[what, owner] -= 1
+            if not self._held[what, owner]:
+                del self._held[what, owner]
+
+    @contextlib.contextmanager
+    def growing(self, what: str, owner: str) -> Iterator[Callable[[int], None]]:
+        """Yields a function that counts more of what is held until the block ends.
+
+        It raises OverBudgetError beyond the limit.
+        """
+        mine, most = 0, getattr(self._budgets, what)
+
+        def count(more: int) -> None:
+            nonlocal mine
+            if self._held[what, owner] + more > most:
+                raise OverBudgetError.of(what, self._held[what, owner], most)
+            mine += more
+            self._held[what, owner] += more
+
+        try:
+            yield count
+        finally:
+            self._held[what, owner] -= mine
             if not self._held[what, owner]:
                 del self._held[what, owner]

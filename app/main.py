@@ -19,6 +19,7 @@ from app.compute.answers import Answers
 from app.compute.compute import Compute
 from app.compute.places import Place
 from app.compute.processes import processes
+from app.compute.turns import Gate
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
 from app.http import health
@@ -47,6 +48,8 @@ if TYPE_CHECKING:
 
 log = logging.getLogger("knitcore.app")
 
+MOST_LARGE_BODIES, MOST_LIGHT_WORK = 2, 2
+"""At once: threads that compute keep the event loop waiting for Python, each for some ms."""
 JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
 
@@ -71,6 +74,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.state.compute = Compute(
             _places(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
         )
+        app.state.large_bodies = Gate(MOST_LARGE_BODIES)
+        app.state.light_work = Gate(MOST_LIGHT_WORK)
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)

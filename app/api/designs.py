@@ -26,6 +26,7 @@ from app.designs.document import (
 from app.designs.parameters import MISSING, Cursor, Limit, Owner, Responses, RetryOf
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
+from app.http.bodies import BoundedRoute
 from app.http.problems import Problem
 from app.viewer.design_id import DesignId
 
@@ -37,7 +38,7 @@ CONDITIONAL: Responses = {
     428: {"model": Problem, "description": "If-Match is missing."},
 }
 
-router = APIRouter(tags=["designs"], responses=MISSING)
+router = APIRouter(route_class=BoundedRoute, tags=["designs"], responses=MISSING)
 
 IfMatch = Annotated[
     str | None, Header(description="The ETag of the state that was changed.", max_length=200)
@@ -163,7 +164,7 @@ def post_duplicate(
     retry: RetryOf,
 ) -> Design:
     """A new design with the same content."""
-    return _created(response, store.duplicate(owner, design, retry(None)))
+    return _created(response, store.duplicate(owner, design, retry("")))
 
 
 @router.delete(
@@ -270,4 +271,4 @@ def post_copy(
     retry: RetryOf,
 ) -> Design:
     """A design of your own, if the link allows it."""
-    return _created(response, links.copy(owner, token, retry(None)))
+    return _created(response, links.copy(owner, token, retry("")))

@@ -12,6 +12,7 @@ from fastapi.responses import StreamingResponse
 
 from app.designs.conditions import ConflictError
 from app.designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
+from app.http.bodies import OrUndecoded, Undecoded, WorkerRoute
 from app.http.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
 from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
@@ -22,7 +23,7 @@ EVENT_PERIOD_S = 0.25
 HEARTBEATS = 60
 """Periods without a change after which a line is sent, so that a vanished client is noticed."""
 
-router = APIRouter(tags=["jobs"], responses=MISSING)
+router = APIRouter(route_class=WorkerRoute, tags=["jobs"], responses=MISSING)
 
 JobId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
@@ -37,14 +38,19 @@ Runner = Annotated[JobRunner, Depends(_runner)]
 
 @router.post("/jobs", status_code=202, summary="Run an operation in the background")
 async def post_job(
-    body: JobRequest,
+    body: Annotated[JobRequest, OrUndecoded],
     runner: Runner,
     owner: Owner,
+    request: Request,
     response: Response,
     retry: RetryOf,
 ) -> JobStatus:
     """Waits for its turn among all users; if the result is known, the job is done at once."""
-    status = await runner.submit(owner, body.kind, body.request.model_dump_json(), retry(body))
+    if isinstance(body, Undecoded):
+        kind, wanted = await runner.read(request.is_disconnected, body.content)
+    else:
+        kind, wanted = body.kind, body.request.model_dump_json()
+    status = await runner.submit(owner, kind, wanted, retry(f"{kind}\0{wanted}"))
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status
 

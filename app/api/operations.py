@@ -12,6 +12,9 @@ from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
 from app.compute.answers import Answers
+from app.compute.turns import Gate
+from app.http.bodies import OrUndecoded, Undecoded, WorkerRoute
+from app.http.identity import current_user
 from app.http.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
 from app.http.problems import Problem, StoppingError
 from app.models.charts import size_of
@@ -37,24 +40,27 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     def light(body: BaseModel, request: Request) -> Response:
         return plain(made(body, request), request.headers)
 
-    async def post(body: BaseModel, request: Request) -> Any:
+    async def post(body: BaseModel | Undecoded, request: Request) -> Any:
         answers: Answers = request.app.state.answers
-        if not operation.heavy and size_of(body) <= MOST_LIGHT:
-            return await run_in_threadpool(light, body, request)
+        wanted = body.content if isinstance(body, Undecoded) else body
+        if isinstance(wanted, BaseModel) and not operation.heavy and size_of(wanted) <= MOST_LIGHT:
+            gate: Gate = request.app.state.light_work
+            async with gate.turn(current_user.get()):
+                return await run_in_threadpool(light, wanted, request)
 
         async def abandoned() -> bool:
             if request.app.state.stopping:
                 raise StoppingError("The service is stopping.")
             return await request.is_disconnected()
 
-        answer = await answers.answer(abandoned, operation, body)
+        answer = await answers.answer(abandoned, operation, wanted)
         return await json_response(answer.body, request.headers)
 
     def get(request: Request, **fields: Any) -> Response:
         return tagged(made(operation.request(**fields), request), request.headers)
 
     if operation.method == "POST":
-        return _typed(post, body=operation.request, request=Request)
+        return _typed(post, body=Annotated[operation.request, OrUndecoded], request=Request)
     places = {
         name: Annotated[field.rebuild_annotation(), Path(examples=field.examples)]
         for name, field in operation.request.model_fields.items()
@@ -77,7 +83,7 @@ def _typed(function: Callable[..., Any], **parameters: Any) -> Callable[..., Any
 
 
 def _router() -> APIRouter:
-    router = APIRouter()
+    router = APIRouter(route_class=WorkerRoute)
     for operation in operations().values():
         if operation.path is None:
             continue

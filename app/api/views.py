@@ -13,6 +13,7 @@ from fastapi.responses import StreamingResponse
 from pydantic import Field
 
 from app.budgets import InUse
+from app.http.bodies import BoundedRoute
 from app.http.identity import current_user
 from app.http.problems import NotFoundError, Problem
 from app.models.base import RequestModel
@@ -40,7 +41,7 @@ T = TypeVar("T")
 _drawing = ThreadPoolExecutor(4, "drawing")
 _pictures = ThreadPoolExecutor(16, "pictures")  # waiting for browsers, up to 25 s each
 
-router = APIRouter(tags=["views"], responses=MISSING)
+router = APIRouter(route_class=BoundedRoute, tags=["views"], responses=MISSING)
 
 
 class BoxInput(RequestModel):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
@@ -39,20 +38,21 @@ class Answers:
         self,
         abandoned: Callable[[], Awaitable[bool]],
         operation: Operation[Any, Any],
-        request: BaseModel,
+        request: BaseModel | bytes,
         **turn: Any,
     ) -> Answer:
-        """The answer of an operation to a request; ``turn`` goes to :meth:`Compute.run`.
+        """The answer of an operation to a request, which may be JSON that a worker shall decode;
+        ``turn`` goes to :meth:`Compute.run`.
 
         Raises
         ------
-        ServiceError, KnitcoreError
+        ServiceError, KnitcoreError, InvalidRequestError
         """
-        key = await asyncio.to_thread(operation.key, request)  # an upload has megabytes
+        key = "" if isinstance(request, bytes) else operation.key(request)
         known: Answer | None = self._recent.get(key)
         if known is not None:
             return known
-        args = operation.run, request, self._data_dir
+        args = operation.run, operation.request, request, self._data_dir
         answer: Answer = await self.compute.run(abandoned, perform, *args, **turn)
-        self._recent.put(key, answer, answer.size_bytes)
+        self._recent.put(answer.key or key, answer, answer.size_bytes)
         return answer

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections import Counter, OrderedDict, deque
+from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -11,6 +13,7 @@ from app.budgets import OverBudgetError
 from app.http.problems import UnavailableError
 
 Place = TypeVar("Place")
+MOST_AT_A_GATE = 100
 Lane = OrderedDict[str, deque["Ticket[Place]"]]
 
 
@@ -134,3 +137,36 @@ class Turns(Generic[Place]):
                         del lane[owner]
                     return ticket
         return None
+
+
+class Gate:
+    """Lets a few through at once, users taking turns.
+
+    Parameters
+    ----------
+    most : at once.
+    """
+
+    def __init__(self, most: int) -> None:
+        self._turns = Turns(
+            list(range(most)),
+            most_background=most,
+            most_waiting=MOST_AT_A_GATE,
+            most_waiting_each=0,
+        )
+
+    @contextlib.asynccontextmanager
+    async def turn(self, owner: str) -> AsyncIterator[None]:
+        """Wait for a turn, and hold it while the block runs.
+
+        Raises
+        ------
+        UnavailableError
+            If too many wait.
+        """
+        ticket = self._turns.enter(owner, background=False)
+        try:
+            await asyncio.wait([ticket.place])
+            yield
+        finally:
+            self._turns.leave(ticket)

@@ -32,15 +32,15 @@ Key = Annotated[
 
 async def _retries(
     request: Request, owner: Owner, key: Key = None
-) -> Callable[[BaseModel | None], Retry | None]:
-    def retry(body: BaseModel | None) -> Retry | None:
+) -> Callable[[BaseModel | str], Retry | None]:
+    def retry(body: BaseModel | str) -> Retry | None:
         if key is None:
             return None
-        content = "" if body is None else body.model_dump_json()
+        content = body if isinstance(body, str) else body.model_dump_json()
         return Retry.of(owner, key, request.method, request.url.path, content)
 
     return retry
 
 
-RetryOf = Annotated[Callable[[BaseModel | None], Retry | None], Depends(_retries)]
+RetryOf = Annotated[Callable[[BaseModel | str], Retry | None], Depends(_retries)]
 """Makes the idempotency key of a request with a body or without, if the request has one."""

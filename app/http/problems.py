@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Annotated, Any
 
@@ -15,7 +15,7 @@ from pydantic import BaseModel, BeforeValidator, Field
 from starlette.exceptions import HTTPException
 
 from app.http.kinds import type_uri
-from app.models.base import MissingError
+from app.models.base import InvalidRequestError, MissingError
 from knitcore.errors import (
     CancelledError,
     ConvergenceError,
@@ -175,8 +175,8 @@ def problem_of(error: Exception) -> Problem:
             detail=str(error),
             remedy="Ask for less: a smaller strain, a smaller chart or more steps.",
         )
-    if isinstance(error, RequestValidationError):
-        return _invalid(error)
+    if isinstance(error, RequestValidationError | InvalidRequestError):
+        return _invalid(error.errors())
     if isinstance(error, HTTPException):
         return _of_http(error)
     return Problem(
@@ -219,11 +219,10 @@ def _unusable(faults: list[Fault], most: float | None = None) -> Problem:
     )
 
 
-def _invalid(error: RequestValidationError) -> Problem:
+def _invalid(found: Sequence[Any]) -> Problem:
     """Everything that is wrong with a request; an impossible address counts as not found."""
-    found = error.errors()
     place = found[0]["loc"]
-    if place[0] == "path":
+    if place[:1] == ("path",):
         return NotFoundError(
             f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
         ).problem
@@ -261,7 +260,10 @@ _NOT_FIELDS = frozenset({"body", "path", "query", "header", "float", "K/P text",
 _REMEDIES = {
     "missing": "Give {field}; /docs has an example.",
     "extra_forbidden": "Leave {field} out, or compare its name with /docs.",
-    "model_attributes_type": "Send a JSON object, with Content-Type: application/json.",
+    **dict.fromkeys(
+        ("model_attributes_type", "model_type"),
+        "Send a JSON object, with Content-Type: application/json.",
+    ),
     "union_tag_invalid": "Use one of {expected_tags}.",
     "literal_error": "Use {expected}.",
     "enum": "Use {expected}.",
@@ -286,6 +288,7 @@ def install_problem_handlers(app: FastAPI) -> None:
     @app.exception_handler(KnitcoreError)
     @app.exception_handler(ServiceError)
     @app.exception_handler(RequestValidationError)
+    @app.exception_handler(InvalidRequestError)
     @app.exception_handler(HTTPException)
     async def _(_: Request, error: Exception) -> JSONResponse:
         return problem_response(problem_of(error), getattr(error, "headers", None))

@@ -14,12 +14,12 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.exceptions import HTTPException
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
 from app.budgets import InUse, OverBudgetError
+from app.http.bodies import limited
 from app.http.identity import NOBODY, current_session, current_user
 from app.http.kinds import PAGES
 from app.http.problems import Problem, StoppingError, problem_response, unexpected
@@ -36,9 +36,6 @@ OPENED_BY = "knitcore.opened_by"
 LOGIN_FAILURES = 20
 """Unknown tokens that one address may try before it must wait 10 s for each. A right token is
 always accepted: 256 random bits cannot be guessed, and a stranger cannot lock others out."""
-MOST_VALUES = 250_000
-"""Values in a JSON body, counted by their commas: reading them keeps the event loop for less than a
-tenth of a second. Charts and files are one value each."""
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "[::1]", "::1"})
 HOST_REMEDY = "Use its own address, or add the name to KNITCORE_ALLOWED_HOSTS."
 OPEN_PATHS = PAGES | {"/healthz", "/readyz"}
@@ -152,9 +149,11 @@ class Guard:
             await refusal(scope, receive, send_with_headers)
             return
         try:
-            limited = _limited(receive, self.settings.max_body_bytes)
-            async with self._while_open(scope) as open_:
-                await self.app(scope, limited, send_with_headers)
+            in_use: InUse = scope["app"].state.in_use
+            with in_use.growing("body_bytes", current_user.get()) as count:
+                received = limited(receive, self.settings.max_body_bytes, count)
+                async with self._while_open(scope) as open_:
+                    await self.app(scope, received, send_with_headers)
             if not open_ and started:
                 await send({"type": "http.response.body", "body": b""})
         except asyncio.CancelledError:  # the service stops, and does not wait any longer
@@ -408,25 +407,3 @@ def _refused(field: str, detail: str, remedy: str, status: int) -> Response:
 def _has_body(scope: Scope) -> bool:
     headers = Headers(scope=scope)
     return headers.get("content-length", "0") != "0" or "transfer-encoding" in headers
-
-
-def _limited(receive: Receive, most_bytes: int) -> Receive:
-    """Receive a body and refuse it once it is too large, whatever its head says."""
-    seen = values = 0
-
-    async def limited() -> Message:
-        nonlocal seen, values
-        message = await receive()
-        if message["type"] == "http.request":
-            body = message.get("body", b"")
-            seen += len(body)
-            values += body.count(b",")
-            if seen > most_bytes or values > MOST_VALUES:
-                raise HTTPException(
-                    413,
-                    f"A request has at most {most_bytes} bytes and {MOST_VALUES} values.",
-                    {"Connection": "close"},
-                )
-        return message
-
-    return limited

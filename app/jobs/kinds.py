@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Callable
 from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, create_model
+from pydantic import Discriminator, Field, create_model
 
-from app.models.base import RequestModel, ResultModel
+from app.models.base import RequestModel, ResultModel, read
 from app.operations.registry import Operation, operations
 from knitcore.extensions import Group, extensions
 from knitcore.yarnlibrary import fingerprint
@@ -39,7 +41,7 @@ if TYPE_CHECKING:
     JobRequest = JobOf
     JobResult = ResultModel
 else:
-    JobRequest = Annotated[reduce(or_, map(_job_of, KINDS.values())), Field(discriminator="kind")]
+    JobRequest = Annotated[reduce(or_, map(_job_of, KINDS.values())), Discriminator("kind")]
     JobResult = Annotated[
         reduce(or_, (operation.result for operation in KINDS.values())), Field(discriminator="kind")
     ]
@@ -52,5 +54,18 @@ def content_key(kind: str, request: str) -> str:
     The first one takes half a second.
     """
     packages = [extension.package for extension in extensions(Group.MATERIALS)]
-    content = {"kind": kind, "request": request, "packages": packages}
+    digest = hashlib.sha256(request.encode()).hexdigest()  # a file's megabytes are hashed once
+    content = {"kind": kind, "request": digest, "packages": packages}
     return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
+
+
+def read_job(content: bytes, *, cancelled: Callable[[], bool]) -> tuple[str, str]:
+    """Kind and request, as JSON, of a job that somebody asks for; a worker reads a large one.
+
+    Raises
+    ------
+    InvalidRequestError
+    """
+    del cancelled
+    job = read(JobRequest, content)
+    return job.kind, job.request.model_dump_json()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import secrets
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +13,10 @@ from app.budgets import SpentError
 from app.compute.answers import Answers
 from app.compute.places import AbandonedError, NotBegunError
 from app.designs.idempotency import Retry
+from app.http.bodies import SMALL_BYTES
 from app.http.problems import Problem, ServiceError, problem_of
 from app.jobs.document import JobState, JobStatus
-from app.jobs.kinds import KINDS, content_key
+from app.jobs.kinds import KINDS, content_key, read_job
 from app.jobs.store import JobStore
 from app.store.database import StoreError
 
@@ -62,6 +63,17 @@ class JobRunner:
         """After a start: resume waiting jobs, and mark running ones as interrupted."""
         await self._go_on(await asyncio.to_thread(self.store.adopt))
         self._heart = asyncio.create_task(self._beat(), name="jobs of all processes")
+
+    async def read(
+        self, abandoned: Callable[[], Awaitable[bool]], content: bytes
+    ) -> tuple[str, str]:
+        """Kind and request of a large job, which a worker decodes.
+
+        Raises
+        ------
+        InvalidRequestError
+        """
+        return await self._compute.run(abandoned, read_job, content)
 
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
@@ -179,7 +191,8 @@ class JobRunner:
         extra = {"job": job, "kind": kind}
         log.info("job waits", extra=extra)
         try:
-            wanted = described.request.model_validate_json(request)
+            large = len(request) > SMALL_BYTES
+            wanted = request.encode() if large else described.request.model_validate_json(request)
             answer = await self._begun(
                 abandoned,
                 described,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import secrets
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sqlalchemy import (
+    Column,
     ColumnElement,
     Connection,
     Row,
@@ -28,6 +29,8 @@ from app.store.tables import jobs, results
 
 OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
+STATUS = tuple(column for column in jobs.c if column is not jobs.c.request)
+"""What tells of a job; its request may have megabytes."""
 ORPHANED_S = 60.0
 """A process not seen for this long counts as gone; the others take over its jobs."""
 INTERRUPTED = Problem(
@@ -95,12 +98,12 @@ class JobStore:
     def request_of(self, owner: str, job: str) -> tuple[str, str]:
         """Kind and request of a job."""
         with self._database.read() as connection:
-            row = _one(connection, owner, job)
+            row = _one(connection, owner, job, (jobs.c.kind, jobs.c.request))
         return row.kind, row.request
 
     def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
         """Jobs of an owner, latest first."""
-        mine = select(jobs).where(jobs.c.owner == owner)
+        mine = select(*STATUS).where(jobs.c.owner == owner)
         rows, following = one_page(
             self._database, mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
         )
@@ -256,9 +259,11 @@ class JobStore:
         self._database.write(action)
 
 
-def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
+def _one(
+    connection: Connection, owner: str, job: str, columns: Sequence[Column[Any]] = STATUS
+) -> Row[Any]:
     row = connection.execute(
-        select(jobs).where(jobs.c.id == job, jobs.c.owner == owner)
+        select(*columns).where(jobs.c.id == job, jobs.c.owner == owner)
     ).one_or_none()
     if row is None:
         raise NotFoundError(

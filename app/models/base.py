@@ -7,7 +7,15 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    model_validator,
+)
 from pydantic.config import JsonDict
 
 from knitcore.errors import InputError
@@ -21,6 +29,34 @@ UNIT = "_n_per_mm"
 
 class MissingError(InputError):
     """Nothing has the name that the address gives."""
+
+
+class InvalidRequestError(Exception):
+    """A body that is no request of its address."""
+
+    def __init__(self, errors: list[Any]) -> None:
+        super().__init__(errors)
+        self._errors = errors
+
+    def errors(self) -> list[Any]:
+        """Those of pydantic, without the inputs."""
+        return self._errors
+
+
+def read(model: Any, content: bytes | str) -> Any:
+    """A model, or what another annotation means, of JSON that somebody sent.
+
+    Raises
+    ------
+    InvalidRequestError
+    """
+    try:
+        return TypeAdapter(model).validate_json(content)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_input=False)
+        raise InvalidRequestError(
+            [fault | {"loc": ("body", *fault["loc"])} for fault in found]
+        ) from None
 
 
 class RequestModel(BaseModel):

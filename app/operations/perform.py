@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from pydantic import BaseModel
 
+from app.models.base import read
 from app.operations.context import Context
 
 Result = TypeVar("Result", bound=BaseModel)
@@ -42,10 +44,12 @@ class Answer:
     ----------
     body : the result as packed JSON.
     view : data for the 3D view.
+    key : the operation's key of the request, where the worker decoded it.
     """
 
     body: bytes
     view: View | None = None
+    key: str = ""
 
     @property
     def size_bytes(self) -> int:
@@ -53,15 +57,30 @@ class Answer:
         return len(self.body) + (self.view.size_bytes if self.view is not None else 0)
 
 
+def key_of(run: Callable[..., Any], request: BaseModel) -> str:
+    """A key made of everything that a caller can choose."""
+    content = f"{run.__name__.rstrip('_')}\0{request.model_dump_json()}"
+    return hashlib.sha256(content.encode()).hexdigest()[:32]
+
+
 def perform(
     run: Callable[..., Any],
-    request: BaseModel,
+    model: type[BaseModel],
+    request: BaseModel | bytes,
     data_dir: Path,
     *,
     cancelled: Callable[[], bool],
     progress: Callable[[float, float], None],
 ) -> Answer:
-    """Do an operation; megabytes of numbers are packed here and not on the event loop."""
-    found = run(request, Context(data_dir, cancelled=cancelled, progress=progress))
+    """Do an operation; megabytes are decoded and packed here and not on the event loop.
+
+    Raises
+    ------
+    InvalidRequestError
+        If the request came as bytes and is none of the model.
+    """
+    wanted: BaseModel = read(model, request) if isinstance(request, bytes) else request
+    found = run(wanted, Context(data_dir, cancelled=cancelled, progress=progress))
     result, view = (found.result, found.view) if isinstance(found, Viewed) else (found, None)
-    return Answer(gzip.compress(result.model_dump_json().encode(), LEVEL), view)
+    body = gzip.compress(result.model_dump_json().encode(), LEVEL)
+    return Answer(body, view, "" if wanted is request else key_of(run, wanted))

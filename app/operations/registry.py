@@ -9,7 +9,6 @@ a new operation is one file here and its test.
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import importlib
 import inspect
 import keyword
@@ -33,7 +32,7 @@ from pydantic import BaseModel
 
 import app.operations as package
 from app.operations.context import Context
-from app.operations.perform import Viewed
+from app.operations.perform import Viewed, key_of
 
 if TYPE_CHECKING:
     import click
@@ -124,8 +123,7 @@ class Operation(Generic[Request, Result]):
 
     def key(self, request: BaseModel) -> str:
         """A key made of everything that a caller can choose."""
-        content = f"{self.name}\0{request.model_dump_json()}"
-        return hashlib.sha256(content.encode()).hexdigest()[:32]
+        return key_of(self.run, request)
 
 
 @cache

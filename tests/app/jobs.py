@@ -118,6 +118,7 @@ def die_once(mark: str, *, cancelled: Callable[[], bool], progress: Callable[...
 def killed_in_the_middle(
     kind: str,
     run: Callable[..., Any],
+    model: type[BaseModel],
     request: BaseModel,
     data_dir: Path,
     *,
@@ -131,7 +132,7 @@ def killed_in_the_middle(
     """
 
     if run is not KINDS[kind].run:
-        return perform(run, request, data_dir, cancelled=cancelled, progress=progress)
+        return perform(run, model, request, data_dir, cancelled=cancelled, progress=progress)
 
     def kill(*_: Any) -> bool:
         os.kill(os.getpid(), signal.SIGKILL)

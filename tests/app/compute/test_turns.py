@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.budgets import OverBudgetError
-from app.compute.turns import Ticket, Turns
+from app.compute.turns import Gate, Ticket, Turns
 from app.http.problems import UnavailableError
 
 
@@ -126,3 +126,27 @@ def test_a_user_holds_only_so_many_places() -> None:
         assert ada[2].place.done()
 
     asyncio.run(scenario())
+
+
+def test_a_gate_lets_a_few_through_and_its_turns_are_given_back() -> None:
+    async def scenario() -> tuple[list[str], int]:
+        gate, order, inside, most = Gate(2), [], 0, 0
+
+        async def come(owner: str) -> None:
+            nonlocal inside, most
+            async with gate.turn(owner):
+                inside += 1
+                most = max(most, inside)
+                order.append(owner)
+                await asyncio.sleep(0)
+                inside -= 1
+
+        line = [asyncio.create_task(come(owner)) for owner in "aaaaab"]
+        await asyncio.sleep(0)
+        line[3].cancel()  # one that waits; its turn goes to the next
+        await asyncio.gather(*line, return_exceptions=True)
+        return order, most
+
+    order, most = asyncio.run(scenario())
+    assert most == 2
+    assert (len(order), order.index("b")) == (5, 3)  # a, a, a, then b before the rest

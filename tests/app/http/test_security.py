@@ -19,8 +19,9 @@ from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
 from app.cli.main import main
+from app.http.bodies import MOST_VALUES
 from app.http.rate import RateLimit
-from app.http.security import LOGIN_FAILURES, MOST_VALUES, PAGE_POLICY
+from app.http.security import LOGIN_FAILURES, PAGE_POLICY
 from app.http.tokens import Tokens
 from app.main import create_app
 from app.settings import Settings
