@@ -34,7 +34,6 @@ from app.http.sessions import Sessions
 from app.http.tokens import REMEMBERED_S, Login, Tokens
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.operations.stretch import warm_up
 from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
@@ -169,15 +168,14 @@ def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
         from app.compute.cluster import ClusterPlace
 
         return [ClusterPlace(cluster) for _ in range(settings.workers)]
-    workers = processes(
-        settings.workers,
-        settings.worker_memory_bytes,
-        idle=settings.worker_priority == "idle",
-        begin=partial(configure_logging, settings.log_format),
+    return list(
+        processes(
+            settings.workers,
+            settings.worker_memory_bytes,
+            idle=settings.worker_priority == "idle",
+            begin=partial(configure_logging, settings.log_format),
+        )
     )
-    for worker in workers:
-        worker.warm_up(warm_up)
-    return list(workers)
 
 
 def _most_each(settings: Settings) -> int | None:

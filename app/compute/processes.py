@@ -1,4 +1,8 @@
-"""Places on this machine, a process each: one that dies, hangs or grows loses only its own job."""
+"""Places on this machine, a process each: one that dies, hangs or grows loses only its own job.
+
+Workers are forked from a process that has loaded what they need (:mod:`app.compute.loaded`), so one
+that is lost is replaced in milliseconds and all share the memory of their modules.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +16,11 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from enum import IntEnum
+from functools import cache
+from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -22,6 +28,7 @@ from app.compute.places import call
 
 T = TypeVar("T")
 
+CONTEXT = multiprocessing.get_context("forkserver")
 MEMORY_BYTES = 4_000_000_000
 NICENESS = 10
 """Nice value; leaves about a tenth of a busy core."""
@@ -58,26 +65,25 @@ class ProcessPlace:
     def __init__(
         self, memory_bytes: int, *, idle: bool = False, begin: Callable[[], object] = _nothing
     ) -> None:
-        self._context = multiprocessing.get_context("spawn")
         self._memory_bytes = memory_bytes
         self._idle = idle
         self._begin = begin
         self._scratch = Path(tempfile.mkdtemp(prefix=f"{SCRATCH}{os.getpid()}-"))
-        self._cells = self._context.Array("d", len(Cell), lock=False)
+        self._cells = CONTEXT.Array("d", len(Cell), lock=False)
         self._executor = self._new()
 
     async def submit(self, job: Callable[..., T]) -> asyncio.Future[T]:
         """Begin a job."""
         self._cells[:] = [0.0] * len(Cell)
+        await asyncio.shield(asyncio.wrap_future(_loaded()))
+        return asyncio.wrap_future(await asyncio.to_thread(self._submit, job))
+
+    def _submit(self, job: Callable[..., T]) -> Future[T]:
         try:
-            return asyncio.wrap_future(self._executor.submit(_run, job))
+            return self._executor.submit(_run, job)
         except BrokenProcessPool:  # it died while it had nothing to do
             self.replace()
-            return asyncio.wrap_future(self._executor.submit(_run, job))
-
-    def warm_up(self, job: Callable[..., Any]) -> None:
-        """Start the process and load modules before the first job."""
-        self._executor.submit(_run, job)
+            return self._executor.submit(_run, job)
 
     @property
     def share(self) -> float | None:
@@ -110,7 +116,7 @@ class ProcessPlace:
     def _new(self) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(
             1,
-            mp_context=self._context,
+            mp_context=CONTEXT,
             initializer=_adopt,
             initargs=(
                 self._cells,
@@ -131,7 +137,24 @@ def processes(
 ) -> list[ProcessPlace]:
     """Several places, each with a memory limit."""
     _sweep()
+    _loaded()
     return [ProcessPlace(memory_bytes, idle=idle, begin=begin) for _ in range(count)]
+
+
+@cache
+def _loaded() -> Future[None]:
+    """Done once the process that workers are forked from has loaded what they need."""
+    done: Future[None] = Future()
+    forkserver.set_forkserver_preload(["app.compute.loaded"])
+
+    def wait() -> None:
+        try:
+            CONTEXT.Process(target=_nothing, daemon=True).start()  # returns once it is forked
+        finally:
+            done.set_result(None)
+
+    threading.Thread(target=wait, daemon=True, name="modules of workers").start()
+    return done
 
 
 def _sweep() -> None:
@@ -143,9 +166,10 @@ def _sweep() -> None:
 
 
 def _kill(executor: ProcessPoolExecutor) -> None:
-    for process in list((executor._processes or {}).values()):
-        process.kill()
+    started = executor._processes  # shutdown forgets it, after a start that is under way
     executor.shutdown(wait=False, cancel_futures=True)
+    for process in list((started or {}).values()):
+        process.kill()
 
 
 _cells: Any = None
@@ -175,7 +199,12 @@ def _stand_back(idle: bool) -> None:
         with contextlib.suppress(PermissionError):  # a sandbox may forbid it
             os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
             return
-    os.nice(NICENESS)
+    be_nice()
+
+
+def be_nice() -> None:
+    """Lower this process's priority, unless it is as low already."""
+    os.setpriority(os.PRIO_PROCESS, 0, max(NICENESS, os.nice(0)))
 
 
 def _end_with_parent() -> None:

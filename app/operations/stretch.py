@@ -14,15 +14,7 @@ from scipy.ndimage import distance_transform_edt
 
 from app.cli.options import out_option
 from app.models.base import EndsOfList, Floats, ResultModel
-from app.models.charts import (
-    ChartInput,
-    Column,
-    MaterialName,
-    OutlineInput,
-    PureFabricChart,
-    Row,
-    to_chart,
-)
+from app.models.charts import ChartInput, Column, MaterialName, OutlineInput, Row, to_chart
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
@@ -255,19 +247,6 @@ def _messages(test: StripTest) -> list[str]:
     elif used >= NEAR_LOCK_UP:
         messages.append(f"Some stitches are at {used:.0%} of their lock-up.")
     return messages
-
-
-def warm_up(*, cancelled: object) -> None:
-    """Load the modules of a test, and compile them on the very first start."""
-    del cancelled
-    request = StretchRequest(
-        chart=PureFabricChart(fabric="garter", columns=3, rows=3),
-        material="acrylic",
-        direction=Direction.WALE,
-        strain=0.1,
-        steps=1,
-    )
-    stretch(request, Context(Path()))
 
 
 def _stitches(

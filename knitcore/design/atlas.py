@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
@@ -141,6 +140,8 @@ class Atlas:
         wanted = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
         curves = self.strains(direction)
         if np.ptp(wanted) == 0 and len(self):
+            from scipy.interpolate import PchipInterpolator  # loads for half a second
+
             shape = PchipInterpolator(STRESS_N_PER_MM, curves, axis=1, extrapolate=False)
             found: Array = shape(float(wanted[0]))
             return found
@@ -196,6 +197,8 @@ class Atlas:
 
 def _each(curves: Array, stress_n_per_mm: Array) -> Array:
     """Each curve of strains at its own stress."""
+    from scipy.interpolate import PchipInterpolator
+
     found = [
         PchipInterpolator(STRESS_N_PER_MM, curve, extrapolate=False)(stress)
         for curve, stress in zip(curves, stress_n_per_mm, strict=True)
@@ -205,6 +208,8 @@ def _each(curves: Array, stress_n_per_mm: Array) -> Array:
 
 def _stresses(curves: Array, strain: float) -> Array:
     """Stress at a strain by each curve of strains."""
+    from scipy.interpolate import PchipInterpolator
+
     # Curves are nearly flat at the lock-up; interpolation needs them to increase.
     rising = np.maximum.accumulate(curves, axis=1) + 1e-9 * np.arange(len(STRESS_N_PER_MM))
     found = [

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xlrd
 from numpy.typing import NDArray
 
@@ -194,10 +193,10 @@ def _read_csv(path: Path) -> list[CompressionTest]:
         if name in table
     }
     labels = (
-        table["sample"].fillna("").str.strip()
+        table["sample"].fillna("").str.strip().to_numpy(dtype=str)
         if "sample" in table
-        else pd.Series([path.stem] * len(table))
-    ).to_numpy(dtype=str)
+        else np.full(len(table), path.stem)
+    )
     tests = []
     for label in dict.fromkeys(labels.tolist()):
         rows = labels == label

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -26,6 +29,8 @@ def read_csv(path: Path, header: str) -> pd.DataFrame:
     InputError
         If it is no such file.
     """
+    import pandas as pd  # half a second, which only those who read a table wait
+
     try:
         return pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
@@ -49,6 +54,8 @@ def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2
     InputError
         Naming the first row that holds something else.
     """
+    import pandas as pd
+
     texts = pd.Series(values, dtype=object)
     found = pd.to_numeric(texts, errors="coerce").to_numpy(dtype=float)
     bad = np.flatnonzero(~np.isfinite(found))

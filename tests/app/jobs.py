@@ -13,7 +13,6 @@ from pydantic import BaseModel
 
 from app.compute.answers import Answers
 from app.compute.compute import Compute
-from app.jobs.kinds import KINDS
 from app.operations.context import Context
 from app.operations.perform import perform
 from app.operations.registry import Operation
@@ -130,6 +129,7 @@ def killed_in_the_middle(
     It dies when the operation first looks whether it was cancelled; one that is too short to look
     dies before it can answer.
     """
+    from app.jobs.kinds import KINDS  # takes a second, and workers import this module
 
     if run is not KINDS[kind].run:
         return perform(run, model, request, data_dir, cancelled=cancelled, progress=progress)

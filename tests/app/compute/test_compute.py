@@ -14,7 +14,7 @@ import pytest
 from app.compute import compute as compute_module
 from app.compute.compute import Compute
 from app.compute.places import AbandonedError, MemoryLimitError, TimeLimitError, WorkerDiedError
-from app.compute.processes import SCRATCH, ProcessPlace, processes
+from app.compute.processes import NICENESS, SCRATCH, ProcessPlace, processes
 from app.http.problems import UnavailableError
 from knitcore import InputError
 from tests.app import jobs
@@ -164,4 +164,4 @@ def test_workers_run_at_low_priority(idle: bool) -> None:
     finally:
         compute.close()
     assert (policy == os.SCHED_IDLE) is idle
-    assert niceness == (os.nice(0) if idle else min(os.nice(0) + 10, 19))
+    assert niceness == max(NICENESS, os.nice(0))
