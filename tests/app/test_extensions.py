@@ -55,7 +55,7 @@ def test_a_request_for_its_format_is_a_file(tmp_path: Path) -> None:
     file = export(request, Context(tmp_path))
     assert (file.name, file.media_type) == ("Card.txt", "text/plain; charset=utf-8")
     assert b".o.o" in base64.b64decode(file.content)
-    with pytest.raises(InputError, match="no format"):
+    with pytest.raises(InputError, match="is not a format"):
         export(ExportRequest(chart="KP", to="no-such-format"), Context(tmp_path))
 
 
