@@ -23,7 +23,13 @@ class InputError(KnitcoreError, ValueError):
     problem : one sentence that says what is wrong.
     remedy : one sentence that says what would be accepted.
     most : the largest number that would be accepted, in the unit of the field, where that is known.
+
+    Attributes
+    ----------
+    others : what else is wrong with the same request, where a caller has looked for it.
     """
+
+    others: tuple[InputError, ...] = ()
 
     def __init__(self, field: str, problem: str, remedy: str, *, most: float | None = None) -> None:
         super().__init__(f"{field}: {problem} {remedy}")
@@ -34,9 +40,10 @@ class InputError(KnitcoreError, ValueError):
 
     def __reduce__(
         self,
-    ) -> tuple[type[InputError], tuple[str, str, str], dict[str, float | None]]:
+    ) -> tuple[type[InputError], tuple[str, str, str], dict[str, object]]:
         # so that it can be pickled between processes
-        return type(self), (self.field, self.problem, self.remedy), {"most": self.most}
+        kept: dict[str, object] = {"most": self.most, "others": self.others}
+        return type(self), (self.field, self.problem, self.remedy), kept
 
 
 class ConvergenceError(KnitcoreError):

@@ -18,7 +18,7 @@ from app.http.identity import current_user
 from app.http.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
 from app.http.problems import Problem, StoppingError
 from app.models.charts import size_of
-from app.operations.perform import Viewed
+from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Operation, operations
 
 MOST_LIGHT = 10_000
@@ -33,7 +33,7 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     """The function for FastAPI, with the request as a body or as parameters of the address."""
 
     def made(body: BaseModel, request: Request) -> bytes:
-        found = operation.run(body, request.app.state.answers.context())
+        found = carried_out(operation.run, body, request.app.state.answers.context())
         result: BaseModel = found.result if isinstance(found, Viewed) else found
         return result.model_dump_json().encode()
 

@@ -14,6 +14,7 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, BeforeValidator, Field
 from starlette.exceptions import HTTPException
 
+from app.http.faults import also_wrong
 from app.http.kinds import type_uri
 from app.models.base import InvalidRequestError, MissingError
 from knitcore.errors import (
@@ -165,8 +166,7 @@ def problem_of(error: Exception) -> Problem:
     if isinstance(error, ServiceError):
         return error.problem
     if isinstance(error, InputError):
-        detail = f"{error.field}: {error.problem}"
-        return _unusable([Fault(detail=detail, field=error.field, remedy=error.remedy)], error.most)
+        return _unusable([*map(_of_library, (error, *error.others))], error.most)
     if isinstance(error, ConvergenceError | UnravelledError | CancelledError):
         return Problem(
             type="unsolved",
@@ -186,6 +186,11 @@ def problem_of(error: Exception) -> Problem:
         detail="The service met an error that it did not expect; its log has the details.",
         remedy="Nothing you painted is lost. Try again, or report it with the log.",
     )
+
+
+def _of_library(error: InputError) -> Fault:
+    detail = f"{error.field}: {error.problem}"
+    return Fault(detail=detail, field=error.field, remedy=error.remedy)
 
 
 def _of_http(error: HTTPException) -> Problem:
@@ -215,7 +220,7 @@ def _unusable(faults: list[Fault], most: float | None = None) -> Problem:
         field=first.field,
         remedy=first.remedy,
         most=most,
-        errors=faults,
+        errors=faults[:MOST_FAULTS],
     )
 
 
@@ -285,9 +290,18 @@ _REMEDIES = {
 def install_problem_handlers(app: FastAPI) -> None:
     """Turn every error into a problem response."""
 
+    @app.exception_handler(RequestValidationError)
+    async def _(request: Request, error: RequestValidationError) -> JSONResponse:
+        problem = problem_of(error)
+        told = {fault.field for fault in problem.errors}
+        for other in also_wrong(error, request):
+            fault = _of_library(other)
+            if fault.field not in told and len(problem.errors) < MOST_FAULTS:
+                problem.errors.append(fault)
+        return problem_response(problem)
+
     @app.exception_handler(KnitcoreError)
     @app.exception_handler(ServiceError)
-    @app.exception_handler(RequestValidationError)
     @app.exception_handler(InvalidRequestError)
     @app.exception_handler(HTTPException)
     async def _(_: Request, error: Exception) -> JSONResponse:

@@ -7,8 +7,10 @@ from typing import Annotated
 from pydantic import BaseModel, Discriminator, Field, Tag
 
 from app.models.base import RequestModel
+from app.models.checks import Check
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.fabric import Fabric
+from knitcore.garment.shaped import outline_marks
 
 MAX_TEXT = 1_200_000
 """Characters of a chart text: the largest chart with its line ends and some blanks."""
@@ -52,6 +54,7 @@ TEXT_TAG, FABRIC_TAG = "K/P text", "pure fabric"
 ChartInput = Annotated[
     Annotated[ChartText, Tag(TEXT_TAG)] | Annotated[PureFabricChart, Tag(FABRIC_TAG)],
     Discriminator(lambda given: TEXT_TAG if isinstance(given, str) else FABRIC_TAG),
+    Check(lambda chart, _: to_chart(chart)),
 ]
 IS_REPEAT = "repeat"
 RepeatInput = Annotated[ChartInput, IS_REPEAT]
@@ -64,6 +67,7 @@ OutlineInput = Annotated[
         description="Lines of x (stitch) and . (no stitch), the top row first; all stitches if "
         "left out.",
     ),
+    Check(lambda outline, _: outline_marks(outline)),
 ]
 MaterialName = Annotated[
     str,
@@ -72,6 +76,7 @@ MaterialName = Annotated[
         description="Identifier of a material of the library.",
         examples=["acrylic"],
     ),
+    Check(lambda name, context: context.material(name)),
 ]
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
+from app.models.checks import Check
 from app.models.uploads import UploadedFile, stored
 from knitcore.fabric import Direction
 from knitcore.swatch.measured import MeasuredField, load_field
@@ -13,7 +16,9 @@ from knitcore.swatch.measured import MeasuredField, load_field
 class FieldRequest(RequestModel):
     """A displacement field and how the fabric in it was pulled."""
 
-    field: UploadedFile = Field(description=".npz: displacement (frames, 2, rows, columns), frame.")
+    field: Annotated[UploadedFile, Check(lambda file, _: load(file))] = Field(
+        description=".npz: displacement (frames, 2, rows, columns), frame."
+    )
     direction: Direction = Field(description="Direction in which the fabric was pulled.")
     frames: list[int] | None = Field(None, description="Frames to use; all by default.")
 

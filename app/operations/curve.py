@@ -10,11 +10,12 @@ from pydantic import Field
 
 from app.models.base import EARLIER_NAME, EndsOfList, Floats, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
+from app.models.checks import Check
 from app.models.gauge import GaugeInput
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
+from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.answer.curve import curve as chart_curve
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
@@ -28,7 +29,7 @@ class CurveRequest(LawsRequest):
     chart: ChartInput
     material: MaterialName
     direction: Direction = Field(description="Along rows, or along columns.")
-    stress_n_per_mm: list[Stress] = Field(
+    stress_n_per_mm: Annotated[list[Stress], Check(lambda s, _: increasing(s))] = Field(
         list(DEFAULT_STRESS_N_PER_MM), min_length=1, max_length=500, description="Increasing."
     )
     gauge: GaugeInput | None = None

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import click
 from pydantic import Field
 
 from app.models.base import Ends, Known, KnownEnds, RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatText
+from app.models.checks import Check
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -82,7 +83,9 @@ class FindRequest(LawsRequest):
     """Target properties, and the yarns to search."""
 
     materials: list[MaterialName] = Field(min_length=1, max_length=MAX_MATERIALS)
-    targets: list[TargetInput] = Field(min_length=1, max_length=MAX_TARGETS)
+    targets: list[Annotated[TargetInput, Check(lambda one, _: one.target())]] = Field(
+        min_length=1, max_length=MAX_TARGETS
+    )
     limits: LimitsInput | None = None
     repeats: Extent = Field("small", description=EXTENTS)
     count: int = Field(10, ge=1, le=100)

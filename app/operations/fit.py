@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import Floats, RequestModel, ResultModel
+from app.models.checks import Check
 from app.models.laws import ElasticConstants, LawConstants, LawResult
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
@@ -18,17 +19,27 @@ from knitcore.fabric import Direction
 from knitcore.formats.law_files import LawFile, save_law
 from knitcore.materials.document import CurveDocument
 from knitcore.measure.uniaxial import LawFit, Reduction, Residuals
+from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.swatch.strip_fit import fit_tests
 
 PLOTTED_POINTS = 2000
 """Most points of a residual plot: more than a screen resolves."""
 
 
+def _read(file: UploadedFile, _: Context) -> None:
+    with stored([file]) as (path,):
+        read_stretch_test(path)
+
+
 class FitRequest(RequestModel):
     """Two stretch tests of one fabric."""
 
-    test_course: UploadedFile = Field(description="Pulled along the rows; HDF5 or CSV.")
-    test_wale: UploadedFile = Field(description="Pulled along the columns.")
+    test_course: Annotated[UploadedFile, Check(_read)] = Field(
+        description="Pulled along the rows; HDF5 or CSV."
+    )
+    test_wale: Annotated[UploadedFile, Check(_read)] = Field(
+        description="Pulled along the columns."
+    )
     format: Literal["csv", "h5"] | None = Field(
         None, description="Recognised from the content if not given."
     )

@@ -12,9 +12,12 @@ from typing import Any, Generic, Protocol, TypeVar
 from pydantic import BaseModel
 
 from app.models.base import read
+from app.models.checks import all_faults
 from app.operations.context import Context
+from knitcore.errors import InputError
 
 Result = TypeVar("Result", bound=BaseModel)
+T = TypeVar("T")
 LEVEL = 4
 """Level of gzip: twice as fast as the default, for a few per cent more bytes."""
 
@@ -63,6 +66,20 @@ def key_of(run: Callable[..., Any], request: BaseModel) -> str:
     return hashlib.sha256(content.encode()).hexdigest()[:32]
 
 
+def carried_out(run: Callable[..., T], request: BaseModel, context: Context) -> T:
+    """The result of an operation.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong with the request, if something is.
+    """
+    try:
+        return run(request, context)
+    except InputError as error:
+        raise all_faults(error, request, context) from None
+
+
 def perform(
     run: Callable[..., Any],
     model: type[BaseModel],
@@ -80,7 +97,8 @@ def perform(
         If the request came as bytes and is none of the model.
     """
     wanted: BaseModel = read(model, request) if isinstance(request, bytes) else request
-    found = run(wanted, Context(data_dir, cancelled=cancelled, progress=progress))
+    context = Context(data_dir, cancelled=cancelled, progress=progress)
+    found = carried_out(run, wanted, context)
     result, view = (found.result, found.view) if isinstance(found, Viewed) else (found, None)
     body = gzip.compress(result.model_dump_json().encode(), LEVEL)
     return Answer(body, view, "" if wanted is request else key_of(run, wanted))

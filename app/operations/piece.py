@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import product
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import click
 from pydantic import Field
@@ -12,6 +12,7 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.models.base import EndsOfList, Floats, ResultModel
 from app.models.charts import to_repeat
+from app.models.checks import Check
 from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -26,7 +27,7 @@ from knitcore.piece.spread import piece_spreads
 class PieceRequest(PieceTestRequest):
     """Cloth, the piece cut from it, and the conditions on its edges."""
 
-    piece: PieceInput
+    piece: Annotated[PieceInput, Check(lambda cut, _: cut.piece())]
     fields: bool = Field(False, description="Whether to return the final shape and strains.")
 
 

@@ -48,6 +48,22 @@ class ChartCurve:
         return showing.figure(picture, "The band is the 90 % interval of the strain.")
 
 
+def increasing(stress_n_per_mm: ArrayLike) -> Array:
+    """Stresses of a curve as an array, N/mm.
+
+    Raises
+    ------
+    InputError
+        If they are not finite, increasing and at least 0.
+    """
+    stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
+    if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
+        raise InputError(
+            "stress", "must be finite, increasing and at least 0.", "Give, say, 0, 0.1, 0.2 N/mm."
+        )
+    return stress
+
+
 def curve(
     chart: StitchChart,
     material: Material,
@@ -72,11 +88,7 @@ def curve(
     >>> bool(wide.strain[0] > flat.strain[0])
     True
     """
-    stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
-    if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
-        raise InputError(
-            "stress", "must be finite, increasing and at least 0.", "Give, say, 0, 0.1, 0.2 N/mm."
-        )
+    stress = increasing(stress_n_per_mm)
     answer = choose(chart, material, gauge)
     along = answer.along(Direction.parse(direction))
     strain = along.strain(stress)

@@ -12,6 +12,8 @@ from app.http.problems import ServiceError
 
 API = "/api/v1"
 STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strain": 0.2}
+FIND = {"targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2}]}
+NO_TEST = {"name": "a.csv", "content": "bm90aGluZw=="}
 
 
 @pytest.mark.parametrize(
@@ -52,6 +54,41 @@ def test_everything_that_is_wrong_is_told_at_once(client: TestClient) -> None:
     assert len(wrong) == len(set(wrong))
     by_the_library = client.post(f"{API}/predict", json={"chart": "KQ", "material": "acrylic"})
     assert [fault["field"] for fault in by_the_library.json()["errors"]] == ["chart"]
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "wrong"),
+    [
+        (
+            "/curve",
+            {"chart": "KQ", "material": "steel", "direction": "wale", "stress_n_per_mm": [1, 0]},
+            {"chart", "material", "stress"},
+        ),
+        ("/stretch", STRETCH | {"outline": "xq\nxx", "material": "steel"}, {"outline", "material"}),
+        ("/predict", {"chart": "K\nKP", "material": "steel"}, {"chart", "material"}),
+        ("/find", FIND | {"materials": ["steel", "acrylic", "wood"]}, {"material"}),
+        ("/fit", {"test_course": NO_TEST, "test_wale": NO_TEST | {"name": "b.csv"}}, {"test"}),
+        (
+            "/stretch",
+            STRETCH | {"chart": "KQ", "material": "steel", "strain": 9},
+            {"chart", "material", "strain"},
+        ),
+        (
+            "/jobs",
+            {"kind": "stretch", "request": STRETCH | {"chart": "KQ", "strain": 9}},
+            {"chart", "request.strain"},
+        ),
+    ],
+)
+def test_faults_that_the_library_finds_are_told_together(
+    client: TestClient, path: str, body: dict[str, Any], wrong: set[str]
+) -> None:
+    """Also beside those that the request's shape has."""
+    problem = client.post(f"{API}{path}", json=body).json()
+    assert {fault["field"] for fault in problem["errors"]} == wrong, problem["errors"]
+    assert problem["errors"][0]["detail"] == problem["detail"]
+    told = [fault["detail"] for fault in problem["errors"]]
+    assert len(told) == len(set(told)) > 1
 
 
 def test_every_type_has_a_page(client: TestClient) -> None:
