@@ -10,6 +10,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from enum import Enum
+from functools import partial
 from inspect import signature
 from pathlib import Path
 from types import NoneType, UnionType
@@ -23,6 +24,7 @@ from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user
 from app.models.charts import IS_REPEAT, fabric_repeat
 from app.models.uploads import UploadedFile
 from app.operations.context import Context
+from app.operations.perform import carried_out
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
@@ -44,7 +46,8 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         context = Context(user_data_dir, local=True)
         request = options.request(given)
         run: Callable[..., Any] = described.run or operation.run
-        result = run(request, context, **_taken(described.run, given))
+        run = partial(run, **_taken(described.run, given))
+        result = carried_out(run, request, context)
         emit(result, described.text(result), as_json=given["as_json"])
 
     help_text = described.help or f"{operation.summary}."

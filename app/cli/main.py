@@ -75,11 +75,12 @@ class Commands(Operations):
         return super().get_command(ctx, cmd_name)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; expected errors are printed in one line."""
+        """Run a command; expected errors are printed in one line each."""
         try:
             return super().invoke(ctx)
         except KnitcoreError as error:
-            raise Failure(str(error)) from error
+            found = (error, *getattr(error, "others", ()))
+            raise Failure("\n".join(map(str, found))) from error
         except ModuleNotFoundError as error:
             raise Failure(_remedy(error)) from error
         except ValidationError as error:

@@ -14,6 +14,7 @@ API = "/api/v1"
 STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strain": 0.2}
 FIND = {"targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2}]}
 NO_TEST = {"name": "a.csv", "content": "bm90aGluZw=="}
+TESTS = {"a.csv", "b.csv"}
 
 
 @pytest.mark.parametrize(
@@ -67,7 +68,7 @@ def test_everything_that_is_wrong_is_told_at_once(client: TestClient) -> None:
         ("/stretch", STRETCH | {"outline": "xq\nxx", "material": "steel"}, {"outline", "material"}),
         ("/predict", {"chart": "K\nKP", "material": "steel"}, {"chart", "material"}),
         ("/find", FIND | {"materials": ["steel", "acrylic", "wood"]}, {"material"}),
-        ("/fit", {"test_course": NO_TEST, "test_wale": NO_TEST | {"name": "b.csv"}}, {"test"}),
+        ("/fit", {"test_course": NO_TEST, "test_wale": NO_TEST | {"name": "b.csv"}}, TESTS),
         (
             "/stretch",
             STRETCH | {"chart": "KQ", "material": "steel", "strain": 9},
