@@ -172,6 +172,13 @@ export const api = {
   curve: (body, signal) => call("/curve", { method: "POST", body, signal }),
 
   /**
+   * @param {import("./types.js").PressureRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").PressureResult>}
+   */
+  pressure: (body, signal) => call("/pressure", { method: "POST", body, signal }),
+
+  /**
    * @param {import("./types.js").CurlRequest} body
    * @param {AbortSignal} [signal]
    * @returns {Promise<import("./types.js").CurlResult>}

@@ -60,6 +60,7 @@ const PATHS = {
   symbols: "M4 6l3 6 3-6M13 11h3.5M13 8h3.5",
   stop: "M6 6h8v8H6z",
   trash: "M4 6h12M8 6V4h4v2M5.5 6l.7 10h7.6l.7-10",
+  compare: "M3.5 4h5.500v12H3.500zM11 4h5.500v12H11zM5.500 8h1.500M13 8h1.500M13 11h1.500",
   gallery: "M3.5 3.5h5v5h-5zM11.5 3.5h5v5h-5zM3.5 11.5h5v5h-5zM11.5 11.5h5v5h-5z",
   folder: "M3 6V5a1 1 0 0 1 1-1h4l1.5 2H16a1 1 0 0 1 1 1v8a1 1 0 0 1-1 1H4a1 1 0 0 1-1-1z",
   share:

@@ -1617,7 +1617,7 @@ export interface PredictResult {
   measures: MeasureResult[];
 }
 
-/** A tube on a limb: its law, or a fabric of a material, and its sizes. */
+/** A tube on a limb: its law, or a fabric or chart of a material, and its sizes. */
 export interface PressureRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
@@ -1632,6 +1632,8 @@ export interface PressureRequest {
   material?: string | null;
   /** A fabric of the material. */
   fabric?: Fabric | null;
+  /** A chart of the material, in place of a fabric. */
+  chart?: string | PureFabricChart | null;
   /** Constants of a law, by name. */
   law?: Record<string, number> | null;
 }
@@ -1650,8 +1652,8 @@ export interface PressureResult {
   /** Hoop tension per worn length. */
   tension_n_per_mm: [number, number];
   axial_strain_free: number;
-  /** Strain over lock-up strain. */
-  lock_up_share: number;
+  /** Strain over lock-up strain; null for a chart, whose stitches differ. */
+  lock_up_share: number | null;
   /** Sizes that give the target pressure, axially free to axially fixed. */
   rest_mm_for_target: [number, number] | null;
   warnings: string[];

@@ -3,26 +3,36 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import click
 from pydantic import Field
 
 from app.models.base import Ends, ResultModel
-from app.models.charts import MaterialName
+from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
+from knitcore.answer.answer import Answer
+from knitcore.answer.choose import choose
+from knitcore.answer.tube import tube_for, tube_pressure
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.uncertainty import Z_SCORE, LawUncertainty, log_deviation
-from knitcore.mechanics.pressure import limb_pressure, rest_circumference
+from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_deviation
+from knitcore.mechanics.pressure import (
+    ELASTIC_MEAN,
+    MMHG_PER_KPA,
+    limb_pressure,
+    rest_circumference,
+)
 
 
 class PressureRequest(LawsRequest):
-    """A tube on a limb: its law, or a fabric of a material, and its sizes."""
+    """A tube on a limb: its law, or a fabric or chart of a material, and its sizes."""
 
     direction: Direction = Field(description="The material direction around the limb.")
     rest_mm: float | None = Field(None, description="Circumference of the unworn tube.")
@@ -32,6 +42,9 @@ class PressureRequest(LawsRequest):
     )
     material: MaterialName | None = None
     fabric: Fabric | None = Field(None, description="A fabric of the material.")
+    chart: ChartInput | None = Field(
+        None, description="A chart of the material, in place of a fabric."
+    )
     law: dict[str, float] | None = Field(None, description="Constants of a law, by name.")
 
 
@@ -48,7 +61,9 @@ class PressureResult(ResultModel):
     worn_mm: float
     tension_n_per_mm: Ends = Field(description="Hoop tension per worn length.")
     axial_strain_free: float
-    lock_up_share: float = Field(description="Strain over lock-up strain.")
+    lock_up_share: float | None = Field(
+        description="Strain over lock-up strain; null for a chart, whose stitches differ."
+    )
     rest_mm_for_target: Ends | None = Field(
         description="Sizes that give the target pressure, axially free to axially fixed."
     )
@@ -62,16 +77,34 @@ def pressure(request: PressureRequest, context: Context) -> PressureResult:
     Raises
     ------
     InputError
-        If neither or both of a law and a material are given, or the fabric is not named.
+        If neither or both of a law and a material are given, or not one of fabric and chart.
     """
     if (request.law is None) == (request.material is None):
         raise InputError("law", "one of law and material is needed.", "Give exactly one.")
     if request.material is None:
         return _of_file(law_from_mapping(request.law or {}), request)
-    if request.fabric is None:
-        raise InputError("fabric", "is missing.", "Name the fabric of the material.")
-    record = context.material(request.material).record(request.fabric)
+    material = context.material(request.material)
+    if request.chart is not None and request.fabric is None:
+        return _of_answer(choose(to_chart(request.chart), material), request)
+    if request.chart is not None or request.fabric is None:
+        raise InputError("fabric", "one of fabric and chart is needed.", "Give exactly one.")
+    record = material.record(request.fabric)
     return _of_law(record.law, request, uncertainty=record.uncertainty, source=record.law_source)
+
+
+def _of_answer(answer: Answer, request: PressureRequest) -> PressureResult:
+    along = answer.along(request.direction)
+    rest, sizes = _sizes(request, partial(tube_for, along))
+    found = tube_pressure(along, rest, request.worn_mm)
+    return PressureResult.of(
+        found,
+        mmhg=found.kpa.scaled(MMHG_PER_KPA),
+        mmhg_with_law_spread=found.kpa_with_spread.scaled(MMHG_PER_KPA),
+        lock_up_share=None,
+        rest_mm_for_target=sizes,
+        warnings=[ELASTIC_MEAN],
+        law_source=str(answer.provenance),
+    )
 
 
 def _of_file(file: LawFile, request: PressureRequest) -> PressureResult:
@@ -93,13 +126,8 @@ def _of_law(
     source: str,
     tested: float | None = None,
 ) -> PressureResult:
-    direction, rest, worn, sizes = request.direction, request.rest_mm, request.worn_mm, None
-    if (rest is None) == (request.target_mmhg is None):
-        raise InputError("rest_mm", "one of rest_mm and target_mmhg is needed.", "Give one.")
-    if request.target_mmhg is not None:
-        sizes = rest_circumference(law, direction, worn, request.target_mmhg)
-        rest = math.sqrt(sizes.low * sizes.high)
-    rest = rest or 0.0
+    direction, worn = request.direction, request.worn_mm
+    rest, sizes = _sizes(request, partial(rest_circumference, law, direction))
     found = limb_pressure(law, direction, rest, worn, tested_strain=tested)
     widened = None
     if uncertainty is not None:
@@ -116,6 +144,18 @@ def _of_law(
         rest_mm_for_target=sizes,
         law_source=source,
     )
+
+
+def _sizes(
+    request: PressureRequest, sizes_for: Callable[[float, float], Interval]
+) -> tuple[float, Interval | None]:
+    """The tube's circumference (mm), and the sizes for a wanted pressure if one is given."""
+    if request.target_mmhg is None and request.rest_mm is not None:
+        return request.rest_mm, None
+    if request.target_mmhg is None or request.rest_mm is not None:
+        raise InputError("rest_mm", "one of rest_mm and target_mmhg is needed.", "Give one.")
+    sizes = sizes_for(request.worn_mm, request.target_mmhg)
+    return math.sqrt(sizes.low * sizes.high), sizes
 
 
 @click.option(
@@ -136,7 +176,7 @@ def _text(r: PressureResult) -> str:
     lines = [
         f"pressure  {low:.1f} to {high:.1f} mmHg "
         f"({low_kpa:.2f} to {high_kpa:.2f} kPa), axially free to fixed",
-        f"strain    {r.strain:.3f} around the limb ({r.lock_up_share:.0%} of the lock-up)",
+        f"strain    {r.strain:.3f} around the limb{_locked(r.lock_up_share)}",
     ]
     if r.mmhg_with_law_spread is not None:
         low, high = r.mmhg_with_law_spread
@@ -145,6 +185,10 @@ def _text(r: PressureResult) -> str:
         low, high = r.rest_mm_for_target
         lines.append(f"size      {low:.1f} to {high:.1f} mm unworn; middle shown above")
     return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
+
+
+def _locked(share: float | None) -> str:
+    return "" if share is None else f" ({share:.0%} of the lock-up)"
 
 
 OPERATION = Operation(
@@ -161,7 +205,7 @@ OPERATION = Operation(
     command=Command(
         _text,
         help="Pressure of a knitted tube on a limb, as an interval; never a medical class.",
-        names={"law": None},
+        names={"law": None, "chart": None},
         run=_command,
     ),
 )

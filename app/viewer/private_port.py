@@ -4,10 +4,14 @@ viser listens on a loopback port of its own and checks nothing there: any page i
 machine, and any other user of it, could connect and draw or run scripts in a view. A secret header
 that only the relay knows keeps them out. viser has no setting for it, so the function with which
 it starts its websocket server is wrapped; if that ever stops working, no view is opened.
+
+Its messages also wait in a queue that can fall asleep for good while a scene is being written; see
+:class:`NewsEvent`.
 """
 
 from __future__ import annotations
 
+import asyncio
 import http
 import secrets
 from types import SimpleNamespace
@@ -17,6 +21,7 @@ import rich
 import viser
 import viser.infra._infra as viser_infra
 import websockets.asyncio.server
+from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 HEADER = "X-Knitcore-Relay"
 RELAY_HEADERS = {HEADER: secrets.token_urlsafe(32)}
@@ -63,6 +68,35 @@ def _serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
 
     return websockets.asyncio.server.serve(*args, process_request=checked, **options)
 
+
+class NewsEvent(asyncio.Event):
+    """An event that other threads may set: it wakes who waits from the loop's own thread alone.
+
+    viser's threads set the event of a queue directly, and then once more through the loop. Where
+    the first falls between a waiter's look at the event and its going to sleep, asyncio's own takes
+    the second for a repetition and wakes nobody, ever: the browser gets no more of the scene.
+    """
+
+    def set(self) -> None:
+        """Note it, and in the loop wake all who wait, also those who came after it was noted."""
+        try:
+            asyncio.get_running_loop()
+        except RuntimeError:
+            self._value = True
+            return
+        self._value = False
+        super().set()
+
+
+class _Queue(AsyncMessageBuffer):
+    """viser's queue of messages, whose event is a :class:`NewsEvent`."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.message_event = NewsEvent()
+
+
+vars(viser_infra)["AsyncMessageBuffer"] = _Queue
 
 # Only viser's name for the package is replaced; everybody else's stays as it is.
 _server = SimpleNamespace(**{**vars(websockets.asyncio.server), "serve": _serve})

@@ -44,6 +44,18 @@ VIEW_SCRIPT = """<script>
       if (/unsafe-eval/.test(event.message ?? event.reason?.message)) event.preventDefault();
     });
   }
+  // viser's client connects again only while its window has the focus, which a frame rarely has:
+  // a first connection that took too long, or one that was lost, would leave the view empty.
+  document.hasFocus = () => true;
+  // The page around lets the client draw when the service has sent something.
+  window.Worker = class extends Worker {
+    constructor(...given) {
+      super(...given);
+      this.addEventListener("message", ({ data }) => {
+        if (data.type === "message_batch") dispatchEvent(new Event("news"));
+      });
+    }
+  };
   const warn = console.warn;
   console.warn = (...words) => String(words[0]).startsWith("THREE.Clock") || warn(...words);
 </script>"""

@@ -681,7 +681,7 @@ class PredictRequest(TypedDict):
 
 
 class PressureRequest(TypedDict):
-    """A tube on a limb: its law, or a fabric of a material, and its sizes."""
+    """A tube on a limb: its law, or a fabric or chart of a material, and its sizes."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
@@ -696,6 +696,8 @@ class PressureRequest(TypedDict):
     material: NotRequired[str | None]
     fabric: NotRequired[Fabric | None]
     """A fabric of the material."""
+    chart: NotRequired[str | PureFabricChart | None]
+    """A chart of the material, in place of a fabric."""
     law: NotRequired[dict[str, float] | None]
     """Constants of a law, by name."""
 
@@ -2154,8 +2156,8 @@ class PressureResult(BaseModel):
     tension_n_per_mm: tuple[float, float]
     """Hoop tension per worn length."""
     axial_strain_free: float
-    lock_up_share: float
-    """Strain over lock-up strain."""
+    lock_up_share: float | None
+    """Strain over lock-up strain; null for a chart, whose stitches differ."""
     rest_mm_for_target: tuple[float, float] | None
     """Sizes that give the target pressure, axially free to axially fixed."""
     warnings: list[str]

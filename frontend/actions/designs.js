@@ -28,6 +28,7 @@ export const DESIGNS = [
   action("gallery", "New design, examples …", "Shift+N", "gallery", ({ open }) => open("gallery")),
   action("garments", "Plan a garment …", "Mod+Shift+G", "yarn", ({ open }) => open("garments")),
   action("versions", "Versions …", "Mod+S", "pin", ({ open }) => open("versions")),
+  action("compare", "Compare two pieces …", "Shift+C", "compare", ({ open }) => open("compare")),
   action("share", "Share …", "Mod+Shift+S", "share", ({ open }) => open("share")),
   action("duplicate", "Duplicate this design", "Mod+Shift+D", "copy", ({ studio, keeper }) => {
     const design = studio.toDocument();

@@ -29,6 +29,8 @@ export class Seeing {
     this.region = new Signal(/** @type {string | null} */ (null));
     /** Of the curves in the inspector; follows the stretch test. */
     this.pull = new Signal(/** @type {import("../types.js").Direction} */ ("wale"));
+    /** What the design is to be compared with when the comparison is opened next, such as "version 3". */
+    this.against = new Signal(/** @type {string | null} */ (null));
     /** Id of a stretch test that the service has forgotten. */
     this.forgotten = new Signal(/** @type {string | null} */ (null));
     /** Whether the fabric is shown as it lies, curled and folded. */

@@ -22,14 +22,6 @@ import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
-/** How long a change takes to reach the viewer and be drawn. */
-const DRAW_MS = 1500;
-const START_MS = 6000;
-/**
- * A viewer that has drawn nothing for so long is loaded again: now and then viser's client misses its
- * first scene. Then after twice as long, as a slow machine may need that.
- */
-const RELOAD_MS = 6000;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
@@ -48,7 +40,6 @@ export function fabricview(host, studio, view) {
   const governor = new FrameGovernor();
   const link = new ViewLink(studio, view, {
     lost: () => now(),
-    drawn: () => governor.wake(DRAW_MS),
     slow: () => governor.slow,
   });
 
@@ -56,30 +47,14 @@ export function fabricview(host, studio, view) {
   const look = async (side) => {
     try {
       await api.look(studio.designId, side);
-      governor.wake(DRAW_MS);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       studio.tellProblem(error.problem);
     }
   };
 
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let reloading;
-  let patience = RELOAD_MS;
-  const reloadUnseen = () => {
-    if (sending || problem || governor.held) {
-      reloading = setTimeout(reloadUnseen, RELOAD_MS);
-      return;
-    }
-    patience *= 2;
-    frame.contentWindow?.location.reload();
-  };
   frame.addEventListener("load", () => {
-    if (!frame.contentWindow || !shown) return;
-    governor.govern(frame.contentWindow, () => knitted());
-    governor.wake(START_MS);
-    clearTimeout(reloading);
-    reloading = setTimeout(reloadUnseen, patience);
+    if (frame.contentWindow && shown) governor.govern(frame.contentWindow, () => knitted());
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let holding;
@@ -112,14 +87,12 @@ export function fabricview(host, studio, view) {
   let problem = false;
   /** A cloth is shown. */
   const knitted = () => {
-    clearTimeout(reloading);
     if (!problem) status.replaceChildren();
   };
   /** @param {string} url */
   const open = (url) => {
     if (shown === url) return;
     shown = url;
-    patience = RELOAD_MS;
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     frame.src = url;
     link.disconnect();
@@ -139,7 +112,6 @@ export function fabricview(host, studio, view) {
       studio.seeing.forgotten.value = null;
       source = answer.source;
       describe();
-      governor.wake(DRAW_MS);
       studio.online.value = true;
       open(answer.url);
       link.connect();

@@ -14,9 +14,12 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { curvePlot } from "../plots/curve.js";
 import { rigidityPlot } from "../plots/rigidity.js";
+import { limb } from "./limb.js";
 import { problemText } from "../widgets/problem.js";
 
 const COUNT_MS = 80;
+const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb"]);
+/** @typedef {(typeof PLOTS)[number]} Plot */
 
 /**
  * @param {HTMLElement} host
@@ -41,11 +44,16 @@ export function inspector(host, studio) {
   const shares = h("div", { class: "shares" });
   const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
   const curve = h("div", { class: "plot", id: "plot-curve" });
-  const plots = { rigidity, curve };
-  const drawRigidity = rigidityPlot(rigidity, studio);
-  const drawCurve = curvePlot(curve, studio);
+  const worn = h("div", { class: "limb", id: "plot-limb" });
+  const plots = { rigidity, curve, limb: worn };
+  /** @type {Record<Plot, () => void>} */
+  const draw = {
+    rigidity: rigidityPlot(rigidity, studio),
+    curve: curvePlot(curve, studio),
+    limb: limb(worn, studio),
+  };
 
-  /** @param {"rigidity" | "curve"} id @param {string} label */
+  /** @param {Plot} id @param {string} label */
   const tab = (id, label) =>
     h(
       "button",
@@ -62,7 +70,11 @@ export function inspector(host, studio) {
       },
       label,
     );
-  const tabs = { rigidity: tab("rigidity", "Stiffness map"), curve: tab("curve", "Stress–strain") };
+  const tabs = {
+    rigidity: tab("rigidity", "Stiffness"),
+    curve: tab("curve", "Stress–strain"),
+    limb: tab("limb", "On a limb"),
+  };
   const pulls = h("div", {
     class: "segmented small curve-pulls",
     role: "radiogroup",
@@ -85,15 +97,14 @@ export function inspector(host, studio) {
     return button;
   });
   pulls.append(...ways);
-  /** @param {"rigidity" | "curve"} id */
+  /** @param {Plot} id */
   const choose = (id) => {
     pulls.hidden = id !== "curve";
-    rigidity.hidden = id !== "rigidity";
-    curve.hidden = id !== "curve";
-    tabs.rigidity.setAttribute("aria-selected", String(id === "rigidity"));
-    tabs.curve.setAttribute("aria-selected", String(id === "curve"));
-    if (id === "curve") drawCurve();
-    else drawRigidity();
+    for (const one of PLOTS) {
+      plots[one].hidden = one !== id;
+      tabs[one].setAttribute("aria-selected", String(one === id));
+    }
+    draw[id]();
   };
 
   host.append(
@@ -108,10 +119,9 @@ export function inspector(host, studio) {
     h(
       "div",
       { class: "inspector-plots" },
-      h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, tabs.rigidity, tabs.curve),
+      h("div", { class: "tabs", role: "tablist", "aria-label": "Plots" }, ...Object.values(tabs)),
       pulls,
-      rigidity,
-      curve,
+      ...Object.values(plots),
     ),
   );
   choose("rigidity");
@@ -201,8 +211,8 @@ export function inspector(host, studio) {
     choose("curve");
   });
   return () => {
-    drawRigidity();
-    if (!curve.hidden) drawCurve();
+    draw.rigidity();
+    if (!curve.hidden) draw.curve();
   };
 }
 

@@ -19,6 +19,8 @@ const PANELS = {
   /** @returns {Promise<PanelModule>} */
   find: async () => ({ create: (await import("./inverse/inverse.js")).opening("find") }),
   /** @returns {Promise<PanelModule>} */
+  compare: () => import("./compare/compare.js"),
+  /** @returns {Promise<PanelModule>} */
   conflict: () => import("./designs/conflict.js"),
   /** @returns {Promise<PanelModule>} */
   designs: () => import("./designs/list.js"),

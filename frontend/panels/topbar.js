@@ -263,7 +263,7 @@ function designsMenu(context) {
     null,
     ...["designs", "duplicate"].map(one),
     null,
-    ...["versions", "share"].map(one),
+    ...["versions", "compare", "share"].map(one),
     null,
     ...["import", "project-file"].map(one),
     null,

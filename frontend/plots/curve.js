@@ -11,11 +11,9 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
 import { FABRICS } from "../core/segments.js";
-import { repeatSize, scopeOf } from "../services/scope.js";
+import { scopeOf } from "../services/scope.js";
 import { loadPlotly } from "./plotly.js";
 
-/** Curves of larger repeats take the service minutes; the stretch test is quicker then. */
-const LARGEST_REPEAT = 9;
 /** The service is asked this long after a change. */
 const DELAY_MS = 300;
 
@@ -49,7 +47,7 @@ export function curvePlot(host, studio) {
     delete host.dataset.problem;
     if (host.hidden || !host.clientWidth) return;
     ({ clientWidth: width, clientHeight: height } = host);
-    await plotly.react(host, traces(studio, answer?.curve ?? null), layout(width, height), {
+    await plotly.react(host, traces(studio, answer?.curve ?? null), stressStrainLayout(width, height), {
       displayModeBar: false,
       responsive: false,
     });
@@ -59,12 +57,6 @@ export function curvePlot(host, studio) {
     if (host.hidden) return;
     latest.run(async (signal) => {
       const { grid } = scopeOf(studio);
-      if (repeatSize(grid) > LARGEST_REPEAT) {
-        const had = answer !== null;
-        answer = null;
-        if (had) void draw();
-        return;
-      }
       const direction = studio.seeing.pull.value;
       const body = { chart: grid.text, material: studio.materialId.value, direction };
       const key = JSON.stringify(body);
@@ -223,7 +215,7 @@ function stressBand(stretch) {
  * @param {number} width
  * @param {number} height
  */
-function layout(width, height) {
+export function stressStrainLayout(width, height) {
   const style = getComputedStyle(document.documentElement);
   const text = style.getPropertyValue("--text").trim();
   const line = style.getPropertyValue("--line").trim();

@@ -2,6 +2,7 @@
  * What the numbers are of: the whole chart, the selection, or a region.
  *
  * @import {Grid} from "../core/grid.js"
+ * @import {ChartState} from "../core/state.js"
  * @import {Selection} from "../core/selection.js"
  * @import {Studio} from "../studio.js"
  *
@@ -23,10 +24,21 @@ import { selectionOf } from "../core/selection.js";
  */
 export function scopeOf(studio) {
   const { document: chart, selection, seeing } = studio;
-  const { grid } = chart;
   const box = selection.value;
-  if (box) return partOf(box, grid, "selection", "Selection");
-  const region = seeing.region.value === null ? null : chart.region(seeing.region.value);
+  if (box) return partOf(box, chart.grid, "selection", "Selection");
+  return scopeIn(chart, seeing.region.value);
+}
+
+/**
+ * A region of a chart, or the whole.
+ *
+ * @param {ChartState} chart
+ * @param {string | null} id of the region
+ * @returns {Scope}
+ */
+export function scopeIn(chart, id) {
+  const { grid } = chart;
+  const region = id === null ? null : chart.region(id);
   if (!region?.count) {
     const size = `${grid.columns} × ${grid.rows}`;
     const counted = { grid, mask: chart.shaped ? chart.outline : null };
@@ -59,27 +71,4 @@ function partOf(box, chart, kind, title) {
   const stitches = mask.reduce((sum, one) => sum + one, 0);
   const note = `Moduli of the largest rectangle inside it, ${part.columns} × ${part.rows} stitches.`;
   return { kind, title, size: `${stitches} stitches`, grid: part, counted, note };
-}
-
-/**
- * Stitches of the smallest repeat whose continuation, cut anywhere, gives this chart.
- *
- * @param {Grid} grid
- */
-export function repeatSize({ rows, columns, purl }) {
-  /**
-   * @param {number} length
-   * @param {number} stride between neighbours along it
-   */
-  const period = (length, stride) => {
-    for (let p = 1; 2 * p <= length; p++) {
-      const same = purl.every((stitch, i) => {
-        const at = stride === 1 ? i % columns : Math.floor(i / columns);
-        return at + p >= length || stitch === purl[i + p * stride];
-      });
-      if (same) return p;
-    }
-    return length;
-  };
-  return period(columns, 1) * period(rows, columns);
 }

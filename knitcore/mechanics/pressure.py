@@ -33,6 +33,10 @@ TESTED_SHARE = 0.7
 MAXIMUM_CIRCUMFERENCE_MM = 5000.0
 LEAST_LENGTH = 0.05
 """Least share of its length that an axially free tube keeps; laws do not apply beyond."""
+ELASTIC_MEAN = (
+    "A mean over the circumference from an elastic law: pressure is higher where the limb curves "
+    "more, and no relaxation, friction or posture is included."
+)
 
 
 @dataclass(frozen=True)
@@ -200,8 +204,4 @@ def _warnings(
             f"Axially free, the tube would shorten by {-axial:.0%}: the linear Poisson ratio does"
             " not hold so far."
         )
-    found.append(
-        "A mean over the circumference from an elastic law: pressure is higher where the limb"
-        " curves more, and no relaxation, friction or posture is included."
-    )
-    return found
+    return [*found, ELASTIC_MEAN]

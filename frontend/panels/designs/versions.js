@@ -9,6 +9,7 @@
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { designs } from "../../keeping/designs.js";
+import { textButton } from "../../widgets/buttons.js";
 import { dialog } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
 import { keptName } from "./kept.js";
@@ -19,7 +20,7 @@ import { ago } from "../../core/ago.js";
  * @param {Studio} studio
  * @param {ActionContext} context
  */
-export function create(studio, { keeper }) {
+export function create(studio, { keeper, open }) {
   const status = h("div", { class: "dialog-status", role: "status" });
   const list = h("ol", { class: "rows-list", id: "versions-list" });
   const name = h("input", {
@@ -88,6 +89,16 @@ export function create(studio, { keeper }) {
         { class: "row-text" },
         h("span", { class: "ellipsis" }, version.name),
         h("span", { class: "muted" }, `${ago(version.created_at)}${version.automatic ? " · kept automatically" : ""}`),
+      ),
+      textButton(
+        "compare",
+        "Compare",
+        () => {
+          studio.seeing.against.value = `version ${version.number}`;
+          element.close();
+          open("compare");
+        },
+        { "aria-label": `Compare with ${version.name}` },
       ),
       h(
         "button",

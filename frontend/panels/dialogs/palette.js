@@ -19,9 +19,10 @@ const WORDS = {
   garments: "measure measurements pressure glove sock sleeve brace plan",
   "open-find": "pressure search wish stretch stiffness",
   "open-fill": "wish stiffness softer stiffer relax region",
-  "open-atlas": "compare repeats patterns",
-  stretch: "pull test force load compare",
-  versions: "compare history",
+  "open-atlas": "repeats patterns",
+  stretch: "pull test force load",
+  versions: "history",
+  compare: "difference side by side versions regions yarns",
   exports: "print pdf knitout written download save",
 };
 

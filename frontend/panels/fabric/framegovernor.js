@@ -1,18 +1,19 @@
 /**
- * Keeps the 3D viewer from taking the page's time. The viewer draws without pause and shares our
- * thread; where there is no GPU one of its frames takes longer than a brush stroke may. So its frames
- * wait while somebody paints, and on a slow machine they are drawn only when there is news.
+ * Keeps the 3D viewer from taking the page's time. The viewer draws when it has something new, and
+ * shares our thread; where there is no GPU one of its frames takes longer than a brush stroke may. So
+ * its frames wait while somebody paints, and after a long frame the page has the thread for a while.
  */
 
-/** Frames further apart than this on average mean a slow machine. */
-const SLOW_MS = 45;
-/**
- * A sleeping viewer still draws after this time, for news that came late or from elsewhere; then
- * after twice as long, as a frame may keep such a machine busy for seconds. Not more: on a busy
- * machine the cloth itself comes late, and the view would stay empty.
- */
-const HEARTBEAT_MS = 2500;
-const LONGEST_HEARTBEAT_MS = 5000;
+/** Frames that take longer mean a slow machine. */
+const SHORT_MS = 30;
+/** So many times as long as a long frame took the page has the thread: with news from the service, and without. */
+const PAUSE = { news: 1, idle: 8 };
+/** At most; the first cloth is not kept waiting. */
+const LONGEST_PAUSE_MS = 4000;
+/** Frames in which a first scene is taken in; viser shows its own axes until then. */
+const FIRST_FRAMES = 3;
+/** How long something new takes to be drawn. */
+const NEWS_MS = 1500;
 /** Side of the small picture that tells whether something is drawn. */
 const SAMPLE = 24;
 
@@ -20,12 +21,14 @@ export class FrameGovernor {
   /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */ #waiting = new Map();
   /** @type {((callback: FrameRequestCallback) => number) | null} */ #request = null;
   #next = 1;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */ #heart;
-  #awakeUntil = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */ #pause;
+  #newsUntil = 0;
+  #lastEnd = 0;
   #held = false;
-  #lastFrame = 0;
-  /** Mean time between frames, in ms; begins neither slow nor fast. */
-  #pace = SLOW_MS;
+  /** Frames since the first scene came; below 0 there is none. */
+  #fed = -1;
+  /** How long a frame keeps the thread, in ms. */
+  #cost = 0;
 
   /** What to call when the viewer shows something; null once it was called. @type {(() => void) | null} */ #seen =
     null;
@@ -34,12 +37,13 @@ export class FrameGovernor {
   /**
    * Take over the frames of a viewer that was just loaded.
    *
-   * @param {Window} viewer of our own origin
+   * @param {Window} viewer of our own origin; its event `news` tells that the service sent something
    * @param {() => void} seen called when its first picture is there
    */
   govern(viewer, seen) {
     this.#waiting.clear();
     this.#seen = seen;
+    this.#fed = -1;
     this.#document = viewer.document;
     const own = viewer.requestAnimationFrame.bind(viewer);
     const cancel = viewer.cancelAnimationFrame.bind(viewer);
@@ -54,58 +58,49 @@ export class FrameGovernor {
     viewer.cancelAnimationFrame = (id) => {
       if (!this.#waiting.delete(id)) cancel(id);
     };
-    this.#beat(HEARTBEAT_MS);
-    for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "resize"]) {
-      viewer.addEventListener(name, () => this.wake(1200), { passive: true });
+    for (const name of ["news", "pointerdown", "pointermove", "wheel", "keydown", "resize"]) {
+      viewer.addEventListener(name, () => this.#wake(), { passive: true });
     }
-  }
-
-  /**
-   * Something has to be drawn.
-   *
-   * @param {number} milliseconds for how long at least
-   */
-  wake(milliseconds) {
-    this.#awakeUntil = Math.max(this.#awakeUntil, performance.now() + milliseconds);
-    this.#beat(HEARTBEAT_MS);
-    this.#release();
+    viewer.addEventListener("news", () => (this.#fed = 0), { once: true });
+    this.#wake();
   }
 
   /** Let frames wait, or go on. @param {boolean} held */
   hold(held) {
     this.#held = held;
-    if (!held) this.#release();
-  }
-
-  /** Whether frames wait. */
-  get held() {
-    return this.#held;
+    this.#release();
   }
 
   /** Whether this machine draws too slowly to follow the pointer. */
   get slow() {
-    return this.#pace >= SLOW_MS;
+    return this.#cost > SHORT_MS;
   }
 
-  /** @param {number} milliseconds to the next heartbeat */
-  #beat(milliseconds) {
-    clearTimeout(this.#heart);
-    this.#heart = setTimeout(() => {
-      if (!this.#held) this.#draw();
-      this.#beat(Math.min(2 * milliseconds, LONGEST_HEARTBEAT_MS));
-    }, milliseconds);
+  #wake() {
+    this.#newsUntil = performance.now() + NEWS_MS;
+    this.#release();
+  }
+
+  /** Time until the next frame may be drawn, in ms. */
+  #rest() {
+    if (!this.slow || this.#seen) return 0;
+    const now = performance.now();
+    const pause = this.#cost * (now < this.#newsUntil ? PAUSE.news : PAUSE.idle);
+    return Math.max(0, this.#lastEnd + Math.min(pause, LONGEST_PAUSE_MS) - now);
   }
 
   #open() {
-    return !this.#held && (performance.now() < this.#awakeUntil || this.#pace < SLOW_MS);
+    return !this.#held && this.#rest() === 0;
   }
 
   #release() {
-    if (this.#open()) this.#draw();
-  }
-
-  #draw() {
-    if (!this.#request) return;
+    clearTimeout(this.#pause);
+    if (this.#held || !this.#request) return;
+    const rest = this.#rest();
+    if (rest > 0) {
+      this.#pause = setTimeout(() => this.#release(), rest);
+      return;
+    }
     const waiting = [...this.#waiting.values()];
     this.#waiting.clear();
     for (const callback of waiting) this.#request((time) => this.#frame(callback, time));
@@ -116,15 +111,19 @@ export class FrameGovernor {
    * @param {number} time
    */
   #frame(callback, time) {
-    const gap = time - this.#lastFrame;
-    // Several callbacks share a frame; pauses that we make ourselves do not count.
-    if (gap > 0 && gap < 2000) this.#pace += 0.1 * (gap - this.#pace);
-    this.#lastFrame = time;
+    const start = performance.now();
     callback(time);
-    if (this.#seen && hasPicture(this.#document)) {
+    if (this.#fed >= 0) this.#fed++;
+    if (this.#seen && this.#fed >= FIRST_FRAMES && hasPicture(this.#document)) {
       this.#seen();
       this.#seen = null;
     }
+    // What the browser itself does for the frame counts, too.
+    setTimeout(() => {
+      this.#lastEnd = performance.now();
+      this.#cost = (this.#cost + this.#lastEnd - start) / 2;
+      this.#release();
+    });
   }
 }
 

@@ -23,8 +23,8 @@ export class ViewLink {
   /**
    * @param {Studio} studio
    * @param {ChartView} view
-   * @param {{lost: () => void, drawn: () => void, slow: () => boolean}} hooks called when the view is
-   *   gone and when there is something new to draw; whether drawing takes too long for the pointer
+   * @param {{lost: () => void, slow: () => boolean}} hooks called when the view is gone; whether drawing
+   *   takes too long for the pointer
    */
   constructor(studio, view, hooks) {
     this.studio = studio;
@@ -69,7 +69,6 @@ export class ViewLink {
     try {
       await api.mark(studio.designId, box);
       this.#marked = key;
-      this.hooks.drawn();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // the next change tries again
     } finally {

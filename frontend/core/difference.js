@@ -1,0 +1,39 @@
+/**
+ * Two answers beside each other: how far apart they are, and whether that can be told from them.
+ *
+ * @typedef {{value: number | undefined, interval?: readonly [number, number] | null}} Answer
+ */
+
+import { percent } from "./format.js";
+
+/**
+ * @param {Answer} a
+ * @param {Answer} b
+ * @returns {{text: string, clear: boolean}} how much more or less b is, in percent of a; clear where
+ *   their 90 % intervals do not meet
+ */
+export function difference(a, b) {
+  if (!a.value || b.value === undefined) return { text: "–", clear: false };
+  const share = b.value / a.value - 1;
+  const apart = a.interval && b.interval && (a.interval[1] < b.interval[0] || b.interval[1] < a.interval[0]);
+  if (Math.abs(share) < 0.005) return { text: "the same", clear: false };
+  const factor = b.value / a.value;
+  const text = factor >= 2 ? `× ${factor.toFixed(1)}` : `${share > 0 ? "+" : ""}${percent(share)}`;
+  return { text, clear: Boolean(apart) };
+}
+
+/**
+ * A value between the points of a curve.
+ *
+ * @param {readonly number[]} x increasing
+ * @param {readonly number[]} y
+ * @param {number} at
+ * @returns {number | undefined} undefined beyond the curve's end
+ */
+export function interpolated(x, y, at) {
+  const after = x.findIndex((value) => value >= at);
+  if (after < 0) return undefined;
+  if (after === 0) return y[0];
+  const share = (at - x[after - 1]) / (x[after] - x[after - 1]);
+  return y[after - 1] + share * (y[after] - y[after - 1]);
+}

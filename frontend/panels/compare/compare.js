@@ -1,0 +1,325 @@
+/**
+ * Two pieces side by side: their charts on one scale, their numbers with the difference, their curves
+ * in one plot, their extensibility rectangles one in the other.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Answer} from "../../core/difference.js"
+ * @import {Studio} from "../../studio.js"
+ * @import {Direction, PredictResult} from "../../types.js"
+ * @import {Answers, Choice, Piece} from "./pieces.js"
+ */
+
+import { ApiError, isAbort } from "../../api.js";
+import { difference, interpolated } from "../../core/difference.js";
+import { LINES, along } from "../../core/directions.js";
+import { figure, range } from "../../core/format.js";
+import { Latest } from "../../core/latest.js";
+import { h } from "../../dom.js";
+import { drawPair } from "../../plots/pair.js";
+import { dialog, problemBox } from "../../widgets/dialog.js";
+import { thumbnail } from "../../widgets/thumbnail.js";
+import { NOW, answers, choices, piece } from "./pieces.js";
+
+/** The sides, and the colours that their curves and rectangles have. */
+const SIDES = /** @type {const} */ ([
+  { id: "a", letter: "A", colour: "accent" },
+  { id: "b", letter: "B", colour: "odd" },
+]);
+/** Longest side of the larger picture. */
+const PICTURE_PX = 190;
+const RECTANGLES_PX = 150;
+/** The load at which stretches are compared: a hand's pull. */
+const LOAD_N_PER_MM = 0.1;
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+export function create(studio, { keeper }) {
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const table = h("table", { class: "numbers compare-numbers", id: "compare-numbers" });
+  const plot = h("div", { class: "plot", id: "compare-plot" });
+  const rectangles = h("div", { class: "compare-rectangles" });
+  /** @type {Direction} */
+  let direction = "course";
+  const ways = /** @type {Direction[]} */ (["course", "wale"]).map((way) =>
+    h(
+      "button",
+      {
+        class: "segment",
+        role: "radio",
+        id: `compare-${way}`,
+        "aria-checked": String(way === direction),
+        onclick: () => {
+          direction = way;
+          for (const one of ways) one.setAttribute("aria-checked", String(one.id === `compare-${way}`));
+          draw();
+        },
+      },
+      `Pulled ${along(way)}`,
+    ),
+  );
+  const sides = SIDES.map(({ id, letter }) => {
+    const which = h("select", {
+      class: "select",
+      id: `compare-${id}`,
+      "aria-label": `Piece ${letter}`,
+      onchange: () => ((yarn.value = ""), load()),
+    });
+    const yarn = h("select", {
+      class: "select",
+      id: `compare-${id}-yarn`,
+      "aria-label": `Yarn of piece ${letter}`,
+      onchange: () => load(),
+    });
+    return { which, yarn, picture: h("div", { class: "compare-picture" }), size: h("p", { class: "muted figures" }) };
+  });
+  const element = dialog(
+    "compare-dialog",
+    "Compare",
+    h(
+      "div",
+      { class: "compare-sides" },
+      ...sides.map(({ which, yarn, picture, size }, k) =>
+        h(
+          "section",
+          { "aria-label": `Piece ${SIDES[k].letter}` },
+          h("div", { class: "compare-what" }, badge(k), which),
+          yarn,
+          picture,
+          size,
+        ),
+      ),
+    ),
+    status,
+    h(
+      "div",
+      { class: "compare-answers" },
+      h("div", {}, table),
+      h(
+        "div",
+        { class: "compare-plots" },
+        h("div", { class: "segmented", role: "radiogroup", "aria-label": "Direction of the curves" }, ...ways),
+        plot,
+        rectangles,
+      ),
+    ),
+  );
+
+  /** @type {{piece: Piece, answers: Answers}[]} */
+  let found = [];
+  const latest = new Latest(0);
+  const load = () => {
+    element.classList.add("busy");
+    latest.run(async (signal) => {
+      try {
+        const all = await Promise.all(
+          sides.map(async ({ which, yarn }) => {
+            const one = await piece(studio, keeper, which.value);
+            const material = yarn.value || one.material;
+            return { piece: { ...one, material }, answers: await answers(one.scope.grid, material, signal) };
+          }),
+        );
+        if (signal.aborted) return;
+        found = all;
+        status.replaceChildren();
+        element.classList.remove("busy");
+        draw();
+      } catch (error) {
+        if (isAbort(error) || signal.aborted) return;
+        if (!(error instanceof ApiError)) throw error;
+        element.classList.remove("busy");
+        status.replaceChildren(problemBox(error.problem, load));
+      }
+    });
+  };
+  const draw = () => {
+    if (!found.length) return;
+    const sizes = found.map(({ piece: { scope }, answers: { predicted } }) => {
+      const { rows, columns } = scope.counted.grid;
+      return { width: (columns * predicted.relaxed_course_mm) / 10, height: (rows * predicted.relaxed_wale_mm) / 10 };
+    });
+    const scale = PICTURE_PX / Math.max(...sizes.flatMap(({ width, height }) => [width, height]));
+    found.forEach(({ piece: { chart, outline, material, scope } }, k) => {
+      const { width, height } = sizes[k];
+      const picture = thumbnail({ chart, outline }, { side: PICTURE_PX });
+      picture.style.cssText = `width: ${width * scale}px; height: ${height * scale}px; aspect-ratio: auto`;
+      sides[k].picture.replaceChildren(picture);
+      sides[k].size.textContent = `${scope.size} · ${figure(width)} × ${figure(height)} cm at rest`;
+      sides[k].size.title = scope.note;
+      yarns(sides[k].yarn, studio, material);
+    });
+    fill(
+      table,
+      found.map((one) => one.answers),
+    );
+    drawRectangles(
+      rectangles,
+      found.map((one) => one.answers.predicted),
+    );
+    void drawPair(
+      plot,
+      found.map(({ answers: { curves } }, k) => ({
+        name: SIDES[k].letter,
+        colour: SIDES[k].colour,
+        curve: curves[direction],
+      })),
+    );
+  };
+
+  return async () => {
+    element.showModal();
+    await keeper.flush();
+    const { against } = studio.seeing;
+    /** @type {Choice[]} */
+    let all;
+    try {
+      all = await choices(studio, keeper);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      status.replaceChildren(problemBox(error.problem));
+      return;
+    }
+    sides.forEach(({ which }, k) => {
+      const before = which.value;
+      offer(which, all);
+      // Opened for a version, or with what was compared last; else with the latest other thing there is.
+      const wanted = k ? (against.value ?? (before || (all[1]?.value ?? NOW))) : before || NOW;
+      which.value = all.some(({ value }) => value === wanted) ? wanted : NOW;
+    });
+    against.value = null;
+    load();
+  };
+}
+
+/** @param {number} side */
+function badge(side) {
+  const { letter, colour } = SIDES[side];
+  const element = h("span", { class: "compare-badge" }, letter);
+  element.style.backgroundColor = `var(--${colour})`;
+  return element;
+}
+
+/** @param {HTMLSelectElement} select @param {Choice[]} all */
+function offer(select, all) {
+  const groups = [...new Set(all.map(({ group }) => group))];
+  select.replaceChildren(
+    ...groups.map((label) =>
+      h(
+        "optgroup",
+        { label },
+        ...all.filter(({ group }) => group === label).map(({ value, label: text }) => h("option", { value }, text)),
+      ),
+    ),
+  );
+}
+
+/** @param {HTMLSelectElement} select @param {Studio} studio @param {string} chosen */
+function yarns(select, studio, chosen) {
+  const complete = studio.materials.value.filter(({ fabrics }) => Object.keys(fabrics).length === 4);
+  select.replaceChildren(...complete.map(({ id, name }) => h("option", { value: id }, name)));
+  select.value = chosen;
+}
+
+/** @param {HTMLTableElement} table @param {Answers[]} pair */
+function fill(table, pair) {
+  /** @type {{label: string, unit: string, of: (one: Answers) => Answer}[]} */
+  const rows = [];
+  for (const way of /** @type {Direction[]} */ (["course", "wale"])) {
+    rows.push(
+      {
+        label: `Modulus, ${LINES[way]}`,
+        unit: "N/mm",
+        of: ({ predicted }) => ({
+          value: predicted[`modulus_${way}_n_per_mm`],
+          interval: predicted[`modulus_${way}_interval_n_per_mm`],
+        }),
+      },
+      {
+        label: `Stretch at ${LOAD_N_PER_MM} N/mm, ${LINES[way]}`,
+        unit: "%",
+        of: ({ curves: { [way]: curve } }) => {
+          const at = (/** @type {number[]} */ strain) =>
+            100 * (interpolated(curve.stress_n_per_mm, strain, LOAD_N_PER_MM) ?? NaN);
+          return { value: at(curve.strain), interval: [at(curve.strain_interval[0]), at(curve.strain_interval[1])] };
+        },
+      },
+      {
+        label: way === "course" ? "Width of a stitch" : "Height of a stitch",
+        unit: "mm",
+        of: ({ predicted }) => ({
+          value: predicted[`relaxed_${way}_mm`],
+          interval: predicted[`relaxed_${way}_interval_mm`],
+        }),
+      },
+      {
+        label: `Poisson ratio, ${LINES[way]}`,
+        unit: "",
+        of: ({ predicted }) =>
+          way === "course"
+            ? { value: predicted.poisson_yx, interval: predicted.poisson_yx_interval }
+            : { value: predicted.poisson_xy, interval: predicted.poisson_xy_interval },
+      },
+    );
+  }
+  table.replaceChildren(
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("td", {}),
+        ...SIDES.map((_, k) => h("th", { scope: "col" }, badge(k))),
+        h("th", { scope: "col", title: "B beside A; bold where the 90 % intervals do not meet" }, "B over A"),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      ...rows.map(({ label, unit, of }) => {
+        const both = pair.map(of);
+        const { text, clear } = difference(both[0], both[1]);
+        return h(
+          "tr",
+          {},
+          h("th", { scope: "row" }, label, unit && h("span", { class: "unit" }, unit)),
+          ...both.map(({ value, interval }) =>
+            h(
+              "td",
+              {},
+              h("span", { class: "value" }, figure(value)),
+              h("span", { class: "interval" }, range(interval)),
+            ),
+          ),
+          h("td", { class: clear ? "clear" : "unclear" }, text, !clear && text.includes("%") && note()),
+        );
+      }),
+    ),
+  );
+}
+
+const note = () => h("span", { class: "interval" }, "intervals meet");
+
+/** Rectangles of both pieces on one scale, one in the other. @param {HTMLElement} host @param {PredictResult[]} pair */
+function drawRectangles(host, pair) {
+  const sides = pair.map((one) => [one.extensibility_course_mm_per_n, one.extensibility_wale_mm_per_n]);
+  // The square root keeps stiff fabrics visible beside ribs that give fifty times as much.
+  const scale = RECTANGLES_PX / Math.sqrt(Math.max(...sides.flat()));
+  host.replaceChildren(
+    h(
+      "div",
+      { class: "compare-nest", role: "img", "aria-label": "Extensibility rectangles of both pieces" },
+      ...sides.map(([course, wale], k) => {
+        const rectangle = h("span", {});
+        rectangle.style.cssText = `width: ${Math.sqrt(course) * scale}px; height: ${Math.sqrt(wale) * scale}px; border-color: var(--${SIDES[k].colour})`;
+        return rectangle;
+      }),
+    ),
+    h(
+      "p",
+      { class: "muted" },
+      "Extensibility rectangles: as wide and as high as the cloth stretches along rows and columns (sides grow as its square root).",
+    ),
+  );
+}

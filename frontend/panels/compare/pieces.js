@@ -1,0 +1,99 @@
+/**
+ * What can be put side by side: the design in hand and its regions, its versions, other designs; each
+ * in its own yarn or in another one.
+ *
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Studio} from "../../studio.js"
+ * @import {CurveResult, DesignDocument, Direction, PredictResult} from "../../types.js"
+ * @import {Scope} from "../../services/scope.js"
+ *
+ * @typedef {{value: string, group: string, label: string}} Choice
+ * @typedef {{scope: Scope, material: string, chart: string, outline: string | null}} Piece
+ * @typedef {{predicted: PredictResult, curves: Record<Direction, CurveResult>}} Answers
+ */
+
+import { api } from "../../api.js";
+import { ago } from "../../core/ago.js";
+import { ChartDocument } from "../../core/document.js";
+import { Grid } from "../../core/grid.js";
+import { outlineText } from "../../core/snapshot.js";
+import { designs } from "../../keeping/designs.js";
+import { scopeIn } from "../../services/scope.js";
+
+/** The design in hand, as it is now. */
+export const NOW = "now";
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext["keeper"]} keeper
+ * @returns {Promise<Choice[]>}
+ */
+export async function choices(studio, keeper) {
+  const id = keeper.remoteId;
+  const [{ versions }, { designs: others }] = await Promise.all([
+    id ? designs.versions(id) : { versions: [] },
+    designs.list(),
+  ]);
+  return [
+    { value: NOW, group: "This design", label: "Whole chart" },
+    ...studio.document.regions.map(({ id: region, name }) => ({
+      value: `region ${region}`,
+      group: "This design",
+      label: `Region ${name}`,
+    })),
+    ...versions.toReversed().map(({ number, name, created_at: made }) => ({
+      value: `version ${number}`,
+      group: "Versions",
+      label: `${name} (${ago(made)})`,
+    })),
+    ...others
+      .filter((design) => design.id !== id)
+      .map((design) => ({ value: `design ${design.id}`, group: "My designs", label: design.name })),
+  ];
+}
+
+/**
+ * @param {Studio} studio
+ * @param {ActionContext["keeper"]} keeper
+ * @param {string} value of a choice
+ * @returns {Promise<Piece>}
+ */
+export async function piece(studio, keeper, value) {
+  const [kind, id = ""] = value.split(" ");
+  if (kind === NOW || kind === "region") {
+    const scope = scopeIn(studio.document, kind === NOW ? null : id);
+    const { outline, shaped, grid } = studio.document;
+    const whole = kind === NOW;
+    return {
+      scope,
+      material: studio.materialId.value,
+      chart: whole ? grid.text : scope.counted.grid.text,
+      outline: whole && shaped ? outlineText(outline, grid.columns) : null,
+    };
+  }
+  if (kind === "version") return opened((await designs.version(keeper.remoteId ?? "", Number(id))).document);
+  return opened((await designs.read(id)).document);
+}
+
+/** @param {DesignDocument} design @returns {Piece} */
+function opened(design) {
+  const chart = new ChartDocument(Grid.fromText(design.chart));
+  chart.open(design);
+  return { scope: scopeIn(chart, null), material: design.material, chart: design.chart, outline: design.outline };
+}
+
+/**
+ * @param {Grid} grid
+ * @param {string} material
+ * @param {AbortSignal} signal
+ * @returns {Promise<Answers>}
+ */
+export async function answers(grid, material, signal) {
+  const body = { chart: grid.text, material };
+  const [predicted, course, wale] = await Promise.all([
+    api.predict(body, signal),
+    api.curve({ ...body, direction: "course" }, signal),
+    api.curve({ ...body, direction: "wale" }, signal),
+  ]);
+  return { predicted, curves: { course, wale } };
+}
