@@ -706,11 +706,11 @@ export type EnergyModel = "published" | "full";
 export interface EstimateRequest {
   /** B of the yarn (`measure bending`). */
   bending_modulus_n_mm2: number;
+  /** Needle or stitch setting of the product. */
+  product_setting?: string;
   /** Yarn per stitch. */
   loop_length_mm: number | Partial<Record<Fabric, number>>;
   swatches?: SwatchInput[];
-  /** Needle or stitch setting of the product. */
-  product_setting?: string;
 }
 
 /** All four fabrics of the yarn. */
@@ -2398,11 +2398,17 @@ export interface YarnDocument {
 
 /** A yarn by its parameters. */
 export interface YarnInput {
+  /** Name of a yarn that is given by the five numbers below. */
   name: string;
+  /** B of the yarn. */
   bending_modulus_n_mm2: number;
+  /** k of its contact law. */
   contact_stiffness_n_per_mm3: number;
+  /** p of its contact law. */
   contact_exponent: number;
+  /** Outer radius. */
   radius_mm: number;
+  /** Core radius. */
   core_radius_mm: number;
 }
 

@@ -36,11 +36,9 @@ MATERIAL_HELP = "Library id (see `knitcore materials`) or a material file."
 def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
     """The command of an operation."""
     described = operation.command
-    if isinstance(described, click.Command):
-        return described
     if described is None:
         raise TypeError(f"{operation.name} is not a command")
-    options = _Options(operation.request, described)
+    options = _Options(described.request or operation.request, described)
 
     def callback(**given: Any) -> None:
         context = Context(user_data_dir, local=True)
@@ -113,10 +111,13 @@ class _Options:
             return self._model.model_validate(asked)
         except ValidationError as error:
             first = error.errors()[0]
-            place = [str(part) for part in first["loc"]]
+            place = [part for part in first["loc"] if isinstance(part, str)]
             place = place[1:] if place and place[0] in self._groups else place
             name = ".".join(self._named(part) for part in place) or "request"
-            raise InputError(name, f"{first['msg']}.", "See --help for what it takes.") from None
+            given_text = f"{first['input']!r}: " if isinstance(first["input"], str | float) else ""
+            raise InputError(
+                name, f"{given_text}{first['msg']}.", "See --help for what it takes."
+            ) from None
 
     def _chart(self, given: dict[str, Any]) -> dict[str, Any]:
         """The chart, and other fields of the request that its file holds."""

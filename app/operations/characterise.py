@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import csv
 import shutil
-from collections.abc import Callable
 from pathlib import Path
-from typing import Literal, Self, TypeVar
+from typing import Any, Literal, Self
 
 import click
-from pydantic import Field, model_validator
+from pydantic import Field, RootModel, model_validator
 
-from app.cli.common import json_option, user_data_dir
 from app.models.base import Positive, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.operations.context import Context
-from app.operations.registry import Operation
+from app.operations.registry import Command, Operation
 from knitcore.batch import BatchProgress
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
@@ -37,10 +35,7 @@ from knitcore.yarnlibrary.yarn_table import (
     plan_for_yarn,
 )
 
-Item = TypeVar("Item")
 MAX_SETTINGS = 24
-BRANCHES = click.Choice([branch.value for branch in Branch])
-CONVENTIONS = click.Choice([convention.value for convention in Convention])
 FINISHED = "finished"
 """Folder of finished stitches inside the results folder, from which a stopped batch continues."""
 
@@ -48,12 +43,16 @@ FINISHED = "finished"
 class YarnInput(RequestModel):
     """A yarn by its parameters."""
 
-    name: str = Field(pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$", examples=["my-merino"])
-    bending_modulus_n_mm2: Positive
-    contact_stiffness_n_per_mm3: Positive
-    contact_exponent: Positive
-    radius_mm: Positive
-    core_radius_mm: float = Field(ge=0, le=100, allow_inf_nan=False)
+    name: str = Field(
+        pattern=r"^[a-z0-9][a-z0-9._-]{0,63}$",
+        description="Name of a yarn that is given by the five numbers below.",
+        examples=["my-merino"],
+    )
+    bending_modulus_n_mm2: Positive = Field(description="B of the yarn.")
+    contact_stiffness_n_per_mm3: Positive = Field(description="k of its contact law.")
+    contact_exponent: Positive = Field(description="p of its contact law.")
+    radius_mm: Positive = Field(description="Outer radius.")
+    core_radius_mm: float = Field(ge=0, le=100, allow_inf_nan=False, description="Core radius.")
 
 
 class CharacteriseOptions(RequestModel):
@@ -93,6 +92,13 @@ class CharacteriseRequest(CharacteriseOptions):
         if (self.material is None) == (self.yarn is None):
             raise ValueError("give either a material or a yarn")
         return self
+
+
+class YarnsRequest(CharacteriseOptions):
+    """Yarns of the command line, characterised together."""
+
+    materials: list[str]
+    yarn: YarnInput | None = None
 
 
 class FabricCurve(ResultModel):
@@ -168,6 +174,10 @@ class CharacteriseResult(ResultModel):
     )
 
 
+class YarnsResult(RootModel[list[CharacteriseResult]]):
+    """The tables of several yarns."""
+
+
 def characterise(request: CharacteriseRequest, context: Context) -> CharacteriseResult:
     """Every fabric is relaxed at every loop length and stretched both ways."""
     yarn = request.yarn if request.material is None else context.material(request.material)
@@ -220,63 +230,43 @@ def _row(row: YarnRow) -> CharacterisedFabric:
     )
 
 
-@click.command("characterise")
 @click.argument("materials", nargs=-1, metavar="[MATERIAL]...")
-@click.option("--yarn", metavar="NAME", help="A yarn by the five numbers below instead.")
-@click.option("--bending-modulus-n-mm2", type=float, help="B of --yarn, N·mm².")
-@click.option("--contact-stiffness-n-per-mm3", type=float, help="k of --yarn, N/mm³.")
-@click.option("--contact-exponent", type=float, help="p of --yarn.")
-@click.option("--radius-mm", type=float, help="Outer radius of --yarn.")
-@click.option("--core-radius-mm", type=float, help="Core radius of --yarn.")
 @click.option("--fabrics", metavar="A,B", help="Pure fabrics; all four if left out.")
-@click.option("--loop-lengths", metavar="MM,MM", help="Yarn per stitch, for all fabrics.")
+@click.option(
+    "--loop-lengths", "loop_lengths_mm", metavar="MM,MM", help="Yarn per stitch, for all fabrics."
+)
 @click.option("--tensions", metavar="X,X", help="Loop lengths as parts of the material's own.")
-@click.option("--branch", type=BRANCHES, default=Branch.MIRRORED.value, show_default=True)
-@click.option("--convention", type=CONVENTIONS, default=Convention.PUBLISHED.value)
-@click.option("--max-stress-n-per-mm", type=float, default=MAX_STRESS_N_PER_MM, show_default=True)
+def _lists(
+    materials: tuple[str, ...],
+    fabrics: str | None,
+    loop_lengths_mm: str | None,
+    tensions: str | None,
+) -> dict[str, Any]:
+    lists = {"fabrics": fabrics, "loop_lengths_mm": loop_lengths_mm, "tensions": tensions}
+    parts = {
+        name: [part.strip().lower() for part in text.split(",")]
+        for name, text in lists.items()
+        if text is not None
+    }
+    return {"materials": materials, **parts}
+
+
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask cluster to work on.")
 @click.option("--workers", type=click.IntRange(1), help="Processes here; all cores if left out.")
 @click.option("--fresh", is_flag=True, help="Discard what an earlier run left in the folder.")
 @click.option("--out", required=True, type=click.Path(path_type=Path), help="FOLDER of results.")
-@json_option
 def _command(
-    materials: tuple[str, ...],
-    yarn: str | None,
-    fabrics: str | None,
-    loop_lengths: str | None,
-    tensions: str | None,
-    branch: str,
-    convention: str,
-    max_stress_n_per_mm: float,
+    request: YarnsRequest,
+    context: Context,
     scheduler: str | None,
     workers: int | None,
     fresh: bool,
     out: Path,
-    as_json: bool,
-    **parameters: float | None,
-) -> None:
-    """Characterise yarns at the yarn level: laws, sizes and energies of their pure fabrics.
-
-    Every fabric is relaxed at every loop length and stretched both ways. A stopped command
-    continues where it left off. FOLDER holds table.csv, curves.csv, and material files that every
-    other command
-    takes for --material.
-    """
-    given = {
-        "fabrics": _listed("fabrics", fabrics, Fabric.parse),
-        "loop_lengths_mm": _listed("loop-lengths", loop_lengths, float),
-        "tensions": _listed("tensions", tensions, float),
-    }
-    options = CharacteriseOptions(
-        **{name: value for name, value in given.items() if value is not None},
-        branch=Branch(branch),
-        convention=Convention(convention),
-        max_stress_n_per_mm=max_stress_n_per_mm,
-    )
-    context = Context(user_data_dir, local=True)
-    plans = [_plan(context.material(name), options) for name in materials]
-    if yarn is not None:
-        plans.append(_plan(YarnInput.model_validate({"name": yarn, **parameters}), options))
+) -> YarnsResult:
+    yarns: list[Material | YarnInput] = [*map(context.material, request.materials)]
+    if request.yarn is not None:
+        yarns.append(request.yarn)
+    plans = [_plan(yarn, request) for yarn in yarns]
     names = [plan.identifier for plan in plans]
     if not plans or len(set(names)) < len(names):
         raise InputError(
@@ -292,23 +282,7 @@ def _command(
         _write_materials(result, out)
     _write_table(results, out / "table.csv")
     _write_curves(results, out / "curves.csv")
-    if as_json:
-        click.echo("[" + ",\n".join(result.model_dump_json() for result in results) + "]")
-    else:
-        click.echo("\n\n".join(_text(result) for result in results))
-
-
-def _listed(field: str, text: str | None, read: Callable[[str], Item]) -> list[Item] | None:
-    if text is None:
-        return None
-    try:
-        return [read(part.strip()) for part in text.split(",")]
-    except ValueError as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(
-            field, f"{text!r} is not a list of numbers.", "Write 10.5,11,11.5."
-        ) from None
+    return YarnsResult(results)
 
 
 def _show(told: BatchProgress) -> None:
@@ -349,7 +323,11 @@ def _write_curves(results: list[CharacteriseResult], file: Path) -> None:
                     writer.writerows([*head, *point] for point in points)
 
 
-def _text(result: CharacteriseResult) -> str:
+def _text(results: YarnsResult) -> str:
+    return "\n\n".join(map(_of_yarn, results.root))
+
+
+def _of_yarn(result: CharacteriseResult) -> str:
     lines = [
         f"{result.identifier}: {result.provenance}",
         f"{result.branch} branch, {result.convention} convention; "
@@ -386,5 +364,18 @@ OPERATION = Operation(
     example={"material": "acrylic", "fabrics": ["garter"], "tensions": [1.0]},
     heavy=True,
     job=True,
-    command=_command,
+    command=Command(
+        _text,
+        help="Characterise yarns at the yarn level: laws, sizes and energies of their pure "
+        "fabrics.\n\nEvery fabric is relaxed at every loop length and stretched both ways. A "
+        "stopped command continues where it left off. FOLDER holds table.csv, curves.csv, and "
+        "material files that every other command takes for --material.",
+        names={
+            "name": "--yarn",
+            **dict.fromkeys(("materials", "fabrics", "loop_lengths_mm", "tensions")),
+        },
+        fields=_lists,
+        run=_command,
+        request=YarnsRequest,
+    ),
 )

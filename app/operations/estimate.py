@@ -8,14 +8,13 @@ from typing import Any
 import click
 from pydantic import Field
 
-from app.cli.common import emit, json_option, user_data_dir
 from app.cli.options import out_option
 from app.models.base import UNIT, Ends, RequestModel, ResultModel
 from app.models.laws import LawResult
 from app.operations.context import Context
-from app.operations.estimate_report import LeftOutResult, report, text_of_left_out
+from app.operations.estimate_report import LeftOutResult, ModelReport, report, text_of_left_out
 from app.operations.estimate_report import text as report_text
-from app.operations.registry import Operation
+from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.estimate.estimate import (
     FabricEstimate,
@@ -39,15 +38,23 @@ class SwatchInput(RequestModel):
     setting: str = Field("", max_length=200, description="Needle or stitch setting.")
 
 
-class EstimateRequest(RequestModel):
+class YarnFacts(RequestModel):
+    """What a command says of the yarn and the product in plain options."""
+
+    bending_modulus_n_mm2: float | None = Field(
+        None, description="B of the yarn (`measure bending`)."
+    )
+    product_setting: str = Field(
+        "", max_length=200, description="Needle or stitch setting of the product."
+    )
+
+
+class EstimateRequest(YarnFacts):
     """What is known of the yarn and the product."""
 
     bending_modulus_n_mm2: float = Field(description="B of the yarn (`measure bending`).")
     loop_length_mm: float | dict[Fabric, float] = Field(description="Yarn per stitch.")
     swatches: list[SwatchInput] = Field(default_factory=list, max_length=4)
-    product_setting: str = Field(
-        "", max_length=200, description="Needle or stitch setting of the product."
-    )
 
 
 class FabricEstimateResult(ResultModel):
@@ -83,15 +90,13 @@ def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
         MeasuredSwatch(s.fabric, law_from_mapping(s.law).law, s.loop_length_mm, s.setting)
         for s in request.swatches
     ]
-    return _result(_estimate(request, swatches))
-
-
-def _estimate(request: EstimateRequest, swatches: list[MeasuredSwatch]) -> YarnEstimate:
-    return estimate_yarn(
-        request.bending_modulus_n_mm2,
-        request.loop_length_mm,
-        swatches,
-        product_setting=request.product_setting,
+    return _result(
+        estimate_yarn(
+            request.bending_modulus_n_mm2,
+            request.loop_length_mm,
+            swatches,
+            product_setting=request.product_setting,
+        )
     )
 
 
@@ -121,8 +126,6 @@ def _values(found: FabricEstimate) -> dict[str, Any]:
     return values | {f"{name}_interval{unit}": known for (name, unit), known in by_name.items()}
 
 
-@click.command("estimate")
-@click.option("--bending-modulus-n-mm2", type=float, help="B of the yarn (`measure bending`).")
 @click.option(
     "--loop-length-mm",
     "lengths",
@@ -142,10 +145,9 @@ def _values(found: FabricEstimate) -> dict[str, Any]:
     "swatch_lengths",
     multiple=True,
     metavar="MM | FABRIC=MM",
-    help="Of the swatches; otherwise as the product's, or as in the material.",
+    help="Of the swatches; by default that of the material, or the product's.",
 )
 @click.option("--swatch-setting", default="", help="Needle or stitch setting of the swatches.")
-@click.option("--product-setting", default="", help="Needle or stitch setting of the product.")
 @out_option("--out", help="Write a material file.")
 @click.option(
     "--report",
@@ -153,24 +155,19 @@ def _values(found: FabricEstimate) -> dict[str, Any]:
     is_flag=True,
     help="Refit the model and leave one yarn out at a time.",
 )
-@json_option
 def _command(
-    bending_modulus_n_mm2: float | None,
+    request: YarnFacts,
+    context: Context,
     lengths: tuple[str, ...],
     swatches: tuple[str, ...],
     swatch_lengths: tuple[str, ...],
     swatch_setting: str,
-    product_setting: str,
     out: Path | None,
     with_report: bool,
-    as_json: bool,
-) -> None:
-    """Estimate the four fabrics of a yarn that is not in the library."""
+) -> EstimateResult | ModelReport:
     if with_report:
-        found = report()
-        emit(found, report_text(found), as_json=as_json)
-        return
-    if bending_modulus_n_mm2 is None or not lengths:
+        return report()
+    if request.bending_modulus_n_mm2 is None or not lengths:
         raise InputError(
             "bending_modulus_n_mm2",
             "the bending modulus and a loop length are needed.",
@@ -178,18 +175,16 @@ def _command(
         )
     product = _lengths(lengths, "loop_length_mm")
     own = _lengths(swatch_lengths, "swatch_loop_length_mm") if swatch_lengths else {}
-    measured = [_swatch(text, own, product, swatch_setting) for text in swatches]
-    request = EstimateRequest(
-        bending_modulus_n_mm2=bending_modulus_n_mm2,
-        loop_length_mm=product,
-        product_setting=product_setting,
+    made = estimate_yarn(
+        request.bending_modulus_n_mm2,
+        product,
+        [_swatch(text, own, product, swatch_setting, context) for text in swatches],
+        product_setting=request.product_setting,
     )
-    made = _estimate(request, measured)
     if out is not None:
         identifier = out.stem.lower().replace(" ", "-")
         save_material_file(estimated_material(made, identifier), out)
-    result = _result(made)
-    emit(result, _text(result), as_json=as_json)
+    return _result(made)
 
 
 def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
@@ -210,7 +205,11 @@ def _lengths(texts: tuple[str, ...], field: str) -> dict[Fabric, float]:
 
 
 def _swatch(
-    text: str, own: dict[Fabric, float], product: dict[Fabric, float], setting: str
+    text: str,
+    own: dict[Fabric, float],
+    product: dict[Fabric, float],
+    setting: str,
+    context: Context,
 ) -> MeasuredSwatch:
     name, separator, source = text.partition("=")
     if not separator:
@@ -221,7 +220,7 @@ def _swatch(
         file = load_law(path)
         law, length, known, curves = file.law, None, "", file.curves
     else:
-        record = Context(user_data_dir, local=True).material(source).record(fabric)
+        record = context.material(source).record(fabric)
         law, length, known = record.law, record.loop_length_mm, record.setting
         curves = record.measured
     length = own.get(fabric) or length or product.get(fabric)
@@ -232,7 +231,9 @@ def _swatch(
     return MeasuredSwatch(fabric, law, length, setting or known, curves)
 
 
-def _text(r: EstimateResult) -> str:
+def _text(r: EstimateResult | ModelReport) -> str:
+    if isinstance(r, ModelReport):
+        return report_text(r)
     lines = ["extension at 0.1 N/mm (90 % interval), then Young's modulus in N/mm"]
     for fabric, f in r.fabrics.items():
         kind = " (measured)" if f.measured else ""
@@ -254,5 +255,10 @@ OPERATION = Operation(
     tag="materials",
     summary="The four fabrics of a yarn that is not in the library",
     example={"bending_modulus_n_mm2": 0.04, "loop_length_mm": 14.0},
-    command=_command,
+    command=Command(
+        _text,
+        help="Estimate the four fabrics of a yarn that is not in the library.",
+        run=_command,
+        request=YarnFacts,
+    ),
 )

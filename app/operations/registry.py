@@ -17,7 +17,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cache, cached_property
 from typing import (
-    TYPE_CHECKING,
     Any,
     Generic,
     Literal,
@@ -33,9 +32,6 @@ from pydantic import BaseModel
 import app.operations as package
 from app.operations.context import Context
 from app.operations.perform import Viewed, key_of
-
-if TYPE_CHECKING:
-    import click
 
 Request = TypeVar("Request", bound=BaseModel)
 Result = TypeVar("Result", bound=BaseModel)
@@ -54,6 +50,7 @@ class Command:
     fields : makes fields of the request from options of its own (``click.option`` on it).
     run : runs the operation where the command does more, with options of its own. Both take any
         option of the command that they have a parameter for.
+    request : model of the command's options, where it takes more or less than the operation.
     """
 
     text: Callable[[Any], str]
@@ -62,6 +59,7 @@ class Command:
     names: Mapping[str, str | None] = field(default_factory=dict)
     fields: Callable[..., Mapping[str, Any]] | None = None
     run: Callable[..., BaseModel] | None = None
+    request: type[BaseModel] | None = None
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ class Operation(Generic[Request, Result]):
     path: str | None = ""
     heavy: bool = False
     job: bool = False
-    command: Command | click.Command | None = None
+    command: Command | None = None
 
     @property
     def name(self) -> str:
@@ -142,7 +140,7 @@ def operation_of_command(name: str, group: str = "") -> Operation[Any, Any] | No
     found = getattr(importlib.import_module(f"{package.__name__}.{module}"), "OPERATION", None)
     if not isinstance(found, Operation) or found.command is None:
         return None
-    return found if getattr(found.command, "group", "") == group else None
+    return found if found.command.group == group else None
 
 
 def commands(group: str = "") -> set[str]:

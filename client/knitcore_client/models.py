@@ -353,11 +353,11 @@ class EstimateRequest(TypedDict):
 
     bending_modulus_n_mm2: float
     """B of the yarn (`measure bending`)."""
+    product_setting: NotRequired[str]
+    """Needle or stitch setting of the product."""
     loop_length_mm: float | dict[Fabric, float]
     """Yarn per stitch."""
     swatches: NotRequired[list[SwatchInput]]
-    product_setting: NotRequired[str]
-    """Needle or stitch setting of the product."""
 
 
 class ExportRequest(TypedDict):
@@ -1040,11 +1040,17 @@ class YarnInput(TypedDict):
     """A yarn by its parameters."""
 
     name: str
+    """Name of a yarn that is given by the five numbers below."""
     bending_modulus_n_mm2: float
+    """B of the yarn."""
     contact_stiffness_n_per_mm3: float
+    """k of its contact law."""
     contact_exponent: float
+    """p of its contact law."""
     radius_mm: float
+    """Outer radius."""
     core_radius_mm: float
+    """Core radius."""
 
 
 class AtlasResult(BaseModel):
