@@ -1,4 +1,4 @@
-"""Which carrier of a machine knits which stitches: one a colour and a block of it (intarsia)."""
+"""Carriers of a machine for the stitches of a piece: one for each block of colour (intarsia)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from knitcore.errors import InputError
 from knitcore.garment.piece import Piece, Stretch
 
 MOST_CARRIERS = 10
-"""Of a Shima Seiki SWG091N2, and of the virtual machine; one is kept for waste yarn."""
+"""Carriers of a Shima Seiki SWG091N2 and of the virtual machine; one is kept for waste yarn."""
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,14 @@ class CarrierPlan:
 
 
 def plan_carriers(piece: Piece) -> CarrierPlan:
-    """Carriers that stay with a block of a colour for as long as it goes on.
+    """Carriers that stay with a block of a colour for as long as it continues.
 
     A block takes over the carrier of the stretch below it that it shares most columns with.
 
     Raises
     ------
     InputError
-        If a machine has not as many carriers.
+        If the machine has too few carriers.
     """
     yarns: dict[int, int] = {}
     free: dict[int, list[int]] = {}
@@ -81,7 +81,7 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
 
 
 def _inherited(active: dict[int, Stretch], stretches: tuple[Stretch, ...]) -> dict[int, int]:
-    """Carriers by the index of the stretch that goes on with them."""
+    """Carriers by the index of the stretch that continues with them."""
     shared = sorted(
         (
             (min(below.stop, stretch.stop) - max(below.start, stretch.start), index, carrier)
@@ -99,5 +99,5 @@ def _inherited(active: dict[int, Stretch], stretches: tuple[Stretch, ...]) -> di
 
 
 def carrier_fits(below: Stretch, stretch: Stretch) -> bool:
-    """Whether a stretch of one row can go on with the yarn of one in the row below."""
+    """Whether a stretch of one row can continue with the yarn of one in the row below."""
     return below.yarn == stretch.yarn and below.start < stretch.stop and stretch.start < below.stop

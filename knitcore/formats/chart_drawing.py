@@ -1,6 +1,6 @@
 """A chart drawn for knitters: symbols, row and stitch numbers, sides, the repeat and a key.
 
-Stitches of several yarns have their yarn's colour, lightened so that the symbols are seen; "no
+Stitches of several yarns have their yarn's colour, lightened so that the symbols stay visible; "no
 stitch" is grey.
 """
 
@@ -36,7 +36,7 @@ from knitcore.worked import Construction, Side, side_of_row
 CELL_MM = 5.0
 SMALLEST_CELL_MM = 3.0
 OVERLAP = 2
-"""Rows and stitches at the edge of a page that the page before has, too."""
+"""Rows and stitches at the edge of a page that are repeated from the page before."""
 TENTHS = 10
 LINE = 1.15
 """Distance of lines of numbers over the size of their type."""
@@ -105,7 +105,7 @@ def _title(chart: StitchChart) -> str:
 
 
 def _overview(piece: Piece, style: ChartStyle, parts: list[_Part]) -> Iterator[Shape]:
-    """Which page has which part of the chart, the regions by name, and the notes."""
+    """The overview: the parts of the chart on each page, the regions by name, and the notes."""
     chart = piece.chart
     room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0

@@ -20,7 +20,7 @@ MAX_FILE_BYTES = 16_000_000
 
 
 def read_chart(path: str | Path) -> StitchChart:
-    """The chart in a file; cells outside its outline, if it has one, mean nothing.
+    """The chart in a file; cells outside its outline, if it has one, have no meaning.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def read_piece(path: str | Path) -> Piece:
     Raises
     ------
     InputError
-        If the file is missing, too large, of another kind, or does not hold what its name says.
+        If the file is missing, too large, of another kind, or its content does not match its name.
     """
     file = _checked(Path(path))
     return _READERS[file.suffix.lower()](file)
@@ -61,7 +61,7 @@ def _checked(file: Path) -> Path:
     if file.suffix.lower() not in _READERS:
         raise InputError(
             "chart",
-            f"{file.name} is of no kind that holds a chart.",
+            f"{file.name} is not of a kind that holds a chart.",
             "Use a .txt file of K/P lines or written rows, a .ks file of KnitSpeak, a .png with one"
             " pixel a stitch, a .json design or a .k knitout program.",
         )

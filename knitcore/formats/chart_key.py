@@ -1,4 +1,4 @@
-"""The key of a drawn chart: symbols, yarns, repeats and a note; and how a chart is drawn."""
+"""The key of a drawn chart (symbols, yarns, repeats, a note), and the style of the drawing."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TINT = 0.55
 """Share of a yarn's colour in its stitches; the rest is white."""
 INK, GRID, TENTH, HEAVY, NO_STITCH = "#222222", "#b5b0a8", "#55504a", "#b3322b", "#d9d5ce"
 SMALL_MM = 2.5
-"""Smallest type: 7 pt, which is read at arm's length."""
+"""Smallest type: 7 pt, readable at arm's length."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class ChartStyle:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
             raise InputError(
-                "aspect", f"{self.aspect:g} is not an aspect of a stitch.", "Give 0.2 to 5."
+                "aspect", f"{self.aspect:g} is not the aspect ratio of a stitch.", "Give 0.2 to 5."
             )
 
 

@@ -86,7 +86,7 @@ def read_design(file: Path) -> DesignFile:
     Raises
     ------
     InputError
-        If it is not JSON, no design, or of a version that this program does not know.
+        If it is not JSON, not a design, or of a version that this program does not know.
     """
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
@@ -100,9 +100,7 @@ def read_design(file: Path) -> DesignFile:
 def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
     """A design from the content of such a file, of any version up to ours."""
     if not isinstance(content, Mapping) or content.get("format") != FORMAT:
-        raise InputError(
-            "chart", f"{name} is not a design.", f'A design says "format": "{FORMAT}".'
-        )
+        raise InputError("chart", f"{name} is not a design.", f'A design has "format": "{FORMAT}".')
     data = migrated(dict(content))
     if _version(data) != VERSION:
         raise InputError(
@@ -123,7 +121,7 @@ def design_from_mapping(content: Any, name: str = "the file") -> DesignFile:
 
 
 def migrated(data: dict[str, Any]) -> dict[str, Any]:
-    """The content of a design file as the newest version that is known has it."""
+    """The content of a design file, converted to the newest version."""
     while (version := _version(data)) in MIGRATIONS:
         data = MIGRATIONS[version](data)
     return data

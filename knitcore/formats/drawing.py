@@ -1,4 +1,4 @@
-"""A page of simple shapes, and its two printers: SVG and PDF.
+"""A page of simple shapes, written as SVG or PDF.
 
 Lengths in mm; the origin is the top left corner, y points down.
 """

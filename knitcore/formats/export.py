@@ -152,7 +152,7 @@ def export_chart(
     chart : the face grid.
     kind : the format, or the name of an extension's.
     material : gives the stitches their size and their values.
-    options : see there.
+    options : see :class:`ExportOptions`.
 
     Raises
     ------
@@ -284,7 +284,7 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
             use = yarn_use(
                 piece.shaped, material, linear_density_tex=options.linear_density_tex, cells=cells
             )
-        except InputError:  # the material has no loop length: stitches must do
+        except InputError:  # the material has no loop length, so only stitches are given
             facts.append(said)
             continue
         mass = "" if use.mass_g is None else f", {use.mass_g:.1f} g"
@@ -294,7 +294,7 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
 
 _TEXT = "text/plain; charset=utf-8"
 _LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
-_DRAWN = ("A drawn loop on the flat lattice, not a relaxed yarn.",)
+_DRAWN = ("Drawn loops on the flat lattice, not relaxed yarn.",)
 
 _BUILT_IN = (
     Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout),

@@ -1,7 +1,7 @@
 """The extensibility field of a piece as rectangles, by region and by stitch (the paper's Fig. 4d).
 
-A rectangle is as wide as the cloth gives along the course, 1/Y_x, and as high as it gives along
-the wale, 1/Y_y, both to one scale.
+The width of a rectangle is the extensibility along the course, 1/Y_x, its height that along the
+wale, 1/Y_y, both to one scale.
 """
 
 from __future__ import annotations

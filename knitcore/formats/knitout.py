@@ -6,7 +6,8 @@ the face. Programs end in courses of waste yarn, which hold the last course with
 in a chain bind-off.
 
 Edges are shaped as by hand. Where a course begins, its own yarn casts on and binds off; where it
-ends, that yarn is not yet there, so a separate strand does. A loss of one stitch is a decrease: its
+ends, that yarn has not arrived, so a separate strand is used. A loss of one stitch is a decrease:
+its
 loop is put onto the neighbour. Blocks of colour have a carrier each (intarsia), and each course
 tucks the yarn of a block into the next one, so that no slit is left.
 
@@ -33,13 +34,13 @@ MAXIMUM_NEEDLES = 540
 WASTE_COURSES = 6
 TAG_STITCHES = 4
 ANCHOR_TUCKS = 3
-"""Tucks that hold a yarn which comes in within a course."""
+"""Tucks that hold a yarn brought in within a course."""
 MOST_LOOPS = 3
 """Loops that a needle's hook holds well."""
 
 
 class Finish(StrEnum):
-    """How the last course is kept from ravelling."""
+    """The finish that keeps the last course from ravelling."""
 
     WASTE = "waste"
     BIND_OFF = "bind-off"
@@ -127,7 +128,7 @@ def _transfers(lines: Iterable[str]) -> int:
 
 
 class _Body:
-    """The passes of a program; it remembers on which bed each loop is."""
+    """The passes of a program, with the bed of each loop."""
 
     def __init__(self, piece: Piece, plan: CarrierPlan) -> None:
         self._piece, self._plan = piece, plan
@@ -186,7 +187,7 @@ class _Body:
     def _lose(self, columns: list[int], carrier: int | None, *, inwards: int) -> Iterator[str]:
         """Put the loops of an edge, the outermost first, onto the first one that stays.
 
-        Several are chained by a yarn that is there, or by a strand that is brought for it.
+        Several are chained by a yarn that is present, or by a strand brought in for it.
         """
         if not columns:
             return
@@ -281,7 +282,7 @@ class _Body:
             yield f"tuck {sign} {_needle(self._piece.chart.purl[row, column], column)} {carrier}"
 
     def waste(self) -> Iterator[str]:
-        """Courses of another yarn on the same needles, then everything is let go."""
+        """Courses of another yarn on the same needles, after which all loops are dropped."""
         beds, columns = self._piece.chart.purl[-1], range(*self._spans[-1])
         strand = self._plan.waste
         for _, carrier in self._plan.rows[-1].stretches:

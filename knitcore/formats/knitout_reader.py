@@ -27,7 +27,7 @@ _HOLDS = re.compile(r"^; carrier (\d{1,2}) knits (#[0-9a-f]{6}) (.+)$", re.MULTI
 
 
 class KnitoutMismatchError(KnitcoreError):
-    """A program that we wrote does not knit its chart: our mistake, so nothing is exported."""
+    """A program of this library does not knit its chart: an error here, so nothing is exported."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ def knitted_chart(program: str) -> KnittedChart:
     Raises
     ------
     InputError
-        If the program is too long, breaks the language or the machine, or knits anything but knits
-        and purls within an outline.
+        If the program is too long, violates the language or the machine, or makes anything but
+        knits and purls within an outline.
     """
     if len(program.encode()) > MAXIMUM_BYTES:
         raise InputError("knitout", "the program is too long.", f"Use at most {MAXIMUM_BYTES} B.")
@@ -115,7 +115,7 @@ def _interpreted(program: str) -> tuple[list[Any], list[str]]:
         try:
             lines = _parser().parse_knitout_to_instructions(program)
             graph: Any = Knitout_Executer(lines).resulting_knit_graph
-        # The interpreter lets some mistakes in a program through as errors of Python itself.
+        # For some mistakes in a program the interpreter raises Python's own errors.
         except (
             Knitout_Error,
             Knitting_Machine_Error,
@@ -127,7 +127,7 @@ def _interpreted(program: str) -> tuple[list[Any], list[str]]:
             ValueError,
         ) as error:
             raise InputError(
-                "knitout", f"{_one_line(error)}.", "Mend that line: the machine stops there."
+                "knitout", f"{_one_line(error)}.", "Correct that line: the machine stops there."
             ) from None
     return list(graph.sorted_loops), [_one_line(w.message) for w in caught]
 

@@ -7,11 +7,11 @@
     Rows 3 and 5 (RS): Knit.
     Rows 4, 6-8: Knit to last 2 sts, p2.
 
-KnitSpeak says nothing of casting on: the number of stitches follows from the rows. So the first
+KnitSpeak does not mention casting on: the number of stitches follows from the rows. So the first
 row is written without ``*``. Read are rows and rounds in any order and grouping, ``k``, ``p``,
 ``knit`` and ``purl`` (also ``to last N sts``), ``[…] twice`` and ``[…] N times``, and one
-``*…, repeat from *`` (or ``rep from *``), nested brackets included; stitches that make no chart of
-knits and purls are refused by name. Reference: https://stitch-maps.com/about/knitspeak/
+``*…, repeat from *`` (or ``rep from *``), nested brackets included; other stitches than knits and
+purls are refused by name. Reference: https://stitch-maps.com/about/knitspeak/
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ def read_knitspeak(text: str) -> StitchChart:
         row = _row(number, words.rstrip(". "))
         for index in _numbers(number, numbers):
             if index in rows:
-                raise _wrong(number, f"row {index} is there already.", "Write each row once.")
+                raise _wrong(number, f"row {index} is given twice.", "Write each row once.")
             rows[index] = row
             if side is not None:
                 stated[index] = Side(side.upper())
@@ -203,7 +203,7 @@ def _first_side(stated: dict[int, Side], construction: Construction) -> Side:
     found = {side if index % 2 else side.other for index, side in stated.items()}
     if len(found) > 1 or (construction is Construction.ROUND and Side.WS in stated.values()):
         raise InputError(
-            "rows", "right-side and wrong-side rows do not take turns.", "Correct RS and WS."
+            "rows", "right-side and wrong-side rows do not alternate.", "Correct RS and WS."
         )
     return found.pop() if found else Side.RS
 
@@ -237,7 +237,7 @@ def _row(line: int, words: str) -> _Row:
     if not unit or len(tail) != wanted:
         raise _wrong(
             line,
-            f"{len(tail)} stitches follow the repeat, it says {wanted}.",
+            f"{len(tail)} stitches follow the repeat, but it says {wanted}.",
             'Make "to last N sts" agree with what follows.',
         )
     return _Row(line, head, unit, tail)
@@ -265,7 +265,7 @@ def _stitches(line: int, words: str) -> Purls:
         else:
             raise _wrong(
                 line,
-                f"{rest[:30]!r} makes no knit or purl.",
+                f"{rest[:30]!r} is not a knit or a purl.",
                 "Write k3, p2, [k1, p1] 3 times or *…, repeat from *; no lace, cables or shaping.",
             )
         if len(stack[-1]) > MAX_STITCHES_PER_SIDE:

@@ -72,7 +72,7 @@ def load_law(path: Path) -> LawFile:
     Raises
     ------
     InputError
-        If the file is missing, is not JSON, or holds no sound law.
+        If the file is missing, is not JSON, or does not hold a valid law.
     """
     path = Path(path)
     if not path.is_file():
@@ -84,7 +84,7 @@ def load_law(path: Path) -> LawFile:
     except (ValueError, RecursionError):
         raise InputError("law", f"{path.name} is not JSON.", "Give a LAW.json.") from None
     if not isinstance(data, dict):
-        raise InputError("law", f"{path.name} holds no object.", "Give a LAW.json.")
+        raise InputError("law", f"{path.name} does not hold an object.", "Give a LAW.json.")
     return law_from_mapping(data)
 
 

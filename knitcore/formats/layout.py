@@ -53,7 +53,9 @@ class DesignRegion(_Part):
     name: ItemName
     colour: Colour
     yarn: ItemName | None = Field(None, description="Intarsia yarn; None leaves the yarn beneath.")
-    fill: Motif | None = Field(None, description="Repeat that fills it, from the chart's corner.")
+    fill: Motif | None = Field(
+        None, description="Repeat that fills it, counted from the chart's corner."
+    )
     runs: list[tuple[Place, Place, Length]] = Field(
         max_length=MAX_RUNS,
         description="[row, column, length] of adjacent stitches; row 0 is the bottom.",
@@ -90,7 +92,7 @@ class ShelfPattern(_Part):
 
 
 class DesignLayout(BaseModel):
-    """Everything of a design but its chart and its names."""
+    """Everything in a design except its chart and its names."""
 
     outline: str | None = Field(
         None,
@@ -277,7 +279,7 @@ def _yarn_notes(regions: Sequence[DesignRegion]) -> Iterator[str]:
         if first != region.colour.lower():
             yield (
                 f"The yarn {region.yarn} has several colours: that of its first region, {first}, "
-                f"counts in {region.name}, too."
+                f"is used in {region.name}, too."
             )
 
 
@@ -303,6 +305,6 @@ def _region_notes(
             if other:
                 notes.append(
                     f"{region.name} contradicts the chart: {other} of its {int(kept.sum())} "
-                    "stitches are not those of its fill. The chart counts."
+                    "stitches are not those of its fill. The chart is used."
                 )
     yield from reversed(notes)

@@ -1,7 +1,8 @@
 """Charts as pictures with one pixel a stitch: a purl is dark, as the dot of a printed chart.
 
-A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch" see-
-through and its yarns light where they knit and dark where they purl; the names of the yarns are in
+A piece with an outline or with yarns of its own is a picture with a palette, its "no stitch"
+transparent and its yarns light where they knit and dark where they purl; the names of the yarns are
+in
 the file. Any other picture is read by its brightness.
 """
 
@@ -23,7 +24,7 @@ from knitcore.garment.shaped import ShapedChart
 TEXT_KEY = "knitcore-yarns"
 MOST_YARNS = 127
 _LIGHT, _DARK = 170.0, 84.0
-"""Brightness of knits at least, and of purls at most."""
+"""Least brightness of knits, and greatest of purls."""
 
 
 def write_png(chart: StitchChart | Piece) -> bytes:
@@ -62,7 +63,7 @@ def _save_piece(piece: Piece, buffer: io.BytesIO) -> None:
 
 
 def _shade(colour: str, *, knit: bool) -> tuple[int, int, int]:
-    """A yarn's colour, so bright that it is read as a knit or so dark that it is a purl."""
+    """A yarn's colour, bright enough to be read as a knit or dark enough to be read as a purl."""
     rgb = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], dtype=np.float64)
     bright = float(rgb @ (0.299, 0.587, 0.114))
     if knit and bright < _LIGHT:

@@ -27,7 +27,7 @@ _CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
 _LEVELS, _NO_STITCH = 32, -1
 MOST_REGIONS = 12
-"""Lines of the table of regions that fit a page; the rest is in the CSV export."""
+"""Most lines in the table of regions, as fit a page; the rest is in the CSV export."""
 _LINE_CHARACTERS = 112
 _MAP_MM = (84.0, 62.0)
 
@@ -107,7 +107,7 @@ def _regions(
         height=A4_MM[1] - top - 40.0,
     )
     said = [
-        "Means of local values over the stitches of a region; intervals hold 90 %.",
+        "Means of local values over the stitches of a region; intervals cover 90 %.",
         "Local values come from the quarter-cell composite: the stretched, flat fabric.",
         "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
     ]
@@ -140,7 +140,7 @@ def _numbers(chart: StitchChart, material: Material, name: str, found: Answer) -
         for x, text in zip((MARGIN_MM, 62.0, 128.0), cells, strict=True):
             yield Label(x, 36.0 + 5.2 * index, text, 3.2)
     yield Strokes(((MARGIN_MM, 38.0, A4_MM[0] - MARGIN_MM, 38.0),), "#b5b0a8", 0.2)
-    yield Label(MARGIN_MM, 64.0, f"Intervals hold 90 %. Source: {found.provenance}.", 3.0)
+    yield Label(MARGIN_MM, 64.0, f"Intervals cover 90 %. Source: {found.provenance}.", 3.0)
 
 
 _NUMBERS: tuple[tuple[str, Callable[[Along], tuple[float, Interval]]], ...] = (
@@ -211,7 +211,7 @@ def _plot(found: Answer) -> Iterator[Shape]:
 
 
 def _assumptions(said: Sequence[str], top: float) -> Iterator[Shape]:
-    yield Label(MARGIN_MM, top, "How, and what to keep in mind", 3.4)
+    yield Label(MARGIN_MM, top, "Method and assumptions", 3.4)
     y = top + 6.0
     for note in said:
         for line in textwrap.wrap(note, _LINE_CHARACTERS):

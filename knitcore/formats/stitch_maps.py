@@ -1,4 +1,4 @@
-"""Maps of wanted moduli from a spreadsheet: the columns that :mod:`stitch_values` writes."""
+"""Maps of target moduli from a spreadsheet: the columns that :mod:`stitch_values` writes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,9 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
     except (UnicodeDecodeError, csv.Error):
         raise InputError("target", f"{file.name} is not CSV text.", "Save it as CSV.") from None
     if not entries:
-        raise InputError("target", f"{file.name} holds no stitch.", "Give one line a stitch.")
+        raise InputError(
+            "target", f"{file.name} holds no stitch.", "Give one line for each stitch."
+        )
     rows, columns = max(entry[0] for entry in entries), max(entry[1] for entry in entries)
     check_size(rows, columns)
     maps = np.full((2, rows, columns), np.nan)

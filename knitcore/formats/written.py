@@ -34,9 +34,9 @@ from knitcore.garment.worked_piece import PieceRow, groups, piece_rows
 from knitcore.worked import Construction, Side
 
 LATER_USE = 2
-"""A bracket is used where its stitches occur at least so often."""
+"""Least number of repetitions that are written as a bracket."""
 LEAST_TO_INCREASE = 4
-"""Rows of fewer stitches cast on instead of making one between two stitches."""
+"""Rows of fewer stitches than this cast on instead of making one between two stitches."""
 
 
 def write_rows(
@@ -136,7 +136,7 @@ class _Writer:
 
 
 def piece_row_words(row: PieceRow, *, several: bool) -> str:
-    """One row of a piece in words; with ``several`` yarns each stretch says its own."""
+    """One row of a piece in words; with ``several`` yarns each stretch names its own."""
     forms, before, after = _edge_forms(row)
     parts = list(before)
     stretches = groups(row.yarns)
@@ -178,7 +178,7 @@ _PURLED = {"ssk": "ssp", "k2tog": "p2tog", "k3tog": "p3tog", "m1": "m1p"}
 
 
 def _bracketed(purls: Sequence[bool], forms: Sequence[str], start: int, stop: int) -> str:
-    """A stretch of a row, its repeat in brackets: it says how many stitches it has."""
+    """A stretch of a row with its repeat in brackets, which gives the number of stitches."""
     parts, plain = [], start
     for index in range(start, stop):
         if forms[index]:
@@ -191,7 +191,7 @@ def _bracketed(purls: Sequence[bool], forms: Sequence[str], start: int, stop: in
 
 @lru_cache(maxsize=4096)
 def in_brackets(purls: tuple[bool, ...]) -> str:
-    """A row with its longest repeat in brackets: it says how many stitches it has.
+    """A row with its longest repeat in brackets, which gives the number of stitches.
 
     Examples
     --------

@@ -53,7 +53,7 @@ def read_rows(text: str) -> StitchChart:
     """
     piece = read_piece_rows(text)
     if not piece.is_rectangle:
-        raise InputError("rows", "they make no rectangle.", "Read them as a piece with an outline.")
+        raise InputError("rows", "they do not make a rectangle.", "Read them with read_piece_rows.")
     return piece.chart
 
 
@@ -157,7 +157,7 @@ class _Reader:
         if self._needle + work.first + work.last != len(work.stitches):
             raise line.wrong(
                 f"it needs other than the {self._needle} stitches that are on the needle.",
-                "Write out rows whose count differs.",
+                "Write out rows with another count.",
             )
         self._rows.append(work)
         self._needle = len(work.stitches)

@@ -10,7 +10,7 @@ from knitcore.errors import InputError
 from knitcore.garment.piece import yarn_name
 
 MAX_CHARACTERS = 20_000
-"""Of a row's words; the widest row without any repeat takes a quarter of it."""
+"""Most characters in a row's words; the widest row without any repeat takes a quarter of it."""
 _COUNT = re.compile(r"\((\d{1,4}) sts?\)$", re.IGNORECASE)
 _STITCHES = re.compile(r"([kp])(\d{1,4})", re.IGNORECASE)
 _BRACKET = re.compile(r"\(([^()]*)\) (?:(twice)|(\d{1,4}) times)", re.IGNORECASE)
@@ -93,13 +93,13 @@ def read_row(line: Line, body: str, needle: int, yarns: int) -> Work:
     stitches = _yarn_words(line, words, worked, yarns)
     if taken(stitches) != worked:
         raise line.wrong(
-            f"it works {taken(stitches)} stitches, {worked} are on the needle.",
+            f"it works {taken(stitches)} stitches, but {worked} are on the needle.",
             "Correct the row, or cast on, bind off, increase or decrease at its edges.",
         )
     first, last = _shaped(line, stitches, first, last)
     if count is not None and int(count[1]) != len(stitches):
         raise line.wrong(
-            f"it says {count[1]} sts, {len(stitches)} are on the needle.", "Correct the count."
+            f"it says {count[1]} sts, but {len(stitches)} are on the needle.", "Correct the count."
         )
     return Work(first, last, stitches)
 
@@ -171,7 +171,7 @@ def _words(line: Line, words: str, worked: int) -> Stitches:
     wanted = 0 if end else int(last or 1)
     if taken(tail) != wanted:
         raise line.wrong(
-            f"{taken(tail)} stitches follow the repeat, it says {wanted}.",
+            f"{taken(tail)} stitches follow the repeat, but it says {wanted}.",
             'Make "to last N sts" agree with what follows.',
         )
     room = worked - taken(head) - taken(tail)

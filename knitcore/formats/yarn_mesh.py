@@ -1,6 +1,6 @@
 """The yarn of a chart as a solid: one closed tube a course, as glTF (metres) or STL (mm).
 
-It is the picture's geometry, laid flat with the material's stitch sizes, not an equilibrium.
+The geometry is that of a drawing, laid flat with the material's stitch sizes, not an equilibrium.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from knitcore.materials import Material
 MAXIMUM_STITCHES = 10_000
 POINTS, SIDES = 17, 6
 DEFAULT_DIAMETER_SHARE = 0.3
-"""Yarn diameter over stitch width where the material does not know its yarn's."""
+"""Yarn diameter over stitch width if the material has no yarn diameter."""
 
 
 def course_centre_lines(
@@ -98,7 +98,7 @@ def write_stl(chart: StitchChart | Piece, material: Material) -> bytes:
 
 
 def export(mesh: TriangleMesh, scale: float, kind: str) -> bytes:
-    """A file of a kind that trimesh knows (``glb``, ``stl``)."""
+    """A file of a kind that trimesh writes (``glb``, ``stl``)."""
     import trimesh
 
     solid: Any = trimesh.Trimesh(mesh.vertices * scale, mesh.faces, process=False)

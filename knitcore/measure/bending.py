@@ -28,7 +28,7 @@ FITTED_SHARE = 0.5
 LOG_LOADS = np.linspace(np.log(0.1), np.log(3e5), 60)
 """Starts of the search for the load."""
 WORST_RMS_SHARE = 0.02
-"""If the distance is a larger share of the length, the line is not that of hanging yarn."""
+"""Largest rms distance, over the length, at which a line is accepted as hanging yarn."""
 DENSITY_RANGE_G_PER_M = (0.005, 20.0)
 
 
@@ -106,7 +106,7 @@ def measure_bending(
     if not (np.isfinite(linear_density_g_per_m) and low <= linear_density_g_per_m <= high):
         raise InputError(
             "linear_density_g_per_m",
-            f"{linear_density_g_per_m:g} g/m is not a yarn's.",
+            f"{linear_density_g_per_m:g} g/m is out of range for a yarn.",
             f"Give {low:g} to {high:g} g/m; tex divided by 1000 is g/m.",
         )
     lengths = _lengths(length_mm, len(paths))
@@ -142,7 +142,7 @@ def measure_bending(
     several = len(values) > 1
     deviation = float(values.std(ddof=1)) if several else None
     if not several:
-        notes.append("One photo says nothing about the spread between samples.")
+        notes.append("One photo does not show the scatter between samples.")
     return BendingResult(
         bending_modulus_n_mm2=float(values.mean()),
         standard_deviation=deviation,

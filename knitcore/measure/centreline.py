@@ -27,7 +27,7 @@ MAXIMUM_BYTES = 100 * 2**20
 WORKING_PIXELS = 1400
 """Long side of the image that is traced; a yarn is then 10 to 60 pixels wide."""
 MINIMUM_CONTRAST = 0.12
-"""Of full scale, between the yarn and its background."""
+"""Least contrast between the yarn and its background, over full scale."""
 MINIMUM_SLENDERNESS = 6.0
 """Length over width below which a bright spot is not a yarn."""
 MAXIMUM_UNEVENNESS = 0.25
@@ -45,7 +45,7 @@ class Centreline:
     arc_px : (n,) arc length from the clamp, evenly spaced.
     width_px : median width of the yarn.
     tip_in_photo : whether the free end ends inside the photo.
-    next_largest : area of the next largest thing that stands out, as a share of the yarn's.
+    next_largest : area of the next largest object, over the yarn's.
     """
 
     x_px: Array
@@ -103,7 +103,7 @@ def load_grey(path: Path) -> Array:
 def trace_centreline(grey: Array, *, name: str = "photo") -> Centreline:
     """The centreline of the one yarn in a photo.
 
-    The yarn is what stands out from the border's grey level, without its stray fibres; its
+    The yarn is the region that differs from the border's grey level, without stray fibres; its
     centreline is the longest path of its skeleton, extended to both ends and smoothed over one
     yarn width.
 
@@ -227,8 +227,9 @@ def _farthest(graph: csr_array, start: int) -> tuple[int, NDArray[np.int32]]:
 def _ribbon_axis(mask: Mask, name: str) -> tuple[Array, float]:
     """The axis of a ribbon from end to end, and its width; refuses other shapes.
 
-    Beyond the photo's border the yarn is continued straight out, so that its axis is as good at the
-    border as elsewhere. A skeleton forks at a free end: there it is replaced by a straight piece.
+    Beyond the photo's border the yarn is continued straight out, so that its axis is as accurate at
+    the border as elsewhere. A skeleton forks at a free end: there it is replaced by a straight
+    piece.
     """
     # A frame of background lets the skeleton end at the border like anywhere else.
     area, length = float(mask.sum()), float(skeletonize(mask).sum())

@@ -83,7 +83,7 @@ def _read_xls(path: Path) -> list[CompressionTest]:
     try:
         book = xlrd.open_workbook(str(path), logfile=io.StringIO())
         sheets = {sheet.name: sheet for sheet in book.sheets()}
-    except Exception as error:  # xlrd raises whatever a damaged file runs it into
+    except Exception as error:  # on a damaged file xlrd may raise anything
         raise InputError(
             path.name, f"cannot be read as XLS ({error}).", "The file may be cut off."
         ) from None

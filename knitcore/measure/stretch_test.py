@@ -16,11 +16,11 @@ Array = NDArray[np.float64]
 MINIMUM_POINTS = 20
 """With fewer points a linear part cannot be distinguished from a stiffening one."""
 PERCENT_STRAIN = 6.0
-"""A strain above this (600 %) is more than any knit reaches before it locks: it is in percent."""
+"""A strain above this (600 %) must be in per cent: no knit reaches it before it locks."""
 SPIKE_SHARE = 0.1
-"""A reading that leaves the median of its six neighbours by more of the peak is a misreading."""
+"""Distance from the median of the six neighbours, over the peak, that marks a misreading."""
 FALL_SHARE = 0.35
-"""A force below its running maximum by more of the peak is an unloading or a rupture."""
+"""Fall below the running maximum, over the peak, that marks an unloading or a rupture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,7 +259,7 @@ def check_pair(course: StretchTest, wale: StretchTest) -> tuple[str, ...]:
         if said is not None and said is not direction:
             raise InputError(
                 f"test_{direction}",
-                f"{test.source} says that it was pulled {said}-wise.",
+                f"{test.source} states that it was pulled {said}-wise.",
                 "Give the test pulled along the rows (x) first and the one along the columns (y)"
                 " second.",
             )

@@ -1,4 +1,4 @@
-"""Columns of numbers in tables that users give."""
+"""Columns of numbers in tables from users."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def read_csv(path: Path, header: str) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If it is no such file.
+        If it is not such a file.
     """
     import pandas as pd  # half a second, which only those who read a table wait
 

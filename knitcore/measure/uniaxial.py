@@ -9,7 +9,7 @@ Reductions by name:
     every complete pull covers, with the strain across taken from the straight line.
 ``uniform``
     Strain from clamp to clamp; Poisson ratios through the origin; every pull counts the same, and
-    within a pull every strain interval, whatever the number of frames. The fabric is taken to
+    within a pull every strain interval, whatever the number of frames. The fabric is assumed to
     strain evenly, as if the clamps did not restrain it.
 ``recommended``
     The test is simulated between its clamps, and force and waist are fitted together:
@@ -47,11 +47,11 @@ BLOCKS = 10
 COMPLETE_SHARE = 0.9
 """A pull is complete when it reaches this share of the largest stress."""
 SHARED_SHARE = 0.5
-"""Pulls that share less of the range of strain are not cut to a common one."""
+"""Least common range of strain, over the whole, to which pulls are cut."""
 
 
 class Reduction(StrEnum):
-    """How points become constants: as published, or as recommended."""
+    """Reduction of points to constants."""
 
     PUBLISHED = "published"
     UNIFORM = "uniform"
@@ -89,7 +89,7 @@ class LawFit:
     standard_errors : by the law's field names, and for ``poisson_yx``, ``poisson_xy``,
         ``modulus_course``, ``modulus_wale`` (each carried through the jackknife, correlations
         included).
-    reduction : which one.
+    reduction : its name.
     rms_n_per_mm : of all residuals; ``rms_course_n_per_mm`` and ``rms_wale_n_per_mm`` of one test.
     largest_strain : fitted range per direction.
     residuals : data for plots, per direction.
@@ -141,7 +141,7 @@ def fit_files(
 def fit_law(
     course: StretchTest, wale: StretchTest, *, reduction: Reduction = Reduction.UNIFORM
 ) -> LawFit:
-    """Fit the eight constants to a course-wise and a wale-wise test, taken to strain evenly.
+    """Fit the eight constants to a course-wise and a wale-wise test, assuming even strain.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def fit_law(
         runs={d: len(t.runs) for d, t in zip(Direction, (course, wale), strict=True)},
         error_method="jackknife over pulls"
         if not single
-        else f"jackknife over blocks of strain ({', '.join(single)}), without the spread of pulls",
+        else f"jackknife over blocks of strain ({', '.join(single)}); scatter of pulls unknown",
         notes=tuple(notes),
     )
 

@@ -1,4 +1,4 @@
-"""What is done to the edges of a piece."""
+"""Conditions on the edges of a piece."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Held:
     Parameters
     ----------
     edge : its name.
-    x_mm, y_mm : how far it is moved in the end; None where it is free to slide.
+    x_mm, y_mm : displacement at the last step; None where it is free to slide.
     """
 
     edge: str
@@ -119,7 +119,7 @@ class Constraints:
     ----------
     basis : a scalar basis of scikit-fem on the piece's mesh.
     piece : with the edges' names.
-    conditions : at least so many that the piece cannot move or turn as a whole.
+    conditions : enough of them that the piece cannot move or turn as a whole.
 
     Raises
     ------
@@ -170,7 +170,7 @@ class Constraints:
         found = np.zeros(self.held.shape)
         for condition, nodes, edge in zip(self.conditions, self.nodes, self._edges, strict=True):
             match condition:
-                case Pulled():  # the clamp's unknown collects them, so one node may take it all
+                case Pulled():  # the clamp's unknown sums them, so one node may carry all
                     found[:, nodes[0]] += share * condition.x_n, share * condition.y_n
                 case Traction():
                     along = LinearForm(lambda v, _: v).assemble(edge)
@@ -272,7 +272,7 @@ class Constraints:
 
 
 def _check(condition: Condition) -> None:
-    """Refuse numbers that are none or out of range."""
+    """Refuse values that are not numbers or out of range."""
     for name, value in vars(condition).items():
         if isinstance(value, float | int) and not math.isfinite(value):
             raise InputError(name, f"{value} is not a number.", "Give a finite number.")

@@ -118,7 +118,7 @@ class Balance:
     def _along_tangent(
         self, state: Array, found: Assembled, solve: Solve, shares: tuple[float, float]
     ) -> Array:
-        """The state at another share of the load to which the tangent of a balanced one points."""
+        """The state at another share of the load, predicted along the tangent of a balanced one."""
         before, after = (self.constraints.displacements(share) for share in shares)
         move = after - before
         pushed = (found.tangent @ move.ravel()).reshape(move.shape)
@@ -126,8 +126,8 @@ class Balance:
         return np.asarray(state + move + self._spread_out(solve(self._gathered(force))))
 
     def _balanced(self, state: Array, share: float) -> tuple[Array, Assembled, Solve, int]:
-        """The balanced state near another, what it is like, what solves with its tangent, and the
-        linear systems that it took.
+        """The balanced state near another, its properties, a solver with its tangent, and the
+        number of linear systems solved.
         """
         loads = self.constraints.loads(share)
         found = self.at(state)

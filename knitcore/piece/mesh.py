@@ -23,11 +23,11 @@ Indices = NDArray[np.int64]
 
 MAX_ELEMENTS = 20_000
 DEFAULT_ELEMENTS = 600
-"""By which the mesh size is chosen if none is given."""
+"""Number of elements from which the mesh size is chosen if none is given."""
 MAX_EMPTY = 20
-"""The box around a piece over its area, at most, before elements become larger for it."""
+"""Largest ratio of the bounding box to the area of a piece for which elements keep their size."""
 CLEARANCE = 0.55
-"""Of inner points from the boundary, over the mesh size."""
+"""Least distance of inner points from the boundary, over the mesh size."""
 MAX_SPLITS = 12
 SMOOTHINGS = 3
 
@@ -135,7 +135,7 @@ def _lattice(polygon: shapely.Polygon, size: float) -> Array:
 
 
 def _missing(rings: list[Array], triangles: Indices) -> list[NDArray[np.bool_]]:
-    """Which segments of the rings are no edges of triangles."""
+    """The segments of the rings that are not edges of triangles."""
     edges = np.sort(np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
     known = set(map(tuple, edges.tolist()))
     found, first = [], 0

@@ -16,7 +16,7 @@ from knitcore.errors import InputError
 Point = tuple[float, float]
 
 MAX_CORNERS = 500
-"""Of an outline and its holes together."""
+"""Most corners of an outline and its holes together."""
 MAX_SIZE_MM = 10_000.0
 
 
@@ -37,7 +37,8 @@ class CutPiece:
     Raises
     ------
     InputError
-        If the outline crosses itself, a hole leaves it, or an edge names a side that is none.
+        If the outline crosses itself, a hole leaves it, or an edge names a side that does not
+        exist.
 
     Examples
     --------
@@ -54,19 +55,19 @@ class CutPiece:
     def __post_init__(self) -> None:
         rings = (self.outline, *self.holes)
         if not math.isfinite(self.grain_deg):
-            raise InputError("grain_deg", f"{self.grain_deg} is no angle.", "Give degrees.")
+            raise InputError("grain_deg", f"{self.grain_deg} is not an angle.", "Give degrees.")
         for name, ring in zip(("outline", *("holes",) * len(self.holes)), rings, strict=True):
             if len(ring) < 3:
                 raise InputError(name, f"{len(ring)} corners are too few.", "Give at least three.")
             if not np.all(np.abs(np.asarray(ring, dtype=float)) <= MAX_SIZE_MM):
                 raise InputError(
-                    name, "a corner is no place.", f"Give mm, at most {MAX_SIZE_MM:g} from 0."
+                    name, "a corner is not a place.", f"Give mm, at most {MAX_SIZE_MM:g} from 0."
                 )
             if np.any(np.all(np.asarray(ring) == np.roll(ring, -1, axis=0), axis=1)):
                 raise InputError(
                     name,
                     "a corner is given twice in a row.",
-                    "Give each corner once; the last side leads back to the first by itself.",
+                    "Give each corner once; the last side closes the outline.",
                 )
         corners = sum(map(len, rings))
         if corners > MAX_CORNERS:
@@ -85,7 +86,7 @@ class CutPiece:
             if wrong or not sides:
                 raise InputError(
                     f"edges.{name}",
-                    f"{wrong[0] if wrong else 'nothing'} is no side.",
+                    f"{wrong[0] if wrong else 'nothing'} is not a side.",
                     f"Use numbers from 1 to {corners}.",
                 )
 

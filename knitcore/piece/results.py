@@ -1,4 +1,4 @@
-"""What came of a test of a piece: positions, forces and fields."""
+"""Results of a test of a piece: positions, forces and fields."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class ElementFields:
 
 @dataclass(frozen=True, eq=False)
 class PieceTest:
-    """Load steps of a piece, as far as they converged.
+    """The load steps of a piece that converged.
 
     Attributes
     ----------
@@ -69,12 +69,12 @@ class PieceTest:
 
     @property
     def converged(self) -> bool:
-        """Whether every step that was asked for is here."""
+        """Whether all requested steps converged."""
         return self.problem is None
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
-        """What was done to the edges."""
+        """The conditions on the edges."""
         return self.constraints.conditions
 
     @property
@@ -156,7 +156,7 @@ class PieceTest:
         return float(self._strains(step)[1].max())
 
     def is_past_the_law(self, step: int = -1) -> bool:
-        """Whether some cloth is past 98 % of its lock-up, where its law is only continued."""
+        """Whether some cloth is past 98 % of its lock-up, where its law is extrapolated."""
         return self.utilisation(step) > EXTENSION_START + 1e-6
 
     def _strains(self, step: int) -> tuple[tuple[Array, Array, Array], Array]:

@@ -38,11 +38,11 @@ def solve(
     ----------
     piece : the outline.
     cloth : under it, of :func:`knitcore.piece.cloth.cloth_under`.
-    conditions : what is done to the edges.
+    conditions : on the edges.
     steps : of the load.
     mesh_mm : length of an element's side, about.
     progress : called with (steps done, steps in all).
-    cancelled : called now and then; True stops the test.
+    cancelled : called from time to time; True stops the test.
 
     Returns
     -------

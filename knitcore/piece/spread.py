@@ -1,4 +1,4 @@
-"""How sure the forces and motions of a piece are, from the uncertainty of its cloth's laws.
+"""Uncertainty of the forces and motions of a piece, from that of its cloth's laws.
 
 By the delta method, as for a strip (:mod:`knitcore.swatch.uncertainty`): a parameter p of the laws
 moves the nodes by du/dp = -K⁻¹ dR/dp and changes the forces at the edges by dR/dp + K du/dp.
@@ -123,6 +123,6 @@ def _model_log_sd(test: PieceTest, step: int) -> float:
 
 
 def _mean_stress(test: PieceTest, step: int) -> float:
-    """Of the larger of the two stresses along the fibres, N/mm."""
+    """The larger of the two stresses along the fibres, N/mm."""
     fields = test.fields(step)
     return max(float(np.mean(np.maximum(fields.stress_course, fields.stress_wale))), 0.0)

@@ -1,4 +1,4 @@
-"""How the four fabrics of a material bend, from the yarn level."""
+"""Bending of the four fabrics of a material, from the yarn level."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ def curl(
     Parameters
     ----------
     chart : the whole piece, from the face side.
-    time_limit_s : CPU time after which the shape is given as it is, unconverged.
+    time_limit_s : CPU time after which the current shape is returned, not converged.
     cancel : called before every step; True stops with CancelledError.
 
     Raises

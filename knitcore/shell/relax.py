@@ -24,9 +24,9 @@ from knitcore.shell.tangent import Tangent
 
 MEMORY = 16
 _STRIDE = 0.3
-"""Longest way of a corner in one step, in thicknesses."""
+"""Longest displacement of a corner in one step, in thicknesses."""
 _SKIN = 1.2
-"""How much farther than the thickness the list of near points reaches, in thicknesses."""
+"""Reach of the list of near points beyond the thickness, in thicknesses."""
 TOLERANCE = 1e-3
 """Largest force on a corner of a converged sheet, in units of its bending (``force_scale_n``), or
 of the load on a corner where that is less."""
@@ -39,7 +39,7 @@ _LEAST_STEP = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """End of a descent.
+    """The result of a descent.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def settle(
     x : (corners, 3) to begin with, mm.
     held : (corners,) those that do not move.
     load_n : (corners, 3) forces that act on the corners, such as their weight.
-    time_limit_s : CPU time after which it ends unconverged.
+    time_limit_s : CPU time after which it ends, not converged.
     cancel : called before every step; True stops with CancelledError.
 
     Raises

@@ -34,8 +34,8 @@ Ints = NDArray[np.int64]
 TWIST = 0.4
 """Rigidity of twist D₆₆ in units of the mean rigidity √(D_x D_y): that of a plate with ν = .2."""
 APART = 1.6
-"""Points of the sheet nearer in it than so many thicknesses do not touch: a hairpin's length is
-π/2 of them."""
+"""Least distance within the sheet, in thicknesses, of points that may touch: a hairpin is π/2
+long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,8 @@ class Sheet:
     quarters, membrane : see :func:`knitcore.shell.kernels.quarters`.
     hinges, turning : see :func:`knitcore.shell.kernels.hinges`.
     quads, twisting : see :func:`knitcore.shell.kernels.twists`.
-    thickness_mm, touch_n_per_mm : distance at which the sheet touches itself, and how stiffly.
+    thickness_mm, touch_n_per_mm : distance at which the sheet touches itself, and the stiffness of
+        contact.
     """
 
     rows: int

@@ -26,7 +26,7 @@ class Surface:
     def at(self, across: Array, up: Array, height_mm: Array) -> Array:
         """Points (…, 3), mm, at places counted in stitches from the lower left corner.
 
-        Beyond the edges the surface goes on straight.
+        Beyond the edges the surface is continued straight.
         """
         inside = np.clip(across, 0.0, self._size[0]), np.clip(up, 0.0, self._size[1])
         along, rising = self._of(*inside, 0, 1), self._of(*inside, 1, 0)

@@ -30,7 +30,7 @@ from knitcore.yarnlibrary.yarns import yarn_for
 
 MOST_STITCHES = 8
 SQUARE = 3
-"""Repeats of so many rows and columns are in the store too, though they have more stitches."""
+"""Repeats of this many rows and columns are also in the store, though they have more stitches."""
 
 
 def charts_of_the_store(most_stitches: int = MOST_STITCHES) -> dict[StitchChart, str]:
@@ -165,7 +165,7 @@ def _tell(progress: BatchProgress) -> None:
 
 
 def main() -> None:
-    """Entry of ``python -m knitcore.yarnlibrary.build``."""
+    """Run ``python -m knitcore.yarnlibrary.build``."""
     parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.build")
     parser.add_argument("--most-stitches", type=int, default=MOST_STITCHES)
     parser.add_argument("--folder", type=Path, default=Path(__file__).parent / "data")

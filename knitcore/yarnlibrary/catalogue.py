@@ -30,7 +30,7 @@ COMMON: dict[str, str] = {
     "basket 2x2": "PPKK\nPPKK\nKKPP\nKKPP",
     "broken rib": "KP\nKK",
 }
-"""Repeats that knitters know by name, top row first."""
+"""Repeats with names that knitters use, top row first."""
 
 
 @dataclass(frozen=True)

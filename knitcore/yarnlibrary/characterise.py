@@ -28,12 +28,12 @@ from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, fit_law
 Document = dict[str, Any]
 
 _FAR_STRAIN = {Direction.COURSE: 3.0, Direction.WALE: 2.0}
-"""A stretch ends here unless its stress ends it before."""
+"""Largest strain of a stretch, unless its stress ends it before."""
 _POINTS = 36
 _FEW_IN_RANGE = 12
-"""A stretch with fewer points below the fitted stress is made again in smaller steps."""
+"""A stretch with fewer points below the fitted stress is repeated in smaller steps."""
 _BEYOND = 1.1
-"""How far past the fitted stress a stretch goes."""
+"""Largest stress of a stretch over the fitted stress."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def _curve(stretch: Sweep) -> Document:
 
 
 def _round(value: float) -> float:
-    """To seven significant digits, the accuracy of the solver's tolerance."""
+    """The document to seven significant digits, the accuracy of the solver's tolerance."""
     return float(f"{value:.7g}")
 
 

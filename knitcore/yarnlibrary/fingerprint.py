@@ -64,7 +64,7 @@ def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) 
 
 @dataclass(frozen=True)
 class Source:
-    """What counts of a module's source: its imports, names of files in it, a digest of its code."""
+    """What decides in a module: its imports, the file names in it, a digest of its code."""
 
     imports: frozenset[str]
     files: frozenset[str]

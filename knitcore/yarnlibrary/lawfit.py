@@ -94,7 +94,7 @@ def fit_law(
 def _in_range(sweep: Sweep, max_stress: float) -> tuple[Array, Array, Array]:
     inside = sweep.stress_n_per_mm <= max_stress
     beyond = np.flatnonzero(~inside)
-    if len(beyond):  # the first excess ends the range, whatever a jump brings back
+    if len(beyond):  # the first excess ends the range, even if the stress falls again at a jump
         inside[beyond[0] :] = False
     if np.count_nonzero(inside) < _LEAST_POINTS:
         raise InputError(

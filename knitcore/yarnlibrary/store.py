@@ -92,7 +92,8 @@ class StoredStitch:
 
 
 def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
-    """The packaged relaxation of a chart's repeat, turned and moved to fit; None if there is none.
+    """The packaged relaxation of a chart's repeat, mirrored and shifted to fit; None if there is
+    none.
 
     Examples
     --------

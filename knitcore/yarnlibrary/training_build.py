@@ -27,9 +27,9 @@ from knitcore.yarnlibrary.training import YARN_POINTS, anchor_charts, training_c
 from knitcore.yarnlibrary.yarns import yarn_for
 
 MOST_RELAXED = 25
-"""Cells of more stitches are left out."""
+"""Cells with more stitches are left out."""
 MOST_STRETCHED = 18
-"""Cells of more stitches are relaxed only: their size costs a tenth of their curves."""
+"""Cells with more stitches are only relaxed, which takes a tenth of the time of curves."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def _tell(progress: BatchProgress) -> None:
 
 
 def main() -> None:
-    """Entry of ``python -m knitcore.yarnlibrary.training_build``."""
+    """Run ``python -m knitcore.yarnlibrary.training_build``."""
     parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.training_build")
     parser.add_argument("--keep", type=Path, default=Path("build/training"))
     parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")

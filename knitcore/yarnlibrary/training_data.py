@@ -23,7 +23,7 @@ from knitcore.yarnlevel.yarn import YarnModel
 
 @dataclass(frozen=True, eq=False)
 class RawCurve:
-    """A stretch as it was computed, jumps and all."""
+    """A stretch as computed, including its jumps."""
 
     strain: Array
     transverse_strain: Array

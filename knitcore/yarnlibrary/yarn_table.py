@@ -27,7 +27,7 @@ from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM
 from knitcore.yarnlibrary.yarns import yarn_for
 
 TENSIONS = (0.92, 1.0, 1.08)
-"""Loop lengths of the tension table unless others are asked for, as parts of the material's."""
+"""Loop lengths of the tension table unless others are asked for, as fractions of the material's."""
 
 
 @dataclass(frozen=True)

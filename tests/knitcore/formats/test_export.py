@@ -250,7 +250,7 @@ def test_a_large_chart_is_printed_on_several_pages() -> None:
 
 @pytest.mark.parametrize("aspect", [0.0, float("nan"), 9.0])
 def test_stitches_have_a_shape(aspect: float) -> None:
-    with pytest.raises(InputError, match="aspect of a stitch"):
+    with pytest.raises(InputError, match="aspect ratio of a stitch"):
         ChartStyle(aspect=aspect)
 
 

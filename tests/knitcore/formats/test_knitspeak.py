@@ -64,11 +64,11 @@ def test_patterns_of_other_hands(text: str, chart: str) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("Row 1: k1, yo, k2tog.", "'yo, k2tog' makes no knit or purl"),
+        ("Row 1: k1, yo, k2tog.", "'yo, k2tog' is not a knit or a purl"),
         ("Row 2: k1.", "row 1 is missing"),
-        ("Row 1: k1.\nRow 1: p1.", "is there already"),
+        ("Row 1: k1.\nRow 1: p1.", "is given twice"),
         ("Row 1: k3.\nRow 2: *k2, repeat from *.", "row 2 does not fit 3 stitches"),
-        ("Row 1 (RS): k1.\nRow 2 (RS): k1.", "do not take turns"),
+        ("Row 1 (RS): k1.\nRow 2 (RS): k1.", "do not alternate"),
         ("Row 1: k1.\nRound 2: k1.", "mixed"),
         ("Row 1: [k1.", "not closed"),
         ("Row 1: *k1, repeat from * to last 2 sts, p1.", "it says 2"),

@@ -86,7 +86,7 @@ def test_brackets_and_words_of_other_hands() -> None:
     ("rows", "says"),
     [
         ("Row 2: Knit.", "row 1 comes next"),
-        ("Row 1: K3.", "works 3 stitches, 4 are on the needle"),
+        ("Row 1: K3.", "works 3 stitches, but 4 are on the needle"),
         ("Row 1: K4. (5 sts)", "says 5 sts"),
         ("Row 1 (WS): Knit.", "row 1 is a RS row"),
         ("Rnd 1: Knit.", "mixed"),

@@ -71,7 +71,7 @@ def test_standard_errors_tell_the_spread_of_pulls(tmp_path: Path) -> None:
 def test_one_pull_has_errors_too_and_says_what_they_lack(tmp_path: Path) -> None:
     files = [write_csv(tmp_path / f"{d}.csv", d, runs=1, noise=0.01) for d in (X, Y)]
     fit = fit_files(files[0], files[1])
-    assert "without the spread of pulls" in fit.error_method
+    assert "scatter of pulls unknown" in fit.error_method
     assert all(fit.standard_errors[name] > 0 for name in CONSTANTS)
 
 
