@@ -64,7 +64,7 @@ def test_a_room_imports_from_lower_floors_only(room: Path) -> None:
     assert rooms_imported(room) <= below
 
 
-def test_the_library_knows_no_service() -> None:
+def test_the_library_does_not_import_the_service() -> None:
     outside = {"app", "fastapi", "starlette", "uvicorn", "sqlalchemy", "viser"}
     for file in (ROOT / "knitcore").rglob("*.py"):
         assert not {module.split(".")[0] for module in imports(file)} & outside, file

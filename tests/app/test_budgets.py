@@ -32,15 +32,14 @@ RIB = DesignDocument(name="Cuff", material="acrylic", chart="\n".join(["KP" * 50
 SIZE = 100 * 101 - 1 + len(RIB.model_dump_json(include={"outline", "regions", "repeats", "shelf"}))
 
 
-def test_what_is_held_is_counted_for_each_user_and_let_go() -> None:
+def test_what_users_hold_is_counted_and_released() -> None:
     uses = InUse(Budgets(streams=2))
     with uses.hold("streams", "ada"), uses.hold("streams", "ada"):
         with pytest.raises(OverBudgetError, match="2 of 2 streams"):
             uses.check("streams", "ada")
         uses.check("streams", "bob")
         uses.check("watchers", "ada")
-    uses.check("streams", "ada")
-    assert not uses._held
+    assert uses.held("streams", "ada") == 0
 
 
 class _Finished:
@@ -58,7 +57,7 @@ async def _never() -> bool:
     return False
 
 
-def test_computing_time_is_spent_and_comes_back() -> None:
+def test_computing_time_is_spent_and_restored() -> None:
     compute = Compute([_Finished()], timeout_s=30.0)  # type: ignore[list-item]
     compute.spent = ComputingTime(Budgets(cpu_s=0.1))
 
@@ -104,7 +103,7 @@ def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.Monk
             assert "2 of 2" in refused.json()["detail"]
             other = {"Authorization": f"Bearer {Tokens(state.database).create('bob').token}"}
             assert client.get("/api/v1/session", headers=other).status_code == 200
-        assert not state.in_use._held
+        assert state.in_use.held("connections", "ada") == 0
 
 
 def test_bytes_kept_are_counted_with_versions(
@@ -168,7 +167,7 @@ def narrow(client: TestClient) -> Iterator[TestClient]:
     assert client.put("/api/v1/views/a-view", json=body).status_code == 200
     yield client
     state.in_use = before
-    assert not uses._held
+    assert not any(uses.held(what, "local") for what in ("watchers", "streams", "pictures"))
 
 
 def test_streams_pictures_and_watchers_are_bounded(narrow: TestClient, tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def test_all_corners_are_in_the_picture(side: CameraSide, extent_mm: tuple[float
 
 
 @pytest.mark.parametrize("side", CameraSide)
-def test_the_largest_cloth_is_nearer_than_what_browsers_leave_out(side: CameraSide) -> None:
+def test_the_largest_cloth_is_within_the_drawing_distance_of_browsers(side: CameraSide) -> None:
     side_mm = MAX_STITCHES_PER_SIDE * 8.0  # bulky yarn
     position, _, _ = stand(side, UNITS_PER_MM * np.array([side_mm, side_mm]))
     assert np.linalg.norm(position) + 0.75 * UNITS_PER_MM * side_mm < 1000

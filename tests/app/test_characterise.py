@@ -60,7 +60,7 @@ def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
     assert (tmp_path / "mine-12mm.json").is_file()
 
 
-def test_a_killed_batch_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_a_killed_batch_resumes(tmp_path: Path) -> None:
     arguments = [
         "characterise", "cotton", "--fabrics", "stockinette,garter", "--tensions", "1,1.04",
         "--workers", "1", "--out", str(tmp_path),

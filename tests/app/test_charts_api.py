@@ -45,7 +45,7 @@ def test_bad_charts_name_field_and_remedy(
     assert problem["remedy"]
 
 
-def test_malformed_json_is_told_as_such(client: TestClient) -> None:
+def test_malformed_json_is_reported_as_such(client: TestClient) -> None:
     response = client.post(
         "/api/v1/charts/parse", content=b'{"text": ', headers={"content-type": "application/json"}
     )

@@ -57,7 +57,7 @@ def test_curl_writes_the_shape(tmp_path: Path, kind: str) -> None:
         assert np.all(1000.0 * mesh.extents < np.array(size) + 8.0)
 
 
-def test_curl_says_it_in_words() -> None:
+def test_curl_prints_words() -> None:
     arguments = ["curl", "stockinette", "--size", "4x16", "--material", "acrylic"]
     result = CliRunner().invoke(main, arguments)
     assert "to the back" in result.stdout

@@ -114,7 +114,7 @@ def test_stretch_pressure_and_limits_over_rest_and_on_the_command_line(
     assert json.loads(told.stdout) == found
 
 
-def test_wishes_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
+def test_targets_for_parts_fill_them_and_contradictions_are_refused(client: TestClient) -> None:
     box = [[row, 0, 8] for row in range(8)]
     wishes = [
         {"name": "palm", "runs": box, "modulus_course_n_per_mm": 0.135},

@@ -190,7 +190,7 @@ def test_two_services_of_one_name_are_refused_on_postgresql(postgres_url: str) -
     database.close()
 
 
-def test_damage_that_shows_while_it_runs_is_told(tmp_path: Path) -> None:
+def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
     app = create_app(Settings(workers=1, data_dir=tmp_path))
     with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
         assert client.get("/readyz").status_code == 200
@@ -273,7 +273,9 @@ def test_waiting_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "No worker was free" in str(second)
 
 
-def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_without_workers_is_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(cluster_module, "WORKERS_S", 0.2)
     file = tmp_path / "scheduler.json"
     words = ["scheduler", "--host=127.0.0.1", "--port=0", "--no-dashboard"]

@@ -59,14 +59,14 @@ def test_a_request_for_its_format_is_a_file(tmp_path: Path) -> None:
         export(ExportRequest(chart="KP", to="no-such-format"), Context(tmp_path))
 
 
-def test_a_measure_that_nobody_offers_is_refused(client: TestClient) -> None:
+def test_an_unknown_measure_is_refused(client: TestClient) -> None:
     refused = client.post(
         "/api/v1/predict", json={"chart": "KP", "material": "acrylic", "measures": ["x"]}
     )
     assert refused.json()["field"] == "measures"
 
 
-def test_the_list_says_what_is_wrong(
+def test_the_list_shows_what_is_wrong(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, client: TestClient
 ) -> None:
     install(monkeypatch, tmp_path / "bad", "bad", "2.0", {Group.MEASURES: {"gone": "gone:all"}})

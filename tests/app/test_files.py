@@ -46,9 +46,7 @@ def test_export_writes_the_file(kind: ExportKind, tmp_path: Path) -> None:
         ExportKind.DESIGN,
     ],
 )
-def test_what_was_exported_is_imported(
-    kind: ExportKind, client: TestClient, tmp_path: Path
-) -> None:
+def test_an_exported_file_is_imported(kind: ExportKind, client: TestClient, tmp_path: Path) -> None:
     asked = client.post("/api/v1/export", json={"chart": CHART, "to": kind, "name": "A/b"})
     assert asked.status_code == 200, asked.text
     file = asked.json()
@@ -103,7 +101,7 @@ def test_the_command_line_keeps_what_a_design_holds(tmp_path: Path) -> None:
     assert kept["regions"][0]["yarn"] == "navy"
 
 
-def test_an_import_notes_what_may_not_be_meant(tmp_path: Path) -> None:
+def test_an_import_notes_doubtful_readings(tmp_path: Path) -> None:
     cover = {"id": "b", "name": "Cover", "colour": "#ffffff", "runs": [[0, 0, 4]]}
     regions = [*SHAPED["regions"], cover]
     design = tmp_path / "lost.json"
@@ -120,7 +118,7 @@ def test_a_missing_file_is_reported(name: str, says: str, tmp_path: Path) -> Non
     assert says in refused.stderr
 
 
-def test_limits_are_told(client: TestClient) -> None:
+def test_limits_are_named(client: TestClient) -> None:
     side = int(MAX_STITCHES[ExportKind.GLB] ** 0.5) + 1
     chart = {"fabric": "rib", "rows": side, "columns": side}
     refused = client.post("/api/v1/export", json={"chart": chart, "to": "glb"})

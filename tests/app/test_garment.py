@@ -110,7 +110,9 @@ def test_a_missing_measurement_is_named(client: TestClient) -> None:
     assert "length_mm" in refused.json()["detail"]
 
 
-def test_sizes_and_yarn_have_intervals_and_a_swatch_makes_sizes_surer(client: TestClient) -> None:
+def test_sizes_and_yarn_have_intervals_and_a_swatch_narrows_those_of_sizes(
+    client: TestClient,
+) -> None:
     asked = {
         "garment": {"template": "wrist-brace", "wrist_mm": 165.0, "length_mm": 80.0},
         "material": "acrylic",

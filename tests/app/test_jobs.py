@@ -231,7 +231,7 @@ def test_an_unexpected_error_fails_only_its_own_job(
     asyncio.run(scenario())
 
 
-def test_what_waited_goes_on_and_what_ran_is_interrupted(
+def test_waiting_jobs_continue_and_running_ones_are_interrupted(
     database: Database, compute: Compute
 ) -> None:
     """A service that was killed: its successor finds the rows as they were."""

@@ -48,13 +48,13 @@ def test_a_prediction_needs_the_light_library_only_and_loads_no_solver() -> None
 
 
 @pytest.mark.parametrize("command", ["fit a.csv b.csv", "measure bending a.png", "serve"])
-def test_what_needs_more_says_what_to_install(command: str) -> None:
+def test_a_command_without_its_packages_names_the_extra(command: str) -> None:
     told = light(*command.split())
     assert told.returncode == 2
     assert "pip install 'knitcore[service]'" in told.stderr
 
 
-def test_help_lists_what_there_is() -> None:
+def test_help_lists_all_commands() -> None:
     told = light("--help")
     assert told.returncode == 0, told.stderr
     assert "predict" in told.stdout

@@ -117,7 +117,7 @@ def test_command_line_rest_and_report_give_the_same(
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
 @pytest.mark.parametrize("text", ["KKPP", "K/K/P/P", "KP/KK", "KKPP/KKPP/PPKK/PPKK", "KP/PK"])
 @pytest.mark.parametrize("direction", Direction)
-def test_a_long_free_strip_stretches_as_its_curve_says(
+def test_a_long_free_strip_stretches_like_its_curve(
     yarn: str, text: str, direction: Direction
 ) -> None:
     """Ends that slide; within 10 % of the strain at each stress."""
@@ -133,7 +133,7 @@ def test_a_long_free_strip_stretches_as_its_curve_says(
 
 @pytest.mark.parametrize("direction", Direction)
 @pytest.mark.parametrize("fabric", Fabric)
-def test_a_wish_for_a_pressure_is_met_as_the_pressure_says(
+def test_a_target_pressure_agrees_with_the_pressure_command(
     fabric: Fabric, direction: Direction
 ) -> None:
     """The laws of every day, a tube a quarter wider on the limb; within 1 %."""

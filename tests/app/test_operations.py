@@ -102,7 +102,7 @@ def test_metrics_count_by_route_and_not_by_address(client: TestClient) -> None:
     assert f'knitcore_info{{version="{VERSION}"}} 1.0' in numbers
 
 
-def test_metrics_are_for_whoever_runs_the_service(tmp_path: Path) -> None:
+def test_metrics_are_for_the_operator(tmp_path: Path) -> None:
     settings = Settings(require_login=True, token="operator" * 4, workers=1, data_dir=tmp_path)
     with TestClient(create_app(settings), base_url="http://127.0.0.1") as client:
         user = Tokens(client.app.state.database).create("ada").token  # type: ignore[attr-defined]

@@ -80,7 +80,9 @@ def test_the_command_line_reads_a_piece_and_writes_results(
     ("written", "told"),
     [("{", "JSON"), ('{"outline": [[0, 0], [1, 0]]}', "outline"), (None, "No such file")],
 )
-def test_a_file_that_is_no_piece_is_refused(tmp_path: Path, written: str | None, told: str) -> None:
+def test_a_file_that_is_not_a_piece_is_refused(
+    tmp_path: Path, written: str | None, told: str
+) -> None:
     file = tmp_path / "piece.json"
     if written is not None:
         file.write_text(written)
@@ -108,7 +110,7 @@ def test_equal_pulls_of_seed_stitch_in_both_directions(context: Context) -> None
         assert end == pytest.approx(other, rel=1e-3)
 
 
-def test_a_frame_tells_the_shear_modulus(context: Context) -> None:
+def test_a_frame_measures_the_shear_modulus(context: Context) -> None:
     request = TrellisRequest.model_validate(ASKED | {"angle_deg": 2, "mesh_mm": 50})
     told = trellis(request, context)
     modulus = material("acrylic").law(Fabric.STOCKINETTE).shear_modulus
@@ -116,7 +118,7 @@ def test_a_frame_tells_the_shear_modulus(context: Context) -> None:
     assert told.shear_stress_n_per_mm[-1] / math.radians(2) == pytest.approx(modulus, rel=1e-6)
 
 
-def test_cloth_past_its_lock_up_is_told(context: Context) -> None:
+def test_cloth_past_its_lock_up_is_reported(context: Context) -> None:
     conditions = [{"kind": "held", "edge": "hem"}, {"kind": "held", "edge": "top", "y_mm": 90}]
     told = piece(loaded(conditions=conditions, grain_deg=0), context)
     assert told.utilisation > 0.98
@@ -141,7 +143,7 @@ def test_too_fine_a_mesh_is_for_the_command_line(context: Context, tmp_path: Pat
         ("conditions", {"conditions": [{"kind": "pulled", "edge": "top", "y_n": 1}]}),
     ],
 )
-def test_what_is_no_piece_is_refused_by_name(
+def test_pieces_that_cannot_be_used_are_refused_by_name(
     context: Context, field: str, change: dict[str, Any]
 ) -> None:
     with pytest.raises(InputError) as refused:

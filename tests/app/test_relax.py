@@ -59,7 +59,7 @@ def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
     assert "at least" in result.stderr
 
 
-def test_what_is_held_is_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
+def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
     told = _json(
         "relax", "stockinette", "--size", "1x2", "--material", "cotton",
         "--loop-lengths-mm", "14.5/15.5",

@@ -15,7 +15,7 @@ from pathlib import Path
 import httpx2
 
 
-def test_it_starts_on_a_free_port_and_stops_when_told() -> None:
+def test_it_starts_on_a_free_port_and_stops_on_request() -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "app.cli.main", "serve", "--port", "0", "--json"],
         stdout=subprocess.PIPE,

@@ -36,7 +36,7 @@ def test_loopback_is_known(host: str, loopback: bool) -> None:
     assert Settings(host=host).is_loopback is loopback
 
 
-def test_no_token_in_what_is_logged() -> None:
+def test_logs_hold_no_token() -> None:
     assert "a-long-enough-token" not in repr(Settings(token="a-long-enough-token"))
 
 

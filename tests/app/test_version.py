@@ -14,7 +14,7 @@ from app.cli.main import main
 PROJECT = Path(__file__).resolve().parents[2] / "pyproject.toml"
 
 
-def test_library_commands_and_service_say_what_pyproject_says(client: TestClient) -> None:
+def test_library_commands_and_service_have_the_version_of_pyproject(client: TestClient) -> None:
     version = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["version"]
     assert knitcore.__version__ == version
     assert CliRunner().invoke(main, ["--version"]).stdout.split()[-1] == version

@@ -142,7 +142,7 @@ def test_a_click_finds_its_stitch(chart: str) -> None:
     assert clicked_stitch(scene, (0.0, 0.0, 50.0), (1.0, 0.0, 0.0)) is None
 
 
-def test_clicks_reach_those_who_listen_to_the_design_and_nobody_else() -> None:
+def test_clicks_reach_only_listeners_of_the_design() -> None:
     clicks = Clicks()
 
     async def listen() -> list[tuple[int, int]]:

@@ -59,7 +59,7 @@ def test_the_old_cloth_stays_until_the_new_one_is_drawn(
     assert gone == ("gone", first)
 
 
-def test_a_camera_that_was_moved_keeps_its_place_until_asked(view: View) -> None:
+def test_a_moved_camera_keeps_its_place_until_reset(view: View) -> None:
     _show(view, SMALL)
     (client,) = view.server.get_clients().values()
     close = np.array([0.01, 0.02, 0.05])

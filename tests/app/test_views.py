@@ -129,7 +129,7 @@ def test_colours_follow_their_maps() -> None:
 
 
 @pytest.mark.parametrize("colour", ["fabric", "course", "wale", "anisotropy"])
-def test_every_colour_can_be_asked_for(client: TestClient, colour: str) -> None:
+def test_every_colour_field_works(client: TestClient, colour: str) -> None:
     body = {"chart": "KKP\nPPK", "material": "glove-wool", "colour": colour}
     assert client.put(f"/api/v1/views/{DESIGN}", json=body).status_code == 200
 
@@ -139,7 +139,7 @@ def test_strain_needs_a_test(client: TestClient) -> None:
     assert client.put(f"/api/v1/views/{DESIGN}", json=body).json()["field"] == "colour"
 
 
-def test_pictures_that_no_browser_sends_hold_nobody_up(
+def test_pictures_that_no_browser_sends_do_not_delay_others(
     client: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     client.put("/api/v1/views/hidden-tab", json={"chart": "KP", "material": "cotton"})

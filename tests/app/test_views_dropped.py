@@ -73,7 +73,7 @@ def test_threads_handles_and_servers_return_to_the_start(tmp_path: Path) -> None
     assert _servers() <= others
 
 
-def test_nothing_is_printed_where_the_address_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_view_prints_nothing_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
     views = Views(most=1, idle_s=1.0)
     views.open("a-quiet-one")
     views.close()

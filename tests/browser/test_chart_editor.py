@@ -57,7 +57,7 @@ def test_dragging_paints_what_the_first_stitch_becomes(editor: Page) -> None:
     assert saved(editor) in {"PPP\nKKK", "PKP\nKKK"}  # a fast pointer may pass over the middle
 
 
-def test_the_size_goes_on_from_the_lower_left_and_has_a_limit(editor: Page) -> None:
+def test_the_size_grows_from_the_lower_left_up_to_a_limit(editor: Page) -> None:
     editor.get_by_label("row 1, column 1, knit").press("Space")
     editor.get_by_role("spinbutton", name="Columns").fill("4")
     editor.get_by_role("spinbutton", name="Columns").blur()

@@ -49,7 +49,7 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
     assert {region.name for region in kept.regions} >= {"thumb", "thumb gusset", "fingers"}
 
 
-def test_a_brace_for_a_pressure_says_what_it_presses(flat_studio: Page) -> None:
+def test_a_brace_for_a_pressure_shows_its_pressure(flat_studio: Page) -> None:
     page = flat_studio
     _plan(page, "wrist-brace")
     support = page.locator("#planner-pressure tbody tr")

@@ -56,7 +56,7 @@ def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
     assert len(set(kept_chart(flat_studio).split("\n"))) == 2
 
 
-def test_a_wish_fills_the_chart_as_one_step(flat_studio: Page) -> None:
+def test_a_target_fills_the_chart_as_one_step(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Shift+W")
     flat_studio.click("#fill-run")
     expect(flat_studio.locator("#inverse-fill-content")).to_contain_text("Nothing is wished for")

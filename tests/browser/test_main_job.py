@@ -103,7 +103,7 @@ def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(
     expect(flat_studio.locator("#readout")).not_to_contain_text("stretch")
 
 
-def test_a_stretch_close_to_the_lock_up_says_so(flat_studio: Page) -> None:
+def test_a_stretch_close_to_the_lock_up_is_marked(flat_studio: Page) -> None:
     flat_studio.click("#stretch-course")
     flat_studio.fill("#stretch-amount", "60")
     flat_studio.click("#stretch-run")

@@ -113,7 +113,7 @@ def test_measured_curves_of_an_own_material_are_drawn_as_points(
     )
 
 
-def test_a_wish_for_a_region_fills_only_that_region(visitor: Page, service: str) -> None:
+def test_a_target_for_a_region_fills_only_that_region(visitor: Page, service: str) -> None:
     page = open_design(visitor, service, regions=[LEFT])
     page.keyboard.press("Shift+W")
     page.click("#part-regions")
@@ -124,7 +124,7 @@ def test_a_wish_for_a_region_fills_only_that_region(visitor: Page, service: str)
     assert inner == {"KKKKK", "PPPPP"}
 
 
-def test_a_wish_for_a_selection_fills_only_the_selection(visitor: Page, service: str) -> None:
+def test_a_target_for_a_selection_fills_only_the_selection(visitor: Page, service: str) -> None:
     page = open_design(visitor, service, outline=WAISTED)
     chart = Chart(page)
     page.click("#tool-select")
@@ -143,7 +143,7 @@ def test_a_wish_for_a_selection_fills_only_the_selection(visitor: Page, service:
     assert after[:8] != before[:8]
 
 
-def test_a_wish_for_a_shaped_chart_covers_its_stitches_only(visitor: Page, service: str) -> None:
+def test_a_target_for_a_shaped_chart_covers_only_its_stitches(visitor: Page, service: str) -> None:
     page = open_design(visitor, service, outline=WAISTED)
     page.keyboard.press("Shift+W")
     page.click("#part-add")

@@ -67,7 +67,7 @@ def test_too_much_stretch_names_the_most_that_can_be(flat_studio: Page) -> None:
     assert kept_chart(flat_studio) == CHART
 
 
-def test_painting_goes_on_while_the_service_is_unreachable(flat_studio: Page) -> None:
+def test_painting_continues_while_the_service_is_unreachable(flat_studio: Page) -> None:
     for path in ("**/api/**", "**/healthz"):
         flat_studio.route(path, lambda route: route.abort())
     drag(flat_studio, 60, 30)

@@ -128,7 +128,7 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
     assert green(rib) > 5 * blue(rib)
 
 
-def test_a_lost_view_comes_back_by_itself(studio: Page) -> None:
+def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", YARN)
     with studio.expect_response(
         lambda r: r.url.endswith("views/" + _design(studio)) and r.request.method == "PUT" and r.ok

@@ -182,7 +182,7 @@ class Unsteady(httpx.HTTPTransport):
         return answer
 
 
-def test_what_is_sent_again_takes_effect_once(service: Service, knit: Client) -> None:
+def test_a_repeated_request_takes_effect_once(service: Service, knit: Client) -> None:
     unsteady = Unsteady()
     with Client(service.url, token=TOKEN, transport=unsteady) as client:
         made = client.create("Once", "acrylic", "K")

@@ -50,14 +50,14 @@ def test_every_task_has_its_result_in_order(workers: int) -> None:
     assert [p.done for p in seen] == [0, 1, 2, 3, 4, 5, 6]
 
 
-def test_a_failure_costs_one_task_and_says_why() -> None:
+def test_a_failure_costs_one_task_and_gives_its_reason() -> None:
     found = run_batch(refuse_three, TASKS, workers=1)
     assert set(found.failures) == {"number-3", "number-4"}
     assert "Give another" in found.failures["number-3"]
     assert len(found.results) == 4
 
 
-def test_a_stopped_batch_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_a_stopped_batch_resumes(tmp_path: Path) -> None:
     done = 0
 
     def count(progress: BatchProgress) -> None:
@@ -101,7 +101,7 @@ def test_a_task_that_kills_every_process_is_given_up() -> None:
         ({"scheduler": "tcp://127.0.0.1:9"}, "scheduler"),
     ],
 )
-def test_what_cannot_work_is_refused_before_any_work(
+def test_impossible_batches_are_refused_before_any_work(
     changed: dict[str, object], field: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("knitcore.batch.CONNECT_S", 1)

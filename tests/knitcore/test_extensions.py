@@ -41,7 +41,7 @@ def house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("house")
 class TestExample:
-    def test_nothing_of_it_is_imported_before_it_is_asked_for(self) -> None:
+    def test_an_extension_is_imported_only_when_needed(self) -> None:
         material("acrylic")
         export_chart(StitchChart.parse("KP"), ExportKind.TEXT, material("acrylic"))
         assert [e.package for e in extensions(Group.PATTERNS)] == ["knit-house 1.0"]
@@ -57,7 +57,7 @@ class TestExample:
         assert answer.provenance == "estimated"
         assert 0 < answer.modulus_course_n_per_mm < answer.modulus_wale_n_per_mm
 
-    def test_an_unknown_material_is_told_the_known_ones(self) -> None:
+    def test_an_unknown_material_is_refused_with_the_known_ones(self) -> None:
         with pytest.raises(InputError, match=r"acrylic.*house-dk, house-sport"):
             material("no-such-yarn")
 
@@ -69,7 +69,7 @@ class TestExample:
         with pytest.raises(InputError, match="repeats every 24 stitches"):
             export_chart(StitchChart.parse("KPKKP"), "punchcard", acrylic)
 
-    def test_an_unknown_format_is_told_the_known_ones(self) -> None:
+    def test_an_unknown_format_is_refused_with_the_known_ones(self) -> None:
         with pytest.raises(InputError, match=r"knitout, .*punchcard"):
             export_chart(StitchChart.parse("KP"), "no-such-format", material("acrylic"))
 
@@ -84,7 +84,7 @@ class TestExample:
             measure("cover-factor").value(chart, material("house-dk"), answer)
         )  # its diameter is not known
 
-    def test_an_unknown_measure_is_told_the_known_ones(self) -> None:
+    def test_an_unknown_measure_is_refused_with_the_known_ones(self) -> None:
         with pytest.raises(InputError, match="cover-factor"):
             measure("no-such-measure")
 
@@ -121,7 +121,7 @@ def test_an_extension_that_fails_while_it_runs_is_named() -> None:
         Measure("drape", "", "Fails.", fail).value(chart, acrylic, predict(chart, acrylic))
 
 
-def test_without_extensions_there_is_what_is_built_in() -> None:
+def test_without_extensions_only_built_in_things_are_offered() -> None:
     assert offered(Group.EXPORTERS, Exporter) == {}
     assert offered(Group.MATERIALS, Material) == {}
     assert offered(Group.PATTERNS, Pattern) == {}

@@ -12,7 +12,7 @@ def test_results_come_in_order() -> None:
 
 
 @pytest.mark.parametrize("bad", [0, 1])
-def test_what_a_function_raises_is_raised(bad: int) -> None:
+def test_exceptions_of_a_function_are_raised(bad: int) -> None:
     def work(number: int) -> int:
         return 1 // (number - bad)
 

@@ -44,7 +44,7 @@ def test_a_right_side_row_is_worked_from_the_right() -> None:
     assert as_worked(StitchChart.parse("KKP")).rows[0].purls == (True, False, False)
 
 
-def test_rows_of_unlike_length_are_no_chart() -> None:
+def test_rows_of_different_length_are_refused() -> None:
     rows = (WorkedRow(Side.RS, (True,)), WorkedRow(Side.WS, (True, False)))
     with pytest.raises(InputError, match="row 2 has 2"):
         face_grid(WorkedRows(Construction.FLAT, Side.RS, rows))

@@ -78,7 +78,7 @@ def test_a_job_stays_within_its_memory() -> None:
         compute.close()
 
 
-def test_what_a_lost_worker_was_reading_is_removed(
+def test_uploads_of_a_lost_worker_are_removed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -127,7 +127,7 @@ def test_a_worker_killed_while_idle_loses_nothing() -> None:
     compute.close()
 
 
-def test_progress_is_told_from_zero_upwards(compute: Compute) -> None:
+def test_progress_is_reported_from_zero_upwards(compute: Compute) -> None:
     shares: list[float] = []
 
     async def told(share: float) -> None:

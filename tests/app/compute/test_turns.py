@@ -71,7 +71,7 @@ def test_background_work_leaves_a_place_free() -> None:
     asyncio.run(scenario())
 
 
-def test_leaving_the_queue_holds_nobody_up() -> None:
+def test_leaving_the_queue_does_not_delay_others() -> None:
     async def scenario() -> list[bool]:
         turns = _turns()
         holder: Ticket[int] = turns.enter("ada", background=False)

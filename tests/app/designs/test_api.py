@@ -35,7 +35,7 @@ def test_a_new_design_has_an_address_and_a_tag(client: TestClient) -> None:
     assert other.headers["cache-control"] == "private, no-cache"
 
 
-def test_the_document_is_what_the_command_line_reads(
+def test_the_command_line_reads_the_same_document(
     client: TestClient, made: str, tmp_path: Path
 ) -> None:
     import json

@@ -35,7 +35,7 @@ def _paint(designs: DesignStore, owner: str, design: str, strokes: Strokes) -> N
     asyncio.run(designs.paint(owner, design, strokes))
 
 
-def test_what_is_kept_comes_back(designs: DesignStore) -> None:
+def test_a_saved_design_is_returned(designs: DesignStore) -> None:
     made = designs.create("ada", RIB.model_copy(update={"chart": "kp|•\nkpkp"}))
     assert made.document == RIB
     assert (made.rows, made.columns, made.revision) == (2, 4, 1)
@@ -129,7 +129,7 @@ def test_strokes_are_painted_in_place_or_refused(designs: DesignStore) -> None:
     assert designs.get("ada", made.id).revision == 2
 
 
-def test_what_is_deleted_can_be_recovered_for_a_while(
+def test_a_deleted_design_can_be_recovered_for_a_while(
     designs: DesignStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made, gone = designs.create("ada", RIB), designs.create("ada", RIB)
@@ -181,7 +181,7 @@ def test_a_copy_is_an_independent_design(designs: DesignStore) -> None:
     assert designs.get("ada", made.id).document == RIB
 
 
-def test_what_one_owner_keeps_is_bounded(
+def test_the_designs_of_one_owner_are_limited(
     designs: DesignStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(store_module, "BUDGETS", Budgets(designs=2, versions=1))

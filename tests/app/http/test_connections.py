@@ -69,7 +69,7 @@ def _is_answered(client: socket.socket) -> bool:
     return False
 
 
-def test_who_asks_nothing_in_time_is_let_go(address: tuple[str, int]) -> None:
+def test_a_client_that_sends_no_request_in_time_is_disconnected(address: tuple[str, int]) -> None:
     with (
         socket.create_connection(address) as silent,
         socket.create_connection(address) as half,
@@ -97,7 +97,7 @@ def test_a_body_that_comes_fast_enough_is_waited_for(address: tuple[str, int]) -
         assert _is_answered(client)
 
 
-def test_who_sends_a_body_byte_by_byte_is_let_go(address: tuple[str, int]) -> None:
+def test_a_client_that_sends_a_body_byte_by_byte_is_disconnected(address: tuple[str, int]) -> None:
     with (
         socket.create_connection(address) as silent,
         socket.create_connection(address) as slow,

@@ -51,7 +51,7 @@ def test_headers_are_described(schema: dict[str, Any]) -> None:
                 assert header["$ref"].rpartition("/")[2] in schema["components"]["headers"]
 
 
-def test_results_of_jobs_are_told_apart_by_their_kind(schema: dict[str, Any]) -> None:
+def test_results_of_jobs_are_distinguished_by_their_kind(schema: dict[str, Any]) -> None:
     answer = schema["paths"]["/api/v1/jobs/{job}/result"]["get"]["responses"]["200"]
     told = answer["content"]["application/json"]["schema"]
     assert told["discriminator"]["propertyName"] == "kind"

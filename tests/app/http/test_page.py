@@ -105,6 +105,6 @@ def test_files_named_by_content_are_packed_and_kept_for_ever(sources: Path) -> N
         assert client.get("/static/app-AB12CD.js", headers=known).status_code == 304
 
 
-def test_other_files_are_asked_for_again(sources: Path) -> None:
+def test_other_files_are_requested_again(sources: Path) -> None:
     with served(sources) as client:
         assert client.get("/static/app.js").headers["Cache-Control"] == "no-cache"

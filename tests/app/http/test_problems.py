@@ -43,7 +43,7 @@ def test_a_refusal_names_field_and_remedy(
     assert remedy in answer.json()["remedy"]
 
 
-def test_everything_that_is_wrong_is_told_at_once(client: TestClient) -> None:
+def test_all_errors_are_reported_at_once(client: TestClient) -> None:
     body = {"material": 1, "strain": 6, "colour": "red", "direction": "wale"}
     problem = client.post(f"{API}/stretch", json=body).json()
     wrong = [fault["field"] for fault in problem["errors"]]
@@ -106,7 +106,7 @@ def test_every_type_has_a_page(client: TestClient) -> None:
     assert client.get("/problems/no-such").status_code == 404
 
 
-def test_a_form_is_told_to_be_json(client: TestClient) -> None:
+def test_a_form_is_refused_with_a_request_for_json(client: TestClient) -> None:
     answer = client.post(f"{API}/predict", data={"chart": "K"})
     assert answer.status_code == 422
     assert "application/json" in answer.json()["remedy"]
@@ -124,13 +124,13 @@ def test_a_form_is_told_to_be_json(client: TestClient) -> None:
         "/materials/steel",
     ],
 )
-def test_what_cannot_be_is_not_found(client: TestClient, path: str) -> None:
+def test_impossible_addresses_are_not_found(client: TestClient, path: str) -> None:
     answer = client.get(f"{API}{path}")
     assert (answer.status_code, answer.json()["type"]) == (404, "/problems/not-found")
     assert answer.json()["remedy"]
 
 
-def test_heads_are_told_without_their_content(client: TestClient) -> None:
+def test_head_requests_have_the_headers_of_get(client: TestClient) -> None:
     for path in ("/", "/healthz", f"{API}/designs", "/static/app.css"):
         head, whole = client.head(path), client.get(path)
         assert head.status_code == whole.status_code

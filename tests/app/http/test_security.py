@@ -135,7 +135,7 @@ def test_another_token_in_the_settings_ends_sessions(tmp_path: Path) -> None:
         assert client.get("/api/v1/patterns").status_code == 401
 
 
-def test_wrong_tokens_are_slowed_down_and_lock_nobody_out() -> None:
+def test_wrong_tokens_are_slowed_down_and_lock_out_no_user() -> None:
     with _guarded(token=TOKEN) as client:
         answers = [client.get("/api/v1/patterns", headers=_as(f"guess-{n}")) for n in range(25)]
         codes = [answer.status_code for answer in answers]
@@ -245,7 +245,7 @@ def test_the_token_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         assert CliRunner().invoke(main, ["token", *arguments]).exit_code == 2
 
 
-def test_who_asks_too_often_is_told_when_to_come_back(tmp_path: Path) -> None:
+def test_a_client_over_its_rate_learns_when_to_retry(tmp_path: Path) -> None:
     with _guarded(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
         ada, bob = (_as(_tokens(client).create(name).token) for name in ("ada", "bob"))
         first = client.get("/api/v1/patterns", headers=ada)

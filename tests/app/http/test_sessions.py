@@ -70,9 +70,7 @@ def test_sessions_are_ended_one_by_one_and_by_their_user_only(lab: TestClient) -
 
 
 @pytest.mark.parametrize("led_by", ["cross-site", "same-site"])
-def test_a_link_from_another_site_signs_nobody_in_without_a_click(
-    lab: TestClient, led_by: str
-) -> None:
+def test_a_link_from_another_site_needs_a_click_to_sign_in(lab: TestClient, led_by: str) -> None:
     mallory = _token(lab, "mallory")
     headers = {"Sec-Fetch-Site": led_by}
     page = lab.get(f"/?token={mallory.token}", headers=headers)
@@ -113,7 +111,7 @@ def test_a_person_without_a_session_is_asked_for_a_token(lab: TestClient) -> Non
     lab.cookies.clear()
 
 
-def test_a_form_with_a_wrong_token_signs_nobody_in(lab: TestClient) -> None:
+def test_a_form_with_a_wrong_token_does_not_sign_in(lab: TestClient) -> None:
     assert lab.post("/sign-in", data={"token": "x" * 43}).status_code == 401
     assert lab.post("/sign-in", content=b"x" * 9_000).status_code == 401
 

@@ -133,7 +133,7 @@ def test_options_are_the_fields_of_the_request(tmp_path: Path) -> None:
         (["--rows-per-10-cm", "30"], "stitches-per-10-cm: Field required"),
     ],
 )
-def test_what_a_request_does_not_take_names_the_option(more: list[str], says: str) -> None:
+def test_a_refused_option_is_named(more: list[str], says: str) -> None:
     with pytest.raises((click.ClickException, ValueError), match=says):
         ask(*GARTER, *more)
 

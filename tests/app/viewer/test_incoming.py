@@ -101,7 +101,7 @@ def test_a_huge_message_is_refused_and_never_built() -> None:
         passed_on(padded, WantedPicture(100, 100))
 
 
-def test_a_picture_is_kept_as_it_came_and_one_pixel_goes_on() -> None:
+def test_a_picture_is_kept_and_one_pixel_passed_on() -> None:
     wanted = WantedPicture(30, 20)
     sent = msgspec.msgpack.decode(passed_on(_render(_png(30, 20)), wanted) or b"")
     assert (sent["render_uuid"], sent["payload"]) == ("u", ONE_PIXEL)
@@ -144,7 +144,7 @@ def _asked_for(socket: Any) -> str:
 
 
 @pytest.mark.parametrize(("size", "status"), [((40, 30), 200), ((30, 40), 409)])
-def test_a_browser_is_asked_for_a_picture(
+def test_a_picture_is_requested_from_a_browser(
     client: TestClient, size: tuple[int, int], status: int
 ) -> None:
     design = f"a-picture-{status}"
@@ -165,7 +165,7 @@ def test_a_browser_is_asked_for_a_picture(
             assert answer.result().content == _png(*size)
 
 
-def test_who_sends_too_much_into_a_view_is_let_go(client: TestClient) -> None:
+def test_a_browser_that_floods_a_view_is_disconnected(client: TestClient) -> None:
     with _shown(client, "a-loud-view") as socket:
         socket.send_bytes(b"\0" * (MOST_BYTES + 1))
         with pytest.raises(WebSocketDisconnect) as closed:

@@ -85,7 +85,7 @@ def test_sources_are_labelled_by_the_rule():
     )
 
 
-def test_a_gauge_says_how_deep_a_rib_folds():
+def test_a_gauge_determines_how_deep_a_rib_folds():
     acrylic, rib = material("acrylic:published"), StitchChart.parse("KKKPPP")
     tight = predict(rib, acrylic, RelaxedSize.from_gauge(60, 36))
     loose = predict(rib, acrylic, RelaxedSize.from_gauge(50, 36))
@@ -130,7 +130,7 @@ def test_a_2x2_rib_stretches_about_as_far_as_a_1x1_rib_of_the_same_loops(identif
     assert wide.relaxed_mm < narrow.relaxed_mm
 
 
-def test_loops_of_different_length_are_told():
+def test_loops_of_different_length_are_noted():
     """Acrylic's 1x1 rib has longer loops than its stockinette, so a 2x2 rib gives less than it."""
     wide, narrow = (
         predict(StitchChart.parse(text), material("acrylic")) for text in ("KKPP", "KP")

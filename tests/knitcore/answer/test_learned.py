@@ -83,7 +83,7 @@ def test_a_known_size_is_kept_and_narrows_the_interval() -> None:
         assert known.strain_log_sd(direction, 0.05) < guess.strain_log_sd(direction, 0.05)
 
 
-def test_what_is_narrower_at_rest_has_more_to_give() -> None:
+def test_cloth_that_is_narrower_at_rest_stretches_further() -> None:
     rib = StitchChart.parse("KKPP")
     narrow, wide = (learned(rib, ACRYLIC, RelaxedSize(w, 2.8)) for w in (1.9, 2.3))
     assert np.all(strains(narrow)[0] > strains(wide)[0])
@@ -91,7 +91,7 @@ def test_what_is_narrower_at_rest_has_more_to_give() -> None:
     assert ends[0] == pytest.approx(ends[1], rel=0.1)  # the stretched size is nearly the same
 
 
-def test_intervals_widen_outside_what_was_learned() -> None:
+def test_intervals_widen_away_from_the_training_charts() -> None:
     panels = StitchChart(np.kron([[0, 1], [1, 0]], np.ones((20, 20))).astype(bool))
     seen, unseen = (
         learned(StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), ACRYLIC),

@@ -26,7 +26,7 @@ def test_patches_of_a_repeat_go_on_through_the_piece() -> None:
     assert np.isfinite(found.scale).all()
 
 
-def test_stitches_fold_by_their_surroundings_and_on_average_as_the_answer_says() -> None:
+def test_stitches_fold_by_their_surroundings_and_on_average_like_the_answer() -> None:
     hem, body = (StitchChart.parse(text) for text in ("KKPP", "KP/PK"))
     piece = StitchChart(np.vstack([hem.resized(20, 40).purl, body.resized(40, 40).purl]))
     acrylic = material("acrylic")

@@ -29,7 +29,7 @@ def _stored(text: str) -> StoredStitch:
 
 
 @pytest.mark.parametrize("text", ["KKPP", "K/K/P", "KP/KK", "KKPP/PPKK"])
-def test_a_simulated_material_does_what_its_sweep_did(text: str, simulated: Material) -> None:
+def test_a_simulated_material_answers_like_its_sweep(text: str, simulated: Material) -> None:
     """Strains within 5 %: the answer goes through six stresses of the curve."""
     stored = _stored(text)
     assert stored.law is not None

@@ -53,9 +53,7 @@ def test_intervals_hold_their_values() -> None:
         assert (ATLAS.column(f"modulus_{direction}_high") > value).all()
 
 
-def test_a_stopped_build_goes_on_where_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stopped_build_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Stopped after the first part; the finished part is not computed again."""
     file, repeats = tmp_path / "atlas.npz", repeats_up_to(3, 3)
     told: list[tuple[int, int]] = []
@@ -146,7 +144,7 @@ def test_stretch_at_a_load_and_poisson_s_ratio_together() -> None:
     assert "stretch_wale@0.05" in best.intervals
 
 
-def test_one_quantity_at_two_loads_is_two_wishes() -> None:
+def test_one_quantity_at_two_loads_is_two_targets() -> None:
     targets = [
         Target(Quantity.STRETCH_COURSE, value, load_n_per_mm=load)
         for value, load in ((0.1, 0.01), (0.5, 0.1))
@@ -154,7 +152,7 @@ def test_one_quantity_at_two_loads_is_two_wishes() -> None:
     assert len(find_fabric([ATLAS], targets).candidates[0].values) == 2
 
 
-def test_a_limb_beyond_the_lock_up_is_no_number() -> None:
+def test_a_limb_beyond_the_lock_up_gives_nan() -> None:
     target = Target(Quantity.PRESSURE_WALE, 20.0, limb=Limb(100.0, 900.0))
     found = find_fabric([ATLAS], [target])
     assert not found.reached
@@ -224,7 +222,7 @@ def test_costs_of_knitting(text: str, transfers: float, curl: float) -> None:
 
 
 @pytest.mark.parametrize("index", range(len(REPEATS)))
-def test_what_a_repeat_has_finds_that_repeat(index: int) -> None:
+def test_the_values_of_a_repeat_find_that_repeat(index: int) -> None:
     targets = [
         Target(Quantity.MODULUS_COURSE, float(ATLAS.column("modulus_course_n_per_mm")[index])),
         Target(
@@ -246,7 +244,7 @@ def test_candidates_are_ranked() -> None:
         assert interval.low < candidate.values[Quantity.ANISOTROPY] < interval.high
 
 
-def test_what_nothing_reaches_is_said_with_the_nearest() -> None:
+def test_unreachable_targets_are_reported_with_the_nearest_repeat() -> None:
     found = find_fabric([ATLAS], [Target(Quantity.MODULUS_COURSE, 5.0)])
     assert not found.reached
     stiffest = int(ATLAS.column("modulus_course_n_per_mm").argmax())
@@ -255,7 +253,7 @@ def test_what_nothing_reaches_is_said_with_the_nearest() -> None:
     assert "all repeats span" in found.message
 
 
-def test_wishes_that_each_can_be_had_but_not_together() -> None:
+def test_targets_that_can_be_met_singly_but_not_together() -> None:
     course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm") for d in ("course", "wale"))
     targets = [
         Target(Quantity.MODULUS_COURSE, float(course.max()), 0.01),
@@ -298,7 +296,7 @@ def test_other_yarns_are_searched_too() -> None:
         (lambda: Limb(200.0, 200.0), "limb"),
     ],
 )
-def test_wishes_that_cannot_be_used(make: object, field: str) -> None:
+def test_unusable_targets_are_refused(make: object, field: str) -> None:
     assert callable(make)
     with pytest.raises(InputError) as caught:
         make()

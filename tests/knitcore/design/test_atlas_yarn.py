@@ -65,7 +65,7 @@ def test_small_repeats_come_first_after_the_pure_fabrics(file: Path) -> None:
     assert len(yarn_level_tasks(WOOL, load_atlas(file).entries(), 4)) < len(tasks)
 
 
-def test_a_stopped_run_goes_on_and_what_was_done_is_in_the_atlas(
+def test_a_stopped_run_resumes_with_finished_repeats_in_the_atlas(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     relaxing = Relaxing(monkeypatch)
@@ -89,7 +89,7 @@ def test_a_stopped_run_goes_on_and_what_was_done_is_in_the_atlas(
         assert (row.column("relaxed_course_mm") > 0).all() or not changed
 
 
-def test_what_a_killed_run_left_is_taken_up(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_of_a_killed_run_are_used(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Finished documents lie in the folder; the atlas was never written."""
     relaxing = Relaxing(monkeypatch)
     untouched = file.read_bytes()

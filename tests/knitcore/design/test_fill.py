@@ -89,7 +89,7 @@ def test_any_chart_is_read_back_from_its_own_map(chart: StitchChart) -> None:
 
 
 @pytest.mark.parametrize("index", range(0, len(ATLAS), 3))
-def test_a_uniform_wish_is_met(index: int) -> None:
+def test_a_uniform_target_is_met(index: int) -> None:
     """Within 5 %, by the prediction of the whole chart."""
     course, wale = (ATLAS.column(f"modulus_{d}_n_per_mm")[index] for d in ("course", "wale"))
     field = fill_field(np.full((12, 12), course), np.full((12, 12), wale), ACRYLIC, ATLAS)
@@ -100,7 +100,7 @@ def test_a_uniform_wish_is_met(index: int) -> None:
     assert not any("off" in message for message in field.messages)
 
 
-def test_a_wish_between_the_repeats_is_met_by_a_mixture() -> None:
+def test_a_target_between_the_repeats_is_met_by_a_mixture() -> None:
     """Stripes hidden in the wish: no repeat of this small atlas comes near."""
     hidden = predict_repeat(StitchChart.parse("KKKKKKPKP\nKKKKKKKPK"), ACRYLIC)
     wish = [np.full((20, 20), hidden.modulus_n_per_mm(d)) for d in Direction]
@@ -129,7 +129,7 @@ def test_patches_are_not_too_small(smallest: int) -> None:
         assert field.regions[patch].stitches == len(rows)
 
 
-def test_no_wish_is_no_constraint() -> None:
+def test_stitches_without_a_target_are_not_constrained() -> None:
     garter = ACRYLIC.law(Fabric.GARTER)
     course = np.full((10, 10), np.nan)
     course[:, :5] = garter.modulus_course
@@ -151,7 +151,7 @@ def wish_in_part(fabric: Fabric, shape: tuple[int, int] = (14, 18)) -> list[np.n
 
 
 @pytest.mark.parametrize("shift", [0, 1])
-def test_a_part_is_filled_so_that_it_goes_on_with_what_is_around_it(shift: int) -> None:
+def test_a_filled_part_continues_its_surroundings(shift: int) -> None:
     """Garter wished for in garter: the rows go through, whichever of them is knit."""
     around = StitchChart.of_fabric("garter", 14, 18).purl ^ bool(shift)
     field = fill_field(*wish_in_part(Fabric.GARTER), ACRYLIC, ATLAS, kept=StitchChart(around))
@@ -161,7 +161,9 @@ def test_a_part_is_filled_so_that_it_goes_on_with_what_is_around_it(shift: int) 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("fabric", [Fabric.SEED, Fabric.GARTER])
-def test_what_has_no_wish_is_kept_and_the_part_is_fitted_to_it(seed: int, fabric: Fabric) -> None:
+def test_stitches_without_a_target_are_kept_and_the_part_fitted_to_them(
+    seed: int, fabric: Fabric
+) -> None:
     kept = hidden_chart(seed, side=18, patches=4, least=4).purl[:14]
     maps = wish_in_part(fabric)
     field = fill_field(*maps, ACRYLIC, ATLAS, kept=StitchChart(kept), seed=seed)
@@ -201,7 +203,7 @@ def test_a_shaped_piece_is_filled_whatever_stands_where_it_has_no_stitch() -> No
     assert fields[0].off_share <= 0.3
 
 
-def test_a_wish_off_the_fabric_and_a_fabric_in_parts_are_refused() -> None:
+def test_a_target_off_the_fabric_and_a_fabric_in_parts_are_refused() -> None:
     stitch = np.ones((14, 18), dtype=bool)
     stitch[PART] = False
     with pytest.raises(InputError, match="inside the outline"):
@@ -212,7 +214,7 @@ def test_a_wish_off_the_fabric_and_a_fabric_in_parts_are_refused() -> None:
         fill_field(*wish_in_part(Fabric.SEED), ACRYLIC, ATLAS, stitch=stitch)
 
 
-def test_what_is_off_is_a_share_of_what_was_wished_for() -> None:
+def test_the_missed_share_counts_stitches_with_a_target() -> None:
     course = np.full((12, 12), np.nan)
     course[:4, :4] = 9.0
     for kept in (None, StitchChart.of_fabric("rib", 12, 12)):
@@ -227,7 +229,7 @@ def test_a_chart_of_another_size_is_refused() -> None:
         )
 
 
-def test_what_cannot_be_reached_is_told() -> None:
+def test_unreachable_targets_are_reported() -> None:
     field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, ATLAS)
     assert field.off_share == 1
     assert "off course-wise" in field.messages[0]
@@ -235,7 +237,7 @@ def test_what_cannot_be_reached_is_told() -> None:
     assert np.isnan(field.regions[0].deviation_wale)
 
 
-def test_it_tells_progress_and_stops_when_asked() -> None:
+def test_it_reports_progress_and_can_be_cancelled() -> None:
     told: list[float] = []
     chart = hidden_chart(1, side=20, patches=3)
     local = local_moduli(chart, ACRYLIC)

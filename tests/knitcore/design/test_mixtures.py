@@ -17,7 +17,7 @@ ATLAS = build_atlas(ACRYLIC, repeats_up_to(2, 2))
 MIXER = Mixer(ATLAS, ACRYLIC)
 
 
-def test_a_wish_between_two_fabrics_is_met_by_stripes_of_them() -> None:
+def test_a_target_between_two_fabrics_is_met_by_stripes_of_them() -> None:
     hidden = StitchChart.parse("KKKKKKPKP\nKKKKKKKPK")
     wish = predict_repeat(hidden, ACRYLIC)
     found = MIXER.nearest(wish.modulus_course_n_per_mm, wish.modulus_wale_n_per_mm)
@@ -30,7 +30,7 @@ def test_a_wish_between_two_fabrics_is_met_by_stripes_of_them() -> None:
         )
 
 
-def test_one_wish_alone_is_enough() -> None:
+def test_one_target_alone_is_enough() -> None:
     found = MIXER.nearest(0.1, float("nan"))
     assert found is not None
     assert found.modulus_course_n_per_mm == pytest.approx(0.1, rel=0.05)
@@ -43,7 +43,7 @@ def test_mixtures_fit_their_room() -> None:
     assert found.repeat.columns <= 5
 
 
-def test_it_stops_when_asked() -> None:
+def test_it_can_be_cancelled() -> None:
     def stop() -> None:
         raise CancelledError("stopped")
 

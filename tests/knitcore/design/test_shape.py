@@ -60,13 +60,13 @@ def test_a_column_profile_under_a_course_wise_pull() -> None:
     assert found.width[10] == pytest.approx(0.9, abs=0.02)
 
 
-def test_what_cannot_be_reached_is_told_with_what_can() -> None:
+def test_unreachable_outlines_are_reported_with_reachable_ones() -> None:
     found = fill(np.full(16, 0.3))
     assert "Row" in found.messages[0]
     assert "of its width at a strain of 0.3" in found.messages[0]
 
 
-def test_it_tells_progress_and_stops_when_asked() -> None:
+def test_it_reports_progress_and_can_be_cancelled() -> None:
     told: list[float] = []
     fill(np.full(12, 0.95), progress=told.append)
     assert told == sorted(told)

@@ -20,7 +20,7 @@ def test_parts_become_maps() -> None:
     assert (wale[6:] == 0.2).all()
 
 
-def test_the_same_wish_twice_is_no_contradiction() -> None:
+def test_the_same_target_twice_is_not_a_contradiction() -> None:
     one = box("one", range(4), range(4), 0.1, None)
     other = box("other", range(2, 6), range(2, 6), 0.1, 0.2)
     course, wale = wanted_maps([one, other], 8, 8)
@@ -47,6 +47,6 @@ def test_contradictions_are_named_with_both_parts_and_where() -> None:
         (box("odd", range(4), range(4), -0.1, None), "not positive"),
     ],
 )
-def test_wishes_that_cannot_be_used(wish: Wish, says: str) -> None:
+def test_unusable_targets_are_refused(wish: Wish, says: str) -> None:
     with pytest.raises(InputError, match=says):
         wanted_maps([wish], 8, 8, smallest_patch=3)

@@ -71,7 +71,7 @@ def test_version_1_is_read_and_written_as_version_2(tmp_path: Path) -> None:
         ({"format": "other"}, "not a design"),
     ],
 )
-def test_what_is_wrong_is_named(tmp_path: Path, change: dict[str, object], says: str) -> None:
+def test_errors_name_their_place(tmp_path: Path, change: dict[str, object], says: str) -> None:
     file = tmp_path / "design.json"
     file.write_text(json.dumps({"format": "knitcore-design", "version": 1, "chart": "KP"} | change))
     with pytest.raises(InputError, match=says):

@@ -101,7 +101,7 @@ def test_large_pieces_come_back(kind: ExportKind, piece: Piece, tmp_path: Path) 
     assert read_piece(file).cropped() == piece.cropped()
 
 
-def test_what_a_format_cannot_hold_is_told() -> None:
+def test_content_that_a_format_cannot_hold_is_reported() -> None:
     chart = StitchChart.of_fabric("seed", rows=3, columns=4)
     shaped = ExportOptions(layout=DesignLayout(outline="xxx.\nxxxx\nxxxx"))
     for kind in (k for k, f in FORMATS.items() if not f.holds_outlines):
@@ -196,7 +196,7 @@ def test_a_drawing_has_a_dot_for_every_purl_in_its_place(chart: StitchChart) -> 
     assert np.array_equal(drawn, chart.purl)
 
 
-def test_a_drawing_tells_sides_repeat_and_key() -> None:
+def test_a_drawing_has_sides_repeat_and_key() -> None:
     chart = StitchChart.of_fabric("rib", rows=9, columns=7)
     svg = chart_svg(chart)
     labels = {
@@ -310,7 +310,7 @@ def test_a_report_has_numbers_and_the_chart(chart: StitchChart, pages: int) -> N
     assert content.count(b"/Type /Page\n") == pages
 
 
-def test_a_report_tells_its_numbers_with_their_source(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_report_gives_its_numbers_with_their_source(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Page] = []
 
     def keep(pages: Iterable[Page], _: str) -> bytes:

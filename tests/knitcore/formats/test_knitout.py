@@ -47,7 +47,7 @@ def test_a_carrier_stays_with_its_block() -> None:
     assert program.transfers == 0
 
 
-def test_too_many_blocks_of_colour_are_told() -> None:
+def test_too_many_blocks_of_colour_are_refused() -> None:
     yarn_of = np.arange(12)[None, :] % 2
     chart = ShapedChart.rectangle(StitchChart.of_fabric("stockinette", rows=1, columns=12))
     with pytest.raises(InputError, match="blocks of colour to 12"):
@@ -122,7 +122,7 @@ def test_programs_that_cannot_be_read(program: str, says: str) -> None:
         knitted_chart(program)
 
 
-def test_a_missed_stitch_is_no_rectangle() -> None:
+def test_a_missed_stitch_is_refused() -> None:
     text = knitout_program(StitchChart.of_fabric("stockinette", rows=3, columns=4)).text
     head, course = text.split("; course 2\n")
     with pytest.raises(InputError, match="course 2 skips the needle after 1"):

@@ -18,7 +18,7 @@ from tests.knitcore.charts import stitch_charts
     construction=st.sampled_from(Construction),
     first_side=st.sampled_from(Side),
 )
-def test_what_is_written_is_read_back(
+def test_written_text_is_read_back(
     chart: StitchChart, construction: Construction, first_side: Side
 ) -> None:
     text = write_knitspeak(chart, construction, first_side=first_side)

@@ -17,7 +17,7 @@ from knitcore.materials import MeasuredCurve
 LAW = ConstitutiveLaw(0.24, 0.06, 0.036, 0.029, 1.17, 0.8, 0.022, 0.02, shear_modulus=0.02)
 
 
-def test_what_was_written_reads_back(tmp_path: Path) -> None:
+def test_a_written_file_is_read_back(tmp_path: Path) -> None:
     curve = MeasuredCurve((0.1, 0.2), (0.01, 0.03), pulls=4)
     file = LawFile(LAW, "made", {"alpha_xx": 0.01}, {Direction.WALE: 0.8}, {Direction.WALE: curve})
     save_law(file, tmp_path / "law.json")
@@ -59,7 +59,7 @@ def test_constants_may_carry_their_unit() -> None:
     "text",
     ["", "not json", "[]", "{}", '{"law": 3}', '{"law": {"alpha_xx": "a"}}', "[" * 100_000],
 )
-def test_what_is_no_law_is_refused(tmp_path: Path, text: str) -> None:
+def test_files_that_are_not_laws_are_refused(tmp_path: Path, text: str) -> None:
     path = tmp_path / "law.json"
     path.write_text(text)
     with pytest.raises(InputError, match="law"):

@@ -137,7 +137,7 @@ MOTIF = {"id": "m", "name": "moss", "motif": "KP/PK"}
         ),
     ],
 )
-def test_what_is_wrong_is_named(change: dict[str, object], field: str, says: str) -> None:
+def test_errors_name_their_place(change: dict[str, object], field: str, says: str) -> None:
     with pytest.raises(InputError, match=says) as refused:
         design_from_mapping(design(**change))
     assert refused.value.field == field
@@ -165,7 +165,7 @@ def test_what_is_wrong_is_named(change: dict[str, object], field: str, says: str
         ({"outline": "xx.\nxx.", "regions": [region("a", [(0, 2, 1)])]}, "outside the outline"),
     ],
 )
-def test_what_may_not_be_meant_is_told(change: dict[str, object], says: str) -> None:
+def test_doubtful_layouts_are_reported(change: dict[str, object], says: str) -> None:
     made = design_from_mapping(design(**change))
     (note,) = layout_notes(made.to_chart(), made)
     assert says in note

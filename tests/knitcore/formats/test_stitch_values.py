@@ -14,7 +14,7 @@ from knitcore.materials import material
 
 
 @pytest.mark.parametrize("name", ["=cmd|calc!A0", "+1", "-1", "@x", "cream, dark"])
-def test_no_name_of_a_yarn_is_a_formula(name: str) -> None:
+def test_names_of_yarns_are_not_read_as_formulas(name: str) -> None:
     yarns = (PieceYarn("white", "#ffffff"), PieceYarn(name, "#0000ff"))
     piece = Piece(ShapedChart.rectangle(StitchChart.parse("KP")), yarns, np.array([[0, 1]]))
     lines = list(csv.DictReader(io.StringIO(write_csv(piece, material("acrylic")))))

@@ -18,7 +18,7 @@ from tests.knitcore.charts import stitch_charts
     construction=st.sampled_from(Construction),
     first_side=st.sampled_from(Side),
 )
-def test_what_is_written_is_read_back(
+def test_written_text_is_read_back(
     chart: StitchChart, construction: Construction, first_side: Side
 ) -> None:
     assert read_rows(write_rows(chart, construction, first_side=first_side)) == chart
@@ -71,7 +71,7 @@ def test_fabrics_come_out_as_knitters_write_them(
     assert "\n".join(text.splitlines()[1:-1]).lower() == rows.lower()
 
 
-def test_a_cut_repeat_says_what_is_left() -> None:
+def test_a_cut_repeat_gives_the_remainder() -> None:
     assert row_words((False, False, True, True) * 3 + (False,)) == (
         "*k2, p2; rep from * to last st, k1"
     )
@@ -113,6 +113,6 @@ def test_the_cast_on_must_be_given() -> None:
         read_rows("Row 1: Knit.")
 
 
-def test_written_rows_are_told_from_charts() -> None:
+def test_written_rows_are_distinguished_from_charts() -> None:
     assert looks_written("\nCast on 4 sts.")
     assert not looks_written("KPKP")

@@ -95,7 +95,7 @@ def test_mistakes_are_named(rows: str, says: str) -> None:
         read_piece_rows(f"Cast on 4 sts. Worked flat.\n{rows}")
 
 
-def test_what_cannot_be_worked_in_the_round_is_told() -> None:
+def test_pieces_that_cannot_be_worked_in_the_round_are_refused() -> None:
     with pytest.raises(InputError, match="round 2 gains or loses several"):
         write_rows(shaped("xx..\nxxxx"), Construction.ROUND)
     yarns = (PieceYarn("cream", "#ffffee"), PieceYarn("blue", "#0000ff"))
@@ -106,6 +106,6 @@ def test_what_cannot_be_worked_in_the_round_is_told() -> None:
         write_rows(two, Construction.ROUND)
 
 
-def test_an_outline_is_no_rectangle() -> None:
+def test_an_outline_is_not_read_as_a_rectangle() -> None:
     with pytest.raises(InputError, match="no rectangle"):
         read_rows(write_rows(shaped("xx..\nxxxx")))

@@ -120,7 +120,7 @@ def test_the_study_glove_is_tighter_at_the_wrist() -> None:
 
 
 @pytest.mark.parametrize("mmhg", [8.0, 15.0, 25.0])
-def test_a_wanted_pressure_is_what_comes_out(mmhg: float) -> None:
+def test_a_target_pressure_is_reached(mmhg: float) -> None:
     brace = wrist_brace(170, 90, WOOL, fit=Fit(mmhg=mmhg))
     assert brace.worn[0].pressure is not None
     interval = brace.worn[0].pressure.mmhg
@@ -187,13 +187,13 @@ def test_tubes_follow_the_limb() -> None:
     assert len(widths) * gauge.stitch_wale_mm == pytest.approx(200, rel=0.01)
 
 
-def test_a_limb_that_widens_too_fast_is_told() -> None:
+def test_a_limb_that_widens_too_fast_is_reported() -> None:
     plan = limb_tube("cone", [Girth(0, 100), Girth(40, 500)], WOOL, hem_mm=0)
     assert set(np.diff([stop - start for start, stop in plan.shaped.spans])) <= {0, 2}
     assert "widens faster" in plan.notes[0]
 
 
-def test_unlike_gauges_are_told_where_they_meet() -> None:
+def test_different_gauges_are_reported_where_they_meet() -> None:
     stitch = np.ones((4, 6), dtype=bool)
     left = np.zeros_like(stitch)
     left[:, :3] = True

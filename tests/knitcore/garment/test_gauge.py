@@ -10,7 +10,7 @@ from knitcore.materials import material
 
 
 @pytest.mark.parametrize("per", list(GaugeLength))
-def test_what_was_counted_is_told(per: GaugeLength) -> None:
+def test_counted_gauges_are_returned(per: GaugeLength) -> None:
     gauge = Gauge.of_count(22, 30, per)
     assert gauge.counts(per) == pytest.approx((22, 30))
     assert gauge.stitches_for(per.value) == 22

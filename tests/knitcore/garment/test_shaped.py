@@ -54,7 +54,7 @@ def test_a_pure_fabric_is_pure_up_to_its_outline(shaped: ShapedChart, fabric: Fa
     assert set(odd_across.tolist()) <= {(LEFT | RIGHT) * int(fabric.course_odd)}
 
 
-def test_what_stands_outside_means_nothing() -> None:
+def test_cells_outside_the_outline_have_no_effect() -> None:
     first = ShapedChart.parse("KP\nKP", "x.\nxx")
     assert first == ShapedChart.parse("KK\nKP", "x.\nxx")
     assert first != ShapedChart.parse("PK\nKP", "x.\nxx")

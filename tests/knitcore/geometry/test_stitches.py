@@ -106,7 +106,7 @@ def test_no_yarn_passes_through_yarn_where_fabrics_meet(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(load_library()))
-def test_every_material_has_stitches_and_says_where_from(name: str) -> None:
+def test_every_material_has_stitches_with_a_source(name: str) -> None:
     shapes = stitch_shapes(MIXED, material(name))
     assert np.isfinite(shapes.lines).all()
     assert 0.1 < shapes.yarn_radius_mm < 0.4 * material(name).record(Fabric.SEED).stitch_course_mm

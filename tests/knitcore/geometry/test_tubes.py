@@ -34,6 +34,6 @@ def test_a_straight_tube_encloses_its_volume() -> None:
 
 
 @pytest.mark.parametrize(("points", "radius", "sides"), [(1, 1.0, 8), (5, 0.0, 8), (5, 1.0, 2)])
-def test_what_has_no_body_is_refused(points: int, radius: float, sides: int) -> None:
+def test_tubes_without_volume_are_refused(points: int, radius: float, sides: int) -> None:
     with pytest.raises(InputError):
         tube(np.eye(5, 3)[:points], radius, sides)

@@ -38,7 +38,7 @@ def test_scipy_s_factor_solves_the_sum_of_the_cells():
 
 
 @pytest.mark.parametrize("kind", [GridFactor, SciPyFactor])
-def test_indefinite_matrices_are_told(kind):
+def test_indefinite_matrices_are_refused(kind):
     cells = np.tile(np.diag([1.0] * 7 + [-1.0]), (4, 1, 1))
     with pytest.raises(IndefiniteTangentError):
         kind(2, 2, np.zeros(18, dtype=bool)).factorise(cells)

@@ -171,7 +171,7 @@ def test_unknown_fabrics_and_missing_laws_are_refused(document):
         ("large.yaml", b"#" * 1_000_001, "over 1 MB"),
     ],
 )
-def test_files_that_are_no_materials_are_refused(tmp_path, name, content, message):
+def test_files_that_are_not_materials_are_refused(tmp_path, name, content, message):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=message):
         load_material_file(tmp_path / name)

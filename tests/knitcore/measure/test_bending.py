@@ -104,7 +104,7 @@ def half() -> np.ndarray[Any, Any]:
 
 
 @pytest.mark.parametrize("image", [blank, noise, spot, half])
-def test_a_photo_without_a_yarn_is_told(tmp_path: Path, image: Any) -> None:
+def test_a_photo_without_a_yarn_is_refused(tmp_path: Path, image: Any) -> None:
     photo = save_photo(tmp_path / "nothing.png", image())
     with pytest.raises(InputError) as error:
         measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
@@ -112,7 +112,7 @@ def test_a_photo_without_a_yarn_is_told(tmp_path: Path, image: Any) -> None:
     assert "yarn" in error.value.problem
 
 
-def test_a_ruler_is_no_hanging_yarn(tmp_path: Path) -> None:
+def test_a_ruler_is_not_taken_for_hanging_yarn(tmp_path: Path) -> None:
     image = np.full((900, 700), 20, dtype=np.uint8)
     for i in range(800):
         image[50 + i, 20 + i // 2 : 50 + i // 2] = 220
@@ -121,7 +121,7 @@ def test_a_ruler_is_no_hanging_yarn(tmp_path: Path) -> None:
         measure_bending([photo], linear_density_g_per_m=DENSITY, length_mm=LENGTH)
 
 
-def test_a_missing_scale_is_told(tmp_path: Path) -> None:
+def test_a_missing_scale_is_reported(tmp_path: Path) -> None:
     photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
     with pytest.raises(InputError, match="has no scale") as error:
         measure_bending([photo], linear_density_g_per_m=DENSITY)
@@ -146,14 +146,16 @@ def test_a_cut_off_tip_needs_the_length(tmp_path: Path) -> None:
         ({"length_mm": 120.0, "px_per_mm": 100.0}, "by its scale"),
     ],
 )
-def test_impossible_numbers_are_told(tmp_path: Path, given: dict[str, Any], says: str) -> None:
+def test_impossible_numbers_are_refused(tmp_path: Path, given: dict[str, Any], says: str) -> None:
     photo = save_photo(tmp_path / "yarn.png", hanging_yarn(100.0))
     options = {"linear_density_g_per_m": DENSITY, "length_mm": LENGTH} | given
     with pytest.raises(InputError, match=says):
         measure_bending([photo], **options)
 
 
-def test_files_that_are_no_photos(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_files_that_are_not_photos_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = tmp_path / "text.jpg"
     text.write_text("not a photo")
     cut = tmp_path / "cut.png"

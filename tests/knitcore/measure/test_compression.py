@@ -84,7 +84,7 @@ def test_means_are_by_yarn() -> None:
         (lambda d, f: (d, np.where(np.arange(len(f)) == 7, np.nan, f)), "reading 8"),
     ],
 )
-def test_tests_that_cannot_be_used_are_told(change: Any, says: str) -> None:
+def test_unusable_tests_are_refused(change: Any, says: str) -> None:
     made = squeeze(1e-3, 2.5)
     depth, force = change(made.depth_mm, made.force_n)
     test = CompressionTest("made-1", "made", depth, force, 2.0)
@@ -93,7 +93,7 @@ def test_tests_that_cannot_be_used_are_told(change: Any, says: str) -> None:
     assert error.value.field.startswith("made-1")
 
 
-def test_a_missing_diameter_is_told() -> None:
+def test_a_missing_diameter_is_reported() -> None:
     made = squeeze(1e-3, 2.5)
     test = CompressionTest("made-1", "made", made.depth_mm, made.force_n, None)
     with pytest.raises(InputError, match="diameter"):

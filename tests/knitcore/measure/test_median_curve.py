@@ -60,7 +60,7 @@ def test_a_pull_that_went_wrong_does_not_move_it() -> None:
     )
 
 
-def test_it_goes_as_far_as_half_of_the_pulls() -> None:
+def test_the_curve_ends_where_half_of_the_pulls_end() -> None:
     curve = median_curve(pulls(1.0, 1.0, 1.0, 1.0, ends=(0.2, 0.3, 0.4, 0.5)))
     assert curve.strain[-1] == pytest.approx(0.3, abs=0.01)
 
@@ -75,7 +75,7 @@ def test_it_goes_as_far_as_half_of_the_pulls() -> None:
         (tuple(np.arange(101.0)), tuple(np.arange(101.0))),
     ],
 )
-def test_what_is_no_curve_is_refused(strain: tuple[float, ...], stress: tuple[float, ...]) -> None:
+def test_invalid_curves_are_refused(strain: tuple[float, ...], stress: tuple[float, ...]) -> None:
     with pytest.raises(InputError) as caught:
         MeasuredCurve(strain, stress)
     assert caught.value.field == "measured"

@@ -39,7 +39,7 @@ def close_to(law: ConstitutiveLaw, expected: ConstitutiveLaw, rel: float) -> Non
 
 
 @pytest.mark.parametrize("reduction", [Reduction.PUBLISHED, Reduction.UNIFORM])
-def test_a_law_comes_back_from_csv(tmp_path: Path, reduction: Reduction) -> None:
+def test_a_law_is_recovered_from_csv(tmp_path: Path, reduction: Reduction) -> None:
     files = [write_csv(tmp_path / f"{d}.csv", d) for d in (X, Y)]
     fit = fit_files(files[0], files[1], reduction=reduction)
     # The recommended reduction averages in 40 strain intervals: the curve bends within them.
@@ -49,7 +49,7 @@ def test_a_law_comes_back_from_csv(tmp_path: Path, reduction: Reduction) -> None
 
 
 @pytest.mark.parametrize("reduction", [Reduction.PUBLISHED, Reduction.UNIFORM])
-def test_a_law_comes_back_from_the_authors_layout(tmp_path: Path, reduction: Reduction) -> None:
+def test_a_law_is_recovered_from_the_authors_layout(tmp_path: Path, reduction: Reduction) -> None:
     files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
     fit = fit_files(files[0], files[1], reduction=reduction)
     close_to(fit.law, LAW, 1e-3 if reduction is Reduction.PUBLISHED else 0.02)
@@ -57,7 +57,7 @@ def test_a_law_comes_back_from_the_authors_layout(tmp_path: Path, reduction: Red
     assert any("video1" in note for note in fit.notes)
 
 
-def test_standard_errors_tell_the_spread_of_pulls(tmp_path: Path) -> None:
+def test_standard_errors_reflect_the_scatter_of_pulls(tmp_path: Path) -> None:
     """Pulls whose force differs by 5 % each: C is known to 5 % / sqrt(4)."""
     files = [write_csv(tmp_path / f"{d}.csv", d, noise=0.05, seed=4) for d in (X, Y)]
     fit = fit_files(files[0], files[1])
@@ -68,7 +68,7 @@ def test_standard_errors_tell_the_spread_of_pulls(tmp_path: Path) -> None:
     assert 0.005 < relative < 0.1
 
 
-def test_one_pull_has_errors_too_and_says_what_they_lack(tmp_path: Path) -> None:
+def test_one_pull_has_errors_with_a_note_on_what_they_lack(tmp_path: Path) -> None:
     files = [write_csv(tmp_path / f"{d}.csv", d, runs=1, noise=0.01) for d in (X, Y)]
     fit = fit_files(files[0], files[1])
     assert "scatter of pulls unknown" in fit.error_method
@@ -213,7 +213,7 @@ def _unload(lines: list[str]) -> None:
         (lambda lines: _cell(lines, 30, 4, "71.5"), ["width_mm", "row 30"]),
     ],
 )  # fmt: skip
-def test_bad_csv_is_told_by_file_column_and_row(
+def test_errors_in_csv_name_file_column_and_row(
     tmp_path: Path, change: Callable[[list[str]], None], says: list[str]
 ) -> None:
     files = [write_csv(tmp_path / f"{d}.csv", d, runs=1) for d in (X, Y)]
@@ -271,7 +271,7 @@ def test_files_that_are_not_what_they_claim(tmp_path: Path) -> None:
         (lambda f: f["clampSize"].__setitem__(0, np.nan), "clampSize"),
     ],
 )
-def test_damaged_hdf5_is_told_by_dataset(
+def test_errors_in_hdf5_name_the_dataset(
     tmp_path: Path, damage: Callable[[h5py.File], object], says: str
 ) -> None:
     files = [write_h5(tmp_path / f"{d}.h5", d) for d in (X, Y)]
@@ -338,7 +338,7 @@ def test_the_curve_of_a_made_test_is_the_laws() -> None:
     assert LAW.stress(along, across)[0] == pytest.approx(stress)
 
 
-def test_readings_that_never_change_are_told(tmp_path: Path) -> None:
+def test_readings_that_never_change_are_refused(tmp_path: Path) -> None:
     good = write_csv(tmp_path / "wale.csv", Y)
     rows = [f"0.2,-0.05,{force},70" for force in range(1, 41)]
     header = "strain_along,strain_across,force_n,width_mm"
@@ -348,7 +348,7 @@ def test_readings_that_never_change_are_told(tmp_path: Path) -> None:
         fit_files(still, good)
 
 
-def test_names_that_are_not_utf_8_are_told(tmp_path: Path) -> None:
+def test_names_that_are_not_utf_8_are_refused(tmp_path: Path) -> None:
     path = write_h5(tmp_path / "course.h5", X)
     with h5py.File(path, "r+") as file:
         file.create_group(b"vid\xe9o9")
@@ -356,7 +356,7 @@ def test_names_that_are_not_utf_8_are_told(tmp_path: Path) -> None:
         read_stretch_test(path)
 
 
-def test_a_width_below_that_of_the_tracked_points_is_told(tmp_path: Path) -> None:
+def test_a_width_below_that_of_the_tracked_points_is_reported(tmp_path: Path) -> None:
     path = write_h5(tmp_path / "course.h5", X)
     with h5py.File(path, "r+") as file:
         file["fabricSize"][:] = 35.5 * 4.0

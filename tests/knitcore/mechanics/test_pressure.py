@@ -104,12 +104,12 @@ def test_no_medical_class_is_named() -> None:
         (100, 190, "lock-up"),
     ],
 )
-def test_impossible_sizes_are_told(rest: float, worn: float, says: str) -> None:
+def test_impossible_sizes_are_refused(rest: float, worn: float, says: str) -> None:
     with pytest.raises(InputError, match=says):
         limb_pressure(GLOVE, Direction.WALE, rest, worn)
 
 
 @pytest.mark.parametrize("mmhg", [0.0, -5.0, math.nan, 1e4])
-def test_impossible_targets_are_told(mmhg: float) -> None:
+def test_impossible_targets_are_refused(mmhg: float) -> None:
     with pytest.raises(InputError, match="mmhg"):
         rest_circumference(GLOVE, Direction.WALE, 200, mmhg)

@@ -149,7 +149,7 @@ def test_yarn_across_the_pull_counts_for_the_length_only():
     assert (found.separation_mm, found.slope) == (seen.separation_mm, seen.slope)
 
 
-def test_curves_that_are_no_segments_are_refused():
+def test_curves_that_are_not_segments_are_refused():
     for bad in (np.zeros((3, 2)), np.zeros((9, 4)), np.zeros((9, 2)), np.eye(9)[:, :2] * np.nan):
         with pytest.raises(InputError, match="curve_mm"):
             SegmentGeometry.from_curve(Parity.EVEN, bad)

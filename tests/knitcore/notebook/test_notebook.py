@@ -45,13 +45,13 @@ def test_a_curled_piece_in_space_is_its_corners() -> None:
 
 
 @pytest.mark.parametrize("show", [figure, view])
-def test_what_has_no_picture_says_so(show) -> None:  # type: ignore[no-untyped-def]
+def test_objects_without_a_picture_are_refused(show) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(TypeError, match="a str has no"):
         show("KP")
 
 
 class TestEditor:
-    def test_it_returns_what_is_painted(self) -> None:
+    def test_it_returns_the_painted_chart(self) -> None:
         editor = ChartEditor(RIB)
         assert editor.chart == RIB
         editor.text = "KK\nPP"  # as the page does
@@ -59,7 +59,7 @@ class TestEditor:
         editor.chart = StitchChart.parse("KP")
         assert editor.text == "KP"
 
-    def test_it_refuses_what_is_no_chart(self) -> None:
+    def test_it_refuses_invalid_charts(self) -> None:
         editor = ChartEditor("KP")
         with pytest.raises(InputError):
             editor.text = "KX"

@@ -91,7 +91,7 @@ def test_a_sliver_gets_no_endless_mesh() -> None:
         ("edge", lambda: SLEEVE.sides_of("hem")),
     ],
 )
-def test_what_is_no_piece_is_refused(field: str, make: object) -> None:
+def test_invalid_pieces_are_refused(field: str, make: object) -> None:
     with pytest.raises(InputError) as refused:
         make()  # type: ignore[operator]
     assert refused.value.field == field

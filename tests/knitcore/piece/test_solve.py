@@ -244,7 +244,7 @@ def test_a_tape_keeps_an_edge_short() -> None:
     assert tape == pytest.approx(1.0 / 2e3 * 60.0, rel=0.2)  # the tapes carry nearly all of it
 
 
-def test_past_the_lock_up_the_test_says_so() -> None:
+def test_a_test_past_the_lock_up_is_marked() -> None:
     piece = CutPiece.rectangle(20.0, 40.0)
     law = replace(LAW, kappa_xx=0.0, kappa_yy=0.0)
     lock = law.lock_up_strain(Direction.WALE)

@@ -105,7 +105,7 @@ def test_opposite_angles_pull_sideways_the_opposite_way() -> None:
         ("shear_angle", lambda: trellis_test(KNIT, ACRYLIC, 1.5)),
     ],
 )
-def test_what_cannot_be_tested_is_refused(field: str, make: object) -> None:
+def test_impossible_tests_are_refused(field: str, make: object) -> None:
     with pytest.raises(InputError) as refused:
         make()  # type: ignore[operator]
     assert refused.value.field == field

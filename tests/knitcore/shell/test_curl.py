@@ -80,7 +80,7 @@ def test_a_single_stitch_is_flat() -> None:
     assert piece.curl_course_mm == pytest.approx(0.0, abs=1e-6)
 
 
-def test_what_did_not_converge_says_so() -> None:
+def test_a_test_that_did_not_converge_is_marked() -> None:
     piece = curl(StitchChart.parse("K").tile(20, 20), ACRYLIC, time_limit_s=0.0)
     assert not piece.converged
 

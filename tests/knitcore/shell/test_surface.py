@@ -17,7 +17,7 @@ def test_a_cylinder_is_a_cylinder() -> None:
     assert np.allclose(found[:, 1], rows, atol=1e-9)
 
 
-def test_beyond_an_edge_it_goes_on_straight() -> None:
+def test_beyond_an_edge_the_surface_is_straight() -> None:
     x, y = np.meshgrid(np.arange(4.0), np.arange(3.0))
     surface = Surface(np.stack([2.0 * x, 3.0 * y, 0.0 * x], axis=-1))
     found = surface.at(np.array([-1.0, 3.5]), np.array([0.5, 2.5]), np.array([0.0, 1.0]))

@@ -131,7 +131,7 @@ def test_ends_that_slide_leave_a_rectangle_of_one_fabric_uniform() -> None:
     assert np.nanmax(strain) == pytest.approx(0.3, abs=1e-6)
 
 
-def test_a_finer_grid_of_the_same_shape_goes_towards_the_same_force() -> None:
+def test_finer_grids_of_one_shape_converge_to_one_force() -> None:
     """Each refinement of a waisted piece changes less than the one before."""
     garter = StitchChart.of_fabric("garter", rows=6, columns=8)
     size = (chart_sheet(garter, ACRYLIC).grid.width_mm, chart_sheet(garter, ACRYLIC).grid.length_mm)
@@ -155,7 +155,7 @@ def test_a_finer_grid_of_the_same_shape_goes_towards_the_same_force() -> None:
         ("........\n........", "no stitch"),
     ],
 )
-def test_what_falls_apart_is_refused(outline: str, problem: str) -> None:
+def test_disconnected_fabric_is_refused(outline: str, problem: str) -> None:
     stitch = outline_marks(outline)
     chart = StitchChart(np.zeros(stitch.shape, dtype=bool))
     with pytest.raises(InputError, match=problem) as caught:

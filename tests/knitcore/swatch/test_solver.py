@@ -162,7 +162,7 @@ def test_a_compressed_sheet_buckles_into_a_stable_state() -> None:
     assert path.found[-1].energy < 0.9 * (0.2 * 0.3**2 / 2 * 20 * 20)
 
 
-def test_what_does_not_converge_is_told_and_the_part_before_it_returned(
+def test_a_failed_step_is_reported_and_the_steps_before_it_returned(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(solver, "MAX_NEWTON_STEPS", 4)

@@ -148,21 +148,21 @@ def test_sizes_can_be_given() -> None:
         ("length_mm", {"length_mm": -40.0}),
     ],
 )
-def test_what_cannot_be_used_is_refused_by_name(field: str, options: dict[str, object]) -> None:
+def test_unusable_input_is_refused_by_name(field: str, options: dict[str, object]) -> None:
     given = {"direction": "wale", "strain": 0.3} | options
     with pytest.raises(InputError) as caught:
         strip_test(GARTER, ACRYLIC, **given)
     assert caught.value.field == field
 
 
-def test_a_strain_beyond_lock_up_is_told_the_accepted_one() -> None:
+def test_a_strain_beyond_lock_up_is_refused_with_the_largest_accepted() -> None:
     with pytest.raises(InputError) as caught:
         strip_test(GARTER, ACRYLIC, "wale", 1.3)
     accepted = float(caught.value.remedy.split()[-1].rstrip("."))
     assert strip_test(GARTER, ACRYLIC, "wale", accepted, steps=8).converged
 
 
-def test_the_last_level_is_the_strain_that_was_asked_for() -> None:
+def test_the_last_level_is_the_requested_strain() -> None:
     """Not the next number above it, which may be beyond a limit that it just reaches."""
     for strain in (0.8, 0.3, 0.7):
         for steps in range(1, 60):

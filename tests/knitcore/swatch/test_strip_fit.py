@@ -45,7 +45,7 @@ def made_strip(
     "sizes", [EVEN, pytest.param(CLAMPED, marks=pytest.mark.slow)], ids=["even", "clamped"]
 )
 @pytest.mark.slow
-def test_a_law_comes_back_from_strips_that_it_made(
+def test_a_law_is_recovered_from_simulated_strips(
     sizes: dict[Direction, tuple[float, float | None]],
 ) -> None:
     strips = [made_strip(d, sizes) for d in Direction]

@@ -120,7 +120,7 @@ def test_linear_response_is_the_second_derivative_of_the_relaxed_energy() -> Non
     assert rise == pytest.approx(0.5 * shear * cell.area_mm2 * skew**2, rel=0.01)
 
 
-def test_what_is_no_minimum_without_mirrors_is_told() -> None:
+def test_a_state_that_is_not_a_minimum_without_mirrors_is_marked() -> None:
     seed = _bending(REPEATS["seed"], "seed")
     assert not seed.minimum
     assert seed.shear_modulus_n_per_mm is None
@@ -135,7 +135,7 @@ def test_a_repeat_that_is_held_flat_is_refused() -> None:
         bending(held)
 
 
-def test_stockinette_curls_as_every_knitter_knows() -> None:
+def test_stockinette_curls_as_in_real_fabric() -> None:
     found = _bending("K")
     assert found.curl == "the sides roll to the back, top and bottom roll to the front"
     assert _bending(REPEATS["garter"], "garter").curl == "lies flat"

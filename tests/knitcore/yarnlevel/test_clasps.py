@@ -62,7 +62,7 @@ def test_a_stitch_on_the_other_side_changes_the_code(chart, data):
     assert not same_clasps(one, other)
 
 
-def test_loose_courses_are_no_fabric():
+def test_loose_courses_are_not_fabric():
     lines = np.zeros((2, 40, 3))
     lines[..., 0] = np.arange(40) / 40 * WIDTH
     lines[1, :, 1] = HEIGHT / 2

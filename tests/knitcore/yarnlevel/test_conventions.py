@@ -15,5 +15,5 @@ def test_counting_a_pair_once_takes_twice_the_factor():
     assert all(c.unordered_pair_factor == 2 * c.ordered_pair_factor for c in Convention)
 
 
-def test_every_reading_says_where_it_comes_from():
+def test_every_convention_names_its_source():
     assert all(c.source.endswith(".") for c in Convention)

@@ -95,7 +95,7 @@ def test_spare_rows_are_dropped():
         ("chart", {"chart": "KKPP\nKPKP\nPKKK\nPPKP", "time_limit_s": 0.5}, "at most 2 stitches"),
     ],
 )
-def test_what_cannot_be_done_is_refused_with_a_bound(field, arguments, bound):
+def test_impossible_input_is_refused_with_a_bound(field, arguments, bound):
     asked = {"chart": "KKP\nPKK", "loop_length_mm": LENGTH} | arguments
     chart = StitchChart.parse(asked.pop("chart"))
     with pytest.raises(InputError, match=bound) as refusal:

@@ -114,7 +114,7 @@ def test_free_branch_is_not_above_the_mirrored_one():
     assert any("differs from the mirrored" in note for note in free.notes)
 
 
-def test_the_free_branch_goes_on_from_the_lowest_mirrored_state():
+def test_the_free_branch_continues_from_the_lowest_mirrored_state():
     """Broken rib of acrylic: the second start of the mirrored branch ends 11 % lower."""
     chart = StitchChart.parse("KP\nKK")
     used = yarn_for(material("acrylic"), chart)
@@ -262,7 +262,7 @@ def test_names_that_are_not_known_are_refused():
 
 
 @pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])
-def test_a_time_limit_that_is_no_time_is_refused(seconds):
+def test_an_invalid_time_limit_is_refused(seconds):
     with pytest.raises(InputError, match="time_limit_s"):
         relax(StitchChart.parse("K"), STUDY_YARN, 11.28, time_limit_s=seconds)
 

@@ -61,7 +61,7 @@ def test_two_by_two_rib_is_narrower_and_stretchier_than_one_by_one():
 
 
 @pytest.mark.slow
-def test_random_starts_never_return_what_is_undone():
+def test_random_starts_never_return_unravelled_stitches():
     spec = importlib.util.spec_from_file_location("yarnlevel_stress", STRESS)
     stress = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(stress)

@@ -61,7 +61,7 @@ def test_yarn_pulled_straight_ends_the_sweep_with_a_note(zero):
 
 
 @pytest.mark.parametrize("strain", [0.0, -0.1, float("nan"), float("inf")])
-def test_strains_that_are_no_stretch_are_refused(zero, strain):
+def test_strains_that_are_not_positive_are_refused(zero, strain):
     with pytest.raises(InputError, match="max_strain"):
         sweep(zero, "course", strain)
 
@@ -114,7 +114,7 @@ def test_a_direction_that_is_not_known_is_refused(zero):
         sweep(zero, "across", 0.1)
 
 
-def test_a_state_that_is_held_is_no_rest():
+def test_a_held_state_is_refused_as_rest():
     entry = sample("cotton", "stockinette")
     held = relax(
         StitchChart.parse("K"), entry.yarn, entry.loop_length_mm, cell_course_mm=3.6,

@@ -38,7 +38,7 @@ def table() -> YarnTable:
     return found
 
 
-def test_a_repeat_is_told_in_json_the_same_every_time() -> None:
+def test_the_json_of_a_repeat_is_reproducible() -> None:
     task = RepeatTask("K", COTTON.yarn, COTTON.loop_length_mm)
     once, again = characterise_repeat(task), characterise_repeat(task)
     assert json.dumps(once) == json.dumps(again)
@@ -104,7 +104,7 @@ def test_a_setting_without_a_law_makes_no_material(table: YarnTable) -> None:
         material_of(table, "16mm")
 
 
-def test_plans_refuse_what_cannot_work() -> None:
+def test_impossible_plans_are_refused() -> None:
     with pytest.raises(InputError, match="none is given"):
         plan_for_yarn("mine", COTTON.yarn, [])
     with pytest.raises(InputError, match="above 0"):

@@ -42,7 +42,7 @@ def test_comments_docstrings_and_layout_do_not_count(package) -> None:
     assert changes(package, "solve.py", text.replace("return 1", "return 2"))
 
 
-def test_what_is_imported_and_what_is_named_counts(package) -> None:
+def test_imported_modules_and_named_files_count(package) -> None:
     assert changes(package, "yarn.py", 'FILE = "yarns.csv"\nMORE = 1\n')
     assert changes(package, "data/yarns.csv", "2")
 
@@ -52,7 +52,7 @@ def test_a_module_without_source_is_refused(package) -> None:
         code_version("cloth.gone")
 
 
-def test_what_is_neither_imported_nor_named_does_not_count(package) -> None:
+def test_other_modules_and_files_do_not_count(package) -> None:
     assert not changes(package, "aside.py", "A = 2\n")
     assert not changes(package, "data/other.csv", "2")
 

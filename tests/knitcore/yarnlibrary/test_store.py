@@ -92,7 +92,7 @@ def test_a_welt_upside_down_is_the_same_cloth():
     assert one.cell_wale_mm == pytest.approx(other.cell_wale_mm, rel=5e-3)
 
 
-def test_a_build_makes_the_same_files_again_and_goes_on_where_it_was(tmp_path, monkeypatch):
+def test_a_build_is_reproducible_and_resumes(tmp_path, monkeypatch):
     """With a stand-in for the solver, which gives no shape to garter."""
     calls = []
 
@@ -124,7 +124,7 @@ def test_a_build_makes_the_same_files_again_and_goes_on_where_it_was(tmp_path, m
 
 
 @pytest.mark.parametrize("name", ["acrylic", "cotton"])
-def test_every_stored_shape_is_knitted_as_its_chart_says(name):
+def test_every_stored_shape_is_knotted_like_its_chart(name):
     for chart in stored_charts(name):
         stored = stored_stitch(chart, name)
         assert stored is not None

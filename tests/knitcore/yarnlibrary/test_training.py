@@ -39,7 +39,7 @@ def test_tasks_name_yarn_and_chart() -> None:
     assert {task.yarn_name for task in named.values()} >= {"acrylic", "cotton", "middle", "thick"}
 
 
-def test_packing_adds_to_what_is_packed_and_later_builds_leave_it_out(tmp_path: Path) -> None:
+def test_packing_adds_entries_and_later_builds_skip_them(tmp_path: Path) -> None:
     keep, packed = tmp_path / "keep", tmp_path / "packed.json"
     keep.mkdir()
     task = next(t for t in tasks().values() if t.repeat.chart == "KP")

@@ -126,7 +126,7 @@ def test_impossible_stitches_are_refused(field, arguments):
     assert refusal.value.field == field
 
 
-def test_jammed_unravelled_and_unfinished_stitches_are_no_results():
+def test_jammed_unravelled_and_unfinished_stitches_are_refused():
     known = sample("acrylic", "rib")
     stitch = Stitch(known.fabric, known.yarn)
     start = first_shapes(stitch, known.loop_length_mm, 1)[0]
@@ -145,7 +145,7 @@ def test_jammed_unravelled_and_unfinished_stitches_are_no_results():
         lowest(stitch, [replace(good, unknowns=swapped, certified=certified)])
 
 
-def test_a_size_beyond_the_yarn_is_no_result():
+def test_a_size_beyond_the_yarn_is_refused():
     known = sample("cotton", "stockinette")
     with pytest.raises(ConvergenceError, match="natural"):
         relax_published("stockinette", known.yarn, 12.28, cell_course_mm=9.0, starts=1)

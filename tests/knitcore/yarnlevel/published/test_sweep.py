@@ -45,7 +45,7 @@ def test_published_moduli_of_cotton_stockinette(cotton_stockinette):
     assert law.poisson_xy == pytest.approx(0.359, abs=0.05)
 
 
-def test_a_stretch_ends_beyond_the_stress_asked_for(cotton_stockinette):
+def test_a_stretch_ends_beyond_the_requested_stress(cotton_stockinette):
     course, _ = cotton_stockinette
     assert course.stress_n_per_mm[-1] > 0.35 > course.stress_n_per_mm[-2]
     assert len(course.cells) < 15
@@ -96,7 +96,7 @@ def test_only_seed_along_the_course_is_quenched_by_default():
     assert quenched == {(Fabric.SEED, Direction.COURSE)}
 
 
-def test_a_locked_yarn_ends_the_stretch_and_says_so():
+def test_a_locked_yarn_ends_the_stretch_with_a_note():
     curve = stretch("cotton", "stockinette", "course", 1.2, 3)
     assert len(curve.cells) == 2
     assert any("locks" in note for note in curve.notes)
