@@ -1,6 +1,7 @@
-"""Many independent computations: on this machine, or unchanged on a Dask cluster. A batch is a
-function and named tasks for it. Results are stored as one JSON document for each task, so a batch
-that was stopped, even by force, continues where it left off.
+"""Many independent computations: on this machine, or unchanged on a Dask cluster.
+
+A batch is a function and named tasks for it. Results are stored as one JSON document for each task,
+so a batch that was stopped, even by force, continues where it left off.
 """
 
 from __future__ import annotations
@@ -58,8 +59,8 @@ class BatchResult:
 
     Attributes
     ----------
-    results : a JSON document for each task that succeeded, in the order of the tasks. failures :
-    the error of each of the others.
+    results : a JSON document for each task that succeeded, in the order of the tasks.
+    failures : the error of each of the others.
     """
 
     results: dict[str, Document]

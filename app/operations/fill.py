@@ -127,8 +127,7 @@ class FillResult(ResultModel):
 
 
 def fill(request: FillRequest, context: Context) -> FillResult:
-    """Patches of repeats from the atlas that match at their edges; reports targets that are not
-    met.
+    """Patches of repeats from the atlas, matched at their edges; reports targets that are missed.
 
     Raises
     ------

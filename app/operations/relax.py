@@ -81,8 +81,9 @@ class RelaxResult(ResultModel):
 
 
 def relax(request: RelaxRequest, context: Context) -> RelaxResult:
-    """Shape of least energy of the repeat; stops when the caller disconnects. A relaxation that was
-    run before is returned from storage.
+    """Shape of least energy of the repeat; stops when the caller disconnects.
+
+    A relaxation that was run before is returned from storage.
     """
     return kept_or_made(RelaxResult, request, context, _relaxed)
 

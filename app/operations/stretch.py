@@ -153,8 +153,9 @@ class StretchView:
 
 
 def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
-    """Nonlinear strip test of the whole chart; stops when the caller disconnects. A test that was
-    run a short while ago is returned from memory.
+    """Nonlinear strip test of the whole chart; stops when the caller disconnects.
+
+    A test that was run a short while ago is returned from memory.
 
     Raises
     ------

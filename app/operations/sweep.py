@@ -91,8 +91,9 @@ class SweepResult(ResultModel):
 
 
 def sweep(request: SweepRequest, context: Context) -> SweepResult:
-    """Stress-strain curve and fitted law of the repeat; stops when the caller disconnects. The law
-    also needs the stretch across. A stretch that was run before is returned from storage.
+    """Stress-strain curve and fitted law of the repeat; stops when the caller disconnects.
+
+    The law also needs the stretch across. A stretch that was run before is returned from storage.
     """
     return kept_or_made(SweepResult, request, context, _result)
 

@@ -18,8 +18,10 @@ class Measure:
 
     Attributes
     ----------
-    identifier : name used in requests. unit : of its value; empty for a ratio. description : one
-    sentence. of : computes it; may raise InputError if the material lacks something.
+    identifier : name used in requests.
+    unit : of its value; empty for a ratio.
+    description : one sentence.
+    of : computes it; may raise InputError if the material lacks something.
     """
 
     identifier: str

@@ -23,10 +23,10 @@ class Patch:
     repeat : its key.
     stitches : number of its stitches.
     row, column : of its first stitch, from 0 at the bottom left.
-    deviation_course, deviation_wale : the repeat's effective modulus over the median of the
-        wanted ones, minus one; NaN without a target. swatch_course, swatch_wale : the same for the
-    patch in the finite swatch, where its size and its neighbours have an effect; NaN without a
-        target, or if it was not pulled.
+    deviation_course, deviation_wale : the repeat's effective modulus over the median of the wanted
+        ones, minus one; NaN without a target.
+    swatch_course, swatch_wale : the same for the patch in the finite swatch, where its size and its
+        neighbours have an effect; NaN without a target, or if it was not pulled.
     """
 
     repeat: str

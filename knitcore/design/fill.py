@@ -96,7 +96,8 @@ def fill_field(
     Parameters
     ----------
     modulus_course_n_per_mm, modulus_wale_n_per_mm : (rows, columns), row 0 at the bottom; NaN where
-    there is no target. material : one yarn for the whole chart.
+        there is no target.
+    material : one yarn for the whole chart.
     atlas : of that material.
     kept : a chart whose stitches without a target stay as they are; the others are fitted to them
         and judged among them. Without it all stitches are filled.

@@ -41,7 +41,9 @@ def finite_size(
     patches : (rows, columns) number of each stitch's patch; numbers without a repeat are not
         patches.
     repeats : of each patch.
-    stitch : (rows, columns), where there are stitches. Raises
+    stitch : (rows, columns), where there are stitches.
+
+    Raises
     ------
     CancelledError
         If ``cancelled`` returned True.

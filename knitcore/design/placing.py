@@ -43,8 +43,8 @@ def placed(
     wanted : (2, rows, columns) logarithms of the wanted moduli, NaN where there is no target.
     table : of the material.
     kept : stitches of the chart where there is no repeat.
-    stitch : (rows, columns), where there are stitches. seed : of the order in which patches and
-    stitches are tried.
+    stitch : (rows, columns), where there are stitches.
+    seed : of the order in which patches and stitches are tried.
     look : called from time to time with the share done; may raise to stop.
     """
     rng = np.random.default_rng(seed)

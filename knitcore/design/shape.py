@@ -1,7 +1,8 @@
-"""A chart that takes a target outline when it is stretched. The swatch is pulled between two
-clamps, and the target is its width, line by line: row by row under a
-wale-wise pull, column by column under a course-wise one. It is made of bands across the pull, each
-of one repeat of the atlas. All bands carry one force, so each stretches by its own curve and
+"""A chart that takes a target outline when it is stretched.
+
+The swatch is pulled between two clamps, and the target is its width, line by line: row by row under
+a wale-wise pull, column by column under a course-wise one. It is made of bands across the pull,
+each of one repeat of the atlas. All bands carry one force, so each stretches by its own curve and
 narrows by its Poisson ratio: that gives the first choice. The finite swatch is then pulled, the
 target of each band is shifted by its error in the swatch, and the bands are chosen again; finally
 single bands are changed where that helps. Results are judged by the outline of the swatch, never by
@@ -66,7 +67,8 @@ class ShapedSwatch:
     wanted : the target, NaN where there was none.
     rms, largest : of the differences.
     force_n : at the clamps.
-    pulls : number of swatches that were pulled. messages : on targets that were not met.
+    pulls : number of swatches that were pulled.
+    messages : on targets that were not met.
     """
 
     chart: StitchChart

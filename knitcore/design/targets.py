@@ -93,7 +93,9 @@ class Target:
     value : the target; above 0 except for Poisson's ratios.
     tolerance : relative deviation that still counts as reached (0.1 = 10 %); for Poisson's ratios
         the difference.
-    weight : relative to the other targets. load_n_per_mm : for a stretch. limb : for a pressure.
+    weight : relative to the other targets.
+    load_n_per_mm : for a stretch.
+    limb : for a pressure.
     """
 
     quantity: Quantity

@@ -76,8 +76,8 @@ class FabricEstimate:
     modulus : Young's moduli, N/mm.
     alpha : dimensionless. beta : N/mm.
     law : of the central values.
-    loop_length_mm : given. stitch_course_mm, stitch_wale_mm : from the library's mean proportions
-        of stitch to loop length.
+    loop_length_mm : given.
+    stitch_course_mm, stitch_wale_mm : from the library's mean proportions of stitch to loop length.
     measured : whether the law is the swatch's own.
     curves : of the swatch's stretch tests, by direction, where known.
     """

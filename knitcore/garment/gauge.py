@@ -32,7 +32,8 @@ class Gauge:
     Attributes
     ----------
     stitch_course_mm, stitch_wale_mm : width of a stitch and height of a row.
-    source : of the sizes, in words. log_sd : standard deviation of the logarithm of both.
+    source : of the sizes, in words.
+    log_sd : standard deviation of the logarithm of both.
     """
 
     stitch_course_mm: float

@@ -123,8 +123,8 @@ def glove(
     hand : its measurements.
     material : gives gauges and laws; ``glove-wool:glove`` is the paper's.
     ease : of fingers and thumb.
-    mmhg : target pressure of the wrist support; a note says how many rows that takes. gauges : the
-    knitter's; by default the material's own.
+    mmhg : target pressure of the wrist support; a note says how many rows that takes.
+    gauges : the knitter's; by default the material's own.
     linear_density_tex : for the mass of yarn.
 
     Notes

@@ -48,8 +48,9 @@ class Misfit:
     Attributes
     ----------
     first, second : the regions.
-    stitches : number of pairs of stitches that meet there. difference : of the size that should be
-    equal on both sides, over the smaller. text : a description in words.
+    stitches : number of pairs of stitches that meet there.
+    difference : of the size that should be equal on both sides, over the smaller.
+    text : a description in words.
     """
 
     first: str

@@ -51,8 +51,8 @@ def limb_tube(
     name : of the garment.
     profile : circumferences along the limb, from where the knitting begins.
     material : gives the laws for the pressure.
-    fit : ease, or a target pressure of the body. gauges : the knitter's; by default the material's
-    own. Sizes follow the body's fabric.
+    fit : ease, or a target pressure of the body.
+    gauges : the knitter's; by default the material's own. Sizes follow the body's fabric.
     body, hem : fabrics of the middle, and of the first and last ``hem_mm``.
     notes : added to the plan's own.
     linear_density_tex : for the mass of yarn.
@@ -165,8 +165,9 @@ def wrist_brace(
     ----------
     wrist_mm : circumference of the wrist.
     length_mm : along the arm.
-    material : gives the law for the pressure. fit : ease, or a target pressure. gauges : the
-    knitter's; by default the material's own.
+    material : gives the law for the pressure.
+    fit : ease, or a target pressure.
+    gauges : the knitter's; by default the material's own.
     edge_mm : width of the garter edges, which stretch around the arm.
     linear_density_tex : for the mass of yarn.
     """

@@ -42,8 +42,9 @@ def stitch_sizes_mm(material: Material) -> Array:
 
 
 def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
-    """The chart as a flat sheet: the width of a wale and the height of a course are means over its
-    stitches. A lattice for pictures, not an equilibrium, which the swatch solves for.
+    """The chart as a flat sheet, with the mean width of each wale and mean height of each course.
+
+    A lattice for pictures, not an equilibrium, which the swatch solves for.
 
     Raises
     ------
@@ -61,6 +62,7 @@ def flat_lattice(chart: StitchChart, material: Material) -> Lattice:
 
 def resting_lattice(chart: StitchChart, material: Material) -> Lattice:
     """The chart as it lies at rest with free edges: textures of different gauge draw each other in.
+
     Every stitch tends to the size that its surroundings give it
     (:mod:`knitcore.answer.neighbourhood`), and shear holds rows and columns together: the places x
     of the edges between stitches minimise the sum of (step along the course - width)² + weight

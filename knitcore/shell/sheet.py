@@ -171,8 +171,11 @@ class _Fabrics:
 
     Parameters
     ----------
-    size_mm : (4, 2). membrane : (4, 4) C₁₁, C₂₂, C₁₂, G, N/mm. rigidity_n_mm : (4, 2).
-    curvature_per_mm : (4, 2) of a knit. thickness_mm : of stockinette.
+    size_mm : (4, 2).
+    membrane : (4, 4) C₁₁, C₂₂, C₁₂, G, N/mm.
+    rigidity_n_mm : (4, 2).
+    curvature_per_mm : (4, 2) of a knit.
+    thickness_mm : of stockinette.
     """
 
     size_mm: Array

@@ -22,7 +22,8 @@ class Fields:
 
     Attributes
     ----------
-    x_mm, y_mm : rest positions; ux_mm, uy_mm : displacements.
+    x_mm, y_mm : rest positions;
+    ux_mm, uy_mm : displacements.
     strain_xx, strain_yy, strain_xy : strains of the model. Of ``full``: elongations along course
         and wale and half the change of their angle; of ``published``: the linearised strain.
     principal_strain : (2, ...) larger and smaller principal value of the strain tensor.

@@ -1,10 +1,11 @@
-"""Uncertainty of a law fitted to stretch tests, to first order about the fit. An interval of a
-curve is for the next test of the same fabric, knitted and pulled alike. Its error is estimated from
-the tests themselves: each pull is predicted from the others, and the squared errors, which include
-the scatter between pulls and the misfit of the law, are averaged. A few pulls say little about
-their own scatter, so the typical error counts as one more pull. The width of another sample is a
-new reading (:data:`LOG_WIDTH_READING`); strain is a ratio of lengths in one picture and needs no
-scale.
+"""Uncertainty of a law fitted to stretch tests, to first order about the fit.
+
+An interval of a curve is for the next test of the same fabric, knitted and pulled alike. Its error
+is estimated from the tests themselves: each pull is predicted from the others, and the squared
+errors, which include the scatter between pulls and the misfit of the law, are averaged. A few pulls
+say little about their own scatter, so the typical error counts as one more pull. The width of
+another sample is a new reading (:data:`LOG_WIDTH_READING`); strain is a ratio of lengths in one
+picture and needs no scale.
 
 Standard errors of single constants are those of the jackknife over pulls, of the scatter about the
 fit, a few neighbouring points counting as one, and of the widths.

@@ -40,7 +40,7 @@ def test_design_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("chart.doc", b"KP", "no kind that holds a chart"),
+        ("chart.doc", b"KP", "not of a kind that holds a chart"),
         ("chart.txt", b"\xff\xfe\x00", "not UTF-8"),
         ("chart.png", b"no picture", "not a readable PNG"),
         ("chart.json", b"{", "not valid JSON"),
