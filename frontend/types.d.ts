@@ -619,7 +619,7 @@ export interface DesignFile {
   note: string;
 }
 
-/** Everything of a design but its chart and its names. */
+/** Everything in a design except its chart and its names. */
 export interface DesignLayout {
   /** Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out. */
   outline: string | null;
@@ -649,7 +649,7 @@ export interface DesignRegion {
   colour: string;
   /** Intarsia yarn; None leaves the yarn beneath. */
   yarn: string | null;
-  /** Repeat that fills it, from the chart's corner. */
+  /** Repeat that fills it, counted from the chart's corner. */
   fill: string | null;
   /** [row, column, length] of adjacent stitches; row 0 is the bottom. */
   runs: [number, number, number][];
@@ -970,7 +970,7 @@ export interface FingerSize {
   circumference_mm: number;
 }
 
-/** How the last course is kept from ravelling. */
+/** The finish that keeps the last course from ravelling. */
 export type Finish = "waste" | "bind-off";
 
 /** Two stretch tests of one fabric. */
@@ -1741,7 +1741,7 @@ export interface RSSegment {
 /** What one extensibility rectangle stands for. */
 export type RectangleGroups = "stitch" | "block" | "region";
 
-/** How points become constants: as published, or as recommended. */
+/** Reduction of points to constants. */
 export type Reduction = "published" | "uniform" | "recommended";
 
 /** One region: its repeat, colour and size, and means over its stitches. */

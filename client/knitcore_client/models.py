@@ -329,7 +329,7 @@ class DesignRegion(BaseModel):
     yarn: str | None = None
     """Intarsia yarn; None leaves the yarn beneath."""
     fill: str | None = None
-    """Repeat that fills it, from the chart's corner."""
+    """Repeat that fills it, counted from the chart's corner."""
     runs: list[tuple[int, int, int]]
     """[row, column, length] of adjacent stitches; row 0 is the bottom."""
     locked: bool = False
@@ -1474,7 +1474,7 @@ class DesignFile(BaseModel):
 
 
 class DesignLayout(BaseModel):
-    """Everything of a design but its chart and its names."""
+    """Everything in a design except its chart and its names."""
 
     outline: str | None = None
     """Lines of x (stitch) and . (no stitch), the top row first; a full rectangle if left out."""
