@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import secrets
 from collections.abc import AsyncIterator
 from functools import partial
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import Any, Self, TypeVar, Unpack
 
 import httpx2 as httpx
 from pydantic import BaseModel, TypeAdapter
 
 from knitcore_client.models import (
+    BoxInput,
+    CameraSide,
     Design,
     DesignDocument,
     DesignPage,
     DesignPatch,
     DesignSummary,
+    Focus,
     JobPage,
     JobResult,
     JobStatus,
@@ -25,15 +29,18 @@ from knitcore_client.models import (
     Painted,
     Run,
     SharedDesign,
+    SharedViewRequest,
     ShareMode,
     Shares,
     SignedIn,
     Version,
     Versions,
     VersionSummary,
+    ViewRequest,
+    ViewResult,
 )
 from knitcore_client.operations import AsyncOperations
-from knitcore_client.wire import ATTEMPTS, sent, wait_s
+from knitcore_client.wire import ATTEMPTS, PAUSE_S, sent, wait_s
 
 Model = TypeVar("Model", bound=BaseModel)
 _JOB_RESULT: TypeAdapter[JobResult] = TypeAdapter(JobResult)
@@ -90,6 +97,14 @@ class AsyncClient(AsyncOperations):
     async def signed_in(self) -> SignedIn:
         """Who you are, where you are signed in, and how much of your limits you use."""
         return await self._get(SignedIn, "/session")
+
+    async def sign_out(self) -> None:
+        """End the session of this request; a token stays as it is."""
+        await self._send("DELETE", "/session")
+
+    async def end_session(self, session: str) -> None:
+        """End another session of yours."""
+        await self._send("DELETE", f"/sessions/{session}")
 
     # designs
 
@@ -184,24 +199,13 @@ class AsyncClient(AsyncOperations):
 
     async def follow(self, job: str) -> AsyncIterator[JobStatus]:
         """A job's states and progress until it ends."""
-        attempt = 1
         while True:
-            try:
-                async with self._http.stream("GET", f"/jobs/{job}/events", timeout=None) as stream:
-                    if stream.is_error:
-                        await stream.aread()
-                        await asyncio.sleep(wait_s(stream, attempt))
-                    async for line in stream.aiter_lines():
-                        if line.startswith("data: "):
-                            status = JobStatus.model_validate_json(line.removeprefix("data: "))
-                            yield status
-                            attempt = 0
-                            if status.state not in ("waiting", "running"):
-                                return
-            except httpx.TransportError:
-                if attempt == ATTEMPTS:
-                    raise
-            attempt += 1
+            async for data in self._events(f"/jobs/{job}/events"):
+                status = JobStatus.model_validate_json(data)
+                yield status
+                if status.state not in ("waiting", "running"):
+                    return
+            await asyncio.sleep(PAUSE_S)
 
     async def result(self, job: str) -> JobResult:
         """The result of a job; its ``kind`` says which."""
@@ -215,6 +219,44 @@ class AsyncClient(AsyncOperations):
     async def again(self, job: str) -> JobStatus:
         """Run a job again."""
         return await self._post(JobStatus, f"/jobs/{job}/again")
+
+    # the 3D view
+
+    async def show(self, design: str, **view: Unpack[ViewRequest]) -> ViewResult:
+        """Draw a design; whoever watches the view's address sees it."""
+        answer = await self._send("PUT", f"/views/{design}", json=sent(view))
+        return ViewResult.model_validate_json(answer.content)
+
+    async def mark(self, design: str, box: BoxInput | None = None) -> None:
+        """Outline stitches in the view; without a box, none."""
+        await self._send("PUT", f"/views/{design}/mark", json={"box": box})
+
+    async def look(self, design: str, side: CameraSide) -> None:
+        """Turn the camera of everybody who watches."""
+        await self._send("PUT", f"/views/{design}/camera", json={"side": side})
+
+    async def clicks(self, design: str) -> AsyncIterator[Focus]:
+        """Stitches that somebody clicks in the view, until it is closed."""
+        async for data in self._events(f"/views/{design}/events"):
+            stitch: Focus = json.loads(data)
+            yield stitch
+
+    async def picture(self, design: str, width: int = 1600, height: int = 1200) -> bytes:
+        """The view as PNG, as a browser that watches it draws it."""
+        size = {"width": width, "height": height}
+        return (await self._send("GET", f"/views/{design}/picture", params=size)).content
+
+    async def page(self, **view: Unpack[SharedViewRequest]) -> bytes:
+        """The view as one HTML file that needs nothing else."""
+        return (await self._send("POST", "/views/page", json=sent(view))).content
+
+    async def recording(self, **view: Unpack[SharedViewRequest]) -> bytes:
+        """The view as a ``.viser`` file."""
+        return (await self._send("POST", "/views/recording", json=sent(view))).content
+
+    async def solid(self, **view: Unpack[SharedViewRequest]) -> bytes:
+        """The yarn as binary glTF."""
+        return (await self._send("POST", "/views/solid", json=sent(view))).content
 
     # on the wire
 
@@ -237,6 +279,26 @@ class AsyncClient(AsyncOperations):
             if not ended:
                 await self.cancel(job)
         return await self.result(job)
+
+    async def _events(self, path: str) -> AsyncIterator[str]:
+        """Data of server-sent events, until the service ends them."""
+        attempt = 1
+        while True:
+            try:
+                async with self._http.stream("GET", path, timeout=None) as stream:
+                    if stream.is_error:
+                        await stream.aread()
+                        await asyncio.sleep(wait_s(stream, attempt))
+                    else:
+                        async for line in stream.aiter_lines():
+                            if line.startswith("data: "):
+                                yield line.removeprefix("data: ")
+                                attempt = 0
+                        return
+            except httpx.TransportError:
+                if attempt == ATTEMPTS:
+                    raise
+            attempt += 1
 
     async def _get(self, model: type[Model], path: str, **query: Any) -> Model:
         return model.model_validate_json((await self._send("GET", path, params=query)).content)

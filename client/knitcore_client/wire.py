@@ -14,6 +14,8 @@ from knitcore_client.models import Problem
 ATTEMPTS = 4
 LONGEST_WAIT_S = 60.0
 """Longest wait that is accepted before a request is repeated."""
+PAUSE_S = 0.5
+"""Before a job is followed again whose events ended early."""
 
 
 class ProblemError(Exception):

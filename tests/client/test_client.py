@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import subprocess
 import sys
 from collections.abc import AsyncIterator, Coroutine, Iterator
@@ -16,6 +17,7 @@ from knitcore_client import AsyncClient, Client, ProblemError
 from knitcore_client.aio import AsyncClient as Awaited
 from knitcore_client.models import JobStatus
 
+from app.main import create_app
 from app.operations.registry import operations
 from scripts.client_code import FOLDER, code
 from tests.app.service import Service
@@ -85,6 +87,44 @@ def test_every_operation_is_a_method(knit: Client, tmp_path: Path) -> None:
     assert [fault.field for fault in refused.value.problem.errors] == ["material"]
 
 
+def test_a_view_from_a_script(knit: Client) -> None:
+    shown = knit.show("of-a-script", chart="KP\nPK", material="acrylic", colour="phase")
+    assert (shown.stitches, shown.url) == (4, "/view/of-a-script/")
+    knit.mark("of-a-script", {"row0": 0, "column0": 0, "row1": 1, "column1": 2})
+    knit.mark("of-a-script")
+    knit.look("of-a-script", "back")
+    with pytest.raises(ProblemError, match="No browser"):
+        knit.picture("of-a-script", width=64, height=64)
+    with pytest.raises(ProblemError, match="not open"):
+        next(iter(knit.clicks("no-such-view")))
+    view = {"chart": "KP\nPK", "material": "acrylic"}
+    assert knit.solid(**view).startswith(b"glTF")  # type: ignore[arg-type]
+    assert b"<html" in knit.page(**view)[:2000]  # type: ignore[arg-type]
+    assert knit.recording(**view)  # type: ignore[arg-type]
+
+
+def test_clicks_come_as_stitches() -> None:
+    events = 'event: stitch\ndata: {"row": 1, "column": 2}\n\n: still there\n\n'
+    answers = httpx.MockTransport(lambda _: httpx.Response(200, text=events))
+    with Client("http://knit.example", transport=answers) as client:
+        assert list(client.clicks("a-view")) == [{"row": 1, "column": 2}]
+
+
+def test_sessions_from_a_script(knit: Client) -> None:
+    with pytest.raises(ProblemError, match="no session"):
+        knit.end_session("no-such-session")
+    knit.sign_out()
+    assert knit.signed_in().sessions == []  # a token needs none, and goes on
+
+
+def test_every_address_of_the_service_has_its_method() -> None:
+    written = "".join(Path(FOLDER / name).read_text() for name in ("aio.py", "operations.py"))
+    known = {re.sub(r"{\w+}", "{}", path) for path in re.findall(r'f?"(/[^"]*)"', written)}
+    paths = {path.removeprefix("/api/v1") for path in create_app().openapi()["paths"]}
+    for_operators = {"/healthz", "/readyz", "/metrics"}
+    assert {re.sub(r"{\w+}", "{}", path) for path in paths - for_operators} <= known
+
+
 def test_a_job_from_a_script(knit: Client) -> None:
     job = knit.submit(
         "stretch", chart="KP\nPK", material="acrylic", direction="wale", strain=0.1, steps=2
@@ -119,6 +159,11 @@ def test_the_same_awaited(service: Service) -> None:
             assert len(found.strain) == 1
             with pytest.raises(ProblemError, match="no design"):
                 await knit.design("no-such-design")
+            shown = await knit.show("awaited", chart="KP", material="acrylic")
+            assert shown.stitches == 2
+            with pytest.raises(ProblemError, match="not open"):
+                async for _ in knit.clicks("no-such-view"):
+                    pass
 
     awaited(script())
 
