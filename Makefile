@@ -8,7 +8,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help install page wheel serve test test-slow test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
+.PHONY: help install page wheel serve test test-slow ten-runs coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
 
 help:            ## Show the targets
 	@grep -E '^[a-z-]+: .*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | column -t -s $$'\t'
@@ -60,6 +60,18 @@ test: $(VENV)/.installed-dev frontend-check page ## Run the default suite (brows
 
 test-slow: $(VENV)/.installed-dev page ## Run the tests that compute for many seconds, or install the wheels
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
+
+ten-runs: $(VENV)/.installed-dev ## Run the default suite ten times in a row on a busy machine; log in build
+	scripts/ten-runs
+
+coverage: $(VENV)/.installed-dev page ## Tell which lines the default suite runs, workers included
+	$(BIN)/pip install --quiet --disable-pip-version-check coverage==7.17.3
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest -n 2 --dist loadgroup -m "not slow"; $(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
+
+study: $(VENV)/.installed-dev ## Compare with the study's raw data in the folder KNITCORE_STUDY_DATA
+	$(BIN)/pytest benchmarks/study
 
 test-postgres: $(VENV)/.installed-dev ## Run the tests of the designs on a real PostgreSQL
 	dpkg -s postgresql >/dev/null 2>&1 || apt-get install -y --no-install-recommends postgresql

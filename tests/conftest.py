@@ -6,9 +6,7 @@ import atexit
 import os
 import shutil
 import tempfile
-from pathlib import Path
 
-import pytest
 from hypothesis import settings
 
 settings.register_profile("knitcore", deadline=None)  # how long an example takes is no property
@@ -24,18 +22,3 @@ os.environ.setdefault("KNITCORE_WORKER_PRIORITY", "low")
 _DATA = tempfile.mkdtemp(prefix="knitcore-tests-")
 os.environ["KNITCORE_DATA_DIR"] = _DATA
 atexit.register(shutil.rmtree, _DATA, ignore_errors=True)
-
-_CHECKOUT = Path(__file__).resolve().parent.parent
-
-
-@pytest.fixture(scope="session")
-def study_data() -> Path:
-    """Folder with the study's public data, which is no part of the product.
-
-    Looked up by KNITCORE_STUDY_DATA or beside the checkout; tests that need it are skipped
-    where it is not.
-    """
-    folder = Path(os.environ.get("KNITCORE_STUDY_DATA", _CHECKOUT.parent / "shared" / "data"))
-    if not (folder / "uniaxial").is_dir():
-        pytest.skip("the study's data are not on this machine (set KNITCORE_STUDY_DATA)")
-    return folder

@@ -14,7 +14,7 @@ from app.cli.main import main
 from knitcore.fabric import Direction
 from knitcore.formats.law_files import load_law
 from tests.knitcore.measure.synthetic import LAW, hanging_yarn, save_photo, write_csv, write_h5
-from tests.knitcore.measure.test_compression import squeeze, write
+from tests.knitcore.measure.test_compression import WORKBOOK, squeeze, write
 
 CONSTANTS = {
     "stiffness_xxxx_n_per_mm",
@@ -131,11 +131,10 @@ def test_compression_from_csv(client: TestClient, tmp_path: Path) -> None:
     assert "steel" in result.stderr
 
 
-def test_the_studys_workbook_on_the_command_line(study_data: Path) -> None:
-    book = study_data / "compression" / "compressionTests.xls"
-    told = run("measure", "compression", book)
+def test_a_workbook_of_two_yarns_on_the_command_line() -> None:
+    told = run("measure", "compression", WORKBOOK)
     assert told["k_n_per_mm3"] is None  # two yarns have no common mean
     assert "ask for one yarn" in told["notes"][0]  # type: ignore[index]
-    assert set(told["mean"]) == {"acrylic", "cotton"}  # type: ignore[call-overload]
-    acrylic = run("measure", "compression", book, "--yarn", "acrylic")
-    assert acrylic["k_n_per_mm3"] == pytest.approx(0.618e-3, rel=0.01)
+    assert set(told["mean"]) == {"soft", "firm"}  # type: ignore[call-overload]
+    soft = run("measure", "compression", WORKBOOK, "--yarn", "soft")
+    assert soft["k_n_per_mm3"] == pytest.approx(1e-3, rel=0.03)

@@ -1,4 +1,4 @@
-"""k and p come back from made tests, and from the study's."""
+"""k and p come back from made tests."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import CompressionTest, read_compression
 
 Array = NDArray[np.float64]
+WORKBOOK = Path(__file__).with_name("made.xls")
 
 
 def squeeze(
@@ -113,12 +114,13 @@ def test_files_that_are_something_else(tmp_path: Path) -> None:
             read_compression(tmp_path / name)
 
 
-def test_the_studys_workbook(study_data: Path) -> None:
-    """Published: acrylic 0.62 mN/mm³ and 2.42, cotton 11.49 and 2.94."""
-    tests = read_compression(study_data / "compression" / "compressionTests.xls")
+def test_a_workbook_has_a_sheet_for_each_sample() -> None:
+    """Made with 1 mN/mm³ and 2.5, and with 10 mN/mm³ and 3; diameters in a sheet of their own."""
+    tests = read_compression(WORKBOOK)
+    assert [test.diameter_mm for test in tests] == [2.0, 2.2, 2.4, 1.2, 1.3]
     means = {m.yarn: m for m in average_compression([fit_compression(t) for t in tests])}
-    assert (means["acrylic"].samples, means["cotton"].samples) == (3, 4)
-    assert 1000 * means["acrylic"].k_n_per_mm3 == pytest.approx(0.618, abs=0.005)
-    assert means["acrylic"].p == pytest.approx(2.425, abs=0.005)
-    assert 1000 * means["cotton"].k_n_per_mm3 == pytest.approx(11.8, abs=0.1)
-    assert means["cotton"].p == pytest.approx(2.93, abs=0.01)
+    assert {yarn: mean.samples for yarn, mean in means.items()} == {"soft": 3, "firm": 2}
+    assert 1000 * means["soft"].k_n_per_mm3 == pytest.approx(1.0, rel=0.03)
+    assert means["soft"].p == pytest.approx(2.5, rel=0.01)
+    assert 1000 * means["firm"].k_n_per_mm3 == pytest.approx(10.0, rel=0.03)
+    assert means["firm"].p == pytest.approx(3.0, rel=0.01)
