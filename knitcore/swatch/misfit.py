@@ -86,15 +86,7 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
     path = draw_in(sheet.with_model(plain), fixed, cancelled=cancelled)
     if path.problem and sheet.model.tension_field:
         path = draw_in(sheet, fixed, cancelled=cancelled)
-    return SwatchTest(
-        sheet=sheet,
-        states=path.states,
-        energy_n_mm=path.energies,
-        iterations=path.iterations,
-        converged=path.problem is None,
-        problem=path.problem,
-        seconds=path.seconds,
-    )
+    return SwatchTest.of(sheet, path)
 
 
 def draw_in(

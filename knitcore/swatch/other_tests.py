@@ -154,14 +154,9 @@ def biaxial_test(
     path = run_path(sheet, fixed, targets, progress=progress, cancelled=cancelled)
     done = share[: len(path.found)]
     course, wale = path.forces(grid.edge("right"), 0), path.forces(grid.edge("top"), 1)
-    return BiaxialTest(
-        sheet=sheet,
-        states=path.states,
-        energy_n_mm=path.energies,
-        iterations=path.iterations,
-        converged=path.problem is None,
-        problem=path.problem,
-        seconds=path.seconds,
+    return BiaxialTest.of(
+        sheet,
+        path,
         strain_course=done * strain_course,
         strain_wale=done * strain_wale,
         force_course_n=course,
@@ -210,14 +205,9 @@ def trellis_test(
             for e, angle in zip(path.found, angles, strict=True)
         ]
     )
-    return TrellisTest(
-        sheet=sheet,
-        states=path.states,
-        energy_n_mm=path.energies,
-        iterations=path.iterations,
-        converged=path.problem is None,
-        problem=path.problem,
-        seconds=path.seconds,
+    return TrellisTest.of(
+        sheet,
+        path,
         shear_angle=angles,
         moment_n_mm=moment,
         shear_stress_n_per_mm=moment / (grid.width_mm * grid.length_mm),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from knitcore.swatch.fields import (
     triangle_utilisation,
     utilisation,
 )
+from knitcore.swatch.run import Path
 from knitcore.swatch.sheet import Sheet, State
 
 Array = NDArray[np.float64]
@@ -65,6 +67,20 @@ class SwatchTest:
     converged: bool
     problem: str | None
     seconds: float
+
+    @classmethod
+    def of(cls, sheet: Sheet, path: Path, **more: Any) -> Self:
+        """The result of a path on a sheet; ``more`` are fields of this kind of test."""
+        return cls(
+            sheet=sheet,
+            states=path.states,
+            energy_n_mm=path.energies,
+            iterations=path.iterations,
+            converged=path.problem is None,
+            problem=path.problem,
+            seconds=path.seconds,
+            **more,
+        )
 
     @property
     def steps(self) -> int:

@@ -262,14 +262,9 @@ def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) 
     width = grid.area_mm2 / length
     _, end = clamp_edges(direction)
     force = path.forces(grid.edge(end), axis)
-    return StripTest(
-        sheet=sheet,
-        states=path.states,
-        energy_n_mm=path.energies,
-        iterations=path.iterations,
-        converged=path.problem is None,
-        problem=path.problem,
-        seconds=path.seconds,
+    return StripTest.of(
+        sheet,
+        path,
         direction=direction,
         strain=levels[: len(path.found)],
         force_n=force,
