@@ -36,6 +36,7 @@ class Budgets:
     memory_bytes : memory of computations at work together, each counted with the limit of its
         worker; by default that of the machine.
     views : 3D views kept open; the longest unwatched one makes room for the next.
+    view_stitches : of their charts together; a million of them take about 130 MB.
     watchers : browsers that show views.
     streams : event streams followed, of jobs and of views.
     pictures : pictures of views that are being taken.
@@ -51,6 +52,7 @@ class Budgets:
     cpu_s: float = 12 * 3_600.0
     memory_bytes: int = field(default_factory=_machine_bytes)
     views: int = 16
+    view_stitches: int = 2_000_000
     watchers: int = 32
     streams: int = 32
     pictures: int = 2

@@ -47,8 +47,6 @@ if TYPE_CHECKING:
 
 log = logging.getLogger("knitcore.app")
 
-MOST_LARGE_BODIES, MOST_LIGHT_WORK = 2, 2
-"""At once: threads that compute keep the event loop waiting for Python, each for some ms."""
 JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
 
@@ -73,8 +71,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.state.compute = Compute(
             _places(chosen, app.state.cluster), chosen.job_timeout_s, _most_each(chosen)
         )
-        app.state.large_bodies = Gate(MOST_LARGE_BODIES)
-        app.state.light_work = Gate(MOST_LIGHT_WORK)
+        app.state.large_bodies = Gate()
+        app.state.light_work = Gate()
+        app.state.drawing = Gate()
         app.state.views = Views(chosen.max_viewers, chosen.viewer_idle_s)
         app.state.recent = RecentResults()
         app.state.answers = Answers(app.state.compute, app.state.recent, chosen.folder)

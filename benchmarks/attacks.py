@@ -92,7 +92,7 @@ def predictions(client: httpx.Client) -> str:
 
 def small_predictions(client: httpx.Client) -> str:
     """Each as large as the service answers itself."""
-    wishes = [{"chart": _chart(99, seed), "material": "acrylic"} for seed in range(120)]
+    wishes = [{"chart": _chart(49, seed), "material": "acrylic"} for seed in range(120)]
     return _posted(client, "predict", [json.dumps(wish).encode() for wish in wishes])
 
 
@@ -166,6 +166,14 @@ def large_file(client: httpx.Client) -> str:
     return _posted(client, "import", [json.dumps({"file": file}).encode()] * 2)
 
 
+def views(client: httpx.Client) -> str:
+    body = json.dumps({"chart": _chart(SIDE, 3), "material": "acrylic"}).encode()
+    send = functools.partial(client.put, content=body, headers=JSON)
+    with ThreadPoolExecutor(8) as threads:
+        asked = [threads.submit(send, f"/api/v1/views/attack-{n}") for n in range(8)]
+        return _codes(future.result() for future in asked)
+
+
 def large_job(client: httpx.Client) -> str:
     file = {"name": "a.csv", "content": "A" * 28_000_000}
     body = {"kind": "compression", "request": {"file": file}}
@@ -191,6 +199,7 @@ ATTACKS: list[Callable[[httpx.Client], str]] = [
     designs,
     frames,
     slow,
+    views,
     large_file,
     large_job,
 ]

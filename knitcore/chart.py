@@ -19,6 +19,7 @@ MAX_STITCHES_PER_SIDE = 1000
 KNIT_SYMBOLS = frozenset("Kk|")
 PURL_SYMBOLS = frozenset("Pp•–-")
 _SEPARATORS = re.compile(r"[ \t,]+")
+_UNKNOWN = re.compile(f"[^{re.escape(''.join(sorted(KNIT_SYMBOLS | PURL_SYMBOLS)))}]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,15 +85,14 @@ class StitchChart:
             stitches = _SEPARATORS.sub("", line.strip())
             if not stitches:
                 continue
-            row = []
-            for column, symbol in enumerate(stitches, start=1):
-                if symbol not in KNIT_SYMBOLS and symbol not in PURL_SYMBOLS:
-                    raise InputError(
-                        "chart",
-                        f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P.",
-                        "Write every stitch as K or P.",
-                    )
-                row.append(symbol in PURL_SYMBOLS)
+            if unknown := _UNKNOWN.search(stitches):
+                column, symbol = unknown.start() + 1, unknown.group()
+                raise InputError(
+                    "chart",
+                    f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P.",
+                    "Write every stitch as K or P.",
+                )
+            row = [symbol in PURL_SYMBOLS for symbol in stitches]
             if not rows:
                 first_line = number
             elif len(row) != len(rows[0]):
@@ -132,7 +132,8 @@ class StitchChart:
     @property
     def text(self) -> str:
         """The chart as K/P lines, top row first; :meth:`parse` reads it back."""
-        return "\n".join("".join("P" if p else "K" for p in row) for row in self.purl[::-1])
+        symbols = np.where(self.purl[::-1], "P", "K").tolist()
+        return "\n".join("".join(row) for row in symbols)
 
     @property
     def key(self) -> str:

@@ -164,7 +164,7 @@ def post_duplicate(
     retry: RetryOf,
 ) -> Design:
     """A new design with the same content."""
-    return _created(response, store.duplicate(owner, design, retry("")))
+    return _created(response, store.duplicate(owner, design, retry()))
 
 
 @router.delete(
@@ -271,4 +271,4 @@ def post_copy(
     retry: RetryOf,
 ) -> Design:
     """A design of your own, if the link allows it."""
-    return _created(response, links.copy(owner, token, retry("")))
+    return _created(response, links.copy(owner, token, retry()))

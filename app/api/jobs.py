@@ -50,7 +50,7 @@ async def post_job(
         kind, wanted = await runner.read(request.is_disconnected, body.content)
     else:
         kind, wanted = body.kind, body.request.model_dump_json()
-    status = await runner.submit(owner, kind, wanted, retry(f"{kind}\0{wanted}"))
+    status = await runner.submit(owner, kind, wanted, retry(kind, wanted))
     response.headers["Location"] = f"/api/v1/jobs/{status.id}"
     return status
 

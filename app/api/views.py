@@ -13,6 +13,7 @@ from fastapi.responses import StreamingResponse
 from pydantic import Field
 
 from app.budgets import InUse
+from app.compute.turns import Gate
 from app.http.bodies import BoundedRoute
 from app.http.identity import current_user
 from app.http.problems import NotFoundError, Problem
@@ -74,10 +75,10 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
 
     def draw() -> ViewResult:
         scene = build_scene(body, found, context)
-        drawn = state.views.open(name).show(scene)
+        drawn = state.views.open(name, scene.colours[..., 0].size).show(scene)
         return ViewResult(stitches=drawn, source=scene.shapes.source, url=f"/view/{design}/")
 
-    return await _in(_drawing, draw)
+    return await _drawn(request, draw)
 
 
 @router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
@@ -183,9 +184,16 @@ async def _shared(
     ending: str,
 ) -> Response:
     context = request.app.state.answers.context()
-    content = await _in(_drawing, make, body, _found(body, request), context)
+    content = await _drawn(request, make, body, _found(body, request), context)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
+
+
+async def _drawn(request: Request, function: Callable[..., T], *args: Any) -> T:
+    """What a function draws; one at a time, users taking turns."""
+    gate: Gate = request.app.state.drawing
+    async with gate.turn(current_user.get()):
+        return await _in(_drawing, function, *args)
 
 
 async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: Any) -> T:

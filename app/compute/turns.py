@@ -140,19 +140,15 @@ class Turns(Generic[Place]):
 
 
 class Gate:
-    """Lets a few through at once, users taking turns.
+    """Lets one through at a time, users taking turns.
 
-    Parameters
-    ----------
-    most : at once.
+    For threads of the service that compute: Python runs one at a time, so that two would be no
+    faster, and the event loop would wait for both.
     """
 
-    def __init__(self, most: int) -> None:
+    def __init__(self) -> None:
         self._turns = Turns(
-            list(range(most)),
-            most_background=most,
-            most_waiting=MOST_AT_A_GATE,
-            most_waiting_each=0,
+            [None], most_background=1, most_waiting=MOST_AT_A_GATE, most_waiting_each=0
         )
 
     @contextlib.asynccontextmanager

@@ -30,17 +30,15 @@ Key = Annotated[
 ]
 
 
-async def _retries(
-    request: Request, owner: Owner, key: Key = None
-) -> Callable[[BaseModel | str], Retry | None]:
-    def retry(body: BaseModel | str) -> Retry | None:
+async def _retries(request: Request, owner: Owner, key: Key = None) -> Callable[..., Retry | None]:
+    def retry(*body: BaseModel | str) -> Retry | None:
         if key is None:
             return None
-        content = body if isinstance(body, str) else body.model_dump_json()
-        return Retry.of(owner, key, request.method, request.url.path, content)
+        content = [part if isinstance(part, str) else part.model_dump_json() for part in body]
+        return Retry.of(owner, key, request.method, request.url.path, *content)
 
     return retry
 
 
-RetryOf = Annotated[Callable[[BaseModel | str], Retry | None], Depends(_retries)]
-"""Makes the idempotency key of a request with a body or without, if the request has one."""
+RetryOf = Annotated[Callable[..., Retry | None], Depends(_retries)]
+"""Makes the idempotency key of a request, if it has one, from the parts of its body."""

@@ -2,7 +2,7 @@
 
 One rule for all addresses: the event loop decodes small bodies at once. A large one goes as it came
 to a worker, with its limits on time and memory, where the operation takes it; elsewhere, such as
-a design, it is decoded in its turn, a few at once, and has a lower limit. Decoding in threads
+a design, it is decoded in its turn, one at a time, and has a lower limit. Decoding in threads
 would not help: Python runs one at a time.
 """
 

@@ -30,6 +30,7 @@ class View:
     ----------
     wanted : the picture that a browser was asked for, if one was.
     picturing : held by who takes a picture.
+    stitches : of the chart it shows; memory grows with them.
     """
 
     server: viser.ViserServer
@@ -38,6 +39,7 @@ class View:
     wanted: WantedPicture | None = None
     picturing: threading.Lock = field(default_factory=threading.Lock)
     last_used: float = field(default_factory=time.monotonic)
+    stitches: int = 0
 
     @property
     def port(self) -> int:
@@ -73,23 +75,27 @@ class Views:
         self._views: dict[str, View] = {}
         self._lock = threading.Lock()
 
-    def open(self, design: str) -> View:
+    def open(self, design: str, stitches: int = 0) -> View:
         """The design's view, made if it is not there; its name begins with its owner's.
+
+        Parameters
+        ----------
+        stitches : of the chart that it is going to show.
 
         Raises
         ------
         OverBudgetError
-            If the owner watches as many as one user may.
+            If the owner watches as many, or as many stitches, as one user may.
         UnavailableError
             If as many views as allowed are being watched.
         """
         with self._lock:
+            self._make_room(design, stitches)
             view = self._views.get(design)
             if view is None:
-                self._make_room(design.rpartition("/")[0])
                 view = self._views[design] = new_view()
                 self._pass_clicks_on(design, view)
-            view.last_used = time.monotonic()
+            view.last_used, view.stitches = time.monotonic(), stitches
             return view
 
     def get(self, design: str) -> View | None:
@@ -144,19 +150,28 @@ class Views:
             if cell is not None:
                 self.clicks.tell(design, cell)
 
-    def _make_room(self, owner: str) -> None:
-        mine = self._of(owner)
-        if len(mine) >= BUDGETS.views:
-            self._close_oldest(mine, OverBudgetError.of("views", len(mine), BUDGETS.views))
+    def _make_room(self, design: str, stitches: int) -> None:
+        others = [view for view in self._of(design.rpartition("/")[0]) if view != design]
+        while (held := sum(self._views[d].stitches for d in others)) and (
+            held + stitches > BUDGETS.view_stitches
+        ):
+            refusal = OverBudgetError.of("view_stitches", held, BUDGETS.view_stitches)
+            others.remove(self._close_oldest(others, refusal))
+        if design in self._views:
+            return
+        if len(others) >= BUDGETS.views:
+            self._close_oldest(others, OverBudgetError.of("views", len(others), BUDGETS.views))
         if len(self._views) >= self._most:
             full = UnavailableError(f"All {self._most} 3D views are in use.")
             self._close_oldest(list(self._views), full)
 
-    def _close_oldest(self, among: list[str], refusal: ServiceError) -> None:
+    def _close_oldest(self, among: list[str], refusal: ServiceError) -> str:
         unwatched = [(self._views[d].last_used, d) for d in among if not self._views[d].watchers]
         if not unwatched:
             raise refusal
-        self._views.pop(min(unwatched)[1]).stop()
+        oldest = min(unwatched)[1]
+        self._views.pop(oldest).stop()
+        return oldest
 
 
 def new_view() -> View:

@@ -158,6 +158,23 @@ def test_one_user_does_not_take_all_views(monkeypatch: pytest.MonkeyPatch) -> No
         views.close()
 
 
+def test_large_charts_in_views_make_room_for_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views_module, "BUDGETS", Budgets(view_stitches=100))
+    views = Views(most=9, idle_s=60)
+    try:
+        views.open("ada/a", 60)
+        views.open("bob/a", 60)
+        views.open("ada/b", 60)
+        assert views.get("ada/a") is None
+        assert views.get("bob/a") is not None
+        views.watch("ada/b", +1)
+        with pytest.raises(OverBudgetError, match="60 of 100"):
+            views.open("ada/c", 60)
+        assert views.open("ada/b", 90).stitches == 90  # the same view, with a larger chart
+    finally:
+        views.close()
+
+
 @pytest.fixture
 def narrow(client: TestClient) -> Iterator[TestClient]:
     state = client.app.state  # type: ignore[attr-defined]

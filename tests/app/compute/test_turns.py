@@ -128,9 +128,9 @@ def test_a_user_holds_only_so_many_places() -> None:
     asyncio.run(scenario())
 
 
-def test_a_gate_lets_a_few_through_and_its_turns_are_given_back() -> None:
+def test_a_gate_lets_one_through_at_a_time_and_its_turns_are_given_back() -> None:
     async def scenario() -> tuple[list[str], int]:
-        gate, order, inside, most = Gate(2), [], 0, 0
+        gate, order, inside, most = Gate(), [], 0, 0
 
         async def come(owner: str) -> None:
             nonlocal inside, most
@@ -148,5 +148,5 @@ def test_a_gate_lets_a_few_through_and_its_turns_are_given_back() -> None:
         return order, most
 
     order, most = asyncio.run(scenario())
-    assert most == 2
-    assert (len(order), order.index("b")) == (5, 3)  # a, a, a, then b before the rest
+    assert most == 1
+    assert (len(order), order.index("b")) == (5, 2)
