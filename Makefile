@@ -58,7 +58,7 @@ test: $(VENV)/.installed-dev frontend-check page ## Run the default suite (brows
 	scripts/ensure-chromium
 	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
 
-test-slow: $(VENV)/.installed-dev page ## Run the tests that compute for many seconds, or install the wheels
+test-slow: $(VENV)/.installed-dev page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
 ten-runs: $(VENV)/.installed-dev ## Run the default suite ten times in a row on a busy machine; log in build

@@ -27,6 +27,7 @@ def lab(tmp_path: Path, bundle: None) -> Iterator[tuple[str, str]]:
     service.kill()
 
 
+@pytest.mark.slow
 def test_the_user_is_named_and_signs_out(visitor: Page, lab: tuple[str, str]) -> None:
     url, token = lab
     page = visitor

@@ -6,6 +6,7 @@ import io
 import json
 
 import numpy as np
+import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
@@ -24,6 +25,7 @@ CELLS = np.array([[0, 1, 0, 0, 1], [1, 0, 0, 1, 1], [0, 0, 1, 0, 1]])
 TEXT = "\n".join("".join("KP"[c] for c in row) for row in CELLS)
 
 
+@pytest.mark.slow
 def test_pictures_are_previewed_and_imported(flat_studio: Page) -> None:
     drop(flat_studio, "chart.png", "image/png", picture(CELLS, 12))
     dialog = flat_studio.locator("#picture-dialog")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import CHART
@@ -58,6 +59,7 @@ def test_regions_are_ordered_hidden_and_removed(flat_studio: Page) -> None:
     expect(panel.locator(".part")).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_copies_of_a_repeat_follow_each_other(flat_studio: Page) -> None:
     chart = Chart(flat_studio)
     flat_studio.click("#ink-purl")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import CHART
@@ -89,6 +90,7 @@ def test_resizing_keeps_the_chosen_corner(flat_studio: Page) -> None:
     assert purls(kept_chart(flat_studio)) == {(11, 1)}
 
 
+@pytest.mark.slow
 def test_own_patterns_stay_in_the_design_and_in_the_browser(flat_studio: Page) -> None:
     chart = Chart(flat_studio)
     flat_studio.click("#ink-purl")

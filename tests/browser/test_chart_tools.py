@@ -79,6 +79,7 @@ def test_the_back_is_mirrored_and_painting_it_paints_the_face(flat_studio: Page)
     expect(flat_studio.locator("#choose-back")).to_have_attribute("aria-checked", "true")
 
 
+@pytest.mark.slow
 def test_the_ink_without_stitches_cuts_out_puts_back_and_is_kept(flat_studio: Page) -> None:
     chart = Chart(flat_studio)
     flat_studio.click("#ink-no-stitch")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from knitcore.formats.chart_files import read_piece
@@ -21,6 +22,7 @@ def _plan(page: Page, template: str) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: Path) -> None:
     page = flat_studio
     _plan(page, "glove")
@@ -85,6 +87,7 @@ def test_written_rows_are_opened_as_a_design(flat_studio: Page, tmp_path: Path) 
     assert _kept(page)["outline"] == "..xx\nxxxx"
 
 
+@pytest.mark.slow
 def test_both_panels_are_accessible(flat_studio: Page) -> None:
     page = flat_studio
     _plan(page, "limb")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.axe import violations
@@ -15,6 +16,7 @@ def open_atlas(page: Page) -> None:
     page.wait_for_function("() => +document.querySelector('.inverse-plot')?.dataset.count > 50")
 
 
+@pytest.mark.slow
 def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
     flat_studio: Page,
 ) -> None:
@@ -42,6 +44,7 @@ def test_a_repeat_of_the_atlas_is_shown_applied_and_dragged_onto_the_chart(
     flat_studio.keyboard.press("Escape")
 
 
+@pytest.mark.slow
 def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Shift+F")
     values = flat_studio.locator(".wish-value")

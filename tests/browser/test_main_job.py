@@ -82,6 +82,7 @@ def test_stretch_moves_chart_curve_and_3d_together(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", 300)
 
 
+@pytest.mark.slow
 def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(
     flat_studio: Page,
 ) -> None:
@@ -103,6 +104,7 @@ def test_a_change_marks_the_stretch_as_old_until_it_is_pulled_again(
     expect(flat_studio.locator("#readout")).not_to_contain_text("stretch")
 
 
+@pytest.mark.slow
 def test_a_stretch_close_to_the_lock_up_is_marked(flat_studio: Page) -> None:
     flat_studio.click("#stretch-course")
     flat_studio.fill("#stretch-amount", "60")
@@ -112,6 +114,7 @@ def test_a_stretch_close_to_the_lock_up_is_marked(flat_studio: Page) -> None:
     expect(note).to_contain_text("the tightest has used 92 % of its stretch")
 
 
+@pytest.mark.slow
 def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> None:
     flat_studio.fill("#stretch-amount", "10")
     flat_studio.click("#stretch-run")
@@ -122,6 +125,7 @@ def test_another_design_does_not_show_this_one_s_stretch(flat_studio: Page) -> N
     expect(flat_studio.locator("#stretch-figures")).not_to_contain_text("10 %")
 
 
+@pytest.mark.slow
 def test_3d_view_shows_the_fabrics_in_their_colours(studio: Page) -> None:
     studio.click("#ink-seed")
     studio.click("#fill-all")

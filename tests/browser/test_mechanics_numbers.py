@@ -51,6 +51,7 @@ def open_design(page: Page, service: str, **content: object) -> Page:
     return page
 
 
+@pytest.mark.slow
 def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     visitor: Page, service: str
 ) -> None:
@@ -92,6 +93,7 @@ def own_material() -> Iterator[str]:
     file.unlink()
 
 
+@pytest.mark.slow
 def test_measured_curves_of_an_own_material_are_drawn_as_points(
     visitor: Page, service: str, own_material: str
 ) -> None:
@@ -113,6 +115,7 @@ def test_measured_curves_of_an_own_material_are_drawn_as_points(
     )
 
 
+@pytest.mark.slow
 def test_a_target_for_a_region_fills_only_that_region(visitor: Page, service: str) -> None:
     page = open_design(visitor, service, regions=[LEFT])
     page.keyboard.press("Shift+W")

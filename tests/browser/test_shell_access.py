@@ -28,6 +28,7 @@ PANELS: dict[str, Callable[[Page], None]] = {
 }
 
 
+@pytest.mark.slow
 def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page) -> None:
     page, found = flat_studio, []
     for theme in THEMES:
@@ -47,6 +48,7 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
     assert not found, "\n".join(found)
 
 
+@pytest.mark.slow
 def test_nothing_serious_is_wrong_in_any_stop_of_the_tour(flat_studio: Page) -> None:
     page, found = flat_studio, []
     for theme in THEMES:

@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.axe import THEMES, violations
@@ -93,6 +94,7 @@ def test_two_windows_merge_their_strokes(flat_studio: Page) -> None:
     assert chart.count("P") > theirs.count("P")
 
 
+@pytest.mark.slow
 def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page) -> None:
     painted(flat_studio)
     flat_studio.route(SERVICE, lambda route: route.abort())
@@ -148,6 +150,7 @@ def test_a_version_is_restored_and_the_state_before_it_kept(flat_studio: Page) -
     assert kept_chart(flat_studio) == second
 
 
+@pytest.mark.slow
 def test_a_link_shows_the_design_to_others_and_lets_them_copy_it(
     flat_studio: Page, browser: Browser
 ) -> None:
@@ -205,6 +208,7 @@ def test_a_project_file_goes_out_and_comes_in(flat_studio: Page, tmp_path: Path)
     )
 
 
+@pytest.mark.slow
 def test_the_tour_is_walked_with_keys_and_ends(visitor: Page, service: str) -> None:
     visitor.route(NO_3D, lambda route: route.fulfill(body="", content_type="text/html"))
     visitor.goto(service)

@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import numpy as np
+import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import COLUMNS, ROWS, TIMEOUT_MS, wait_for_numbers
@@ -23,6 +24,7 @@ def _click_fabric(page: Page, x: float, y: float) -> None:
     page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
 
 
+@pytest.mark.slow
 def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", YARN)
     before = pixels(studio, "#chart-host")
@@ -35,6 +37,7 @@ def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> No
     assert np.abs(pixels(studio, "#chart-host") - before).max() > 40
 
 
+@pytest.mark.slow
 def test_what_is_selected_in_the_chart_is_outlined_on_the_fabric(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", YARN)
     with studio.expect_request(
@@ -49,6 +52,7 @@ def test_what_is_selected_in_the_chart_is_outlined_on_the_fabric(studio: Page) -
     }
 
 
+@pytest.mark.slow
 def test_sides_and_yarn_colours_change_the_picture(studio: Page) -> None:
     face = wait_for_colour(studio, "#fabric", YARN)
     with studio.expect_response(lambda r: r.url.endswith("/camera") and r.ok):
@@ -63,6 +67,7 @@ def test_sides_and_yarn_colours_change_the_picture(studio: Page) -> None:
         studio.click("#yarn-yarn")
 
 
+@pytest.mark.slow
 def test_a_stretch_is_scrubbed_by_keyboard_in_chart_curve_and_3d(studio: Page) -> None:
     studio.click("#stretch-course")
     studio.fill("#stretch-amount", "30")
@@ -91,6 +96,7 @@ def test_a_test_can_be_cancelled(flat_studio: Page) -> None:
     expect(flat_studio.locator("#stretch-run")).to_contain_text("Stretch")
 
 
+@pytest.mark.slow
 def test_two_designs_never_show_each_other(browser: Browser, service: str) -> None:
     pictures = []
     contexts = []
@@ -128,6 +134,7 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
     assert green(rib) > 5 * blue(rib)
 
 
+@pytest.mark.slow
 def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", YARN)
     with studio.expect_response(
@@ -139,6 +146,7 @@ def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
     wait_for_colour(studio, "#fabric", YARN)
 
 
+@pytest.mark.slow
 def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> None:
     wait_for_colour(studio, "#fabric", YARN)
     studio.click("#fabric-share-button")
