@@ -58,11 +58,12 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
 @contextlib.contextmanager
 def _prepared(settings: Settings, address: str) -> Iterator[None]:
     """Lock and migrate the data, and report failed checks."""
-    from app.doctor import examine
+    from app.doctor import check_folder, examine
     from app.store.database import Database
     from app.store.lock import held
     from app.store.schema import migrate
 
+    check_folder(settings.folder)
     database = Database(settings.store_url)
     try:
         with held(database, settings.process_name, address):

@@ -8,20 +8,23 @@ import os
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 from fastapi.testclient import TestClient
 
 from app import doctor
+from app.cli import serve as serve_module
 from app.cli.main import main
 from app.compute import cluster as cluster_module
 from app.compute import compute as compute_module
 from app.compute.cluster import Cluster, ClusterError
 from app.compute.compute import Compute
 from app.compute.places import NotBegunError
+from app.http import observing
 from app.main import create_app
 from app.settings import Settings
 from app.store.database import DamagedError, Database
@@ -88,70 +91,125 @@ def test_a_sound_set_up_passes(tmp_path: Path) -> None:
     assert "ok    database" in text.output
 
 
-@pytest.mark.parametrize(
-    ("break_it", "name", "words"),
-    [
-        (_damage, "database", "damaged"),
-        (_lose, "database", "is gone"),
-        (_make_newer, "database", "9999"),
-        (_open_to_all, "file modes", "other users"),
-    ],
-)
-def test_a_broken_database_is_found(
-    tmp_path: Path, break_it: Callable[[Path], None], name: str, words: str
-) -> None:
+@dataclass(frozen=True)
+class Broken:
+    """A set-up with one fault.
+
+    Attributes
+    ----------
+    check : that fails.
+    words : in what is said about it.
+    environment : settings, beside a sound database in a folder of its own.
+    spoil : makes the fault in the database's file.
+    limits : limits of :mod:`app.doctor` that are out of reach.
+    starts : whether the service starts and only warns.
+    ready : whether it is ready nevertheless.
+    """
+
+    check: str
+    words: str
+    environment: Mapping[str, str] = field(default_factory=dict)
+    spoil: Callable[[Path], None] | None = None
+    limits: tuple[str, ...] = ()
+    starts: bool = False
+    ready: bool = False
+
+
+def _setting(name: str, value: str, words: str) -> Broken:
+    return Broken("settings", words, {f"KNITCORE_{name}": value})
+
+
+BROKEN = {
+    "a misspelt setting": _setting("PRT", "2", "KNITCORE_PORT"),
+    "a misspelt login": _setting("REQUIRE_LOGGIN", "true", "KNITCORE_REQUIRE_LOGIN"),
+    "a port that is no number": _setting("PORT", "many", "port"),
+    "a network without a login": _setting("HOST", "0.0.0.0", "KNITCORE_TOKEN"),
+    "a folder that cannot be": Broken(
+        "data folder", "cannot be written", {"KNITCORE_DATA_DIR": "/dev/null/nowhere"}
+    ),
+    "a damaged database": Broken("database", "damaged", spoil=_damage),
+    "a lost database": Broken("database", "is gone", spoil=_lose),
+    "a newer database": Broken("database", "9999", spoil=_make_newer),
+    "files open to all": Broken(
+        "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
+    ),
+    "little room": Broken("free space", "MB left", limits=("LEAST_FREE_BYTES",), starts=True),
+    "few file handles": Broken(
+        "file handles", "ulimit", limits=("LEAST_HANDLES",), starts=True, ready=True
+    ),
+    "no cluster": Broken(
+        "cluster", "reached", {"KNITCORE_SCHEDULER": "tcp://127.0.0.1:9"}, starts=True
+    ),
+}
+
+
+@pytest.fixture(params=BROKEN)
+def broken(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Broken:
+    """Each of them, in the environment."""
+    found = BROKEN[request.param]
     file = _database(tmp_path)
-    break_it(file)
-    code, failed = _told(tmp_path)
-    assert (code, list(failed)) == (1, [name])
-    assert words in failed[name]["problem"]
-    assert failed[name]["remedy"]
-    assert file.exists() == (break_it is not _lose)
-
-
-@pytest.mark.parametrize(
-    ("environment", "name", "words"),
-    [
-        ({"KNITCORE_REQUIRE_LOGGIN": "true"}, "settings", "KNITCORE_REQUIRE_LOGIN"),
-        ({"KNITCORE_PRT": "2"}, "settings", "KNITCORE_PORT"),
-        ({"KNITCORE_PORT": "many"}, "settings", "port"),
-        ({"KNITCORE_HOST": "0.0.0.0"}, "settings", "KNITCORE_TOKEN"),
-        ({"KNITCORE_SCHEDULER": "tcp://127.0.0.1:9"}, "cluster", "cannot be reached"),
-        ({"KNITCORE_DATA_DIR": "/dev/null/nowhere"}, "data folder", "cannot be written"),
-    ],
-)
-def test_broken_settings_are_found(
-    tmp_path: Path,
-    environment: dict[str, str],
-    name: str,
-    words: str,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+    if found.spoil is not None:
+        found.spoil(file)
+    for name in found.limits:
+        monkeypatch.setattr(doctor, name, 1 << 62)
+    monkeypatch.setattr(doctor.resource, "getrlimit", lambda _: (4_096, 4_096))
     monkeypatch.setattr(cluster_module, "CONNECT_S", 0.2)
-    code, failed = _told(tmp_path, **environment)
-    assert code == 1
-    assert words in f"{failed[name]['problem']} {failed[name]['remedy']}"
+    for name, value in ({"KNITCORE_DATA_DIR": str(tmp_path)} | dict(found.environment)).items():
+        monkeypatch.setenv(name, value)
+    return found
 
 
-def test_little_room_and_few_handles_are_found(
+def _serve(monkeypatch: pytest.MonkeyPatch) -> Result:
+    """Start the service as far as it serves."""
+    monkeypatch.setattr(serve_module, "_serve", lambda *_: None)
+    monkeypatch.setattr(serve_module.os, "umask", lambda _: 0)
+    monkeypatch.setattr(observing, "configure_logging", lambda _: None)
+    port = [] if "KNITCORE_PORT" in os.environ else ["--port", "0"]
+    return CliRunner().invoke(main, ["serve", *port])
+
+
+def test_doctor_start_and_readiness_say_the_same_in_one_line(
+    broken: Broken,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    code, failed = _told(Path(os.environ["KNITCORE_DATA_DIR"]))
+    assert (code, list(failed)) == (1, [broken.check])
+    problem, remedy = failed[broken.check]["problem"], failed[broken.check]["remedy"]
+    assert broken.words in f"{problem} {remedy}"
+    assert remedy
+    assert "\n" not in problem + remedy
+
+    started = _serve(monkeypatch)
+    if broken.starts:
+        assert (started.exit_code, "http://" in started.stdout) == (0, True)
+        assert caplog.messages[-1] == f"{broken.check}: {problem} {remedy}"
+    else:
+        assert (started.exit_code != 0, started.stdout) == (True, "")
+        (line,) = started.stderr.strip().splitlines()
+        assert line.startswith("Error: ")
+        assert problem.removesuffix(".") in line
+        return
+    with TestClient(create_app(Settings(workers=1)), base_url="http://127.0.0.1") as client:
+        answer = client.get("/readyz")
+    if broken.ready:
+        assert (answer.status_code, answer.json()["checks"][broken.check]) == (200, False)
+    else:
+        told = answer.json()
+        assert (answer.status_code, told["detail"], told["remedy"]) == (503, problem, remedy)
+
+
+def test_nothing_is_put_in_the_place_of_a_lost_database(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(doctor, "LEAST_FREE_BYTES", 1 << 62)
-    monkeypatch.setattr(doctor, "LEAST_HANDLES", 1 << 62)
-    monkeypatch.setattr(doctor.resource, "getrlimit", lambda _: (64, 64))
-    code, failed = _told(tmp_path)
-    assert (code, set(failed)) == (1, {"free space", "file handles"})
-
-
-@pytest.mark.parametrize("break_it", [_damage, _lose, _make_newer])
-def test_a_start_that_fails_is_one_line(tmp_path: Path, break_it: Callable[[Path], None]) -> None:
-    break_it(_database(tmp_path))
-    done = _start(tmp_path)
-    assert done.returncode in (1, 2)
-    assert done.stdout == ""  # no address of a service that is not there
-    last = done.stderr.strip().splitlines()[-1]
-    assert last.startswith("Error: ")
-    assert "Traceback" not in done.stderr
+    file = _database(tmp_path)
+    file.unlink()
+    monkeypatch.setenv("KNITCORE_DATA_DIR", str(tmp_path))
+    assert _serve(monkeypatch).exit_code != 0
+    assert not file.exists()
 
 
 def _start(folder: Path) -> subprocess.CompletedProcess[str]:
