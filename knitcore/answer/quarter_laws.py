@@ -22,13 +22,11 @@ one force, and all lines are strained alike.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
@@ -48,6 +46,8 @@ STRESSES: Array = np.geomspace(0.003, 0.5, 24)
 SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
 """Stresses (N/mm) at which the model's own error is kept."""
 _FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
+_LOCKED: Array = np.concatenate([np.linspace(0.3, 0.9, 25), np.linspace(0.905, 0.995, 19)])
+"""Shares of the lock-up strain that the largest of the strains may be."""
 _MOST_POISSON = 0.9
 """Limit of the product of both Poisson ratios, so that the law is stable."""
 
@@ -239,12 +239,14 @@ def _fitted(strains: Array) -> tuple[float, float, float]:
 
     For each alpha, modulus and beta, not below 0, follow by least squares of the relative stress.
     """
-    best = math.inf, 0.0, 0.0, 0.0
-    for locked in (*np.linspace(0.3, 0.9, 25), *np.linspace(0.905, 0.995, 19)):
-        alpha = float(locked / strains[-1])
-        _, slope, _ = stiffening(alpha * strains)
-        design = np.stack([strains, slope], axis=1) / STRESSES[:, None]
-        (modulus, beta), off = nnls(design, np.ones(len(STRESSES)))
-        if modulus > 0 and off < best[0]:
-            best = off, float(modulus), alpha, float(beta)
-    return best[1:]
+    alpha = _LOCKED / strains[-1]
+    slopes = stiffening(np.outer(alpha, strains))[1] / STRESSES
+    line = strains / STRESSES
+    # the normal equations of two unknowns, for all alphas at once
+    mixed, total = slopes @ line, line.sum()
+    determinant = line @ line * (slopes**2).sum(axis=1) - mixed**2
+    beta = np.maximum((line @ line * slopes.sum(axis=1) - mixed * total) / determinant, 0.0)
+    modulus = (total - mixed * beta) / (line @ line)
+    off = ((np.outer(modulus, line) + beta[:, None] * slopes - 1) ** 2).sum(axis=1)
+    best = int(np.argmin(np.where(modulus > 0, off, np.inf)))
+    return float(modulus[best]), float(alpha[best]), float(beta[best])
