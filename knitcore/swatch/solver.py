@@ -154,11 +154,16 @@ class PathSolver:
         guess = self._extrapolated(level, prescribed)
         lin = None if guess is None else self._linearise(guess)
         if guess is None or lin is None or not self._is_close(lin):
+            # one tangent at a time: those of large sheets take half a gigabyte
+            residual, self._spare = np.inf if lin is None else self._residual(lin)[0], lin
             other = self._along_tangent(state, prescribed)
-            found = self._linearise(other)
+            lin = self._linearise(other)
             iterations += 1
-            if guess is None or lin is None or self._residual(found)[0] < self._residual(lin)[0]:
-                guess, lin = other, found
+            if guess is None or self._residual(lin)[0] < residual:
+                guess = other
+            else:
+                self._spare = lin
+                lin = self._linearise(guess)
         if not np.isfinite(lin.energy):
             raise StepError("A predicted fibre collapsed to a point.")
         state = guess
