@@ -402,8 +402,9 @@ def shear(folder: Path) -> list[str]:
         shares.append(f"{fabric} {share:.2f}")
     lines += [
         "",
-        "So most of the stiffening on the bias is the coupling's, and a constant shear modulus has",
-        "the force up to 20 %; at 30 % it falls short. The level of the modulus is the weak point.",
+        "So most of the stiffening on the bias is the coupling's: with it a constant shear modulus",
+        "has the force within a fifth up to 20 %; at 30 % it falls short. The level of the modulus",
+        "is the weak point.",
         f"In the same measure the library's acrylic has {', '.join(shares)}:",
         "stockinette is several times softer in shear than this jersey. The intervals of the shear",
         "modulus allow for a factor of five or six either way. *Not shown*: width (50 mm is",
