@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
 
 INKS = ("#3f74b5", "#d98032")
 """Colours of the first and the second curve."""

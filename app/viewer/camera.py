@@ -6,9 +6,8 @@ from enum import StrEnum
 
 import numpy as np
 import viser
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
 
 FIELD_OF_VIEW = 0.5
 """Vertical, radians: a long lens, so that loops at the edge look like those in the middle."""

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from app.viewer.colours import linear
 from app.viewer.fabric import FabricScene
+from knitcore.arrays import Array
 from knitcore.geometry.instances import StitchMeshes, quaternions, stitch_meshes
 from knitcore.geometry.placing import mean_sizes_mm
-
-Array = NDArray[np.float64]
 
 UNITS_PER_MM = 0.01
 """A scene is drawn in dm: browsers draw nothing that is 1000 units from the camera or farther, and

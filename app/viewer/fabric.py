@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.geometry.instances import MOST_STITCHES
 from knitcore.geometry.lattice import Lattice
 from knitcore.geometry.placing import Placement
 from knitcore.geometry.stitches import StitchShapes
 
-Array = NDArray[np.float64]
 Colours = NDArray[np.uint8]
 
 BESIDE = 0.8

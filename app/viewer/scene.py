@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from app.viewer.camera import CameraSide, place_camera
 from app.viewer.cloth import UNITS_PER_MM, Cloth
 from app.viewer.fabric import Box, FabricScene
+from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
-
-Array = NDArray[np.float64]
 
 BUILD_S = 0.4
 """So long browsers build a cloth before it takes the place of the one on show."""

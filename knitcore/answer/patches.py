@@ -26,13 +26,12 @@ from knitcore.answer.learned import SweptChart, packaged_model
 from knitcore.answer.measured import measured
 from knitcore.answer.mixed import mixed
 from knitcore.answer.relaxed import RelaxedSize
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material, Origin
 from knitcore.phases import pure_fabric
-
-Array = NDArray[np.float64]
 
 SIDE = 16
 """Approximate number of stitches along the side of a patch."""

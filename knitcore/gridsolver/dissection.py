@@ -20,12 +20,12 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.gridsolver import elimination
 from knitcore.gridsolver.factor import IndefiniteTangentError
 from knitcore.gridsolver.numbering import corners_of
 from knitcore.threads import side_by_side
 
-Array = NDArray[np.float64]
 Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
 

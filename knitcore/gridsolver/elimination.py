@@ -16,7 +16,8 @@ from numba import njit, types
 from numba.extending import get_cython_function_address, intrinsic
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
+
 Block = NDArray[np.floating]
 Indices = NDArray[np.int64]
 

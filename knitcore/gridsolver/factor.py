@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
+from knitcore.arrays import Array
 from knitcore.gridsolver.numbering import cell_corners
-
-Array = NDArray[np.float64]
 
 
 class IndefiniteTangentError(Exception):

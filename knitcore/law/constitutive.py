@@ -18,13 +18,12 @@ from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
-
-Array = NDArray[np.float64]
 
 DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01
 """C_xyxy assumed by the paper (Note 9), which does not measure it."""

@@ -6,14 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
 from knitcore.law.stiffening import StiffeningForm, stiffening
-
-Array = NDArray[np.float64]
 
 _HALVINGS = 52
 """Halvings that reduce an interval to the rounding error of a double."""

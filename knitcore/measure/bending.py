@@ -13,14 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.measure.centreline import Centreline, load_grey, trace_centreline
 from knitcore.measure.elastica import heavy_elastica
-
-Array = NDArray[np.float64]
 
 STANDARD_GRAVITY_M_PER_S2 = 9.80665
 FITTED_SHARE = 0.5

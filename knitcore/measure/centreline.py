@@ -17,9 +17,9 @@ from skimage.measure import label, regionprops
 from skimage.morphology import isotropic_opening, skeletonize
 from skimage.transform import rescale
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 MAXIMUM_PIXELS = 60_000_000

@@ -13,13 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import curve_fit
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.measure.compression_files import CompressionTest
-
-Array = NDArray[np.float64]
 
 PROBE_WIDTH_MM = 5.0
 TOUCH_N = 1e-3

@@ -12,13 +12,11 @@ so the shape depends on one number only.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 from scipy.linalg import solve_banded
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, InputError
-
-Array = NDArray[np.float64]
 
 NODES = 401
 MAXIMUM_LOAD = 1e6

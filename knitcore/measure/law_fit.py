@@ -15,10 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-Array = NDArray[np.float64]
+from knitcore.arrays import Array
 
 ALPHA_SHARE_LIMIT = 0.999
 """Largest alpha times the largest strain: the lock-up lies beyond every point."""

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-
-Array = NDArray[np.float64]
 
 MINIMUM_POINTS = 20
 """With fewer points a linear part cannot be distinguished from a stiffening one."""

@@ -28,6 +28,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -37,8 +38,6 @@ from knitcore.measure.law_fit import ALPHA_SHARE_LIMIT, DirectionFit, fit_direct
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
 from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
-
-Array = NDArray[np.float64]
 
 BINS = 40
 """Strain intervals of a pull in the uniform reduction."""

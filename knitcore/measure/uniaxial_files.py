@@ -23,6 +23,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.measure.stretch_test import (
     MINIMUM_POINTS,
@@ -33,8 +34,6 @@ from knitcore.measure.stretch_test import (
     until_unloaded,
 )
 from knitcore.measure.tables import numbers, read_csv
-
-Array = NDArray[np.float64]
 
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")

@@ -6,17 +6,15 @@ from functools import singledispatch
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore.answer.answer import SHOWN_STRESS_N_PER_MM, Answer
 from knitcore.answer.curve import ChartCurve
+from knitcore.arrays import Array
 from knitcore.fabric import Direction
 from knitcore.showing import INKS
 from knitcore.swatch.figures import stress_strain_figure
 from knitcore.swatch.results import StripTest
 from knitcore.yarnlevel.results import Sweep
-
-Array = NDArray[np.float64]
 
 
 @singledispatch

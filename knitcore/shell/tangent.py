@@ -34,7 +34,6 @@ class Tangent:
             inverse[first:last].reshape(part.shape[0], part.shape[1], part.shape[1])
             for part, first, last in zip(parts, bounds[:-1], bounds[1:], strict=True)
         ]
-        self._own = inverse[bounds[-1] :]
 
     def matrix(
         self, x: Array, pairs: Ints, free: NDArray[np.bool_], *, convex: bool, shift: float = 0.0

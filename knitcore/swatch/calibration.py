@@ -16,9 +16,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -29,8 +29,6 @@ from knitcore.swatch.measured import MeasuredField
 from knitcore.swatch.models import SheetModel
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import LOCK_UP_SHARE, pull
-
-Array = NDArray[np.float64]
 
 FIELD_NOISE_PERCENT = 0.12
 """Error of a measured displacement in percent of the width: half the left-right asymmetry."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 
+from knitcore.arrays import Array
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch.grid import QuarterGrid
@@ -17,8 +17,6 @@ from knitcore.swatch.models import SheetModel
 from knitcore.swatch.run import Path, run_path
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask
-
-Array = NDArray[np.float64]
 
 CELLS_ACROSS = 96
 LARGEST_STEP = 0.05

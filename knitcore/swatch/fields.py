@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
 from knitcore.swatch.grid import QuarterGrid, sums_at_corners
 from knitcore.swatch.models import EnergyModel
 from knitcore.swatch.sheet import Sheet, State
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

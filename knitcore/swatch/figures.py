@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore.arrays import Array
 from knitcore.swatch.fields import Fields
 from knitcore.swatch.results import StripTest, SwatchTest
-
-Array = NDArray[np.float64]
 
 MAX_PATCHES = 20_000
 EXTENSION_COLOUR, CONTRACTION_COLOUR = "#b2182b", "#2166ac"

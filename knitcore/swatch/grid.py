@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import label
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Fabric
 from knitcore.gridsolver.numbering import cell_corners
 from knitcore.phases import quarter_phases
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 MAX_CELLS = 1_500_000

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.swatch import Clamps, StripTest
 from knitcore.swatch.uncertainty import StripSpread
-
-Array = NDArray[np.float64]
 
 SAMPLES = 5
 """Steps at which intervals are computed; between them they are interpolated over the strain (off by

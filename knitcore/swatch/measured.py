@@ -16,9 +16,8 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
-
-Array = NDArray[np.float64]
 
 PITCH_PX = 8.0
 STILL_PX = 0.5

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -16,8 +16,6 @@ from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.models import SheetModel
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import Clamps, pull
-
-Array = NDArray[np.float64]
 
 LEVELS = 14
 """Strains at which force and waist are compared."""

@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.fabric import PHASES, Fabric
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.results import SwatchTest
 from knitcore.swatch.run import Path, run_path
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.solver import Equilibrium, Tolerance
-
-Array = NDArray[np.float64]
 
 RELAXATION_STAGES = 10
 BALANCED = Tolerance(absolute_n=1e-6)

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, InputError
 from knitcore.fabric import Direction
 from knitcore.swatch.results import BiaxialTest, StripTest, TrellisTest
@@ -25,8 +25,6 @@ from knitcore.swatch.strip import (
     stretched,
     strip_result,
 )
-
-Array = NDArray[np.float64]
 
 FORCE_TOLERANCE = 1e-6
 MAX_CORRECTIONS = 25

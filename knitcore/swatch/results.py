@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from knitcore import showing
+from knitcore.arrays import Array
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.stiffening import EXTENSION_START
 from knitcore.swatch.fields import (
@@ -20,8 +20,6 @@ from knitcore.swatch.fields import (
 )
 from knitcore.swatch.run import Path
 from knitcore.swatch.sheet import Sheet, State
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

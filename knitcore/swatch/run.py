@@ -9,11 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.swatch.sheet import Sheet, State
 from knitcore.swatch.solver import Equilibrium, PathSolver, StepError, Tolerance
 from knitcore.threads import one_blas_thread
-
-Array = NDArray[np.float64]
 
 Progress = Callable[[int, int], None]
 """Called with (steps done, steps in all)."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.swatch import kernel
@@ -15,8 +16,6 @@ from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.kernel import Cells, Nodes, Tangent
 from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.threads import side_by_side
-
-Array = NDArray[np.float64]
 
 SIDE_BY_SIDE = 5_000
 """Fewest cells that are assembled in two threads."""

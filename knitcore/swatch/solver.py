@@ -16,12 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError
 from knitcore.gridsolver.dissection import GridFactor
 from knitcore.gridsolver.factor import Factor, IndefiniteTangentError
 from knitcore.swatch.sheet import Linearisation, Sheet, State
-
-Array = NDArray[np.float64]
 
 MAX_NEWTON_STEPS = 30
 MAX_HALVINGS = 7
@@ -101,7 +100,6 @@ class PathSolver:
         self.cancelled = cancelled or (lambda: False)
         self.factor: Factor = factor(sheet.grid.columns, sheet.grid.rows, self.fixed.ravel())
         self.factorisations = 0
-        self.conjugate_steps = 0
         self._has_factor = False
         self._factor_is_current = False
         self._refresh_early = False
@@ -316,7 +314,6 @@ class PathSolver:
         for count in range(40):
             q = lin.apply(p) * self.free
             curvature = float(np.sum(p * q))
-            self.conjugate_steps += 1
             if curvature <= 0:
                 return p if count == 0 else x
             a = rz / curvature

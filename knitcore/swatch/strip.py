@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import QuarterLaws, quarter_laws
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.errors import InputError
@@ -21,8 +22,6 @@ from knitcore.swatch.models import EnergyModel, SheetModel
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.run import Path, Progress, run_path
 from knitcore.swatch.sheet import Sheet
-
-Array = NDArray[np.float64]
 
 DEFAULT_STEPS = 10
 MAX_STEPS = 1000

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
 
+from knitcore.arrays import Array
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
@@ -41,8 +41,6 @@ from knitcore.swatch.measured_strip import (
 )
 from knitcore.swatch.strip import LOCK_UP_SHARE
 from knitcore.swatch.strip_errors import LinearFit
-
-Array = NDArray[np.float64]
 
 ROUGH_CELLS = 6
 """Cells across the shorter side of the strip while the best of several starts is sought."""

@@ -31,6 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import SPREAD_AT
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.gridsolver.dissection import GridFactor
@@ -45,9 +46,6 @@ from knitcore.swatch.models import Coupling
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask, waist_strain
-
-Array = NDArray[np.float64]
-
 
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, for stitches of mixed quarters and of one fabric."""
