@@ -26,22 +26,22 @@ LEAST_HANDLES = 4_096
 
 
 class Check(BaseModel):
-    """One thing that was looked at."""
+    """One check and its result."""
 
     name: str
     ok: bool
     problem: str | None = Field(None, description="What is wrong.")
-    remedy: str | None = Field(None, description="What to do about it.")
+    remedy: str | None = Field(None, description="The remedy.")
 
 
 class Checks(BaseModel):
-    """All of them."""
+    """The results of all checks."""
 
     checks: list[Check]
 
     @property
     def failed(self) -> list[Check]:
-        """Those with a problem."""
+        """The checks that found a problem."""
         return [check for check in self.checks if not check.ok]
 
 

@@ -75,7 +75,7 @@ class Settings(BaseSettings):
     workers: int = Field(
         max(2, min(4, (os.cpu_count() or 2) - 1)),
         ge=1,
-        description="Processes for heavy work; one stays free of background jobs.",
+        description="Processes for heavy work; one is kept free of background jobs.",
     )
     scheduler: str | None = Field(
         None,

@@ -10,8 +10,8 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
-    {"arrays", "errors", "threads", "showing"},
-    {"choice", "batch", "extensions"},
+    {"arrays", "errors", "threads"},
+    {"choice", "batch", "extensions", "showing"},
     {"fabric"},
     {"chart"},
     {"segments", "patterns", "worked"},

@@ -145,7 +145,7 @@ def _file(media: str, text: str) -> dict[int | str, dict[str, Any]]:
 
 @router.post(
     "/views/page",
-    summary="A page to give away",
+    summary="A page to share",
     response_class=Response,
     responses=_file("text/html", "One file that needs neither the service nor the network."),
 )
@@ -156,7 +156,7 @@ async def post_page(body: SharedViewRequest, request: Request) -> Response:
 
 @router.post(
     "/views/recording",
-    summary="A recording to give away",
+    summary="A recording to share",
     response_class=Response,
     responses=_file("application/octet-stream", "A `.viser` file."),
 )

@@ -21,7 +21,7 @@ class Answers:
     Parameters
     ----------
     compute : where the work is done.
-    recent : the latest answers, by the operation's key of the request.
+    recent : the latest answers, by the request's key.
     data_dir : folder of own materials and kept results.
     """
 

@@ -117,7 +117,7 @@ class Cluster:
 
 def _no_workers() -> ClusterError:
     return ClusterError(
-        "No machine of the cluster takes computations.", remedy="Start its workers."
+        "No machine of the cluster accepts computations.", remedy="Start its workers."
     )
 
 

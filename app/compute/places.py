@@ -55,7 +55,7 @@ class Place(Protocol):
 
 
 class AbandonedError(UnavailableError):
-    """The result is no longer waited for; nobody sees this answer, but the log does."""
+    """The result is no longer waited for; this error appears only in the log."""
 
     status = 499
 
@@ -63,7 +63,7 @@ class AbandonedError(UnavailableError):
 class TimeLimitError(UnavailableError):
     """The computation exceeded its time limit."""
 
-    headers: Mapping[str, str] = {}  # the same would take as long again
+    headers: Mapping[str, str] = {}  # the same request would take as long again
 
 
 class NotBegunError(UnavailableError):

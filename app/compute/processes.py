@@ -35,7 +35,7 @@ NICENESS = 10
 
 
 SCRATCH = "knitcore-worker-"
-"""Folders of workers' temporary files begin so, and go on with the service's process."""
+"""Prefix of folders for workers' temporary files, before the number of the service's process."""
 
 
 def _nothing() -> None:

@@ -124,7 +124,7 @@ class Turns(Generic[Place]):
             ticket.place.set_result(self._free.pop())
 
     def _next(self) -> Ticket[Place] | None:
-        """Take the next in turn out of the queue; None if nobody may have a place now."""
+        """Take the next in turn out of the queue; None if none of them may have a place now."""
         for background, lane in self._lanes.items():
             if background and self._background >= self._most_background:
                 continue

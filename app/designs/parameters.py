@@ -13,7 +13,9 @@ from app.http.identity import asking
 from app.http.problems import Problem
 
 Responses = dict[int | str, dict[str, Any]]
-MISSING: Responses = {404: {"model": Problem, "description": "No such thing, or it is not yours."}}
+MISSING: Responses = {
+    404: {"model": Problem, "description": "It does not exist, or it is not yours."}
+}
 
 Owner = Annotated[str, Depends(asking)]
 Limit = Annotated[int, Query(ge=1, le=200)]
@@ -25,7 +27,7 @@ Key = Annotated[
         min_length=8,
         max_length=200,
         pattern=r"^[\x21-\x7e]+$",
-        description="With the same key and body a request takes effect once.",
+        description="Requests with the same key and body take effect once.",
     ),
 ]
 

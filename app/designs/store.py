@@ -273,7 +273,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
     Raises
     ------
     ConflictError
-        If the owner has as many as the service keeps.
+        If the owner has as many as the service stores.
     """
     if _count(connection, owner) >= BUDGETS.designs:
         raise ConflictError(

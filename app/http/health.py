@@ -68,7 +68,7 @@ async def readyz(request: Request) -> Readiness:
 
 
 class NotForUsersError(ServiceError):
-    """It is for whoever runs the service."""
+    """These numbers are for the operator of the service."""
 
     status, type, title = 403, "refused", "Refused"
 
@@ -81,7 +81,7 @@ def metrics(request: Request) -> Response:
     """
     if current_user.get() != LOCAL_USER:
         raise NotForUsersError(
-            "Numbers about everybody are for whoever runs the service.",
+            "Numbers about all users are for the operator of the service.",
             remedy="Send the token of KNITCORE_TOKEN.",
         )
     registry = request.app.state.metrics.registry

@@ -35,7 +35,7 @@ KINDS = {
     ),
     "sign-in": Kind(
         "401",
-        "The service asks for a token, and the request has none or one that is not known.",
+        "The service requires a token, and the request has none or an unknown one.",
         "Send the header `Authorization: Bearer …`, or open the page as `/?token=…`. Who runs the "
         "service makes tokens with `knitcore token`.",
     ),
@@ -57,7 +57,7 @@ KINDS = {
     ),
     "conflict": Kind(
         "409",
-        "The request conflicts with the present state, or there is no room for one more.",
+        "The request conflicts with the present state, or a limit is reached.",
         "Read the present state, and decide again.",
     ),
     "stale": Kind(
@@ -72,12 +72,12 @@ KINDS = {
     ),
     "too-many": Kind(
         "429",
-        "You ask too often, or have reached one of the limits of a user; `field` names it.",
+        "You send requests too often, or have reached a limit of one user; `field` names it.",
         "Wait as many seconds as `Retry-After` says; without that header, close or delete one.",
     ),
     "busy": Kind(
         "503",
-        "Too much is asked at once, or something that the service needs is away.",
+        "The service is busy, or something that it needs is not available.",
         "Wait as many seconds as `Retry-After` says, then send the request again.",
     ),
     "interrupted": Kind(

@@ -68,9 +68,9 @@ PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
     status: {"model": Problem, "description": text}
     for status, text in {
         400: "The request cannot be read.",
-        401: "The service asks for a token, and there is none or an unknown one.",
+        401: "The service requires a token, and there is none or an unknown one.",
         403: "The request comes from a page of another site.",
-        405: "The address knows no such method.",
+        405: "The address does not support this method.",
         413: "The request is too large.",
         422: "An input cannot be used; the problem names the field and the remedy.",
         429: "You are asking too often; Retry-After says when to come back.",
@@ -116,7 +116,7 @@ class ServiceError(Exception):
 
 
 class UnavailableError(ServiceError):
-    """The service cannot take this on now; the text says what to do."""
+    """The service cannot do this now; the text says what to do."""
 
     status, type, title = 503, "busy", "Not now"
     default_remedy = "Try again in a moment, or ask for less."
@@ -143,7 +143,7 @@ class NoRoomError(UnavailableError):
 class NotFoundError(ServiceError):
     """It does not exist, or belongs to another user."""
 
-    status, type, title = 404, "not-found", "There is no such thing here"
+    status, type, title = 404, "not-found", "Not found here"
 
 
 def problem_response(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
@@ -232,7 +232,7 @@ def _invalid(found: Sequence[Any]) -> Problem:
             f"There is no such {place[-1]}.", field=str(place[-1]), remedy="Look it up in the list."
         ).problem
     faults: dict[str | None, Fault] = {}
-    for fault in map(_fault, found):  # of alternatives that all fail, the first is told
+    for fault in map(_fault, found):  # of alternatives that all fail, the first is reported
         faults.setdefault(fault.field, fault)
     return _unusable(list(islice(faults.values(), MOST_FAULTS)))
 

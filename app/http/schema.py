@@ -23,21 +23,21 @@ EXAMPLE = problem_of(
     )
 ).model_dump()
 TAGS = {
-    "charts": "Read charts, and patterns to begin with.",
+    "charts": "Read charts, and patterns to start from.",
     "mechanics": "What a chart does: moduli, curves, pressure, curl.",
     "stretch": "A stretch test of a piece, stitch by stitch.",
     "pieces": "Cut pieces of any outline, pulled, sheared and sewn.",
     "yarn level": "Repeats as curves of yarn in space.",
     "materials": "The library of yarns, and estimates for others.",
-    "design": "Inverse design: repeats for wished mechanics.",
+    "design": "Inverse design: repeats and charts for target properties.",
     "garments": "Sleeves, gloves and braces.",
     "measure": "Laws and yarns from tests.",
     "displacement fields": "Measured fields against computed ones.",
     "files": "Charts and designs in other formats.",
-    "designs": "Designs that the service keeps, their versions and links.",
+    "designs": "Designs stored by the service, their versions and links.",
     "jobs": "Long computations in the background.",
     "views": "The 3D view.",
-    "session": "Who you are, and where you are signed in.",
+    "session": "The user, and the browsers that are signed in.",
     "service": "The service itself.",
 }
 CONVENTIONS = """\
@@ -64,7 +64,7 @@ WAYS_TO_SIGN_IN = {
     "token": {
         "type": "http",
         "scheme": "bearer",
-        "description": "A token, where the service asks for one.",
+        "description": "A token, if the service requires one.",
     },
     "session": {
         "type": "apiKey",

@@ -1,4 +1,4 @@
-"""What keeps strangers out: host and origin checks, the token, size limits, response headers.
+"""Access control: host and origin checks, the token, size limits, response headers.
 
 A browser carries its user's network position to any page it shows, so even a service on loopback
 must refuse requests that another site's page makes it send.
@@ -216,7 +216,7 @@ class Guard:
         return None
 
     def _stranger(self, scope: Scope, *, tried: bool) -> Response:
-        """Ask for a token; who tried one that is unknown must wait after some more."""
+        """Ask for a token; after several unknown ones the address must wait."""
         if tried and self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
             return _too_many("Too many unknown tokens came from this address.", 10.0)
         if scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", ""):

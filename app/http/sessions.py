@@ -20,7 +20,7 @@ class SessionSummary(BaseModel):
 
     id: str
     created_at: AwareDatetime
-    is_this: bool = Field(description="Whether it is the one that asks.")
+    is_this: bool = Field(description="Whether it is the session of this request.")
 
 
 class SignedIn(BaseModel):

@@ -1,4 +1,4 @@
-"""Who may use the service: tokens made by a command, kept as hashes; sessions in signed cookies."""
+"""Users of the service: tokens made by a command, stored as hashes; sessions in signed cookies."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from knitcore.errors import InputError
 
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0
-"""How long an answer of the database is trusted: a revoked token works no longer than this."""
+"""How long an answer of the database is cached: a revoked token works no longer than this."""
 MOST_REMEMBERED = 10_000
 ENVIRONMENT = "environment"
 """Identifier of the token in the settings."""
@@ -84,7 +84,7 @@ class Tokens:
         return NewToken(**_summary(values | {"revoked_at": None}), token=token)
 
     def all(self) -> TokenList:
-        """Every token, also those that do not work any more."""
+        """Every token, including those that no longer work."""
         with self._database.read() as connection:
             rows = connection.execute(select(access_tokens).order_by(access_tokens.c.created_at))
             return TokenList(tokens=[TokenSummary(**_summary(dict(r._mapping))) for r in rows])

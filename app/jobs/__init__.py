@@ -1,1 +1,1 @@
-"""Long computations in the background: progress, cancel, fair turns, results kept by content."""
+"""Long computations in the background: progress, cancelling, fair turns, stored results."""

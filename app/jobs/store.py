@@ -30,7 +30,7 @@ from app.store.tables import jobs, results
 OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
 STATUS = tuple(column for column in jobs.c if column is not jobs.c.request)
-"""What tells of a job; its request may have megabytes."""
+"""Columns that describe a job, without its request, which may be megabytes."""
 ORPHANED_S = 60.0
 """A process not seen for this long counts as gone; the others take over its jobs."""
 INTERRUPTED = Problem(

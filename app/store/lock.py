@@ -16,7 +16,7 @@ from knitcore.errors import InputError
 
 @contextlib.contextmanager
 def held(database: Database, process: str, at: str = "") -> Iterator[None]:
-    """Keep the data to this process while the block runs.
+    """Reserve the data for this process while the block runs.
 
     An SQLite file has one service; a PostgreSQL database has one of each name.
 

@@ -1,4 +1,4 @@
-"""Where the camera stands: the sides from which a fabric is looked at."""
+"""Camera positions: the sides from which a fabric is seen."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class RefusedMessageError(Exception):
 
 @dataclass
 class WantedPicture:
-    """A picture that a browser was asked for; ``content`` is the PNG once it came."""
+    """A picture requested from a browser; ``content`` is the PNG once it has arrived."""
 
     width: int
     height: int
@@ -68,7 +68,7 @@ class _Click(msgspec.Struct, tag_field="type", tag="SceneNodeClickMessage"):
 class _Picture(
     msgspec.Struct, tag_field="type", tag="GetRenderResponseMessage", forbid_unknown_fields=True
 ):
-    """The picture that was asked for."""
+    """The requested picture."""
 
     payload: bytes
     render_uuid: str

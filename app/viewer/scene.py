@@ -16,7 +16,7 @@ from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
 
 BUILD_S = 0.4
-"""So long browsers build a cloth before it takes the place of the one on show."""
+"""Time that browsers get to build a cloth before it replaces the one on show."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
 PAPER = (255, 252, 246)

@@ -1,4 +1,4 @@
-"""Views to give away: pictures, pages that need no service, recordings, solids."""
+"""Views to share: pictures, pages that need no service, recordings, solids."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ PAGE_POLICY = (
 
 
 class NoPictureError(ServiceError):
-    """There can be no picture of a view now."""
+    """No picture of the view can be taken now."""
 
     status, type, title = 409, "conflict", "No picture can be taken"
 
