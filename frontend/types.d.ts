@@ -1857,7 +1857,7 @@ export interface SegmentCountsResult {
 export interface SessionSummary {
   id: string;
   created_at: string;
-  /** Whether it is the one that asks. */
+  /** Whether it is the session of this request. */
   is_this: boolean;
 }
 

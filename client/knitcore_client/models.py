@@ -2316,7 +2316,7 @@ class SessionSummary(BaseModel):
     id: str
     created_at: AwareDatetime
     is_this: bool
-    """Whether it is the one that asks."""
+    """Whether it is the session of this request."""
 
 
 class ShapeResult(BaseModel):
