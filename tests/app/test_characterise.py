@@ -60,6 +60,7 @@ def test_two_yarns_become_a_table_curves_and_materials(tmp_path: Path) -> None:
     assert (tmp_path / "mine-12mm.json").is_file()
 
 
+@pytest.mark.slow
 def test_a_killed_batch_resumes(tmp_path: Path) -> None:
     arguments = [
         "characterise", "cotton", "--fabrics", "stockinette,garter", "--tensions", "1,1.04",
@@ -88,6 +89,7 @@ def test_a_killed_batch_resumes(tmp_path: Path) -> None:
     assert result.stdout.count("stockinette") == 2
 
 
+@pytest.mark.slow
 def test_a_cluster_of_two_processes_gives_the_same(
     cluster: tuple[str, list[subprocess.Popen[str]]],  # noqa: F811 - a fixture
     tmp_path: Path,

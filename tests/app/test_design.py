@@ -57,6 +57,7 @@ def test_rest_and_command_line_find_the_same(
     assert len(atlas[1]["repeats"]) == len(repeats_of("small"))
 
 
+@pytest.mark.slow
 def test_other_yarns_are_offered_where_the_wanted_one_reaches_nothing(client: TestClient) -> None:
     """No acrylic is so stiff; the answer names the nearest and looks elsewhere."""
     wish = WISH | {"value": 0.6, "tolerance": 0.2}

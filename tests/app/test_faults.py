@@ -23,6 +23,8 @@ import websockets.sync.client
 from tests.app.databases import control
 from tests.app.service import Service
 
+pytestmark = pytest.mark.slow
+
 OUTAGE_S = float(os.environ.get("KNITCORE_OUTAGE_S", "1"))
 SIDE = 60
 JOBS = "/api/v1/jobs"

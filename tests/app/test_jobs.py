@@ -312,6 +312,7 @@ def test_the_longest_unused_results_make_room(database: Database) -> None:
     assert [store.knows(f"k{n}") for n in range(3)] == [True, False, True]
 
 
+@pytest.mark.slow
 def test_the_real_service_killed_in_mid_job(tmp_path: Path) -> None:
     service = Service(tmp_path)
     client = service.start()

@@ -60,6 +60,7 @@ class Painter:
         self.acknowledged = found["revision"]
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(60 + 30 * KILLS)
 def test_no_acknowledged_edit_is_lost(tmp_path: Path) -> None:
     service = Service(tmp_path)

@@ -117,6 +117,7 @@ def test_the_same_seed_gives_the_same_chart() -> None:
     assert fill_like(chart, 0.05, seed=5).chart == fill_like(chart, 0.05, seed=5).chart
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("smallest", [2, 5])
 def test_patches_are_not_too_small(smallest: int) -> None:
     rng = np.random.default_rng(0)

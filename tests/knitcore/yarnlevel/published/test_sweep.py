@@ -26,6 +26,7 @@ def cotton_stockinette():
     )
 
 
+@pytest.mark.slow
 def test_stress_is_the_slope_of_the_energy(cotton_stockinette):
     for curve in cotton_stockinette:
         assert curve.converged
