@@ -2349,6 +2349,8 @@ export interface ViewResult {
   stitches: number;
   /** Where the shapes of the stitches come from. */
   source: string;
+  /** Length of the line below the fabric. */
+  scale_mm: number;
   url: string;
 }
 

@@ -26,6 +26,7 @@ from app.viewer.camera import CameraSide
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.design_view import ViewRequest, ViewResult, build_scene
 from app.viewer.fabric import Box
+from app.viewer.scene import round_length_mm
 from app.viewer.share import picture_png
 from app.viewer.shared import SharedViewRequest, shared_page, shared_recording, shared_solid
 from app.viewer.views import View
@@ -76,7 +77,12 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     def draw() -> ViewResult:
         scene = build_scene(body, found, context)
         drawn = state.views.open(name, scene.colours[..., 0].size).show(scene)
-        return ViewResult(stitches=drawn, source=scene.shapes.source, url=f"/view/{design}/")
+        return ViewResult(
+            stitches=drawn,
+            source=scene.shapes.source,
+            scale_mm=round_length_mm(float(scene.extent_mm[0])),
+            url=f"/view/{design}/",
+        )
 
     return await _drawn(request, draw)
 

@@ -15,11 +15,14 @@ from pathlib import Path
 
 from knitcore.errors import InputError
 from knitcore.materials import Material, load_material_file
+from knitcore.materials.document import MaterialDocument
 
 FOLDER = "materials"
 PREFIX = "own:"
 KINDS = (".json", ".yaml", ".yml")
 MOST_FILES = 200
+MOST_KEPT = 40
+"""Materials that one user keeps through the service."""
 
 _log = logging.getLogger("knitcore.materials")
 
@@ -60,6 +63,48 @@ def own_materials(data_dir: Path) -> dict[str, Material]:
             continue
         found[own.identifier] = own
     return found
+
+
+def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Material:
+    """Add a user's material to the folder, where everybody finds it.
+
+    Another one that the same user keeps under the identifier is replaced.
+
+    Raises
+    ------
+    InputError
+        If the document is no material, or the user keeps too many.
+    """
+    document.to_material()
+    mine = _kept_by(owner, data_dir)
+    place = data_dir / FOLDER / f"{_tag(owner)}{document.identifier.replace(':', '_')}.json"
+    if place not in mine and len(mine) >= MOST_KEPT:
+        raise InputError("identifier", f"you keep {len(mine)} yarns.", "Remove one of them first.")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    new = place.with_suffix(".new")
+    new.write_text(document.model_dump_json(indent=1, exclude_defaults=True), encoding="utf-8")
+    new.replace(place)
+    facts = place.stat()
+    return _read(place, facts.st_mtime_ns, facts.st_size)
+
+
+def remove_material(identifier: str, owner: str, data_dir: Path) -> bool:
+    """Take a user's material out of the folder; false if the user keeps none of that identifier."""
+    for file in _kept_by(owner, data_dir):
+        facts = file.stat()
+        if _read(file, facts.st_mtime_ns, facts.st_size).identifier == identifier:
+            file.unlink()
+            return True
+    return False
+
+
+def _kept_by(owner: str, data_dir: Path) -> list[Path]:
+    return sorted((data_dir / FOLDER).glob(f"{_tag(owner)}*.json"))
+
+
+def _tag(owner: str) -> str:
+    """Beginning of the names of a user's files."""
+    return f"kept-{hashlib.sha256(owner.encode()).hexdigest()[:12]}-"
 
 
 @lru_cache(maxsize=MOST_FILES)

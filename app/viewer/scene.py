@@ -19,6 +19,10 @@ BUILD_S = 0.4
 """Time that browsers get to build a cloth before it replaces the one on show."""
 MARK = (232, 72, 44)
 INK = (30, 30, 30)
+SCALE = (128, 120, 112)
+"""Seen on light and on dark."""
+SCALE_BELOW = 0.035
+"""Of the fabric's height: how far below it the scale lies."""
 PAPER = (255, 252, 246)
 
 
@@ -55,6 +59,7 @@ class SceneWriter:
             self._draw(part, scene.middle_mm, level_of(stitches))
             self._draw_rectangles(part, scene.middle_mm)
             self._draw_sheet(None if part is scene else scene)
+            self._draw_scale(scene)
             room = _room(scene)
             if room != self._framed:
                 self._framed = room
@@ -195,6 +200,30 @@ class SceneWriter:
             ),
         )
 
+    def _draw_scale(self, scene: FabricScene) -> None:
+        """A line of round length below the fabric, at its right."""
+        width, height = scene.extent_mm
+        length = round_length_mm(float(width))
+        right, below = float(width) / 2, -float(height) / 2 - SCALE_BELOW * float(height)
+        tick = 0.1 * length
+        points = np.array(
+            [
+                [[right - length, below, 0.0], [right, below, 0.0]],
+                [[right - length, below - tick, 0.0], [right - length, below + tick, 0.0]],
+                [[right, below - tick, 0.0], [right, below + tick, 0.0]],
+            ]
+        )
+        self._put(
+            "scale",
+            self._server.scene.add_line_segments(
+                "/scale",
+                points=_units(points),
+                colors=SCALE,
+                thickness=2.0,
+                thickness_units="screen",
+            ),
+        )
+
     def _put(self, name: str, handle: Any) -> None:
         """Note a layer's new handle; the same name replaced the old one, None removes it."""
         old = self._layers.pop(name, None)
@@ -202,6 +231,19 @@ class SceneWriter:
             self._layers[name] = handle
         elif old is not None:
             old.remove()
+
+
+def round_length_mm(width_mm: float) -> float:
+    """1, 2 or 5 times a power of ten, about a fifth of a width.
+
+    Examples
+    --------
+    >>> round_length_mm(106.0), round_length_mm(520.0), round_length_mm(9.0)
+    (20.0, 100.0, 1.0)
+    """
+    wanted = width_mm / 5
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(power * max(step for step in (1, 2, 5) if power * step <= wanted * (1 + 1e-9)))
 
 
 def _room(scene: FabricScene) -> tuple[float, ...]:

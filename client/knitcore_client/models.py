@@ -2590,6 +2590,8 @@ class ViewResult(BaseModel):
     """Stitches drawn as yarn."""
     source: str
     """Where the shapes of the stitches come from."""
+    scale_mm: float
+    """Length of the line below the fabric."""
     url: str
 
 

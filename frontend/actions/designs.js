@@ -35,6 +35,7 @@ export const DESIGNS = [
     keeper.openNew({ ...design, name: `${design.name.slice(0, 190)} (copy)` });
     studio.tell("This is the copy now; the design itself is among your designs.");
   }),
+  action("yarns", "Own yarns …", "Shift+Y", "yarn", ({ open }) => open("yarns")),
   action("exports", "Export, all formats …", "Mod+E", "export", ({ open }) => open("exports")),
   action(
     "project-file",

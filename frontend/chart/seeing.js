@@ -25,6 +25,8 @@ export class Seeing {
     this.groups = new Signal(settings.groups);
     /** Stitches on a side of a block. */
     this.block = new Signal(settings.block);
+    /** Whether strain crosses are drawn over the chart. */
+    this.crosses = new Signal(false);
     /** Id of the region that the inspector describes; null for the whole chart. */
     this.region = new Signal(/** @type {string | null} */ (null));
     /** Of the curves in the inspector; follows the stretch test. */

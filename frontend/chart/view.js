@@ -15,6 +15,7 @@ import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
 import { OVERLAYS } from "./overlays.js";
 import { pixel, readPalette } from "./palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
+import { drawCrosses } from "./crosses.js";
 import { drawRectangles } from "./rectangles.js";
 import { drawRulers } from "./rulers.js";
 import { MARGIN, Viewport } from "./viewport.js";
@@ -68,8 +69,8 @@ export class ChartView {
       signal.listen(() => this.recolour());
     }
     const { look, back, round } = studio.editing;
-    const { groups, block } = studio.seeing;
-    for (const signal of [studio.rectangles, groups, block, round]) signal.listen(() => this.redraw());
+    const { groups, block, crosses } = studio.seeing;
+    for (const signal of [studio.rectangles, groups, block, crosses, round]) signal.listen(() => this.redraw());
     look.listen(() => this.recolour());
     back.watch((turned) => {
       this.viewport.mirrored = turned;
@@ -283,6 +284,7 @@ export class ChartView {
     if (studio.rectangles.value && studio.kinds().length) {
       drawRectangles(context, viewport, studio, around);
     }
+    if (studio.seeing.crosses.value) drawCrosses(context, viewport, studio, around);
     const chart = studio.document;
     if (chart.shaped) drawAbsent(context, viewport, chart, around, palette);
     drawRegions(context, viewport, chart, around, palette);

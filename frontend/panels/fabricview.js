@@ -73,6 +73,7 @@ export function fabricview(host, studio, view) {
   /** Address of the view in the frame. */
   let shown = "";
   let source = "";
+  let scale = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
@@ -111,6 +112,7 @@ export function fabricview(host, studio, view) {
       problem = false;
       studio.seeing.forgotten.value = null;
       source = answer.source;
+      scale = answer.scale_mm < 10 ? `${answer.scale_mm} mm` : `${answer.scale_mm / 10} cm`;
       describe();
       studio.online.value = true;
       open(answer.url);
@@ -157,6 +159,7 @@ export function fabricview(host, studio, view) {
     const strain = studio.seeing.lying.value ? 0 : studio.currentStrain();
     caption.replaceChildren(
       strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : lyingText(studio),
+      h("span", { class: "caption-scale figures", title: "Length of the line below the cloth" }, scale),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = studio.seeing.curled.value?.notes[0] ?? (source && `Yarn: ${source}`);

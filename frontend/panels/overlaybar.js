@@ -51,6 +51,17 @@ export function overlaybar(host, studio, view) {
     h("span", { class: "chip-rectangle", "aria-hidden": "true" }),
     "Rectangles",
   );
+  const { crosses: crossing } = studio.seeing;
+  const crosses = h(
+    "button",
+    {
+      class: "chip",
+      id: "overlay-crosses",
+      onclick: () => (crossing.value = !crossing.value),
+    },
+    "+ Strain",
+  );
+  crossing.watch((on) => crosses.setAttribute("aria-pressed", String(on)));
   const grouping = h(
     "select",
     {
@@ -81,6 +92,10 @@ export function overlaybar(host, studio, view) {
       chips[i].disabled = !available;
       chips[i].title = available ? overlay.hint : `${overlay.hint}. Needs a stretch test of this chart.`;
     });
+    crosses.disabled = studio.currentStretch() === null;
+    crosses.title = `Strain crosses: how far the cloth stretches along rows and columns; red where it narrows${
+      crosses.disabled ? ". Needs a stretch test of this chart." : ""
+    }`;
     const content = shown.legend(studio, view.palette);
     legend.replaceChildren(
       ...(content.kind === "scale"
@@ -132,6 +147,7 @@ export function overlaybar(host, studio, view) {
         ...chips.slice(6),
       ),
       rectangles,
+      crosses,
     ),
     legend,
     readout,

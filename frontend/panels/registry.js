@@ -48,6 +48,8 @@ const PANELS = {
   tour: () => import("./tour.js"),
   /** @returns {Promise<PanelModule>} */
   versions: () => import("./designs/versions.js"),
+  /** @returns {Promise<PanelModule>} */
+  yarns: () => import("./dialogs/yarns.js"),
 };
 
 /**

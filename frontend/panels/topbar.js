@@ -84,7 +84,7 @@ export function topbar(host, studio, context) {
     h("div", { class: "group" }, button("undo"), button("redo")),
     size,
     h("div", { class: "spacer" }),
-    materialMenu(studio),
+    materialMenu(studio, context),
     button("import", "Import"),
     button("share", "Share"),
     exportMenu(studio, context),
@@ -142,8 +142,11 @@ export function offerTour(host, { open }) {
   host.querySelector(".spacer")?.before(offer);
 }
 
-/** @param {Studio} studio */
-function materialMenu(studio) {
+/**
+ * @param {Studio} studio
+ * @param {ActionContext} context
+ */
+function materialMenu(studio, context) {
   const label = h("span", { class: "ellipsis" }, "Material");
   const { root, setItems } = menu({
     id: "material",
@@ -155,15 +158,17 @@ function materialMenu(studio) {
     const all = studio.materials.value;
     const chosen = all.find(({ id }) => id === studio.materialId.value);
     label.textContent = chosen?.name ?? studio.materialId.value;
-    setItems(
-      all.map((material) => ({
+    setItems([
+      ...all.map((material) => ({
         id: `material-${material.id}`,
         content: materialItem(material),
         checked: material.id === studio.materialId.value,
         disabled: Object.keys(material.fabrics).length < 4,
         perform: () => (studio.materialId.value = material.id),
       })),
-    );
+      null,
+      item(action("yarns"), context),
+    ]);
   };
   studio.materials.watch(show);
   studio.materialId.listen(show);

@@ -21,7 +21,10 @@ const MAX_FILE_BYTES = 12_000_000;
  * @returns {Promise<Problem | null>} what is wrong, or null if the chart is now this one
  */
 export async function importText(context, text, name = "Pasted.txt") {
-  if (/^\s*[{[]/.test(text)) return importProject(context, text);
+  if (/^\s*[{[]/.test(text)) {
+    const yarn = await importYarn(context, text);
+    return yarn === undefined ? importProject(context, text) : yarn;
+  }
   const { isKnitting, importKnitting } = await import("./knitreader.js");
   if (isKnitting(name, text)) return importKnitting(context, name, text);
   const { studio } = context;
@@ -39,6 +42,28 @@ export async function importText(context, text, name = "Pasted.txt") {
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     return { ...error.problem, title: "This chart cannot be imported" };
+  }
+}
+
+/**
+ * A yarn file is kept, and the design knitted with it.
+ *
+ * @param {ActionContext} context
+ * @param {string} text
+ * @returns {Promise<Problem | null | undefined>} undefined if it is no yarn file
+ */
+async function importYarn({ studio }, text) {
+  if (!text.includes("knitcore-material")) return undefined;
+  const { adopt, isYarnFile } = await import("./yarns.js");
+  try {
+    const document = JSON.parse(text);
+    if (!isYarnFile(document)) return undefined;
+    await adopt(studio, document);
+    return null;
+  } catch (error) {
+    if (error instanceof SyntaxError) return undefined; // told as a damaged project file
+    if (!(error instanceof ApiError)) throw error;
+    return { ...error.problem, title: "This yarn cannot be added" };
   }
 }
 

@@ -40,6 +40,7 @@ def test_a_design_is_drawn_and_reaches_the_browser(client: TestClient) -> None:
     assert answer.json() == {
         "stitches": 54,
         "source": "relaxed curves of the four fabrics in acrylic",
+        "scale_mm": 5.0,
         "url": f"/view/{DESIGN}/",
     }
     seen = _messages(client, DESIGN, b"/rectangles")

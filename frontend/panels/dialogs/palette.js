@@ -22,6 +22,7 @@ const WORDS = {
   "open-atlas": "repeats patterns",
   stretch: "pull test force load",
   versions: "history",
+  yarns: "material own test files measure fit add",
   compare: "difference side by side versions regions yarns",
   exports: "print pdf knitout written download save",
 };

@@ -13,9 +13,11 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.main import create_app
+from app.results.own_materials import keep_material, own_materials, remove_material
 from app.settings import Settings
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import MeasuredCurve, material, save_material_file
+from knitcore.materials.document import MaterialDocument
 
 CURVE = MeasuredCurve((0.0, 0.2, 0.4), (0.0, 0.01, 0.03), pulls=4)
 CHART = {"fabric": "garter", "columns": 6, "rows": 6}
@@ -116,3 +118,30 @@ def test_the_command_line_lists_it(folder: Path) -> None:
     named = CliRunner().invoke(main, ["materials", told.output.split()[0]])
     assert named.exit_code == 0, named.output
     assert named.output.startswith("Mine")
+
+
+def test_a_material_is_added_used_given_back_and_removed(own: TestClient) -> None:
+    file = own.get("/api/v1/materials/acrylic/document").json()
+    file |= {"identifier": "aunts-wool", "name": "My aunt's wool"}
+    added = own.post("/api/v1/materials", json=file)
+    assert added.status_code == 201
+    name = added.json()["id"]
+    assert name.startswith("own:aunts-wool.")
+    offered = own.get("/api/v1/materials").json()["materials"]
+    assert name in {one["id"] for one in offered}
+    asked = {"chart": "KP", "material": name}
+    given = {"chart": "KP", "material": "acrylic"}
+    mine, library = (own.post("/api/v1/predict", json=body).json() for body in (asked, given))
+    assert mine["modulus_course_n_per_mm"] == pytest.approx(library["modulus_course_n_per_mm"])
+    assert own.get(f"/api/v1/materials/{name}/document").json() == file
+    assert own.delete(f"/api/v1/materials/{name}").status_code == 204
+    assert own.delete(f"/api/v1/materials/{name}").status_code == 404
+    assert own.post("/api/v1/predict", json=asked).status_code == 422
+
+
+def test_only_who_added_a_material_removes_it(folder: Path) -> None:
+    document = MaterialDocument.from_material(material("acrylic"))
+    kept = keep_material(document, "ann", folder.parent)
+    assert not remove_material(kept.identifier, "bob", folder.parent)
+    assert remove_material(kept.identifier, "ann", folder.parent)
+    assert own_materials(folder.parent) == {}

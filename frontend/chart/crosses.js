@@ -1,0 +1,77 @@
+/**
+ * Strain crosses: how far the cloth is stretched along its rows and its columns at the step on show, in
+ * each block of stitches. Arms are as long as the strain; those of cloth that narrows are drawn in red.
+ *
+ * @import {Box} from "../core/grid.js"
+ * @import {Studio} from "../studio.js"
+ * @import {Viewport} from "./viewport.js"
+ */
+
+/** Smaller blocks cannot be read. */
+const SMALLEST_PX = 26;
+/** The longest arm of a test, over half a block. */
+const ROOM = 0.92;
+const STRETCHED = "rgb(24 18 14 / 0.9)";
+const NARROWED = "rgb(196 30 20 / 0.95)";
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {Viewport} viewport
+ * @param {Studio} studio
+ * @param {Box} box stitches to draw
+ */
+export function drawCrosses(context, viewport, studio, box) {
+  const fields = studio.currentStretch()?.stitch_fields;
+  const step = studio.step.value;
+  const course = fields?.strain_course[step];
+  const wale = fields?.strain_wale[step];
+  if (!fields || !course || !wale) return;
+  const { grid, shaped, outline } = studio.document;
+  const { cellWidth: w, cellHeight: h } = viewport;
+  const size = Math.max(1, Math.ceil(SMALLEST_PX / Math.min(w, h)));
+  const longest = largest(fields.strain_course, fields.strain_wale);
+  const paths = { [STRETCHED]: new Path2D(), [NARROWED]: new Path2D() };
+  for (let row0 = box.row0 - (box.row0 % size); row0 < box.row1; row0 += size) {
+    for (let column0 = box.column0 - (box.column0 % size); column0 < box.column1; column0 += size) {
+      const row1 = Math.min(row0 + size, grid.rows);
+      const column1 = Math.min(column0 + size, grid.columns);
+      let [count, along, across] = [0, 0, 0];
+      for (let row = row0; row < row1; row++) {
+        for (let column = column0; column < column1; column++) {
+          const i = grid.index(row, column);
+          if (shaped && !outline[i]) continue;
+          count++;
+          across += course[i];
+          along += wale[i];
+        }
+      }
+      if (!count) continue;
+      const { x, y, width, height } = viewport.place({ row0, column0, row1, column1 }, grid);
+      const [cx, cy] = [x + width / 2, y + height / 2];
+      const arm = (ROOM * Math.min(width, height)) / 2 / longest / count;
+      const wide = paths[across < 0 ? NARROWED : STRETCHED];
+      wide.moveTo(cx - Math.abs(across) * arm, cy);
+      wide.lineTo(cx + Math.abs(across) * arm, cy);
+      const high = paths[along < 0 ? NARROWED : STRETCHED];
+      high.moveTo(cx, cy - Math.abs(along) * arm);
+      high.lineTo(cx, cy + Math.abs(along) * arm);
+    }
+  }
+  context.lineCap = "round";
+  for (const [colour, path] of Object.entries(paths)) {
+    context.strokeStyle = "rgb(255 252 246 / 0.85)";
+    context.lineWidth = 4.5;
+    context.stroke(path);
+    context.strokeStyle = colour;
+    context.lineWidth = 2;
+    context.stroke(path);
+  }
+}
+
+/** @param {...number[][]} fields */
+function largest(...fields) {
+  let most = 1e-6;
+  for (const steps of fields)
+    for (const step of steps) for (const value of step) most = Math.max(most, Math.abs(value));
+  return most;
+}
