@@ -101,3 +101,17 @@ def _kept(page: Page) -> dict[str, object]:
     page.wait_for_function("() => !('unsaved' in document.documentElement.dataset)")
     kept: dict[str, object] = json.loads(page.evaluate("localStorage['knitcore.design']"))
     return kept
+
+
+def test_formats_of_extensions_are_offered(flat_studio: Page) -> None:
+    page = flat_studio
+    house = {"name": "house", "package": "knit-house 1.0", "problem": None}
+    card = house | {"group": "knitcore.exporters", "offers": ["punchcard"]}
+    page.route("**/api/v1/extensions", lambda route: route.fulfill(json={"extensions": [card]}))
+    page.keyboard.press("Control+E")
+    expect(page.get_by_role("group", name="From extensions")).to_contain_text("knit-house 1.0")
+    page.get_by_label("punchcard").check()
+    with page.expect_request("**/api/v1/export") as asked:
+        page.locator("#export-make").click()
+    assert asked.value.post_data_json["to"] == "punchcard"
+    expect(page.locator("#export-dialog .dialog-status")).to_contain_text("is not a format")

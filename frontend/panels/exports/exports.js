@@ -2,6 +2,7 @@
  * The export panel: all formats with their options, and what was checked of the file that came out.
  *
  * @import {Studio} from "../../studio.js"
+ * @import {Extensions} from "../../types.js"
  * @import {ExportKind, Option} from "./kinds.js"
  *
  * @typedef {{name: string, media_type: string, content: string, bytes: number, notes: string[],
@@ -15,7 +16,7 @@ import { download } from "../../services/exporter.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
-import { KINDS, hindrance } from "./kinds.js";
+import { KINDS, hindrance, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
 
 /** Characters of a text file that are shown. */
@@ -86,7 +87,8 @@ export function create(studio) {
     outcome.replaceChildren();
     status.replaceChildren();
   };
-  const entries = KINDS.map((one) => ({
+  /** @param {ExportKind} one */
+  const entry = (one) => ({
     one,
     input: h("input", {
       type: "radio",
@@ -96,30 +98,28 @@ export function create(studio) {
       onchange: () => choose(one),
     }),
     note: h("span", { class: "muted" }),
-  }));
-  const groups = [...new Set(KINDS.map(({ group }) => group))];
+  });
+  const entries = KINDS.map(entry);
+  /** @param {ReturnType<typeof entry>[]} some */
+  const fieldsets = (some) =>
+    [...new Set(some.map(({ one }) => one.group))].map((group) =>
+      h(
+        "fieldset",
+        { class: "exports-kinds" },
+        h("legend", {}, group),
+        ...some
+          .filter(({ one }) => one.group === group)
+          .map(({ one, input, note }) => h("label", { class: "exports-kind" }, input, h("span", {}, one.name, note))),
+      ),
+    );
+  const formats = h("div", {}, ...fieldsets(entries));
   const element = dialog(
     "export-dialog",
     "Export",
     h(
       "div",
       { class: "exports" },
-      h(
-        "div",
-        {},
-        ...groups.map((group) =>
-          h(
-            "fieldset",
-            { class: "exports-kinds" },
-            h("legend", {}, group),
-            ...entries
-              .filter(({ one }) => one.group === group)
-              .map(({ one, input, note }) =>
-                h("label", { class: "exports-kind" }, input, h("span", {}, one.name, note)),
-              ),
-          ),
-        ),
-      ),
+      formats,
       h(
         "section",
         { class: "exports-options", "aria-label": "Options and file" },
@@ -130,6 +130,17 @@ export function create(studio) {
     ),
     h("div", { class: "dialog-buttons" }, make),
   );
+
+  async function addExtensions() {
+    const found = await attempt(status, () => /** @type {Promise<Extensions>} */ (call("/extensions")));
+    if (!found) return;
+    asked = true;
+    const added = ofExtensions(found.extensions).map(entry);
+    for (const { one, note } of added) note.textContent = one.note;
+    entries.push(...added);
+    formats.append(...fieldsets(added));
+  }
+  let asked = false;
 
   async function run() {
     const body = {
@@ -168,7 +179,8 @@ export function create(studio) {
           ]),
       ...file.notes,
     ];
-    const text = kind.text ? new TextDecoder().decode(bytes.slice(0, MOST_SHOWN)) : "";
+    const text =
+      kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MOST_SHOWN)) : "";
     outcome.replaceChildren(
       h("ul", { class: "planner-notes" }, ...found.map((words) => h("li", {}, icon("check"), words))),
       text && kind.to !== "svg" ? h("pre", { class: "exports-text", tabIndex: 0, "aria-label": "The file" }, text) : "",
@@ -200,5 +212,6 @@ export function create(studio) {
       .join(" ");
     choose(kind);
     element.showModal();
+    if (!asked) void addExtensions();
   };
 }

@@ -1,6 +1,8 @@
 /**
  * What a design can become.
  *
+ * @import {Extensions} from "../../types.js"
+ *
  * @typedef {"worked" | "finish" | "note" | "tex"} Option
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
@@ -18,6 +20,26 @@ export function hindrance(to, { shaped, stitches }) {
   if (shaped && ["knitspeak", "text"].includes(to)) return "holds no outline: rectangular charts only";
   const most = MOST[/** @type {keyof typeof MOST} */ (to)] ?? Infinity;
   return stitches > most ? `at most ${most.toLocaleString("en")} stitches` : "";
+}
+
+/**
+ * The formats that extensions add.
+ *
+ * @param {Extensions["extensions"]} extensions
+ * @returns {ExportKind[]}
+ */
+export function ofExtensions(extensions) {
+  return extensions
+    .filter(({ group, problem }) => group === "knitcore.exporters" && problem === null)
+    .flatMap(({ offers, package: from }) =>
+      offers.map((to) => ({
+        to,
+        name: to,
+        note: `added by ${from}`,
+        group: "From extensions",
+        options: ["worked", "note", "tex"],
+      })),
+    );
 }
 
 /** @type {ExportKind[]} */

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore import StitchChart, curve, predict
+from knitcore import RelaxedSize, StitchChart, curve, predict
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import uniaxial_response
@@ -35,7 +35,7 @@ def test_curves_start_with_the_predicted_modulus(text, direction):
 
 def test_bad_stresses_are_refused():
     yarn = material("acrylic:published")
-    for bad in ([-0.1], [0.2, 0.1], [float("nan")]):
+    for bad in ([-0.1], [0.2, 0.1], [0.1, 0.1], [float("nan")]):
         with pytest.raises(InputError, match="stress"):
             curve(StitchChart.parse("KP"), yarn, Direction.WALE, bad)
 
@@ -54,3 +54,30 @@ def test_stress_and_strain_are_inverse(fabric, direction):
     loads = np.array([0.0, 1e-7, 1e-3, 0.01, 0.1, 0.5])
     np.testing.assert_allclose(along.stress(along.strain(loads)), loads, rtol=1e-3)
     assert along.stress(100.0) == pytest.approx(10.0)
+
+
+def test_a_curve_keeps_its_stresses_and_takes_ones_own_gauge():
+    chart, yarn = StitchChart.parse("KKPP"), material("acrylic")
+    size = RelaxedSize(4.0, 3.0)
+    found = curve(chart, yarn, "course", [0, 1], gauge=size)
+    assert found.stress_n_per_mm.tolist() == [0.0, 1.0]
+    own = predict(chart, yarn, gauge=size).course.strain([0.05])
+    assert curve(chart, yarn, "course", [0.05], gauge=size).strain == pytest.approx(own)
+    assert curve(chart, yarn, "course", [0.05]).strain != pytest.approx(own, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("asked", "field"),
+    [
+        ("strain", "stress"),
+        ("stress", "strain"),
+        ("held_strain", "stress"),
+        ("held_stress", "strain"),
+        ("across_strain", "stress"),
+    ],
+)
+def test_what_cannot_be_asked_is_named(asked, field):
+    along = predict(StitchChart.parse("KP"), material("acrylic")).course
+    with pytest.raises(InputError) as refused:
+        getattr(along, asked)(-0.1)
+    assert refused.value.field == field
