@@ -5,9 +5,21 @@ Only the process that workers are forked from imports this module, once.
 
 from __future__ import annotations
 
+import os
+import threading
 from pathlib import Path
 
 from app.compute.processes import be_nice
+
+SERVICE = os.getppid()
+_loaded = threading.Event()
+
+
+def _end_with_service() -> None:
+    """Its process notices the end of the service by itself once it waits to fork."""
+    while not _loaded.wait(0.5):
+        if os.getppid() != SERVICE:
+            os._exit(1)
 
 
 def _load() -> None:
@@ -28,4 +40,10 @@ def _load() -> None:
     )
 
 
-_load()
+_watch = threading.Thread(target=_end_with_service, daemon=True)
+_watch.start()
+try:
+    _load()
+finally:
+    _loaded.set()
+    _watch.join()  # a process that forks should have one thread

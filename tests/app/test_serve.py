@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import http.client
 import json
 import signal
@@ -62,6 +63,34 @@ def test_killed_it_leaves_no_worker_behind() -> None:
     while worker.exists() and time.monotonic() < deadline:
         time.sleep(0.1)
     assert not worker.exists()
+
+
+def test_killed_while_modules_are_loaded_it_leaves_no_process_behind() -> None:
+    code = (
+        "import os; from multiprocessing import forkserver\n"
+        "from app.compute.processes import processes\n"
+        "processes(1); forkserver.ensure_running(); os.kill(os.getpid(), 9)\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", f"if __name__ == '__main__':\n{textwrap.indent(code, '    ')}"],
+        start_new_session=True,
+    )
+    assert process.wait(60) == -signal.SIGKILL
+    deadline = time.monotonic() + 60
+    while (left := _in_session(process.pid)) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not left
+
+
+def _in_session(leader: int) -> list[str]:
+    """Processes of a session."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            text = stat.read_text()
+            if int(text.rpartition(")")[2].split()[3]) == leader:
+                found.append(text)
+    return found
 
 
 def test_a_port_in_use_is_reported() -> None:
