@@ -345,7 +345,7 @@ def test_a_cluster_without_workers_is_reported(
             assert scheduler.poll() is None, (tmp_path / "log").read_text()
         address = json.loads(file.read_text())["address"]
         cluster = Cluster(address)
-        with pytest.raises(ClusterError, match="takes computations"):
+        with pytest.raises(ClusterError, match="accepts computations"):
             cluster.begin("a-job", print)
         cluster.close()
         settings = Settings(data_dir=tmp_path / "data", scheduler=address)
@@ -356,7 +356,7 @@ def test_a_cluster_without_workers_is_reported(
             wish = {"chart": "KP", "material": "acrylic"}
             refused = client.post("/api/v1/relax", json=wish)
             assert refused.status_code == 503
-            assert "takes computations" in refused.json()["detail"]
+            assert "accepts computations" in refused.json()["detail"]
     finally:
         scheduler.terminate()
         scheduler.wait(20)

@@ -79,8 +79,8 @@ def test_yarns_are_named() -> None:
         ("Row 1: K2, ssk.", "ssk is stitch 3 of 3"),
         ("Row 1: K1, m1, k3, m1.", "m1 is stitch 6 of 6"),
         ("Row 1: Bind off 4 sts, knit.", "leaves no stitch"),
-        ("Row 1: Ssk, k2. (4 sts)", "says 4 sts, 3 are"),
-        ("Row 1: Cast on 2 sts, k4.", "works 4 stitches, 6 are"),
+        ("Row 1: Ssk, k2. (4 sts)", "says 4 sts, but 3 are"),
+        ("Row 1: Cast on 2 sts, k4.", "works 4 stitches, but 6 are"),
         ("Rows 1-2: Bind off 1 st, k3.", "other than the 3 stitches"),
         ("Yarn B: red (#ff0000)\nRow 1: Knit.", "the next is A"),
         (
@@ -102,10 +102,10 @@ def test_pieces_that_cannot_be_worked_in_the_round_are_refused() -> None:
     two = Piece(
         ShapedChart.rectangle(StitchChart.parse("KK")), yarns, np.array([[0, 1]], dtype=np.intp)
     )
-    with pytest.raises(InputError, match="round 1 is of several yarns"):
+    with pytest.raises(InputError, match="round 1 has several yarns"):
         write_rows(two, Construction.ROUND)
 
 
 def test_an_outline_is_not_read_as_a_rectangle() -> None:
-    with pytest.raises(InputError, match="no rectangle"):
+    with pytest.raises(InputError, match="not make a rectangle"):
         read_rows(write_rows(shaped("xx..\nxxxx")))
