@@ -9,6 +9,8 @@ import os
 import threading
 from pathlib import Path
 
+import numpy as np
+
 from app.compute.processes import be_nice
 
 SERVICE = os.getppid()
@@ -27,6 +29,10 @@ def _load() -> None:
     from app.models.charts import PureFabricChart
     from app.operations.context import Context
     from app.operations.stretch import StretchRequest, stretch
+    from knitcore.fabric import Fabric
+    from knitcore.materials import material
+    from knitcore.swatch.kernel import respond
+    from knitcore.swatch.models import SheetModel
 
     stretch(
         StretchRequest(
@@ -38,6 +44,11 @@ def _load() -> None:
         ),
         Context(Path()),
     )
+    # cut pieces have another mesh, and other compiled code
+    laws = SheetModel().parameters([material("acrylic").law(Fabric.GARTER)])
+    at_rest = np.eye(2).reshape(1, 4)
+    law_of_point = np.zeros(1, dtype=np.uint8)
+    respond(laws, law_of_point, False, False, at_rest, np.empty((1, 4)), np.empty((1, 4, 4)))
 
 
 _watch = threading.Thread(target=_end_with_service, daemon=True)
