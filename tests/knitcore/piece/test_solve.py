@@ -273,7 +273,8 @@ def test_a_patch_of_mixed_stitches_has_one_law_with_the_strains_of_its_answer() 
     for direction in Direction:
         wanted = choose(chart, ACRYLIC).along(direction).strain(stress)
         found = free_strains_at_stress(law, direction, stress)
-        assert found == pytest.approx(wanted, rel=0.3)  # as near as the law's form comes
+        # the rib unfolds at once between 0.01 and 0.02 N/mm, which no law that only stiffens can
+        assert found == pytest.approx(wanted, rel=0.22)
         assert found.mean() == pytest.approx(wanted.mean(), rel=0.05)
 
 
