@@ -1,5 +1,5 @@
 /**
- * From a wish to a fabric: the atlas, the search, and filling.
+ * From a target to a fabric: the atlas, the search, and filling.
  *
  * @import {Action} from "./action.js"
  * @import {IconName} from "../icons.js"
@@ -15,7 +15,7 @@
 const action = (panel, label, key, icon) => ({
   id: `open-${panel}`,
   label,
-  group: "From a wish to a fabric",
+  group: "From a target to a fabric",
   icon,
   keys: [key],
   perform: ({ open }) => open(panel),
@@ -25,5 +25,5 @@ const action = (panel, label, key, icon) => ({
 export const INVERSE = [
   action("atlas", "Atlas of all repeats", "A", "scatter"),
   action("find", "Find a fabric by its numbers", "Shift+F", "search"),
-  action("fill", "Fill the chart from a wish", "Shift+W", "target"),
+  action("fill", "Fill the chart from a target", "Shift+W", "target"),
 ];

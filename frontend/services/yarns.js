@@ -79,6 +79,7 @@ async function uploaded(file) {
 export function yarnOf(name, fabrics) {
   const identifier = name
     .normalize("NFKD")
+    .replace(/\p{M}/gu, "")
     .toLowerCase()
     .replace(/[^a-z0-9]+/g, "-")
     .replace(/^-+|-+$/g, "")

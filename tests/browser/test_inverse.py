@@ -1,4 +1,4 @@
-"""From a wish to a fabric, in the page."""
+"""From a target to a fabric, in the page."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_fabric_is_found_by_its_numbers(flat_studio: Page) -> None:
 def test_a_target_fills_the_chart_as_one_step(flat_studio: Page) -> None:
     flat_studio.keyboard.press("Shift+W")
     flat_studio.click("#fill-run")
-    expect(flat_studio.locator("#inverse-fill-content")).to_contain_text("Nothing is wished for")
+    expect(flat_studio.locator("#inverse-fill-content")).to_contain_text("There is no target")
     flat_studio.click("#part-add")
     flat_studio.fill("#part-0-course", "0.0136")
     flat_studio.fill("#part-0-wale", "0.096")

@@ -158,5 +158,5 @@ def fill_first_part(page: Page, *, course: str, wale: str) -> None:
     page.fill("#part-0-course", course)
     page.fill("#part-0-wale", wale)
     page.click("#fill-run")
-    expect(page.locator("#fill-answer")).to_contain_text("of the area with a wish")
+    expect(page.locator("#fill-answer")).to_contain_text("of the area with a target")
     page.click("#fill-apply")

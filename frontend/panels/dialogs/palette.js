@@ -17,8 +17,8 @@ import { dialog } from "../../widgets/dialog.js";
 /** Search words that an action's name does not contain. @type {Record<string, string>} */
 const WORDS = {
   garments: "measure measurements pressure glove sock sleeve brace plan",
-  "open-find": "pressure search wish stretch stiffness",
-  "open-fill": "wish stiffness softer stiffer relax region",
+  "open-find": "pressure search target stretch stiffness",
+  "open-fill": "target wish stiffness softer stiffer relax region",
   "open-atlas": "repeats patterns",
   stretch: "pull test force load",
   versions: "history",

@@ -1,5 +1,5 @@
 /**
- * Fill from a wish: stiffness for parts of the chart becomes stitches.
+ * Fill from a target: stiffness for parts of the chart becomes stitches.
  *
  * @import {Studio} from "../../studio.js"
  * @import {FillResult} from "../../types.js"
@@ -149,7 +149,7 @@ export function fillTab(studio) {
     const wished = parts.filter(({ course, wale }) => course !== null || wale !== null);
     if (!wished.length || size !== sizeNow()) {
       run.say({
-        title: wished.length ? "The chart has another size now" : "Nothing is wished for",
+        title: wished.length ? "The chart has another size now" : "There is no target",
         detail: wished.length
           ? "The parts were drawn on the chart as it was."
           : "A part needs a stiffness along rows or columns.",
@@ -200,7 +200,7 @@ export function fillTab(studio) {
         }
         chart.set(
           cells.map((i) => [i, filled.purl[i]]),
-          "Fill from a wish",
+          "Fill from a target",
         );
         studio.tell("The chart is filled. Undo with Ctrl+Z.");
       },
@@ -212,7 +212,7 @@ export function fillTab(studio) {
         "p",
         { class: good ? "inverse-verdict good" : "inverse-verdict" },
         icon(good ? "check" : "info"),
-        h("span", {}, `${percent(1 - found.off_share)} of the area with a wish is within 10 % of it.`),
+        h("span", {}, `${percent(1 - found.off_share)} of the area with a target is within 10 % of it.`),
       ),
       h(
         "div",

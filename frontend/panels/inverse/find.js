@@ -124,7 +124,7 @@ export function findTab(studio, context) {
     const rest = field("Tube at rest in mm", 180, { min: "1", step: "any" });
     const worn = field("Limb in mm", 220, { min: "1", step: "any" });
     const extra = h("div", { class: "wish-extra" });
-    const remove = iconButton("close", "Remove this wish", () => {
+    const remove = iconButton("close", "Remove this target", () => {
       readers.splice(readers.indexOf(read), 1);
       row.remove();
     });
@@ -203,8 +203,8 @@ export function findTab(studio, context) {
     const targets = readers.map((read) => read()).filter((wanted) => wanted !== null);
     if (targets.length < readers.length || !targets.length) {
       run.say({
-        title: "A wish is incomplete",
-        detail: "Every wish needs a value and a tolerance.",
+        title: "A target is incomplete",
+        detail: "Every target needs a value and a tolerance.",
         remedy: "Fill it in, or remove it.",
       });
       return;
@@ -315,7 +315,7 @@ export function findTab(studio, context) {
       { class: "inverse-bar" },
       textButton(
         "plus",
-        "Wish",
+        "Target",
         () => addRow(QUANTITIES.find(({ id }) => !readers.some((read) => read()?.quantity === id)) ?? QUANTITIES[0]),
         { id: "wish-add" },
       ),
@@ -351,7 +351,7 @@ function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) 
   });
   return [
     `None of ${searched} repeats reaches all of it; the nearest stand first.`,
-    ...(beyond.length ? beyond : targets.length > 1 ? ["Each wish can be had, but not together."] : []),
+    ...(beyond.length ? beyond : targets.length > 1 ? ["Each target can be met, but not all at once."] : []),
     elsewhere[0]?.reached ? "Another yarn does, see below." : "Widen a tolerance, or search more yarns.",
   ].join(" ");
 }

@@ -16,7 +16,7 @@ import { outlineTab } from "./outline.js";
 const TABS = [
   { id: "atlas", label: "Atlas" },
   { id: "find", label: "Find a fabric" },
-  { id: "fill", label: "Fill from a wish" },
+  { id: "fill", label: "Fill from a target" },
 ];
 
 /** @typedef {"atlas" | "find" | "fill"} TabName */
@@ -51,7 +51,7 @@ function panel(studio, context) {
   ];
   const way = h(
     "div",
-    { class: "segmented", role: "radiogroup", "aria-label": "What is wished for" },
+    { class: "segmented", role: "radiogroup", "aria-label": "What is asked for" },
     ...ways.map(({ id, label }) =>
       h("button", { class: "segment", role: "radio", id: `fill-${id}`, onclick: () => showWay(id) }, label),
     ),
