@@ -129,5 +129,4 @@ def _instances(scene: FabricScene, middle_mm: Array, meshes: StitchMeshes) -> di
 
 def _short(values: NDArray[Any]) -> NDArray[np.float32]:
     """Numbers with few digits, which pack well on their way to the browser."""
-    short: NDArray[np.float32] = np.round(values * FINEST).astype(np.float32) / np.float32(FINEST)
-    return short
+    return np.round(values * FINEST).astype(np.float32) / np.float32(FINEST)

@@ -36,8 +36,7 @@ VIK = (
 
 def linear(colours: Colours) -> Colours:
     """Display colours as the renderer takes those of instances: proportional to light."""
-    light: Colours = np.round(255 * (colours / 255.0) ** 1.8).astype(np.uint8)
-    return light
+    return np.round(255 * (colours / 255.0) ** 1.8).astype(np.uint8)
 
 
 def _stops(text: str) -> NDArray[np.float64]:

@@ -254,8 +254,7 @@ def _room(scene: FabricScene) -> tuple[float, ...]:
 
 def _units(points_mm: Array) -> NDArray[np.float32]:
     """Places of the fabric in the scene's unit."""
-    units: NDArray[np.float32] = (UNITS_PER_MM * points_mm).astype(np.float32)
-    return units
+    return (UNITS_PER_MM * points_mm).astype(np.float32)
 
 
 def _lifted(corners: Array, scene: FabricScene) -> NDArray[np.float32]:

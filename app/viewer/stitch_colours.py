@@ -99,8 +99,7 @@ def stitch_colours(
         return _field(chart, field)
     if colour in (Colour.STRAIN, Colour.UTILISATION):
         return _stretched(colour, stretch, step)
-    by_kind: Colours = _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
-    return by_kind
+    return _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
 
 
 def _kinds(colour: Colour, table: StitchTable, palette: Palette) -> Colours:

@@ -112,8 +112,7 @@ class Atlas:
 
     def column(self, name: str) -> Array:
         """One of :data:`VALUES` for all repeats."""
-        column: Array = self.values[:, VALUES.index(name)]
-        return column
+        return self.values[:, VALUES.index(name)]
 
     def modulus(self, direction: Direction) -> Array:
         """Young's moduli, N/mm."""
@@ -143,8 +142,7 @@ class Atlas:
             from scipy.interpolate import PchipInterpolator  # loads for half a second
 
             shape = PchipInterpolator(STRESS_N_PER_MM, curves, axis=1, extrapolate=False)
-            found: Array = shape(float(wanted[0]))
-            return found
+            return shape(float(wanted[0]))
         return _each(curves, wanted)
 
     def stress_at(self, direction: Direction, strain: float) -> Array:

@@ -86,5 +86,4 @@ def _stitch_areas(fields: Fields) -> Array:
     """Relaxed areas (rows, columns): every stitch is two quarter cells wide and high."""
     width = np.diff(fields.x_mm[0, ::2])
     height = np.diff(fields.y_mm[::2, 0])
-    areas: Array = np.outer(height, width)
-    return areas
+    return np.outer(height, width)

@@ -61,8 +61,7 @@ def _given(costs: Array, across: Odd) -> Array:
     lines, stitches = costs.shape[:2]
     below, above = (ends.T.astype(int) for ends in _ends(across, lines))  # (lines, stitches)
     line, stitch = np.indices((lines, stitches))
-    found: Array = costs[line, stitch, :, :, below, above]
-    return found
+    return costs[line, stitch, :, :, below, above]
 
 
 def _ends(segments: Odd, stitches: int) -> tuple[Odd, Odd]:
@@ -107,8 +106,7 @@ def _integrated(course: Odd, wale: Odd, cost: Array) -> StitchChart:
 
     def dearer(bit: int) -> Array:
         there = np.take_along_axis(cost, (code ^ bit)[..., None], axis=2)[..., 0]
-        found: Array = there - here
-        return found
+        return there - here
 
     node = np.arange(rows * columns).reshape(rows, columns)
     edges = [
@@ -129,5 +127,4 @@ def _integrated(course: Odd, wale: Odd, cost: Array) -> StitchChart:
 
 def deviation(chart: StitchChart, wanted: Array, table: StitchTable) -> Array:
     """(2, rows, columns) logarithms of a chart's local moduli over the wanted ones."""
-    off: Array = table.log_moduli[:, surroundings(chart)] - wanted
-    return off
+    return table.log_moduli[:, surroundings(chart)] - wanted

@@ -151,8 +151,7 @@ class Target:
             away = np.abs(values - self.value) / self.tolerance
         else:
             away = np.abs(np.log(values / self.value)) / math.log1p(self.tolerance)
-        found: Array = np.where(np.isnan(away), np.inf, away) - 1e-12  # allows for rounding
-        return found
+        return np.where(np.isnan(away), np.inf, away) - 1e-12  # allows for rounding
 
 
 def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:

@@ -262,8 +262,7 @@ def _run_lengths(equal: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> np.n
     """For each position, how many entries from there on are true without a break."""
     breaks = np.flatnonzero(~equal)
     following = np.append(breaks, len(equal))[np.searchsorted(breaks, np.arange(len(equal)))]
-    lengths: np.ndarray = following - np.arange(len(equal))
-    return lengths
+    return following - np.arange(len(equal))
 
 
 def _tokens(purls: Sequence[bool]) -> list[tuple[bool, int]]:

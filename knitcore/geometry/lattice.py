@@ -110,8 +110,7 @@ def course_angles(centres_mm: Array) -> Array:
     if centres_mm.shape[1] < 2:
         return np.zeros(centres_mm.shape[:2])
     along = np.gradient(centres_mm, axis=1)
-    angles: Array = np.arctan2(along[..., 1], along[..., 0])
-    return angles
+    return np.arctan2(along[..., 1], along[..., 0])
 
 
 def stretched_sizes_mm(centres_mm: Array, relaxed: Lattice) -> Array:

@@ -106,8 +106,7 @@ def mean_sizes_mm(shapes: StitchShapes, placement: Placement) -> Array:
         np.bincount(index, placement.sizes_mm[..., axis].ravel(), minlength=count)
         for axis in range(2)
     ]
-    means: Array = np.where(number > 0, np.array(sums) / np.maximum(number, 1), 1.0).T
-    return means
+    return np.where(number > 0, np.array(sums) / np.maximum(number, 1), 1.0).T
 
 
 def placed_lines(shapes: StitchShapes, placement: Placement) -> Array:
@@ -122,8 +121,7 @@ def placed_lines(shapes: StitchShapes, placement: Placement) -> Array:
     x, y = flat[..., 0], flat[..., 1]
     turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
     depth = placement.depth * lines[..., 2:]
-    placed: Array = np.concatenate([turned + placement.centres_mm[:, :, None], depth], axis=-1)
-    return placed
+    return np.concatenate([turned + placement.centres_mm[:, :, None], depth], axis=-1)
 
 
 def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:

@@ -35,8 +35,7 @@ def stitch_labels(rows: int, columns: int, block: int = 1) -> Labels:
     [[0, 0, 1], [0, 0, 1]]
     """
     across = -(-columns // block)
-    labels: Labels = np.arange(rows)[:, None] // block * across + np.arange(columns) // block
-    return labels
+    return np.arange(rows)[:, None] // block * across + np.arange(columns) // block
 
 
 def extensibility_rectangles(

@@ -198,8 +198,7 @@ def _weights(kinds: NDArray[np.int64]) -> Array:
         _half(1.0 - u, right, below, above, right_below, foot_right, head_right),
     ]
     across = _step(TOP, 1.0 - TOP, u)[:, None]
-    weights: Array = halves[0] * (1.0 - across) + halves[1] * across
-    return weights
+    return halves[0] * (1.0 - across) + halves[1] * across
 
 
 def _half(
@@ -223,12 +222,10 @@ def _half(
     into_foot = _step(0.0, FOOT[0], u)[:, None]
     into_head = _step(FOOT[1], HEAD, u)[:, None]
     lower = join * (1.0 - into_foot) + foot * into_foot
-    half: Array = lower * (1.0 - into_head) + head * into_head
-    return half
+    return lower * (1.0 - into_head) + head * into_head
 
 
 def _step(start: float, end: float, u: Array) -> Array:
     """0 before, 1 after, smooth between and flat at both ends."""
     t = np.clip((u - start) / (end - start), 0.0, 1.0)
-    smooth: Array = t * t * (3.0 - 2.0 * t)
-    return smooth
+    return t * t * (3.0 - 2.0 * t)

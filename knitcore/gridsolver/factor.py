@@ -52,8 +52,7 @@ def positive_definite_factor(matrix: Any) -> Callable[[Array], Array]:
         raise IndefiniteTangentError from error
     if not np.all(factor.U.diagonal() > 0.0):
         raise IndefiniteTangentError
-    solve: Callable[[Array], Array] = factor.solve
-    return solve
+    return factor.solve
 
 
 class SciPyFactor:

@@ -115,8 +115,7 @@ def misread_forces(force: Array) -> NDArray[np.bool_]:
     if len(force) < 7:
         return np.zeros(len(force), dtype=bool)
     away = np.abs(force - median_filter(force, size=7, mode="nearest"))
-    result: NDArray[np.bool_] = away > SPIKE_SHARE * float(force.max(initial=0.0))
-    return result
+    return away > SPIKE_SHARE * float(force.max(initial=0.0))
 
 
 def until_unloaded(run: StretchRun) -> StretchRun:

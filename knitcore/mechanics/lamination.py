@@ -59,8 +59,7 @@ class SheetGrid:
         compliance[1, 1] = (self._area() * self.xxxx / determinant).sum()
         compliance[0, 1] = compliance[1, 0] = -(self._area() * self.xxyy / determinant).sum()
         compliance[2, 2] = (self._area() / self.xyxy).sum()
-        inverse: Array = np.asarray(np.linalg.inv(compliance), dtype=float)
-        return inverse
+        return np.asarray(np.linalg.inv(compliance), dtype=float)
 
     def _area(self) -> Array:
         area = np.outer(self.height_mm, self.width_mm)
@@ -116,8 +115,7 @@ def _mean(one: SheetGrid, other: SheetGrid) -> SheetGrid:
     """Halfway between two estimates: the geometric mean of the moduli keeps ratios unbiased."""
 
     def mean(a: Array, b: Array) -> Array:
-        root: Array = np.sqrt(a * b)
-        return root
+        return np.sqrt(a * b)
 
     return SheetGrid(
         mean(one.xxxx, other.xxxx),

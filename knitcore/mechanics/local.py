@@ -56,14 +56,12 @@ class StitchTable:
 
     def extensibility_mm_per_n(self, direction: Direction) -> Array:
         """Inverse of the modulus: the sides of the extensibility rectangles (Fig. 4d), mm/N."""
-        extensibility: Array = 1.0 / self.modulus_n_per_mm(direction)
-        return extensibility
+        return 1.0 / self.modulus_n_per_mm(direction)
 
     @property
     def anisotropy(self) -> Array:
         """Y_course / Y_wale by code."""
-        ratio: Array = self.modulus_course_n_per_mm / self.modulus_wale_n_per_mm
-        return ratio
+        return self.modulus_course_n_per_mm / self.modulus_wale_n_per_mm
 
     def modulus_interval_n_per_mm(self, direction: Direction) -> tuple[Array, Array]:
         """Low and high ends of the moduli's 90 % intervals, N/mm."""

@@ -43,8 +43,7 @@ class PeriodicMesh:
     def cell_field(self, values: Array) -> Array:
         """Values by grid cell, as a field at the quadrature points."""
         by_element = values[self._row, self._column]
-        field: Array = np.repeat(by_element[:, None], self.basis.dx.shape[1], axis=1)
-        return field
+        return np.repeat(by_element[:, None], self.basis.dx.shape[1], axis=1)
 
     def _set_map(self) -> None:
         x, y = self.basis.doflocs

@@ -131,8 +131,7 @@ class YarnCell:
 
     def controls(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
         """Control points (rows, controls, 3), mm, without the drift of the cell."""
-        points: NDArray[np.float64] = state[self.dof] * self.sign
-        return points
+        return state[self.dof] * self.sign
 
     def state(
         self, controls: NDArray[np.float64], course_mm: float, wale_mm: float

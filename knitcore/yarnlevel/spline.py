@@ -90,8 +90,7 @@ class SplineGrid:
         for shift, weight in zip(range(-2, 3), weights, strict=True):
             kernel[shift % len(data)] += weight
         spectrum = np.fft.rfft(data) / np.fft.rfft(kernel)
-        controls: NDArray[np.float64] = np.fft.irfft(spectrum, len(data))[:n]
-        return controls
+        return np.fft.irfft(spectrum, len(data))[:n]
 
     def refine(self, finer: SplineGrid, controls: NDArray[np.float64]) -> NDArray[np.float64]:
         """Control points (n, 3) of the same periodic curve on a finer grid (interpolated)."""

@@ -59,5 +59,4 @@ def _height(cell: YarnCell, row: int, wale: int, u: NDArray[np.float64]) -> NDAr
     left, right = (-0.5 * (own + legs(row, wale + side)) for side in (-1, 1))
     half = [-own, own, above, -above]
     knots = [left, *half, -above, *half[::-1], right]
-    height: NDArray[np.float64] = PchipInterpolator(_KNOTS, knots)(u)
-    return height
+    return PchipInterpolator(_KNOTS, knots)(u)
