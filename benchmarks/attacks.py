@@ -45,7 +45,7 @@ def ask(address: str, over: Any, waits: Any) -> None:
     connection = http.client.HTTPConnection(address, timeout=60.0)
     connection.connect()
     waits.send("ready")
-    while not over.wait(PROBE_S):
+    while not found or not over.wait(PROBE_S):
         start = time.perf_counter()
         connection.request("GET", "/healthz")
         connection.getresponse().read()
