@@ -32,6 +32,8 @@ FENCE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 LATER_IN_SEARCH = "---\nsearch:\n  boost: 0.2\n---\n\n"
 """References have every word; pages that explain them come first."""
+LIST_AFTER_TEXT = re.compile(r"^([^\s|#-].*\n)(?=- )", re.MULTILINE)
+"""GitHub begins a list there; MkDocs wants an empty line before it."""
 ROOT_PAGES = {"contributing.md": "CONTRIBUTING.md", "changelog.md": "CHANGELOG.md"}
 
 
@@ -42,7 +44,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that are not in docs/."""
     from mkdocs.structure.files import File
 
-    made = {name: (ROOT / source).read_text() for name, source in ROOT_PAGES.items()}
+    made = {
+        name: LIST_AFTER_TEXT.sub(r"\1\n", (ROOT / source).read_text())
+        for name, source in ROOT_PAGES.items()
+    }
     made["reference/commands.md"] = commands_page()
     made["reference/rest.md"] = rest_page()
     made["reference/library.md"], modules = library_pages()
@@ -183,6 +188,7 @@ def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -
 
     def formula(found: re.Match[str]) -> str:
         display = "block" if found[2] == "[" else "inline"
-        return str(convert(unescape(found[3]).strip(), display=display))
+        made = str(convert(unescape(found[3]).strip(), display=display))
+        return f'<div class="formula">{made}</div>' if display == "block" else made
 
     return FORMULA.sub(formula, html)

@@ -46,6 +46,16 @@ def test_formulas_become_mathml(site: ModuleType) -> None:
     assert "arithmatex" not in made
 
 
+def test_formulas_on_their_own_scroll_on_narrow_screens(site: ModuleType) -> None:
+    html = '<div class="arithmatex">\\[a = b\\]</div>'
+    assert site.on_page_content(html, None, None, None).startswith('<div class="formula"><math')
+
+
+def test_lists_of_the_changelog_are_lists(site: ModuleType) -> None:
+    made = site.LIST_AFTER_TEXT.sub(r"\1\n", "Head\n- one\n  more\n- two\n")
+    assert made == "Head\n\n- one\n  more\n- two\n"
+
+
 def test_every_command_and_option_is_in_its_reference(site: ModuleType) -> None:
     page = site.commands_page()
     assert "## knitcore predict" in page
