@@ -21,7 +21,7 @@ from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.piece import PieceTest, cloth_under, solve, write_piece_test
 from knitcore.piece.results import SUFFIXES
-from knitcore.piece.spread import piece_spreads
+from knitcore.piece.uncertainty import piece_spreads
 
 
 class PieceRequest(PieceTestRequest):

@@ -18,7 +18,7 @@ from knitcore.piece.conditions import MAX_SHEAR_ANGLE, Framed, Held, frame_rate
 from knitcore.piece.outline import CutPiece
 from knitcore.piece.results import PieceTest
 from knitcore.piece.solve import solve
-from knitcore.piece.spread import force_log_sd
+from knitcore.piece.uncertainty import force_log_sd
 from knitcore.swatch.run import Progress
 from knitcore.swatch.strip import LOCK_UP_SHARE, MAX_STRAIN
 
