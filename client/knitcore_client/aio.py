@@ -25,6 +25,8 @@ from knitcore_client.models import (
     JobPage,
     JobResult,
     JobStatus,
+    MaterialDocument,
+    MaterialSummary,
     NewShare,
     Painted,
     Run,
@@ -219,6 +221,20 @@ class AsyncClient(AsyncOperations):
     async def again(self, job: str) -> JobStatus:
         """Run a job again."""
         return await self._post(JobStatus, f"/jobs/{job}/again")
+
+    # materials of your own
+
+    async def add_material(self, document: MaterialDocument) -> MaterialSummary:
+        """Add a material, or replace the one that you added under its identifier."""
+        return await self._post(MaterialSummary, "/materials", document)
+
+    async def material_document(self, identifier: str) -> MaterialDocument:
+        """A material as a file."""
+        return await self._get(MaterialDocument, f"/materials/{identifier}/document")
+
+    async def remove_material(self, identifier: str) -> None:
+        """Remove a material that you added."""
+        await self._send("DELETE", f"/materials/{identifier}")
 
     # the 3D view
 

@@ -25,6 +25,8 @@ from knitcore_client.models import (
     JobPage,
     JobResult,
     JobStatus,
+    MaterialDocument,
+    MaterialSummary,
     NewShare,
     Painted,
     Run,
@@ -219,6 +221,20 @@ class Client(Operations):
     def again(self, job: str) -> JobStatus:
         """Run a job again."""
         return self._post(JobStatus, f"/jobs/{job}/again")
+
+    # materials of your own
+
+    def add_material(self, document: MaterialDocument) -> MaterialSummary:
+        """Add a material, or replace the one that you added under its identifier."""
+        return self._post(MaterialSummary, "/materials", document)
+
+    def material_document(self, identifier: str) -> MaterialDocument:
+        """A material as a file."""
+        return self._get(MaterialDocument, f"/materials/{identifier}/document")
+
+    def remove_material(self, identifier: str) -> None:
+        """Remove a material that you added."""
+        self._send("DELETE", f"/materials/{identifier}")
 
     # the 3D view
 

@@ -117,6 +117,16 @@ def test_sessions_from_a_script(knit: Client) -> None:
     assert knit.signed_in().sessions == []  # a token needs none, and goes on
 
 
+def test_a_material_of_ones_own_from_a_script(knit: Client) -> None:
+    document = knit.material_document("cotton").model_copy(update={"identifier": "mine"})
+    added = knit.add_material(document)
+    assert added.id in [material.id for material in knit.materials().materials]
+    assert knit.predict(chart="K", material=added.id).columns == 1
+    knit.remove_material(added.id)
+    with pytest.raises(ProblemError, match="no material"):
+        knit.remove_material(added.id)
+
+
 def test_every_address_of_the_service_has_its_method() -> None:
     written = "".join(Path(FOLDER / name).read_text() for name in ("aio.py", "operations.py"))
     known = {re.sub(r"{\w+}", "{}", path) for path in re.findall(r'f?"(/[^"]*)"', written)}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from knitcore import RelaxedSize, StitchChart, predict
+from knitcore.answer.answer import Answer
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
 
@@ -13,14 +14,18 @@ YARN = material("acrylic")
 SEED, KNIT = (StitchChart.of_fabric(f, 32, 32) for f in (Fabric.SEED, Fabric.STOCKINETTE))
 BOTH = StitchChart(np.hstack([SEED.purl, KNIT.purl]))
 """Seed stitch at the left of stockinette."""
-WHOLE, LEFT, RIGHT = (predict(chart, YARN) for chart in (BOTH, SEED, KNIT))
 FORCES_N = np.array([1e-3, 0.05, 0.2]) * 80
-COURSE, WALE = Direction.COURSE, Direction.WALE
+
+
+def answers() -> list[Answer]:
+    """Of the whole, of the left half, and of the right one."""
+    return [predict(chart, YARN) for chart in (BOTH, SEED, KNIT)]
 
 
 def test_what_is_a_mean_is_the_mean_of_both_halves() -> None:
+    found = answers()
     for direction in Direction:
-        whole, *halves = (answer.along(direction) for answer in (WHOLE, LEFT, RIGHT))
+        whole, *halves = (answer.along(direction) for answer in found)
         for name in ("poisson", "poisson_sd", "relaxed_mm", "relaxed_log_sd"):
             mean = np.mean([getattr(half, name) for half in halves])
             assert getattr(whole, name) == pytest.approx(mean, rel=1e-6), name
@@ -32,21 +37,21 @@ def test_what_is_a_mean_is_the_mean_of_both_halves() -> None:
 
 def test_along_the_rows_they_are_in_series() -> None:
     """The same force goes through both; each stretches by its length."""
-    height = WHOLE.relaxed_wale_mm * 32
-    lengths = [half.relaxed_course_mm for half in (LEFT, RIGHT)]
-    strains = [half.course.strain(FORCES_N / (32 * half.relaxed_wale_mm)) for half in (LEFT, RIGHT)]
+    whole, *halves = answers()
+    height = whole.relaxed_wale_mm * 32
+    lengths = [half.relaxed_course_mm for half in halves]
+    strains = [half.course.strain(FORCES_N / (32 * half.relaxed_wale_mm)) for half in halves]
     expected = np.average(strains, axis=0, weights=lengths)
-    assert WHOLE.course.strain(FORCES_N / height) == pytest.approx(expected, rel=0.01)
+    assert whole.course.strain(FORCES_N / height) == pytest.approx(expected, rel=0.01)
 
 
 def test_along_the_columns_they_are_side_by_side() -> None:
     """Both stretch alike; their forces add up."""
+    whole, *halves = answers()
     strain = np.array([0.02, 0.1, 0.25])
-    widths = [half.relaxed_course_mm for half in (LEFT, RIGHT)]
-    expected = np.average(
-        [half.wale.stress(strain) for half in (LEFT, RIGHT)], axis=0, weights=widths
-    )
-    assert WHOLE.wale.stress(strain) == pytest.approx(expected, rel=0.02)
+    widths = [half.relaxed_course_mm for half in halves]
+    expected = np.average([half.wale.stress(strain) for half in halves], axis=0, weights=widths)
+    assert whole.wale.stress(strain) == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.parametrize("chart", [BOTH, KNIT], ids=["patches", "pure"])
