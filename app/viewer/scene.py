@@ -21,8 +21,8 @@ MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
 """Seen on light and on dark."""
-SCALE_BELOW = 0.035
-"""Of the fabric's height: how far below it the scale lies."""
+SCALE_BELOW = 1.2
+"""Stitches below the fabric where the scale lies."""
 PAPER = (255, 252, 246)
 
 
@@ -204,8 +204,10 @@ class SceneWriter:
         """A line of round length below the fabric, at its right."""
         width, height = scene.extent_mm
         length = round_length_mm(float(width))
-        right, below = float(width) / 2, -float(height) / 2 - SCALE_BELOW * float(height)
-        tick = 0.1 * length
+        # The lowest loops reach below the fabric's own edge.
+        stitch = float(scene.placement.sizes_mm[..., 1].mean())
+        right, below = float(width) / 2, -float(height) / 2 - SCALE_BELOW * stitch
+        tick = 0.06 * length
         points = np.array(
             [
                 [[right - length, below, 0.0], [right, below, 0.0]],

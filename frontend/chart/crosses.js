@@ -8,7 +8,7 @@
  */
 
 /** Smaller blocks cannot be read. */
-const SMALLEST_PX = 26;
+const SMALLEST_PX = 36;
 /** The longest arm of a test, over half a block. */
 const ROOM = 0.92;
 const STRETCHED = "rgb(24 18 14 / 0.9)";

@@ -79,7 +79,7 @@ export function create(studio) {
       { class: "dialog-tools" },
       h("label", { class: "button", for: "yarn-file" }, "Add a yarn file …"),
       file,
-      h("span", { class: "muted" }, "A material file (.json), from here or from `knitcore material`."),
+      h("span", { class: "muted" }, "A material file (.json): saved here, or by the library."),
     ),
     h(
       "details",
