@@ -21,7 +21,7 @@ MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
 """Seen on light and on dark."""
-SCALE_BELOW = 1.2
+SCALE_BELOW = 1.8
 """Stitches below the fabric where the scale lies."""
 PAPER = (255, 252, 246)
 
