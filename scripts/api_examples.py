@@ -30,6 +30,8 @@ FIRST = [
     "PUT /api/v1/views/{design}",
 ]
 LAST = [
+    "POST /api/v1/materials",
+    "DELETE /api/v1/materials/{identifier}",
     "DELETE /api/v1/jobs/{job}",
     "DELETE /api/v1/designs/{design}/shares/{share}",
     "DELETE /api/v1/designs/{design}",
@@ -72,6 +74,7 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
     place: dict[str, Any] = {"material": "acrylic", "identifier": "acrylic", "number": 1}
     sessions = Sessions(client.app.state.database)  # type: ignore[attr-defined]
     place["session"] = sessions.begin("a token's id", LOCAL_USER)
+    own: dict[str, Any] = {}
     answers = {}
     for name in in_order(operations(client.app)):  # type: ignore[arg-type]
         method, path = name.split()
@@ -85,7 +88,7 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
         if "design" in place and method in ("PUT", "PATCH", "POST"):
             tag = client.get(f"/api/v1/designs/{place['design']}").headers.get("etag")
             headers = {"If-Match": tag} if tag else {}
-        answer = client.request(method, path.format(**place), json=body, headers=headers)
+        answer = client.request(method, path.format(**(place | own)), json=body, headers=headers)
         answer.raise_for_status()
         print(name, answer.status_code)
         kind = answer.headers.get("content-type", "")
@@ -94,6 +97,8 @@ def ask_everything(client: TestClient) -> dict[str, Any]:
             place["design"] = content["id"]
         elif name == "POST /api/v1/jobs":
             place["job"] = content["id"]
+        elif name == "POST /api/v1/materials":
+            own = {"identifier": content["id"]}
         elif name == "POST /api/v1/designs/{design}/shares":
             place |= {"share": content["id"], "token": content["token"]}
         if content is not None:
