@@ -20,7 +20,7 @@ NO_COMMANDS = {"main", "common", "commands", "options"}
 
 
 class Failure(click.ClickException):
-    """An error for the user: one line on stderr, exit code 2."""
+    """An error for the user: a line on stderr for each fault, exit code 2."""
 
     exit_code = 2
 
