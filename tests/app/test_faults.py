@@ -153,6 +153,8 @@ def test_clients_that_vanish_leave_nothing_behind(tmp_path: Path) -> None:
     try:
         address = httpx.URL(service.url)
         assert address.port is not None
+        first = client.post("/api/v1/stretch", json=SHORT | {"steps": 2})
+        assert first.status_code == 200  # the worker has begun, and keeps its pipes
         handles = len(os.listdir(f"/proc/{service.pid}/fd"))
 
         # one who waits for a computation of minutes: its only worker is free for the next one
