@@ -98,10 +98,13 @@ def test_opposite_angles_pull_sideways_the_opposite_way() -> None:
     ("field", "make"),
     [
         ("strain", lambda: bias_test(KNIT, ACRYLIC, 0.0)),
+        ("strain", lambda: bias_test(KNIT, ACRYLIC, 1e-300)),
         ("strain", lambda: bias_test(KNIT, ACRYLIC, 3.0, angle_deg=0.0)),
         ("strain_x", lambda: biaxial_test(KNIT, ACRYLIC, 0.0, 0.0)),
+        ("strain_x", lambda: biaxial_test(KNIT, ACRYLIC, 1e-300, 0.0)),
         ("strain_x", lambda: biaxial_test(KNIT, ACRYLIC, 4.0, 0.1)),
         ("strain_y", lambda: biaxial_test(KNIT, ACRYLIC, 0.1, -0.1)),
+        ("shear_angle", lambda: trellis_test(KNIT, ACRYLIC, 1e-300)),
         ("shear_angle", lambda: trellis_test(KNIT, ACRYLIC, 1.5)),
     ],
 )
