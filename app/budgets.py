@@ -45,6 +45,7 @@ class Budgets:
     versions : versions kept of one design.
     links : open links to one design.
     kept_bytes : designs and their versions together.
+    job_bytes : requests of jobs, together; those that ended the longest ago make room.
     body_bytes : bodies of requests that are open, together.
     """
 
@@ -61,6 +62,7 @@ class Budgets:
     versions: int = 500
     links: int = 100
     kept_bytes: int = 1_000_000_000
+    job_bytes: int = 200_000_000
     body_bytes: int = 128_000_000
 
 

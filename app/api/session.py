@@ -31,7 +31,8 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
     designs, kept_bytes = DesignStore(state.database).kept(owner)
     in_use: InUse = state.in_use
     used = {
-        name: float(in_use.held(name, owner)) for name in ("connections", "watchers", "streams")
+        name: float(in_use.held(name, owner))
+        for name in ("connections", "watchers", "streams", "body_bytes")
     }
     used |= {
         "views": state.views.count(owner),
@@ -39,6 +40,7 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
         "cpu_s": round(state.compute.spent.used_s(owner), 1),
         "designs": designs,
         "kept_bytes": kept_bytes,
+        "job_bytes": state.jobs.store.kept_bytes(owner),
     }
     return {name: Use(used=value, most=getattr(BUDGETS, name)) for name, value in used.items()}
 

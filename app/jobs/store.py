@@ -19,6 +19,7 @@ from sqlalchemy import (
     update,
 )
 
+from app.budgets import BUDGETS, OverBudgetError
 from app.designs.idempotency import Retry, once
 from app.designs.store import now
 from app.http.problems import NotFoundError, Problem
@@ -69,6 +70,11 @@ class JobStore:
         """Store a new job, with this id if one is given; it is done if its result is known.
 
         If the request was sent before, its first job is returned, which has another id.
+
+        Raises
+        ------
+        OverBudgetError
+            If the requests of this owner's open jobs leave no room for it.
         """
         at = now()
         values = {
@@ -85,10 +91,16 @@ class JobStore:
         }
 
         def action(connection: Connection) -> JobStatus:
+            _make_room(connection, owner, len(request))
             connection.execute(insert(jobs).values(values))
             return _status(_one(connection, owner, str(values["id"])))
 
         return once(self._database, retry, JobStatus, action)
+
+    def kept_bytes(self, owner: str) -> int:
+        """Size of the requests of an owner's jobs."""
+        with self._database.read() as connection:
+            return _kept_bytes(connection, owner)
 
     def get(self, owner: str, job: str) -> JobStatus:
         """A job."""
@@ -257,6 +269,37 @@ class JobStore:
             connection.execute(results.delete().where(results.c.key.in_(too_many)))
 
         self._database.write(action)
+
+
+def _kept_bytes(connection: Connection, owner: str) -> int:
+    size = select(func.coalesce(func.sum(func.length(jobs.c.request)), 0))
+    return int(connection.execute(size.where(jobs.c.owner == owner)).scalar_one())
+
+
+def _make_room(connection: Connection, owner: str, more: int) -> None:
+    """Delete the jobs of an owner that ended the longest ago, as many as a new request needs.
+
+    Raises
+    ------
+    OverBudgetError
+        If the open jobs alone leave too little room.
+    """
+    if _kept_bytes(connection, owner) + more <= BUDGETS.job_bytes:
+        return
+    ended = jobs.c.finished_at.is_not(None)
+    so_far = func.sum(func.length(jobs.c.request)).over(
+        order_by=(ended, jobs.c.finished_at.desc(), jobs.c.id)
+    )
+    sizes = select(jobs.c.id, so_far.label("so_far")).where(jobs.c.owner == owner).subquery()
+    oldest = select(sizes.c.id).where(sizes.c.so_far + more > BUDGETS.job_bytes)
+    connection.execute(jobs.delete().where(jobs.c.id.in_(oldest), ended))
+    if (held := _kept_bytes(connection, owner)) + more > BUDGETS.job_bytes:
+        raise OverBudgetError(
+            f"The requests of your jobs that wait or run have {held / 1e6:.1f} of"
+            f" {BUDGETS.job_bytes / 1e6:g} MB.",
+            field="job_bytes",
+            remedy="Wait until one has ended, or cancel one.",
+        )
 
 
 def _one(

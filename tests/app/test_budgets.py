@@ -22,6 +22,9 @@ from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
 from app.http.identity import LOCAL_USER
 from app.http.tokens import Tokens
+from app.jobs import store as job_store_module
+from app.jobs.document import JobState
+from app.jobs.store import JobStore
 from app.main import create_app
 from app.settings import Settings
 from app.store.database import Database
@@ -104,6 +107,26 @@ def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.Monk
             other = {"Authorization": f"Bearer {Tokens(state.database).create('bob').token}"}
             assert client.get("/api/v1/session", headers=other).status_code == 200
         assert state.in_use.held("connections", "ada") == 0
+
+
+def test_requests_of_jobs_have_a_size_together(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = JobStore(database, "here")
+    monkeypatch.setattr(job_store_module, "BUDGETS", Budgets(job_bytes=100))
+
+    def add(owner: str) -> str:
+        return store.add(owner, "relax", "x" * 40, "key", JobState.WAITING).id
+
+    first, second = add("ada"), add("ada")
+    with pytest.raises(OverBudgetError) as refused:
+        add("ada")
+    assert refused.value.field == "job_bytes"
+    assert add("bob")
+    store.end(first, JobState.CANCELLED)
+    third = add("ada")  # in place of the one that has ended
+    assert store.kept_bytes("ada") == 80
+    assert {job.id for job in store.page("ada", limit=9, cursor=None).jobs} == {second, third}
 
 
 def test_bytes_kept_are_counted_with_versions(

@@ -19,6 +19,7 @@ const count = (n) => n.toLocaleString("en");
 const LIMITS = /** @type {const} */ ([
   ["designs", "Designs, with those deleted in the last 30 days", count],
   ["kept_bytes", "Designs and their versions, MB", (/** @type {number} */ n) => (n / 1e6).toFixed(1)],
+  ["job_bytes", "Requests of jobs, MB", (/** @type {number} */ n) => (n / 1e6).toFixed(1)],
   ["cpu_s", "Computing time of a day, hours", (/** @type {number} */ n) => (n / 3600).toFixed(1)],
   ["jobs", "Jobs that wait", count],
   ["views", "3D views", count],
