@@ -22,6 +22,8 @@ import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
+/** A viewer that has drawn no cloth for so long is loaded again, then after twice as long. */
+const RELOAD_MS = 6000;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
@@ -53,8 +55,22 @@ export function fabricview(host, studio, view) {
     }
   };
 
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let reloading;
+  let patience = RELOAD_MS;
+  const reloadUnseen = () => {
+    if (sending || problem || governor.held) {
+      reloading = setTimeout(reloadUnseen, RELOAD_MS);
+      return;
+    }
+    patience *= 2;
+    frame.contentWindow?.location.reload();
+  };
   frame.addEventListener("load", () => {
-    if (frame.contentWindow && shown) governor.govern(frame.contentWindow, () => knitted());
+    if (!frame.contentWindow || !shown) return;
+    governor.govern(frame.contentWindow, () => knitted());
+    clearTimeout(reloading);
+    reloading = setTimeout(reloadUnseen, patience);
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let holding;
@@ -88,12 +104,14 @@ export function fabricview(host, studio, view) {
   let problem = false;
   /** A cloth is shown. */
   const knitted = () => {
+    clearTimeout(reloading);
     if (!problem) status.replaceChildren();
   };
   /** @param {string} url */
   const open = (url) => {
     if (shown === url) return;
     shown = url;
+    patience = RELOAD_MS;
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     frame.src = url;
     link.disconnect();

@@ -65,6 +65,10 @@ export class FrameGovernor {
     this.#wake();
   }
 
+  get held() {
+    return this.#held;
+  }
+
   /** Let frames wait, or go on. @param {boolean} held */
   hold(held) {
     this.#held = held;
