@@ -19,6 +19,7 @@ from knitcore.mechanics.pressure import (
     LEAST_LENGTH,
     MAXIMUM_CIRCUMFERENCE_MM,
     MMHG_PER_KPA,
+    worn_strain,
 )
 
 
@@ -68,20 +69,7 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
     >>> tube_pressure(rib, 150, 190).kpa.high > tube_pressure(rib, 150, 170).kpa.high
     True
     """
-    for name, value in (("rest_mm", rest_mm), ("worn_mm", worn_mm)):
-        if not (math.isfinite(value) and 0 < value <= MAXIMUM_CIRCUMFERENCE_MM):
-            raise InputError(
-                name,
-                f"{value:g} mm is not a circumference.",
-                f"Give up to {MAXIMUM_CIRCUMFERENCE_MM:g} mm.",
-            )
-    strain = worn_mm / rest_mm - 1
-    if strain < 0:
-        raise InputError(
-            "worn_mm",
-            f"{worn_mm:g} mm is smaller than the unworn {rest_mm:g} mm: the tube is loose.",
-            "Give a tube that is smaller than the limb.",
-        )
+    strain = worn_strain(rest_mm, worn_mm)
     tensions = _tensions(along, strain)
     if tensions.high >= MOST_STRESS_N_PER_MM:
         raise InputError(

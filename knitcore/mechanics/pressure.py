@@ -62,6 +62,30 @@ class LimbPressure:
     warnings: tuple[str, ...]
 
 
+def worn_strain(rest_mm: float, worn_mm: float) -> float:
+    """Strain around a limb of a tube with two circumferences in mm.
+
+    Raises
+    ------
+    InputError
+        If a circumference is impossible, or the tube is loose.
+    """
+    for name, value in (("rest_mm", rest_mm), ("worn_mm", worn_mm)):
+        if not (math.isfinite(value) and 0 < value <= MAXIMUM_CIRCUMFERENCE_MM):
+            raise InputError(
+                name,
+                f"{value:g} mm is not a circumference.",
+                f"Give up to {MAXIMUM_CIRCUMFERENCE_MM:g} mm.",
+            )
+    if worn_mm < rest_mm:
+        raise InputError(
+            "worn_mm",
+            f"{worn_mm:g} mm is smaller than the unworn {rest_mm:g} mm: the tube is loose.",
+            "Give a tube that is smaller than the limb.",
+        )
+    return worn_mm / rest_mm - 1
+
+
 def limb_pressure(
     law: ConstitutiveLaw,
     direction: Direction,
@@ -85,20 +109,7 @@ def limb_pressure(
     InputError
         If a circumference is impossible, or the worn one is at or beyond the lock-up.
     """
-    for name, value in (("rest_mm", rest_mm), ("worn_mm", worn_mm)):
-        if not (math.isfinite(value) and 0 < value <= MAXIMUM_CIRCUMFERENCE_MM):
-            raise InputError(
-                name,
-                f"{value:g} mm is not a circumference.",
-                f"Give up to {MAXIMUM_CIRCUMFERENCE_MM:g} mm.",
-            )
-    strain = worn_mm / rest_mm - 1
-    if strain < 0:
-        raise InputError(
-            "worn_mm",
-            f"{worn_mm:g} mm is smaller than the unworn {rest_mm:g} mm: the tube is loose.",
-            "Give a tube that is smaller than the limb.",
-        )
+    strain = worn_strain(rest_mm, worn_mm)
     if strain >= law.lock_up_strain(direction):
         raise InputError(
             "worn_mm",
