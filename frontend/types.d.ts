@@ -722,7 +722,7 @@ export interface EstimateResult {
 }
 
 /** Formats for export. */
-export type ExportKind = "knitout" | "knitspeak" | "png" | "svg" | "pdf" | "report" | "text" | "written" | "design" | "glb" | "stl" | "vtu" | "csv";
+export type ExportKind = "knitout" | "knitspeak" | "png" | "svg" | "pdf" | "pattern" | "pattern-svg" | "report" | "text" | "written" | "design" | "glb" | "stl" | "vtu" | "csv";
 
 /** A chart and the format to write it in. */
 export interface ExportRequest {
@@ -734,7 +734,7 @@ export interface ExportRequest {
   repeats?: DesignRepeat[];
   shelf?: ShelfPattern[];
   chart: string | PureFabricChart;
-  /** knitout, knitspeak, png, svg, pdf, report, text, written, design, glb, stl, vtu, csv; or a format of an installed extension. */
+  /** knitout, knitspeak, png, svg, pdf, pattern, pattern-svg, report, text, written, design, glb, stl, vtu, csv; or a format of an installed extension. */
   to: ExportKind | string;
   /** Gives sizes and values. */
   material?: string;
@@ -748,6 +748,8 @@ export interface ExportRequest {
   note?: string;
   /** Linear density of the yarn, for its mass. */
   linear_density_tex?: number | null;
+  /** PNG picture of the cloth, base64, for the first page of a pattern. */
+  photo?: string | null;
 }
 
 /** A file inside JSON. */

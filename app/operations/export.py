@@ -12,6 +12,7 @@ from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.extensions import ExtensionName
 from app.models.laws import LawsRequest
+from app.models.uploads import Content
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
@@ -50,6 +51,10 @@ class ExportRequest(DesignLayout, LawsRequest):
         lt=1e5,
         allow_inf_nan=False,
         description="Linear density of the yarn, for its mass.",
+    )
+    photo: Content | None = Field(
+        None,
+        description="PNG picture of the cloth, base64, for the first page of a pattern.",
     )
 
 
@@ -141,7 +146,13 @@ OPERATION = Operation(
     command=Command(
         _text,
         help="Write CHART to a file: knitout is checked on a virtual machine before it is written.",
-        names={"linear_density_tex": "--tex", "regions": None, "repeats": None, "shelf": None},
+        names={
+            "linear_density_tex": "--tex",
+            "photo": None,
+            "regions": None,
+            "repeats": None,
+            "shelf": None,
+        },
         run=_command,
     ),
 )

@@ -45,6 +45,8 @@ ExportKind = Literal[
     "png",
     "svg",
     "pdf",
+    "pattern",
+    "pattern-svg",
     "report",
     "text",
     "written",
@@ -372,8 +374,8 @@ class ExportRequest(TypedDict):
     shelf: NotRequired[list[ShelfPattern]]
     chart: str | PureFabricChart
     to: ExportKind | str
-    """knitout, knitspeak, png, svg, pdf, report, text, written, design, glb, stl, vtu, csv; or a
-    format of an installed extension."""
+    """knitout, knitspeak, png, svg, pdf, pattern, pattern-svg, report, text, written, design,
+    glb, stl, vtu, csv; or a format of an installed extension."""
     material: NotRequired[str]
     """Gives sizes and values."""
     construction: NotRequired[Construction]
@@ -386,6 +388,8 @@ class ExportRequest(TypedDict):
     """Printed."""
     linear_density_tex: NotRequired[float | None]
     """Linear density of the yarn, for its mass."""
+    photo: NotRequired[str | None]
+    """PNG picture of the cloth, base64, for the first page of a pattern."""
 
 
 class FieldColours(TypedDict):

@@ -59,12 +59,15 @@ def chart_pdf(chart: StitchChart | Piece, style: ChartStyle | None = None) -> by
     return to_pdf(chart_pages(chart, style), _title(_piece(chart).chart))
 
 
-def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> tuple[Page, ...]:
+def chart_pages(
+    chart: StitchChart | Piece, style: ChartStyle | None = None, *, first: int = 1
+) -> tuple[Page, ...]:
     """The chart as A4 pages: one if it fits with cells of at least 3 mm, otherwise several.
 
     Every page has its numbers and the key, and two stitches of the pages beside it; pages go from
     the bottom right, where flat knitting begins, to the left and then up. Several pages begin with
-    an overview, which has the names of the regions and the notes.
+    an overview, which has the names of the regions, the notes, and the numbers of the pages; that
+    of the overview itself is ``first``.
     """
     style, piece = style or ChartStyle(), _piece(chart)
     chart = piece.chart
@@ -86,7 +89,7 @@ def chart_pages(chart: StitchChart | Piece, style: ChartStyle | None = None) -> 
     most_rows, most_columns = (max(map(len, part)) for part in zip(*places, strict=True))
     cell = min(CELL_MM, room_x / most_columns, room_y / (most_rows * style.aspect))
     parts = [_Part(piece, bare, rows, columns, cell) for rows, columns in places]
-    overview = Page(*A4_MM, tuple(_overview(piece, style, parts)))
+    overview = Page(*A4_MM, tuple(_overview(piece, style, parts, first)))
     return (overview, *(part.page(paper=A4_MM) for part in parts))
 
 
@@ -104,7 +107,7 @@ def _title(chart: StitchChart) -> str:
     return f"{chart.columns} stitches × {chart.rows} rows"
 
 
-def _overview(piece: Piece, style: ChartStyle, parts: list[_Part]) -> Iterator[Shape]:
+def _overview(piece: Piece, style: ChartStyle, parts: list[_Part], first: int) -> Iterator[Shape]:
     """The overview: the parts of the chart on each page, the regions by name, and the notes."""
     chart = piece.chart
     room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
@@ -114,7 +117,7 @@ def _overview(piece: Piece, style: ChartStyle, parts: list[_Part]) -> Iterator[S
     yield from whole.header()
     yield from whole.silhouette()
     yield from whole.region_borders()
-    for number, part in enumerate(parts, start=2):
+    for number, part in enumerate(parts, start=first + 1):
         left, top = whole.x(part.columns.start), whole.y(part.rows.stop - 1)
         width, height = cell * len(part.columns), cell * style.aspect * len(part.rows)
         yield Box(left, top, width, height, stroke=HEAVY, line_width=0.3)

@@ -5,6 +5,7 @@ Lengths in mm; the origin is the top left corner, y points down.
 
 from __future__ import annotations
 
+import base64
 import io
 import re
 from collections.abc import Iterable, Sequence
@@ -54,11 +55,23 @@ class Label:
     text: str
     size: float = 3.0
     anchor: str = "start"
+    bold: bool = False
+
+
+@dataclass(frozen=True)
+class Photo:
+    """A PNG picture, stretched to a box."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    png: bytes
 
 
 _FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
-Shape = Box | Strokes | Dots | Label
+Shape = Box | Strokes | Dots | Label | Photo
 
 
 @dataclass(frozen=True)
@@ -72,19 +85,39 @@ class Page:
 
 def to_svg(page: Page, title: str) -> str:
     """The page as an SVG document."""
+    root = _svg_root(page.width, page.height, title)
+    _svg_page(root, page)
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def to_long_svg(pages: Sequence[Page], title: str) -> str:
+    """All pages as one SVG document, one below the other."""
+    width, height = max(page.width for page in pages), sum(page.height for page in pages)
+    root, top = _svg_root(width, height, title), 0.0
+    for page in pages:
+        _svg_page(ET.SubElement(root, "g", transform=f"translate(0 {top:g})"), page)
+        top += page.height
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _svg_root(width: float, height: float, title: str) -> ET.Element:
     root = ET.Element(
         "svg",
         xmlns="http://www.w3.org/2000/svg",
-        width=f"{page.width:g}mm",
-        height=f"{page.height:g}mm",
-        viewBox=f"0 0 {page.width:g} {page.height:g}",
+        width=f"{width:g}mm",
+        height=f"{height:g}mm",
+        viewBox=f"0 0 {width:g} {height:g}",
         role="img",
     )
     ET.SubElement(root, "title").text = _allowed(title)
-    ET.SubElement(root, "rect", width=f"{page.width:g}", height=f"{page.height:g}", fill="#ffffff")
+    return root
+
+
+def _svg_page(parent: ET.Element, page: Page) -> None:
+    size = {"width": f"{page.width:g}", "height": f"{page.height:g}"}
+    ET.SubElement(parent, "rect", size, fill="#ffffff")
     for shape in page.shapes:
-        _svg(root, shape)
-    return ET.tostring(root, encoding="unicode") + "\n"
+        _svg(parent, shape)
 
 
 def _svg(root: ET.Element, shape: Shape) -> None:
@@ -115,7 +148,14 @@ def _svg(root: ET.Element, shape: Shape) -> None:
                 fill="#222222",
             )
             text.set("font-family", "Helvetica, Arial, sans-serif")
+            if shape.bold:
+                text.set("font-weight", "bold")
             text.text = _allowed(shape.text)
+        case Photo():
+            photo = ET.SubElement(root, "image", x=f"{shape.x:.3f}", y=f"{shape.y:.3f}")
+            photo.set("width", f"{shape.width:.3f}")
+            photo.set("height", f"{shape.height:.3f}")
+            photo.set("href", "data:image/png;base64," + base64.b64encode(shape.png).decode())
 
 
 def _allowed(text: str) -> str:
@@ -142,6 +182,7 @@ def to_pdf(pages: Iterable[Page], title: str) -> bytes:
 
 def _pdf(canvas: object, shape: Shape, top: float) -> None:
     from reportlab.lib.colors import HexColor
+    from reportlab.lib.utils import ImageReader
     from reportlab.pdfgen.canvas import Canvas
 
     assert isinstance(canvas, Canvas)  # noqa: S101 - reportlab has no types
@@ -169,13 +210,17 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
             _circles(canvas, shape.centres, shape.radius, top)
         case Label():
             canvas.setFillColor(HexColor("#222222"))
-            canvas.setFont("Helvetica", shape.size)
+            canvas.setFont("Helvetica-Bold" if shape.bold else "Helvetica", shape.size)
             write = {
                 "start": canvas.drawString,
                 "middle": canvas.drawCentredString,
                 "end": canvas.drawRightString,
             }
             write[shape.anchor](shape.x, top - shape.y, shape.text)
+        case Photo():
+            bottom = top - shape.y - shape.height
+            photo = ImageReader(io.BytesIO(shape.png))
+            canvas.drawImage(photo, shape.x, bottom, shape.width, shape.height, mask="auto")
 
 
 def _circles(

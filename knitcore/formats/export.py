@@ -15,6 +15,7 @@ from knitcore.formats import (
     design,
     knitout_reader,
     knitspeak,
+    pattern,
     png,
     report,
     stitch_values,
@@ -22,6 +23,7 @@ from knitcore.formats import (
     yarn_mesh,
 )
 from knitcore.formats.chart_key import ChartStyle, RegionMark, RepeatMark
+from knitcore.formats.drawing import Page, to_long_svg, to_pdf
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import (
     DesignLayout,
@@ -47,6 +49,8 @@ class ExportKind(StrEnum):
     PNG = "png"
     SVG = "svg"
     PDF = "pdf"
+    PATTERN = "pattern"
+    PATTERN_SVG = "pattern-svg"
     REPORT = "report"
     TEXT = "text"
     WRITTEN = "written"
@@ -70,6 +74,7 @@ class ExportOptions:
     note : printed on charts, and kept in the project file.
     layout : outline, regions and their yarns, and what else the project file keeps.
     linear_density_tex : of the yarns, for their mass.
+    photo : a PNG picture of the cloth, for the first page of a pattern.
     """
 
     construction: Construction = Construction.FLAT
@@ -79,6 +84,7 @@ class ExportOptions:
     note: str = ""
     layout: DesignLayout = field(default_factory=DesignLayout)
     linear_density_tex: float | None = None
+    photo: bytes | None = None
 
 
 @dataclass(frozen=True)
@@ -216,6 +222,12 @@ def _report(piece: Piece, material: Material, options: ExportOptions) -> bytes:
     return report.design_report(piece, material, options.name, style, options.layout.regions)
 
 
+def _pattern(piece: Piece, material: Material, options: ExportOptions) -> tuple[Page, ...]:
+    style = _style(piece, material, options)
+    facts = _yarn_facts(piece, material, options)
+    return pattern.pattern_pages(piece, material, style, facts, options.photo)
+
+
 def _knitspeak(piece: Piece, _: Material, options: ExportOptions) -> bytes:
     return knitspeak.write_knitspeak(
         piece.chart, options.construction, first_side=options.first_side
@@ -313,6 +325,18 @@ _BUILT_IN = (
         ".pdf",
         "application/pdf",
         lambda p, m, o: chart_drawing.chart_pdf(p, _style(p, m, o)),
+    ),
+    Exporter(
+        ExportKind.PATTERN,
+        ".pdf",
+        "application/pdf",
+        lambda p, m, o: to_pdf(_pattern(p, m, o), o.name),
+    ),
+    Exporter(
+        ExportKind.PATTERN_SVG,
+        ".svg",
+        "image/svg+xml",
+        lambda p, m, o: to_long_svg(_pattern(p, m, o), o.name).encode(),
     ),
     Exporter(ExportKind.REPORT, ".pdf", "application/pdf", _report),
     Exporter(

@@ -28,6 +28,12 @@ _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
 _LEVELS, _NO_STITCH = 32, -1
 MOST_REGIONS = 12
 """Most lines in the table of regions, as fit a page; the rest is in the CSV export."""
+LOCAL_ASSUMPTIONS = (
+    "Means of local values over the stitches of a region; intervals cover 90 %.",
+    "Local values come from the quarter-cell composite: the stretched, flat fabric.",
+    "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
+)
+"""What the numbers of a piece with an outline take for granted."""
 _LINE_CHARACTERS = 112
 _MAP_MM = (84.0, 62.0)
 
@@ -56,14 +62,15 @@ def design_report(
             *_numbers(piece.chart, material, name, found),
             *_maps(piece, material, style.aspect, 73.0),
         ]
-        shapes += [*_plot(found), *_assumptions(_said(found), 228.0)]
+        shapes += [*_plot(found), *_assumptions(assumptions(found), 228.0)]
         pages.append(Page(*A4_MM, tuple(shapes)))
     if regions or not piece.is_rectangle:
         pages.append(Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions))))
-    return to_pdf([*pages, *chart_pages(piece, style)], name)
+    return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
 
 
-def _said(found: Answer) -> list[str]:
+def assumptions(found: Answer) -> list[str]:
+    """How an answer was found and what it takes for granted, in sentences."""
     return [
         f"Law: {found.method}.",
         f"Shear modulus {found.shear_modulus_n_per_mm:g} N/mm: an assumption unless calibrated.",
@@ -106,12 +113,7 @@ def _regions(
         width=A4_MM[0] - 2 * MARGIN_MM,
         height=A4_MM[1] - top - 40.0,
     )
-    said = [
-        "Means of local values over the stitches of a region; intervals cover 90 %.",
-        "Local values come from the quarter-cell composite: the stretched, flat fabric.",
-        "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
-    ]
-    yield from _assumptions(said, A4_MM[1] - 26.0)
+    yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 26.0)
 
 
 def _factor(value: float, factor: float) -> str:

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -61,20 +62,42 @@ def write_rows(
     <BLANKLINE>
     """
     piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    opening, (rows,) = written_sections(piece, construction, first_side=first_side)
+    return "\n".join([*opening, *rows, "Bind off.", ""])
+
+
+def written_sections(
+    piece: Piece,
+    construction: Construction = Construction.FLAT,
+    *,
+    first_side: Side = Side.RS,
+    breaks: Sequence[int] = (),
+) -> tuple[list[str], list[list[str]]]:
+    """What comes before the first row, and the rows of each section.
+
+    Sections begin at row 0 and at each of the ``breaks``, in rising order; rows of one section are
+    not told by repeating those of another.
+
+    Raises
+    ------
+    InputError
+        If the outline or yarns cannot be worked in the round.
+    """
     rows = piece_rows(piece, construction, first_side=first_side)
     count = _stitches(len(rows[0].purls))
     if construction is Construction.ROUND:
-        lines = [f"Cast on {count} and join in the round."]
+        opening = [f"Cast on {count} and join in the round."]
     else:
         side = "right" if first_side is Side.RS else "wrong"
-        lines = [f"Cast on {count}. Worked flat; row 1 is a {side}-side row."]
+        opening = [f"Cast on {count}. Worked flat; row 1 is a {side}-side row."]
     if piece.yarns != (MAIN_YARN,):
-        lines += [
+        opening += [
             f"Yarn {yarn_name(index)}: {yarn.name} ({yarn.colour})"
             for index, yarn in enumerate(piece.yarns)
         ]
-    lines += _Writer(rows, construction, several=len(piece.yarns) > 1).block(0, len(rows))
-    return "\n".join([*lines, "Bind off.", ""])
+    writer = _Writer(rows, construction, several=len(piece.yarns) > 1)
+    edges = pairwise([0, *breaks, len(rows)])
+    return opening, [list(writer.block(start, stop)) for start, stop in edges]
 
 
 class _Writer:

@@ -9,18 +9,25 @@
  *   transfers: number | null, carriers: number | null}} ExportedFile
  */
 
-import { call } from "../../api.js";
+import { ApiError, call } from "../../api.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { download } from "../../services/exporter.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
-import { KINDS, hindrance, ofExtensions } from "./kinds.js";
+import { viewPicture } from "../fabric/share.js";
+import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
 
 /** Characters of a text file that are shown. */
 const MOST_SHOWN = 6000;
+
+/** Width of the picture in a pattern. */
+const PHOTO_PX = 1400;
+
+/** @param {ArrayBuffer} buffer */
+const toBase64 = (buffer) => btoa(Array.from(new Uint8Array(buffer), (byte) => String.fromCharCode(byte)).join(""));
 
 /** @param {Studio} studio */
 export function create(studio) {
@@ -143,6 +150,10 @@ export function create(studio) {
   let asked = false;
 
   async function run() {
+    make.disabled = true;
+    outcome.replaceChildren(
+      h("p", { class: "muted" }, kind.to === "knitout" ? "A virtual machine knits it …" : "One moment …"),
+    );
     const body = {
       ...studio.toDocument(),
       format: undefined,
@@ -150,11 +161,8 @@ export function create(studio) {
       ...chosen,
       to: kind.to,
       linear_density_tex: Number.isFinite(tex.valueAsNumber) ? tex.valueAsNumber : null,
+      photo: isPattern(kind.to) ? await photo() : null,
     };
-    make.disabled = true;
-    outcome.replaceChildren(
-      h("p", { class: "muted" }, kind.to === "knitout" ? "A virtual machine knits it …" : "One moment …"),
-    );
     const file = await attempt(
       status,
       () => /** @type {Promise<ExportedFile>} */ (call("/export", { method: "POST", body })),
@@ -164,11 +172,22 @@ export function create(studio) {
     if (file) show(file);
   }
 
+  /** What the 3D view shows, base64; null where there is no view. */
+  async function photo() {
+    try {
+      return toBase64(await (await viewPicture(studio, PHOTO_PX)).arrayBuffer());
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      return null;
+    }
+  }
+
   /** @param {ExportedFile} file */
   function show(file) {
     const bytes = Uint8Array.from(atob(file.content), (c) => c.charCodeAt(0));
-    // A report and a chart of one design are both PDF.
-    const name = kind.to === "report" ? file.name.replace(/\.pdf$/, " report.pdf") : file.name;
+    // Report, pattern and chart of one design have the same ending.
+    const sort = kind.to === "report" ? " report" : isPattern(kind.to) ? " pattern" : "";
+    const name = file.name.replace(/(\.\w+)$/, `${sort}$1`);
     const save = () => download(name, new Blob([bytes], { type: file.media_type }));
     const found = [
       `${name}, ${(file.bytes / 1000).toFixed(1)} kB`,
@@ -183,7 +202,9 @@ export function create(studio) {
       kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MOST_SHOWN)) : "";
     outcome.replaceChildren(
       h("ul", { class: "planner-notes" }, ...found.map((words) => h("li", {}, icon("check"), words))),
-      text && kind.to !== "svg" ? h("pre", { class: "exports-text", tabIndex: 0, "aria-label": "The file" }, text) : "",
+      text && !kind.to.endsWith("svg")
+        ? h("pre", { class: "exports-text", tabIndex: 0, "aria-label": "The file" }, text)
+        : "",
       h("div", { class: "dialog-buttons" }, h("button", { class: "button", onclick: save }, "Save it again")),
     );
     save();

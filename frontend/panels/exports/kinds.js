@@ -7,6 +7,9 @@
  * @typedef {{to: string, name: string, note: string, group: string, options: Option[], text?: boolean}} ExportKind
  */
 
+/** Whether a picture of the cloth goes into a file. @param {string} to */
+export const isPattern = (to) => to.startsWith("pattern");
+
 /** Stitches of the largest chart that the service makes solids, or programs, of. */
 const MOST = { glb: 2500, stl: 2500, knitout: 20_000 };
 
@@ -44,6 +47,20 @@ export function ofExtensions(extensions) {
 
 /** @type {ExportKind[]} */
 export const KINDS = [
+  {
+    to: "pattern",
+    name: "Pattern to knit from",
+    note: "PDF: the 3D view as it is now, materials, gauge, parts, written rows, finishing, evidence, chart",
+    group: "To knit by hand",
+    options: ["worked", "note", "tex"],
+  },
+  {
+    to: "pattern-svg",
+    name: "The same as a drawing",
+    note: "SVG, its pages one below the other",
+    group: "To knit by hand",
+    options: ["worked", "note", "tex"],
+  },
   {
     to: "written",
     name: "Written rows",

@@ -16,16 +16,24 @@ import { isDark } from "./theme.js";
 const ENDINGS = { page: "html", recording: "viser", solid: "glb" };
 
 /**
- * A picture as this browser sees the fabric.
- *
  * @param {Studio} studio
  * @param {number} width of the picture in pixels; its proportions are the view's
  */
 export async function savePicture(studio, width) {
+  await save(studio, "png", () => viewPicture(studio, width));
+}
+
+/**
+ * A picture (PNG) as this browser sees the fabric.
+ *
+ * @param {Studio} studio
+ * @param {number} width
+ */
+export async function viewPicture(studio, width) {
   const frame = document.querySelector(".fabric-frame");
   const height = Math.round((width * (frame?.clientHeight ?? 3)) / (frame?.clientWidth ?? 4));
   const query = `width=${width}&height=${Math.min(4096, height)}`;
-  await save(studio, "png", `/views/${encodeURIComponent(studio.designId)}/picture?${query}`);
+  return (await fetched(`/views/${encodeURIComponent(studio.designId)}/picture?${query}`)).blob();
 }
 
 /**
@@ -36,20 +44,18 @@ export async function savePicture(studio, width) {
  */
 export async function saveFile(studio, wish, kind, animated) {
   const body = { ...wish(), animated, dark: isDark() };
-  await save(studio, ENDINGS[kind], `/views/${kind}`, { method: "POST", body });
+  await save(studio, ENDINGS[kind], async () => (await fetched(`/views/${kind}`, { method: "POST", body })).blob());
 }
 
 /**
  * @param {Studio} studio
  * @param {string} ending
- * @param {string} path
- * @param {{method?: string, body?: unknown}} [options]
+ * @param {() => Promise<Blob>} made
  */
-async function save(studio, ending, path, options) {
+async function save(studio, ending, made) {
   studio.tell("The file is being made …");
   try {
-    const response = await fetched(path, options);
-    download(`${fileName(studio)}.${ending}`, await response.blob());
+    download(`${fileName(studio)}.${ending}`, await made());
     studio.tell(`${fileName(studio)}.${ending} is saved.`);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
