@@ -36,7 +36,8 @@ class Budgets:
     memory_bytes : memory of computations at work together, each counted with the limit of its
         worker; by default that of the machine.
     views : 3D views kept open; the longest unwatched one makes room for the next.
-    view_stitches : of their charts together; a million of them take about 130 MB.
+    view_stitches : of their charts together; each view takes 10 MB, a million
+        stitches 20 MB more.
     watchers : browsers that show views.
     streams : event streams followed, of jobs and of views.
     pictures : pictures of views that are being taken.

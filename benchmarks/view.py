@@ -52,7 +52,7 @@ def first_scene_s(rows: int, columns: int) -> float:
     view = new_view()
     try:
         start = time.process_time()
-        view.show(build_scene(request, None, HERE))
+        view.show(build_scene(request, None, HERE).drawing())
         return time.process_time() - start
     finally:
         view.server.stop()
@@ -68,7 +68,8 @@ def stretch_bytes() -> tuple[int, float]:
 
     def frame(step: int) -> None:
         at = StretchStep(id="test", step=step)
-        view.show(build_scene(ViewRequest(**asked, colour="strain", stretch=at), run, HERE))
+        shown = ViewRequest(**asked, colour="strain", stretch=at)
+        view.show(build_scene(shown, run, HERE).drawing())
 
     def play() -> None:
         for step in range(20):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from inspect import Parameter, Signature
 from typing import Annotated, Any
 
@@ -16,7 +17,8 @@ from app.compute.turns import Gate
 from app.http.bodies import OrUndecoded, Undecoded, WorkerRoute
 from app.http.identity import current_user
 from app.http.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
-from app.http.problems import Problem, StoppingError
+from app.http.problems import Problem
+from app.http.waiting import abandoned
 from app.models.charts import size_of
 from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Operation, operations
@@ -48,12 +50,7 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
             async with gate.turn(current_user.get()):
                 return await run_in_threadpool(light, wanted, request)
 
-        async def abandoned() -> bool:
-            if request.app.state.stopping:
-                raise StoppingError("The service is stopping.")
-            return await request.is_disconnected()
-
-        answer = await answers.answer(abandoned, operation, wanted)
+        answer = await answers.answer(partial(abandoned, request), operation, wanted)
         return await json_response(answer.body, request.headers)
 
     def get(request: Request, **fields: Any) -> Response:

@@ -6,6 +6,7 @@ import asyncio
 import contextvars
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Annotated, Any, TypeVar
 
 from fastapi import APIRouter, Query, Request, Response
@@ -13,22 +14,35 @@ from fastapi.responses import StreamingResponse
 from pydantic import Field
 
 from app.budgets import InUse
+from app.compute.compute import Compute
 from app.compute.turns import Gate
 from app.http.bodies import BoundedRoute
 from app.http.identity import current_user
 from app.http.problems import NotFoundError, Problem
+from app.http.waiting import abandoned
 from app.models.base import RequestModel
-from app.operations.context import Context
 from app.operations.curl import CurlView
 from app.operations.perform import Answer
 from app.operations.stretch import StretchView
 from app.viewer.camera import CameraSide
 from app.viewer.design_id import DesignId, private_name
-from app.viewer.design_view import ViewRequest, ViewResult, build_scene
-from app.viewer.fabric import Box
+from app.viewer.design_view import (
+    ViewRequest,
+    ViewResult,
+    build_drawing,
+    build_scene,
+    is_large,
+)
+from app.viewer.fabric import Box, Drawing
 from app.viewer.scene import round_length_mm
 from app.viewer.share import picture_png
-from app.viewer.shared import SharedViewRequest, shared_page, shared_recording, shared_solid
+from app.viewer.shared import (
+    Found,
+    SharedViewRequest,
+    shared_page,
+    shared_recording,
+    shared_solid,
+)
 from app.viewer.views import View
 
 EVENT_PERIOD_S = 0.5
@@ -73,18 +87,23 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     state = request.app.state
     found, name = _found(body, request), private_name(design)
     context = state.answers.context()
+    large: Drawing | None = None
+    if found is None and is_large(body):
+        large = await _by_worker(request, build_drawing, body, context.data_dir)
 
     def draw() -> ViewResult:
-        scene = build_scene(body, found, context)
-        drawn = state.views.open(name, scene.colours[..., 0].size).show(scene)
+        drawing = large or build_scene(body, found, context).drawing()
+        rows, columns = drawing.ground.shape
         return ViewResult(
-            stitches=drawn,
-            source=scene.shapes.source,
-            scale_mm=round_length_mm(float(scene.extent_mm[0])),
+            stitches=state.views.open(name, rows * columns).show(drawing),
+            source=drawing.part.shapes.source,
+            scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
             url=f"/view/{design}/",
         )
 
-    return await _drawn(request, draw)
+    gate: Gate = state.drawing
+    async with gate.turn(current_user.get()):
+        return await _in(_drawing, draw)
 
 
 @router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
@@ -183,23 +202,22 @@ async def post_solid(body: SharedViewRequest, request: Request) -> Response:
 
 
 async def _shared(
-    make: Callable[[SharedViewRequest, StretchView | CurlView | None, Context], bytes],
+    make: Callable[..., bytes],
     body: SharedViewRequest,
     request: Request,
     media: str,
     ending: str,
 ) -> Response:
-    context = request.app.state.answers.context()
-    content = await _drawn(request, make, body, _found(body, request), context)
+    data_dir = request.app.state.answers.context().data_dir
+    content = await _by_worker(request, make, body, _found(body, request), data_dir)
     headers = {"Content-Disposition": f'attachment; filename="fabric.{ending}"'}
     return Response(content, media_type=media, headers=headers)
 
 
-async def _drawn(request: Request, function: Callable[..., T], *args: Any) -> T:
-    """What a function draws; one at a time, users taking turns."""
-    gate: Gate = request.app.state.drawing
-    async with gate.turn(current_user.get()):
-        return await _in(_drawing, function, *args)
+async def _by_worker(request: Request, job: Callable[..., T], *args: Any) -> T:
+    """What a job returns; it is stopped when the browser goes away."""
+    compute: Compute = request.app.state.compute
+    return await compute.run(partial(abandoned, request), job, *args)
 
 
 async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: Any) -> T:
@@ -209,7 +227,7 @@ async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: An
     return await loop.run_in_executor(threads, context.run, function, *args)
 
 
-def _found(body: ViewRequest, request: Request) -> StretchView | CurlView | None:
+def _found(body: ViewRequest, request: Request) -> Found:
     """What a test or a shape that was computed before shows."""
     wanted = body.stretch or body.curl
     answer: Answer | None = request.app.state.recent.get(wanted.id) if wanted else None

@@ -82,13 +82,14 @@ MaterialName = Annotated[
 
 def size_of(request: BaseModel) -> int:
     """About how many stitches a request holds: the letters of its texts, and named fabrics."""
-    size = 0
-    for _, value in request:
-        if isinstance(value, PureFabricChart):
-            size += value.rows * value.columns
-        elif isinstance(value, str):
-            size += len(value)
-    return size
+    return sum(
+        size_of_chart(value) for _, value in request if isinstance(value, str | PureFabricChart)
+    )
+
+
+def size_of_chart(chart: ChartInput) -> int:
+    """About how many stitches it has, without reading it."""
+    return len(chart) if isinstance(chart, str) else chart.rows * chart.columns
 
 
 def to_chart(chart: ChartInput) -> StitchChart:

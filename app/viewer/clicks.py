@@ -7,7 +7,7 @@ import contextlib
 import threading
 from collections.abc import Iterator
 
-from app.viewer.fabric import FabricScene
+from app.viewer.fabric import Ground
 
 Cell = tuple[int, int]
 
@@ -49,7 +49,7 @@ class Clicks:
 
 
 def clicked_stitch(
-    scene: FabricScene,
+    ground: Ground,
     origin: tuple[float, float, float],
     direction: tuple[float, float, float],
 ) -> Cell | None:
@@ -62,4 +62,4 @@ def clicked_stitch(
     along = -origin[2] / direction[2]
     if along < 0:
         return None
-    return scene.stitch_at(origin[0] + along * direction[0], origin[1] + along * direction[1])
+    return ground.stitch_at(origin[0] + along * direction[0], origin[1] + along * direction[1])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,71 @@ class Box:
 
 
 @dataclass(frozen=True, eq=False)
+class Ground:
+    """Where all stitches of a fabric lie: for clicks, marks, the scale and the camera.
+
+    Attributes
+    ----------
+    centres_mm, sizes_mm : (rows, columns, 2); in single precision, as a view keeps them.
+    top_mm : how high the yarn reaches above the middle plane.
+    is_flat : False for a fabric that has left its plane.
+    drawn, room_mm : as in :class:`FabricScene`.
+    """
+
+    centres_mm: NDArray[np.float32]
+    sizes_mm: NDArray[np.float32]
+    top_mm: float
+    is_flat: bool
+    drawn: NDArray[np.bool_] | None = None
+    room_mm: Array | None = None
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        rows, columns, _ = self.centres_mm.shape
+        return rows, columns
+
+    @cached_property
+    def middle_mm(self) -> Array:
+        """Centre of the fabric; the scene's origin."""
+        middle: Array = self.centres_mm.reshape(-1, 2).mean(axis=0, dtype=np.float64)
+        return middle
+
+    @cached_property
+    def extent_mm(self) -> Array:
+        """Width and height."""
+        span = np.ptp(self.centres_mm.reshape(-1, 2), axis=0)
+        extent: Array = span.astype(float) + self.sizes_mm[0, 0]
+        return extent
+
+    def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
+        """The stitch at a place of the scene, (row, column); None outside the fabric."""
+        if not self.is_flat:
+            return None  # rays are met in the plane, which the fabric has left
+        place = np.add(self.middle_mm, (x_mm, y_mm)).astype(np.float32)
+        away = np.abs(self.centres_mm - place) / self.sizes_mm
+        distance = away.max(axis=2)
+        if self.drawn is not None:
+            distance = np.where(self.drawn, distance, np.inf)
+        row, column = np.unravel_index(distance.argmin(), distance.shape)
+        return (int(row), int(column)) if distance[row, column] < BESIDE else None
+
+    def box_corners_mm(self, box: Box) -> Array:
+        """Corners of some stitches' outline in the scene, (4, 2)."""
+        rows, columns = self.shape
+        row0, row1 = (int(np.clip(r, 0, rows - 1)) for r in (box.row0, box.row1 - 1))
+        column0, column1 = (int(np.clip(c, 0, columns - 1)) for c in (box.column0, box.column1 - 1))
+        corners = ((row0, column0), (row0, column1), (row1, column1), (row1, column0))
+        half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        return np.array(
+            [
+                self.centres_mm[at] + side * self.sizes_mm[at] - self.middle_mm
+                for at, side in zip(corners, half, strict=True)
+            ]
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class FabricScene:
     """Everything needed to draw a fabric.
 
@@ -53,18 +119,27 @@ class FabricScene:
     focus: tuple[int, int] | None = None
     room_mm: Array | None = None
 
-    @property
-    def middle_mm(self) -> Array:
-        """Centre of the fabric; the scene's origin."""
-        middle: Array = self.placement.centres_mm.reshape(-1, 2).mean(axis=0)
-        return middle
+    @cached_property
+    def ground(self) -> Ground:
+        """Where all its stitches lie."""
+        places, highest = self.placement, np.abs(self.shapes.lines[..., 2]).max()
+        return Ground(
+            centres_mm=places.centres_mm.astype(np.float32),
+            sizes_mm=places.sizes_mm.astype(np.float32),
+            top_mm=float(places.depth * highest + self.shapes.yarn_radius_mm),
+            is_flat=places.frames is None,
+            drawn=self.drawn,
+            room_mm=self.room_mm,
+        )
 
-    @property
-    def extent_mm(self) -> Array:
-        """Width and height."""
-        places = self.placement
-        extent: Array = np.ptp(places.centres_mm.reshape(-1, 2), axis=0) + places.sizes_mm[0, 0]
-        return extent
+    def drawing(self) -> Drawing:
+        """What a view shows of it, and keeps."""
+        part, picture = self.window(), self.colours
+        if part is self:
+            return Drawing(self, self.ground)
+        if self.drawn is not None:
+            picture = np.dstack([picture, 255 * self.drawn.astype(np.uint8)])
+        return Drawing(part, self.ground, picture)
 
     def window(self) -> FabricScene:
         """The part drawn as yarn: all of it, or as much as a browser can draw."""
@@ -90,30 +165,19 @@ class FabricScene:
             drawn=None if self.drawn is None else self.drawn[part],
         )
 
-    def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
-        """The stitch at a place of the scene, (row, column); None outside the fabric."""
-        places = self.placement
-        if places.frames is not None:
-            return None  # rays are met in the plane, which the fabric has left
-        away = np.abs(places.centres_mm - self.middle_mm - (x_mm, y_mm)) / places.sizes_mm
-        distance = away.max(axis=2)
-        if self.drawn is not None:
-            distance = np.where(self.drawn, distance, np.inf)
-        row, column = np.unravel_index(distance.argmin(), distance.shape)
-        return (int(row), int(column)) if distance[row, column] < BESIDE else None
 
-    def box_corners_mm(self, box: Box) -> Array:
-        """Corners of some stitches' outline in the scene, (4, 2)."""
-        places = self.placement
-        row0, row1 = (int(np.clip(r, 0, len(places.angles) - 1)) for r in (box.row0, box.row1 - 1))
-        column0, column1 = (
-            int(np.clip(c, 0, places.angles.shape[1] - 1)) for c in (box.column0, box.column1 - 1)
-        )
-        corners = ((row0, column0), (row0, column1), (row1, column1), (row1, column0))
-        half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        return np.array(
-            [
-                places.centres_mm[at] + side * places.sizes_mm[at] - self.middle_mm
-                for at, side in zip(corners, half, strict=True)
-            ]
-        )
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What a view shows of a fabric, and keeps: little of one that is too large to be drawn whole.
+
+    Attributes
+    ----------
+    part : drawn as yarn.
+    ground : where all stitches lie.
+    picture : (rows, columns, 3 or 4) uint8 of the whole fabric, behind the part; None if that is
+        all of it.
+    """
+
+    part: FabricScene
+    ground: Ground
+    picture: Colours | None = None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.viewer.camera import CameraSide, place_camera
 from app.viewer.cloth import UNITS_PER_MM, Cloth
-from app.viewer.fabric import Box, FabricScene
+from app.viewer.fabric import Box, Drawing, FabricScene, Ground
 from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
 
@@ -27,7 +27,7 @@ PAPER = (255, 252, 246)
 
 
 class SceneWriter:
-    """Keeps one viser server's scene in step with a :class:`FabricScene`.
+    """Keeps one viser server's scene in step with a :class:`Drawing`.
 
     A new stretch or colour of the same chart only moves instances. Anything else is a new cloth,
     which browsers build unseen while the one before it stays: there is always one to look at.
@@ -36,7 +36,7 @@ class SceneWriter:
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
         self._lock = threading.RLock()
-        self._scene: FabricScene | None = None
+        self._drawing: Drawing | None = None
         self._cloths: list[Cloth] = []
         """The one on show, and the one that is being built, if any."""
         self._made = 0
@@ -46,21 +46,21 @@ class SceneWriter:
         self._side = CameraSide.FACE
 
     @property
-    def scene(self) -> FabricScene | None:
+    def drawing(self) -> Drawing | None:
         """The fabric shown."""
-        return self._scene
+        return self._drawing
 
-    def write(self, scene: FabricScene) -> int:
+    def write(self, drawing: Drawing) -> int:
         """Show a fabric to everybody who looks; returns the number of stitches drawn as yarn."""
-        part = scene.window()
+        part, ground = drawing.part, drawing.ground
         stitches = int(part.shapes.index.size if part.drawn is None else part.drawn.sum())
         with self._lock:
-            self._scene = scene
-            self._draw(part, scene.middle_mm, level_of(stitches))
-            self._draw_rectangles(part, scene.middle_mm)
-            self._draw_sheet(None if part is scene else scene)
-            self._draw_scale(scene)
-            room = _room(scene)
+            self._drawing = drawing
+            self._draw(part, ground.middle_mm, level_of(stitches))
+            self._draw_rectangles(part, ground.middle_mm)
+            self._draw_sheet(drawing)
+            self._draw_scale(ground)
+            room = _room(ground)
             if room != self._framed:
                 self._framed = room
                 self._place_camera(everybody=False)
@@ -69,14 +69,12 @@ class SceneWriter:
     def mark(self, box: Box | None) -> None:
         """Outline some stitches on both sides, or none."""
         with self._lock:
-            scene = self._scene
-            if box is None or scene is None or scene.placement.frames is not None:
+            ground = self._drawing.ground if self._drawing is not None else None
+            if box is None or ground is None or not ground.is_flat:
                 self._put("mark", None)
                 return
-            corners = scene.box_corners_mm(box)
-            depth = scene.placement.depth * np.abs(scene.shapes.lines[..., 2]).max()
-            height = depth + scene.shapes.yarn_radius_mm
-            loops = [np.column_stack([corners, np.full(4, z)]) for z in (height, -height)]
+            corners, top = ground.box_corners_mm(box), ground.top_mm
+            loops = [np.column_stack([corners, np.full(4, z)]) for z in (top, -top)]
             pairs = np.concatenate([np.stack([c, np.roll(c, -1, axis=0)], axis=1) for c in loops])
             self._put(
                 "mark",
@@ -103,13 +101,14 @@ class SceneWriter:
                 self._timer = None
 
     def _place_camera(self, *, everybody: bool) -> None:
-        if self._scene is None:
+        if self._drawing is None:
             return
-        room = self._scene.extent_mm
-        if self._scene.room_mm is not None:
-            room = np.maximum(room, self._scene.room_mm)
+        ground = self._drawing.ground
+        room = ground.extent_mm
+        if ground.room_mm is not None:
+            room = np.maximum(room, ground.room_mm)
         # Loops reach into neighbouring rows and columns, the outermost beyond the chart.
-        extent = UNITS_PER_MM * (room + self._scene.placement.sizes_mm[0, 0])
+        extent = UNITS_PER_MM * (room + ground.sizes_mm[0, 0])
         place_camera(self._server, self._side, extent, everybody=everybody)
 
     # -- yarn ---------------------------------------------------------------------------------
@@ -176,36 +175,32 @@ class SceneWriter:
             ),
         )
 
-    def _draw_sheet(self, scene: FabricScene | None) -> None:
+    def _draw_sheet(self, drawing: Drawing) -> None:
         """All of a chart that is too large, as a picture behind the part that is drawn."""
-        if scene is None:
+        if drawing.picture is None:
             self._put("sheet", None)
             return
-        width, height = scene.extent_mm
-        depth = np.abs(scene.shapes.lines[..., 2]).max() + scene.shapes.yarn_radius_mm
-        picture = scene.colours
-        if scene.drawn is not None:
-            picture = np.dstack([picture, 255 * scene.drawn.astype(np.uint8)])
+        width, height = drawing.ground.extent_mm
         self._put(
             "sheet",
             self._server.scene.add_image(
                 "/sheet",
-                picture[::-1],
+                drawing.picture[::-1],
                 render_width=UNITS_PER_MM * float(width),
                 render_height=UNITS_PER_MM * float(height),
                 format="png",
-                position=(0.0, 0.0, -2.0 * UNITS_PER_MM * float(depth)),
+                position=(0.0, 0.0, -2.0 * UNITS_PER_MM * drawing.ground.top_mm),
                 cast_shadow=False,
                 receive_shadow=False,
             ),
         )
 
-    def _draw_scale(self, scene: FabricScene) -> None:
+    def _draw_scale(self, ground: Ground) -> None:
         """A line of round length below the fabric, at its right."""
-        width, height = scene.extent_mm
+        width, height = ground.extent_mm
         length = round_length_mm(float(width))
         # The lowest loops reach below the fabric's own edge.
-        stitch = float(scene.placement.sizes_mm[..., 1].mean())
+        stitch = float(ground.sizes_mm[..., 1].mean())
         right, below = float(width) / 2, -float(height) / 2 - SCALE_BELOW * stitch
         tick = 0.06 * length
         points = np.array(
@@ -248,10 +243,10 @@ def round_length_mm(width_mm: float) -> float:
     return float(power * max(step for step in (1, 2, 5) if power * step <= wanted * (1 + 1e-9)))
 
 
-def _room(scene: FabricScene) -> tuple[float, ...]:
+def _room(ground: Ground) -> tuple[float, ...]:
     """The size that the camera was placed for; until it changes the camera stays as turned."""
-    shape = scene.shapes.index.shape
-    return shape if scene.room_mm is None else (*shape, *scene.room_mm.round(1).tolist())
+    shape = ground.shape
+    return shape if ground.room_mm is None else (*shape, *ground.room_mm.round(1).tolist())
 
 
 def _units(points_mm: Array) -> NDArray[np.float32]:

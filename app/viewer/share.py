@@ -92,11 +92,11 @@ def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
     view = new_view()
     try:
         remaining = iter(scenes)
-        view.show(next(remaining))
+        view.show(next(remaining).drawing())
         serializer = view.server.get_scene_serializer()
         for scene in remaining:
             serializer.insert_sleep(FRAME_S)
-            view.show(scene)
+            view.show(scene.drawing())
         serializer.insert_sleep(FRAME_S)
         yield serializer
     finally:

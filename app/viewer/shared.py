@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 from pydantic import Field
 
+from app.models.charts import to_chart
 from app.operations.context import Context
 from app.operations.curl import CurlView
 from app.operations.stretch import StretchView
@@ -24,22 +26,30 @@ class SharedViewRequest(ViewRequest):
     dark: bool = Field(False, description="Dark background of a page.")
 
 
+Found = StretchView | CurlView | None
+"""What the view shows of a stretch test or a shape that was computed before."""
+
+
+# These run in workers.
+
+
 def shared_page(
-    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
+    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A page that needs neither the service nor the network."""
-    return page_html(_scenes(request, found, context), dark=request.dark).encode()
+    scenes = _scenes(request, found, Context(data_dir, cancelled=cancelled))
+    return page_html(scenes, dark=request.dark).encode()
 
 
 def shared_recording(
-    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
+    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """A ``.viser`` recording."""
-    return recording(_scenes(request, found, context))
+    return recording(_scenes(request, found, Context(data_dir, cancelled=cancelled)))
 
 
 def shared_solid(
-    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
+    request: SharedViewRequest, found: Found, data_dir: Path, *, cancelled: Callable[[], bool]
 ) -> bytes:
     """The yarn as binary glTF.
 
@@ -48,26 +58,25 @@ def shared_solid(
     InputError
         If there are too many stitches for a solid of use.
     """
-    scene = build_scene(request, found, context)
-    _check_size(scene, MOST_SOLID)
-    return solid_glb(scene)
+    _check_size(request, MOST_SOLID)
+    return solid_glb(build_scene(request, found, Context(data_dir, cancelled=cancelled)))
 
 
-def _scenes(
-    request: SharedViewRequest, found: StretchView | CurlView | None, context: Context
-) -> Iterator[FabricScene]:
+def _scenes(request: SharedViewRequest, found: Found, context: Context) -> Iterator[FabricScene]:
+    _check_size(request, MAX_SHARED_STITCHES)
     scene = build_scene(request, found, context)
-    _check_size(scene, MAX_SHARED_STITCHES)
     if not request.animated or request.stretch is None or not isinstance(found, StretchView):
         yield scene
         return
     for step in range(len(found.positions_mm)):
+        if context.cancelled():
+            return
         at = StretchStep(id=request.stretch.id, step=step)
         yield build_scene(request.model_copy(update={"stretch": at}), found, context)
 
 
-def _check_size(scene: FabricScene, most: int) -> None:
-    stitches = scene.shapes.index.size
+def _check_size(request: SharedViewRequest, most: int) -> None:
+    stitches = to_chart(request.chart).purl.size
     if stitches > most:
         raise InputError(
             "chart", f"{stitches} stitches are too many for this file.", f"Share at most {most}."

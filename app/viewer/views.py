@@ -14,7 +14,7 @@ from app.http.problems import ServiceError, UnavailableError
 from app.viewer.camera import FARTHEST
 from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.cloth import UNITS_PER_MM
-from app.viewer.fabric import FabricScene
+from app.viewer.fabric import Drawing
 from app.viewer.incoming import WantedPicture
 from app.viewer.private_port import private_server
 from app.viewer.scene import SceneWriter
@@ -46,10 +46,10 @@ class View:
         """Loopback port of the viser server."""
         return int(self.server.get_port())
 
-    def show(self, scene: FabricScene) -> int:
-        """Draw a scene; returns the number of stitches drawn."""
+    def show(self, drawing: Drawing) -> int:
+        """Draw a fabric; returns the number of stitches drawn as yarn."""
         self.last_used = time.monotonic()
-        return self.writer.write(scene)
+        return self.writer.write(drawing)
 
     def stop(self) -> None:
         """Close its server."""
@@ -142,11 +142,11 @@ class Views:
     def _pass_clicks_on(self, design: str, view: View) -> None:
         @view.server.scene.on_click()
         def clicked(event: viser.SceneClickEvent) -> None:
-            scene = view.writer.scene
-            if scene is None:
+            drawing = view.writer.drawing
+            if drawing is None:
                 return
             x, y, z = (value / UNITS_PER_MM for value in event.ray_origin)
-            cell = clicked_stitch(scene, (x, y, z), event.ray_direction)
+            cell = clicked_stitch(drawing.ground, (x, y, z), event.ray_direction)
             if cell is not None:
                 self.clicks.tell(design, cell)
 

@@ -18,6 +18,7 @@ from app.operations.context import Context
 from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.fabric import Box
+from knitcore.errors import InputError
 from tests.app.test_stretch import ASKED, GARTER
 
 HERE = Context(Path())
@@ -59,9 +60,9 @@ def test_sharing_leaves_the_watched_view_alone(
     client.put(f"/api/v1/views/{DESIGN}", json=SMALL)
     views = client.app.state.views  # type: ignore[attr-defined]
     view = views.get(f"local/{DESIGN}")
-    before, threads, count = view.writer.scene, threading.active_count(), len(views)
+    before, threads, count = view.writer.drawing, threading.active_count(), len(views)
     client.post("/api/v1/views/recording", json=stretched | {"animated": True})
-    assert view.writer.scene is before
+    assert view.writer.drawing is before
     assert len(views) == count
     assert threading.active_count() <= threads + 1
 
@@ -83,11 +84,11 @@ def test_an_empty_cell_is_not_drawn_clicked_or_exported(client: TestClient) -> N
     answer = client.put(f"/api/v1/views/{DESIGN}", json=shaped).json()
     assert answer["stitches"] == 10
     view = client.app.state.views.get(f"local/{DESIGN}")  # type: ignore[attr-defined]
-    scene = view.writer.scene
-    assert len(scene.rectangles_mm) == 10
-    x, y = scene.placement.centres_mm[2, 3] - scene.middle_mm
-    assert scene.stitch_at(x, y) is None
-    assert scene.stitch_at(*(scene.placement.centres_mm[2, 1] - scene.middle_mm)) == (2, 1)
+    part, ground = view.writer.drawing.part, view.writer.drawing.ground
+    assert len(part.rectangles_mm) == 10
+    x, y = ground.centres_mm[2, 3] - ground.middle_mm
+    assert ground.stitch_at(x, y) is None
+    assert ground.stitch_at(*(ground.centres_mm[2, 1] - ground.middle_mm)) == (2, 1)
     whole = client.put(f"/api/v1/views/{DESIGN}", json=SMALL).json()
     assert whole["stitches"] == 12
     sizes = [len(client.post("/api/v1/views/solid", json=body).content) for body in (shaped, SMALL)]
@@ -131,15 +132,15 @@ def test_marks_and_cameras_need_an_open_view(client: TestClient) -> None:
 
 @pytest.mark.parametrize("chart", ["K", "KPPK\nKKPP\nPKPK"])
 def test_a_click_finds_its_stitch(chart: str) -> None:
-    scene = build_scene(ViewRequest(chart=chart, material="cotton"), None, HERE)
-    for (row, column), _ in np.ndenumerate(scene.shapes.index):
-        x, y = scene.placement.centres_mm[row, column] - scene.middle_mm
+    ground = build_scene(ViewRequest(chart=chart, material="cotton"), None, HERE).ground
+    for row, column in np.ndindex(*ground.shape):
+        x, y = ground.centres_mm[row, column] - ground.middle_mm
         eye = (x + 20.0, y - 10.0, 60.0)
-        assert clicked_stitch(scene, eye, (-20.0, 10.0, -60.0)) == (row, column)
-        assert clicked_stitch(scene, (x, y, -50.0), (0.0, 0.0, 1.0)) == (row, column)
-    assert clicked_stitch(scene, (500.0, 0.0, 50.0), (0.0, 0.0, -1.0)) is None
-    assert clicked_stitch(scene, (0.0, 0.0, 50.0), (0.0, 0.0, 1.0)) is None
-    assert clicked_stitch(scene, (0.0, 0.0, 50.0), (1.0, 0.0, 0.0)) is None
+        assert clicked_stitch(ground, eye, (-20.0, 10.0, -60.0)) == (row, column)
+        assert clicked_stitch(ground, (x, y, -50.0), (0.0, 0.0, 1.0)) == (row, column)
+    assert clicked_stitch(ground, (500.0, 0.0, 50.0), (0.0, 0.0, -1.0)) is None
+    assert clicked_stitch(ground, (0.0, 0.0, 50.0), (0.0, 0.0, 1.0)) is None
+    assert clicked_stitch(ground, (0.0, 0.0, 50.0), (1.0, 0.0, 0.0)) is None
 
 
 def test_clicks_reach_only_listeners_of_the_design() -> None:
@@ -163,13 +164,10 @@ def test_clicks_reach_only_listeners_of_the_design() -> None:
     clicks.tell("mine", (1, 1))
 
 
-def test_a_click_in_the_view_is_an_event_of_the_page(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_click_in_the_view_is_an_event_of_the_page(client: TestClient) -> None:
     assert client.get("/api/v1/views/a-design-unknown/events").status_code == 404
     client.put(f"/api/v1/views/{DESIGN}", json=SMALL)
     state = client.app.state  # type: ignore[attr-defined]
-    monkeypatch.setattr(state, "stopping", False)
 
     def tell() -> None:
         state.views.clicks.tell(f"local/{DESIGN}", (2, 1))
@@ -181,16 +179,19 @@ def test_a_click_in_the_view_is_an_event_of_the_page(
 
     timer = threading.Timer(0.5, tell)
     timer.start()
-    data = next(line for line in lines() if line.startswith("data: "))
-    timer.join()
+    try:
+        data = next(line for line in lines() if line.startswith("data: "))
+        timer.join()
+    finally:
+        state.stopping = False
     assert json.loads(data.removeprefix("data: ")) == {"row": 2, "column": 1}
 
 
 def test_outlines_stay_on_the_fabric() -> None:
-    scene = build_scene(ViewRequest.model_validate(SMALL), None, HERE)
-    corners = scene.box_corners_mm(Box(0, 0, 3, 4))
-    np.testing.assert_allclose(np.ptp(corners, axis=0), scene.extent_mm)
-    np.testing.assert_allclose(scene.box_corners_mm(Box(0, 0, 99, 99)), corners)
+    ground = build_scene(ViewRequest.model_validate(SMALL), None, HERE).ground
+    corners = ground.box_corners_mm(Box(0, 0, 3, 4))
+    np.testing.assert_allclose(np.ptp(corners, axis=0), ground.extent_mm, rtol=1e-6)
+    np.testing.assert_allclose(ground.box_corners_mm(Box(0, 0, 99, 99)), corners)
 
 
 def test_a_huge_chart_is_drawn_around_its_focus() -> None:
@@ -202,11 +203,13 @@ def test_a_huge_chart_is_drawn_around_its_focus() -> None:
         None,
         HERE,
     )
-    part = scene.window()
-    assert part.shapes.index.size <= 40_000
+    drawing = scene.drawing()
+    assert drawing.part.shapes.index.size <= 40_000
     np.testing.assert_array_equal(
-        part.placement.centres_mm[-1, 0], scene.placement.centres_mm[299, 0]
+        drawing.part.placement.centres_mm[-1, 0], scene.placement.centres_mm[299, 0]
     )
+    assert drawing.ground.shape == (300, 400)
+    assert drawing.picture is not None
 
 
 def test_every_way_to_colour_the_stitches() -> None:
@@ -265,3 +268,11 @@ def test_rectangles_stand_for_stitches_blocks_or_regions(groups: str, count: int
     rectangles = build_scene(ViewRequest.model_validate(body), None, HERE).rectangles_mm
     assert rectangles is not None
     assert rectangles.shape == (count, 4, 2)
+
+
+def test_so_many_rectangles_are_drawn() -> None:
+    chart = {"fabric": "stockinette", "columns": 1000, "rows": 1000}
+    body = {"chart": chart, "material": "acrylic", "rectangles": True}
+    with pytest.raises(InputError, match="Use blocks of 5 or more") as refused:
+        build_scene(ViewRequest.model_validate(body), None, HERE)
+    assert refused.value.field == "rectangle_block"

@@ -34,7 +34,7 @@ def view(monkeypatch: pytest.MonkeyPatch) -> Iterator[View]:
 
 
 def _show(view: View, request: dict[str, str]) -> None:
-    view.show(build_scene(ViewRequest.model_validate(request), None, Context(Path())))
+    view.show(build_scene(ViewRequest.model_validate(request), None, Context(Path())).drawing())
 
 
 def test_the_old_cloth_stays_until_the_new_one_is_drawn(
