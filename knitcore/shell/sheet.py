@@ -1,12 +1,12 @@
 """A piece of knitting as a sheet of stitches in space.
 
-Every stitch is a quadrilateral between four corners. Its properties come from its quarters, each of
-which is one of the four pure fabrics (:mod:`knitcore.phases`): sizes at rest and stiffness of the
+Every stitch is a quadrilateral between four corners. Its size is that which the resolver gives to
+its surroundings, less what folds take of it (:mod:`knitcore.shell.folds`). The rest comes from its
+quarters, each of which is one of the four pure fabrics (:mod:`knitcore.phases`): stiffness of the
 membrane from the material, bending rigidity and free curvature from the yarn level. Two
 neighbours of one kind with even segments all around turn as stockinette does, knits with the face
-outside and purls with the back; where segments are odd (garter, rib, seed) the next stitch cancels
-the curvature, and the line between them stays flat. A chart of one pure fabric is that fabric;
-folds over two or more stitches are part of the computed shape.
+outside and purls with the back, and less where folds oppose them; where segments are odd (garter,
+rib, seed) the next stitch cancels the curvature, and the line between them stays flat.
 
 Fabric cannot fold tighter than its thickness t allows: at 2 arctan(l / t) between stitches of size
 l its inner surface is closed.
@@ -28,6 +28,7 @@ from knitcore.materials import Material
 from knitcore.phases import quarter_phases
 from knitcore.shell import kernels
 from knitcore.shell.bends import Bend, bends_of
+from knitcore.shell.folds import folds_of
 
 Ints = NDArray[np.int64]
 
@@ -120,26 +121,26 @@ def sheet_of(chart: StitchChart, material: Material) -> Sheet:
     rows, columns = chart.rows, chart.columns
     phases = quarter_phases(chart)
     of = _Fabrics.of(material)
-    size = of.size_mm[phases]  # (2 rows, 2 columns, 2)
+    folds = folds_of(chart, material, of.free_turns)
+    size = folds.sizes_mm  # (rows, columns, 2)
     corner = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
     quads = np.stack(
         [corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]], axis=-1
     ).reshape(-1, 4)
     by_stitch = phases.reshape(rows, 2, columns, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
     quarters = np.stack([quads[:, order] for order in _QUARTERS], axis=1).reshape(-1, 3)
-    quarter_size = of.size_mm[by_stitch].reshape(-1, 2)
+    quarter_size = size.reshape(-1, 2).repeat(4, axis=0)
     area = 0.25 * quarter_size.prod(axis=1, keepdims=True)
     membrane = np.concatenate([quarter_size, area * of.membrane[by_stitch].reshape(-1, 4)], axis=1)
-    along = _hinges(chart.purl, phases, of, corner)
-    across = _hinges(chart.purl.T, phases.T, of.turned(), corner.T)
+    along = _hinges(chart.purl, phases, of, corner, folds.share)
+    across = _hinges(chart.purl.T, phases.T, of.turned(), corner.T, folds.share.T)
     across[0][:, [0, 1]] = across[0][:, [1, 0]]  # the face stays on the same side
     rigidity = np.sqrt(of.rigidity_n_mm.prod(axis=1))[by_stitch].mean(axis=1)
-    stitch = of.size_mm[by_stitch].mean(axis=1)
-    twisting = 4.0 * TWIST * rigidity / stitch.prod(axis=1)
+    twisting = 4.0 * TWIST * rigidity / size.reshape(-1, 2).prod(axis=1)
     mean = size.mean(axis=(0, 1))
     flat = np.zeros((corner.size, 3))
-    flat[:, 0] = np.tile(_edges(size[..., 0].mean(axis=0)), rows + 1)
-    flat[:, 1] = np.repeat(_edges(size[..., 1].mean(axis=1)), columns + 1)
+    flat[:, 0] = np.tile(np.append(0.0, np.cumsum(size[..., 0].mean(axis=0))), rows + 1)
+    flat[:, 1] = np.repeat(np.append(0.0, np.cumsum(size[..., 1].mean(axis=1))), columns + 1)
     flat[:, :2] -= flat[:, :2].mean(axis=0)
     return Sheet(
         rows=rows,
@@ -158,11 +159,6 @@ def sheet_of(chart: StitchChart, material: Material) -> Sheet:
 
 _QUARTERS = ((0, 1, 2), (1, 0, 3), (2, 3, 0), (3, 2, 1))
 """Corner of a stitch, its neighbour along the row, and that along the column, of every quarter."""
-
-
-def _edges(halves_mm: Array) -> Array:
-    """Places of the lines between stitches, from the mean sizes of quarters."""
-    return np.append(0.0, np.cumsum(halves_mm.reshape(-1, 2).mean(axis=1)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +208,14 @@ class _Fabrics:
             knit.thickness_mm,
         )  # fmt: skip
 
+    @property
+    def free_turns(self) -> Array:
+        """(2,) turn between stitches of stockinette at rest, rad."""
+        phase = Fabric.STOCKINETTE.phase
+        size = self.size_mm[phase]
+        closed = 2.0 * np.arctan(size / self.thickness_mm)
+        return np.asarray(np.minimum(np.abs(self.curvature_per_mm[phase]) * size, closed))
+
     def turned(self) -> _Fabrics:
         """Columns for rows; phases keep their names."""
         return _Fabrics(
@@ -221,7 +225,7 @@ class _Fabrics:
 
 
 def _hinges(
-    purl: NDArray[np.bool_], phases: NDArray[np.uint8], of: _Fabrics, corner: Ints
+    purl: NDArray[np.bool_], phases: NDArray[np.uint8], of: _Fabrics, corner: Ints, share: Array
 ) -> tuple[Ints, Array]:
     """Lines between neighbours of a row: their corners, stiffness and rest angle."""
     nodes = np.stack(
@@ -245,7 +249,7 @@ def _hinges(
     free = length * beside(sign * of.curvature_per_mm[phases][..., 0])
     closed = 2.0 * np.arctan(length / of.thickness_mm)
     stiffness = rigidity * width / length
-    turning = np.stack(
-        [stiffness, np.clip(free, -closed, closed), closed, 0.25 * length**2], axis=-1
-    )
+    shared = 0.5 * (share[:, 1:] + share[:, :-1]).ravel()
+    rest = shared * np.clip(free, -closed, closed)
+    turning = np.stack([stiffness, rest, closed, 0.25 * length**2], axis=-1)
     return nodes, turning

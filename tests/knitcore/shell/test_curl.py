@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Fabric
@@ -51,11 +52,37 @@ def test_a_strip_rolls_up_into_scrolls_as_tight_as_it_can() -> None:
     assert 0.5 * piece.depth_mm == pytest.approx(expected, rel=0.2)
 
 
-def test_two_by_two_rib_draws_in_as_measured() -> None:
-    """0.61 of the width of stockinette (KnitDB, one acrylic yarn on one setting)."""
-    piece = _piece("KKPP", 5, 20)
-    width = piece.width_mm / 20 / ACRYLIC.record(Fabric.STOCKINETTE).stitch_course_mm
-    assert width == pytest.approx(0.61, rel=0.1)
+def _block(knits: int) -> str:
+    wide = "K" * knits + "P" * knits
+    return "/".join([wide] * knits + [wide[::-1]] * knits)
+
+
+@pytest.mark.parametrize(
+    ("repeat", "up", "across"),
+    [
+        ("KKPP", 20, 6),
+        ("KKKPPP", 20, 4),
+        ("KKKKKKPPPPPP", 20, 3),
+        ("K/K/P/P", 6, 16),
+        ("K/K/K/P/P/P", 4, 16),
+        (_block(3), 3, 3),
+        (_block(4), 3, 3),
+    ],
+    ids=["2x2 rib", "3x3 rib", "6x6 rib", "2-2 welt", "3-3 welt", "3x3 basket", "4x4 basket"],
+)
+def test_folds_are_as_wide_and_high_as_the_relaxed_fabric(
+    repeat: str, up: int, across: int
+) -> None:
+    """Extent of the inner repeats, over that of the answer."""
+    chart = StitchChart.parse(repeat)
+    piece = curl(chart.tile(up, across), ACRYLIC)
+    assert piece.converged
+    answer = choose(chart, ACRYLIC)
+    for axis, along in ((1, answer.course), (0, answer.wale)):
+        line = piece.corners_mm.mean(axis=1 - axis)
+        ends = line[[chart.purl.shape[axis], -1 - chart.purl.shape[axis]]]
+        count = len(line) - 1 - 2 * chart.purl.shape[axis]
+        assert np.linalg.norm(ends[1] - ends[0]) / count == pytest.approx(along.relaxed_mm, rel=0.1)
 
 
 def test_welts_draw_in_along_the_columns() -> None:
@@ -66,8 +93,7 @@ def test_welts_draw_in_along_the_columns() -> None:
 
 
 def test_a_basket_pillows() -> None:
-    block = "\n".join(["KKKKPPPP"] * 4 + ["PPPPKKKK"] * 4)
-    piece = _piece(block, 2, 2)
+    piece = _piece(_block(4), 2, 2)
     assert piece.depth_mm > 2.0 * piece.thickness_mm
 
 
@@ -90,10 +116,3 @@ def test_a_piece_too_large_is_refused() -> None:
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(CancelledError):
         curl(StitchChart.parse("K").tile(9, 9), ACRYLIC, cancel=lambda: True)
-
-
-def test_squares_of_knits_and_purls_fold_up_and_down() -> None:
-    square = "KKKKPPPP/KKKKPPPP/KKKKPPPP/KKKKPPPP/PPPPKKKK/PPPPKKKK/PPPPKKKK/PPPPKKKK"
-    piece = curl(StitchChart.parse(square).tile(2, 2), ACRYLIC)
-    assert piece.converged
-    assert piece.depth_mm > 4.0 * piece.thickness_mm
