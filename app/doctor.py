@@ -15,6 +15,7 @@ from pydantic import BaseModel, Field
 from app.http.problems import ServiceError
 from app.settings import Settings
 from app.store.database import Database, check_not_lost
+from app.store.lock import holder
 from app.store.schema import check_schema
 from knitcore.errors import InputError
 
@@ -32,6 +33,7 @@ class Check(BaseModel):
     ok: bool
     problem: str | None = Field(None, description="What is wrong.")
     remedy: str | None = Field(None, description="The remedy.")
+    note: str | None = Field(None, description="What is good to know.")
 
 
 class Checks(BaseModel):
@@ -51,7 +53,9 @@ def examine(settings: Settings) -> Checks:
     def cluster() -> None:
         check_cluster(settings.scheduler or "")
 
-    return _examine(settings, partial(_check_database, settings), cluster)
+    found = _examine(settings, partial(_check_database, settings), cluster)
+    found.checks.append(_checked("service", partial(_holder, settings)))
+    return found
 
 
 def examine_running(settings: Settings, database: Database, cluster: Cluster | None) -> Checks:
@@ -77,14 +81,14 @@ def _examine(
 
 def _checked(name: str, check: Callable[[], object]) -> Check:
     try:
-        check()
+        note = check()
     except InputError as error:
         return Check(
             name=name, ok=False, problem=f"{error.field}: {error.problem}", remedy=error.remedy
         )
     except ServiceError as error:
         return Check(name=name, ok=False, problem=error.detail, remedy=error.remedy)
-    return Check(name=name, ok=True)
+    return Check(name=name, ok=True, note=note if isinstance(note, str) else None)
 
 
 def check_folder(folder: Path) -> None:
@@ -149,6 +153,17 @@ def _check_database(settings: Settings) -> None:
     try:
         database.check_pages()
         check_schema(database)
+    finally:
+        database.close()
+
+
+def _holder(settings: Settings) -> str | None:
+    """The service that runs on the data now; a second one would be refused."""
+    if settings.database_url is None and not settings.database_file.exists():
+        return None
+    database = Database(settings.store_url)
+    try:
+        return holder(database, settings.process_name)
     finally:
         database.close()
 

@@ -28,6 +28,7 @@ def command(as_json: bool) -> None:
         found = Checks(checks=[Check(name="settings", ok=False, problem=problem, remedy=remedy)])
     lines = [
         f"{'ok  ' if check.ok else 'FAIL'}  {check.name}"
+        + (f": {check.note}" if check.note else "")
         + ("" if check.ok else f": {check.problem} {check.remedy}")
         for check in found.checks
     ]

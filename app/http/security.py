@@ -14,6 +14,7 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
@@ -31,6 +32,8 @@ from app.settings import Settings
 from app.store.database import StoreError
 
 SESSION_COOKIE = "knitcore_session"
+GONE = 499
+"""Status, in the log only, of a request whose client went before it was complete."""
 OPENED_BY = "knitcore.opened_by"
 """Token and session of a request, in its scope."""
 LOGIN_FAILURES = 20
@@ -162,6 +165,8 @@ class Guard:
             stopping = StoppingError("The service is stopping.")
             answer = problem_response(stopping.problem, stopping.headers)
             await answer(scope, receive, send_with_headers)
+        except ClientDisconnect:  # before its request was complete; the log shall tell
+            await Response(status_code=GONE)(scope, receive, send_with_headers)
         except Exception as error:  # answered here, so that its answer has the headers, too
             if started:
                 raise

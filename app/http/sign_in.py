@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from urllib.parse import parse_qs
 
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import HTMLResponse
 from starlette.types import Receive, Scope
 
@@ -51,11 +51,14 @@ def token_page(status: int, problem: str = "") -> HTMLResponse:
 
 
 async def sign_in_form(scope: Scope, receive: Receive) -> tuple[str, str]:
-    """(token, address to go to) of a submitted form; empty strings if it is malformed."""
+    """(token, address to go to) of a submitted form; empty strings if it is malformed or cut."""
     content = b""
-    async for part in Request(scope, receive).stream():
-        content += part
-        if len(content) > MOST_BYTES:
-            return "", ""
+    try:
+        async for part in Request(scope, receive).stream():
+            content += part
+            if len(content) > MOST_BYTES:
+                return "", ""
+    except ClientDisconnect:
+        return "", ""
     fields = parse_qs(content.decode("latin-1"))
     return fields.get("token", [""])[0], fields.get("to", ["/"])[0]

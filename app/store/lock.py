@@ -37,6 +37,33 @@ def held(database: Database, process: str, at: str = "") -> Iterator[None]:
         yield
 
 
+def holder(database: Database, process: str) -> str | None:
+    """The service that has the data now, in words; None if there is none.
+
+    Raises
+    ------
+    StoreError
+        If the database cannot be reached.
+    """
+    if not database.is_sqlite:
+        try:
+            with _of_server(database, process):
+                return None
+        except InputError:
+            return f"A service called {process!r} runs on this database."
+    if not database.lock_file.exists():
+        return None
+    handle = os.open(database.lock_file, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        pid, address = _holder(handle)
+        return f"Process {pid} runs on it{f', at {address}' if address else ''}."
+    finally:
+        os.close(handle)
+    return None
+
+
 @contextlib.contextmanager
 def _of_file(file: Path, at: str) -> Iterator[None]:
     handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
@@ -44,7 +71,7 @@ def _of_file(file: Path, at: str) -> Iterator[None]:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            pid, _, address = _holder(handle).partition(" ")
+            pid, address = _holder(handle)
             known = f"Open {address} in a browser, or stop" if address else "Stop"
             raise InputError(
                 "data_dir",
@@ -58,8 +85,10 @@ def _of_file(file: Path, at: str) -> Iterator[None]:
         os.close(handle)  # which unlocks it, as the end of a killed process does
 
 
-def _holder(handle: int) -> str:
-    return os.pread(handle, 300, 0).decode(errors="replace") or "unknown"
+def _holder(handle: int) -> tuple[str, str]:
+    """Number and address of the process that wrote itself into a lock's file."""
+    pid, _, address = os.pread(handle, 300, 0).decode(errors="replace").partition(" ")
+    return pid or "unknown", address
 
 
 @contextlib.contextmanager

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner, Result
@@ -78,7 +79,7 @@ def _told(folder: Path, **environment: str) -> tuple[int, dict[str, dict[str, st
     given = {"KNITCORE_DATA_DIR": str(folder)} | environment
     result = CliRunner().invoke(main, ["doctor", "--json"], env=given)
     checks = json.loads(result.stdout)["checks"]
-    assert all(set(check) == {"name", "ok", "problem", "remedy"} for check in checks)
+    assert all(set(check) == {"name", "ok", "problem", "remedy", "note"} for check in checks)
     return result.exit_code, {check["name"]: check for check in checks if not check["ok"]}
 
 
@@ -155,6 +156,7 @@ def broken(
     for name in found.limits:
         monkeypatch.setattr(doctor, name, 1 << 62)
     monkeypatch.setattr(doctor.resource, "getrlimit", lambda _: (4_096, 4_096))
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda _: SimpleNamespace(free=1 << 40))
     monkeypatch.setattr(cluster_module, "CONNECT_S", 0.2)
     for name, value in ({"KNITCORE_DATA_DIR": str(tmp_path)} | dict(found.environment)).items():
         monkeypatch.setenv(name, value)
@@ -236,6 +238,17 @@ def test_a_second_service_on_the_same_data_is_refused(tmp_path: Path) -> None:
             pass
     with held(database, "main"):  # free again
         pass
+    database.close()
+
+
+def test_doctor_names_the_service_that_runs(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{_database(tmp_path)}")
+    environment = {"KNITCORE_DATA_DIR": str(tmp_path)}
+    with held(database, "main", "http://127.0.0.1:8737/"):
+        told = CliRunner().invoke(main, ["doctor"], env=environment)
+        named = f"Process {os.getpid()} runs on it, at http://127.0.0.1:8737/."
+        assert (told.exit_code, named in told.output) == (0, True)
+    assert "runs on it" not in CliRunner().invoke(main, ["doctor"], env=environment).output
     database.close()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 from typing import Any
 
 import pytest
@@ -139,3 +140,25 @@ def test_open_bodies_of_one_user_are_bounded(client: TestClient) -> None:
     finally:
         state.in_use = usual
     assert BUDGETS.body_bytes >= 2 * state.settings.max_body_bytes
+
+
+def test_a_client_that_goes_in_the_middle_of_a_body_is_no_error_of_the_service(
+    client: TestClient, caplog: pytest.LogCaptureFixture
+) -> None:
+    coming = iter([{"type": "http.request", "body": b"{", "more_body": True}])
+
+    async def receive() -> Any:
+        return next(coming, {"type": "http.disconnect"})
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    sent: list[Any] = []
+    headers = [(b"host", b"127.0.0.1"), (b"content-length", b"900")]
+    scope = {"type": "http", "method": "POST", "path": "/api/v1/predict", "headers": headers}
+    scope |= {"query_string": b"", "scheme": "http", "http_version": "1.1"}
+    assert client.portal is not None
+    with caplog.at_level(logging.INFO):
+        client.portal.call(client.app, scope, receive, send)
+    assert sent[0]["status"] == 499
+    assert [record.levelname for record in caplog.records] == ["INFO"]
