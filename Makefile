@@ -6,6 +6,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+# Python keeps what it has compiled, whatever the surroundings say: the tests start many processes.
+export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
 .PHONY: help install page wheel serve test test-slow ten-runs coverage study test-postgres test-kill test-faults fuzz lint audit sbom format types frontend-check bench bench-service docs site gallery mutation examples types stitches lock clean
@@ -47,18 +49,24 @@ wheel: page $(VENV)/.installed ## Build wheel and sdist with the page in them, a
 
 install: $(VENV)/.installed frontend/dist/index.html ## Make .venv with the product in it, and the page
 
+# numba compiles a kernel when it is first called, which takes up to 20 s: best before somebody waits
+$(VENV)/.compiled: $(VENV)/.installed $(shell grep -rl njit --include=*.py knitcore) scripts/compile_kernels.py
+	@$(BIN)/python scripts/compile_kernels.py
+	@touch $@
+
 # --- running ----------------------------------------------------------------------------------
 # Python's and Node's packages at once; OPTIONS="--port 8738" goes to `knitcore serve`
 serve:           ## Run the tool and print its address
 	@$(MAKE) --no-print-directory --silent -j 2 install
-	@$(BIN)/knitcore serve $(OPTIONS)
+	@nice -n 19 $(MAKE) --no-print-directory --silent $(VENV)/.compiled & exec $(BIN)/knitcore serve $(OPTIONS)
 
 # --- checking ---------------------------------------------------------------------------------
-test: $(VENV)/.installed-dev frontend-check page ## Run the default suite (browser tests install Chromium if missing)
+test: $(VENV)/.installed-dev frontend/node_modules/.installed ## Run the default suite (browser tests install Chromium if missing)
 	scripts/ensure-chromium
+	@$(MAKE) --no-print-directory -j 3 $(VENV)/.compiled frontend-check page
 	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
 
-test-slow: $(VENV)/.installed-dev page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
+test-slow: $(VENV)/.installed-dev $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
 ten-runs: $(VENV)/.installed-dev ## Run the default suite ten times in a row on a busy machine; log in build

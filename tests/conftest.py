@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import gc
 import os
 import shutil
 import tempfile
@@ -22,3 +23,8 @@ os.environ.setdefault("KNITCORE_WORKER_PRIORITY", "low")
 _DATA = tempfile.mkdtemp(prefix="knitcore-tests-")
 os.environ["KNITCORE_DATA_DIR"] = _DATA
 atexit.register(shutil.rmtree, _DATA, ignore_errors=True)
+
+
+def pytest_collection_finish() -> None:
+    """What has been imported and collected stays to the end; nobody need look through it again."""
+    gc.freeze()

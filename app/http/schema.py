@@ -86,7 +86,7 @@ def install_schema(app: FastAPI) -> None:
         if app.openapi_schema is None:
             schema = made()
             asked, found = _read("requests.json"), _read("answers.json")
-            for name, operation in _operations(schema):
+            for name, operation in operations(schema):
                 _mark_problems(operation["responses"])
                 for status, response in operation["responses"].items():
                     _add_headers(int(status), response)
@@ -119,12 +119,8 @@ def install_schema(app: FastAPI) -> None:
         return tagged(content(), request.headers)
 
 
-def operations(app: FastAPI) -> list[str]:
-    """All operations, such as ``GET /healthz``."""
-    return [name for name, _ in _operations(app.openapi())]
-
-
-def _operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def operations(schema: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """All operations of a schema with their names, such as ``GET /healthz``."""
     for path, methods in schema["paths"].items():
         for method, operation in methods.items():
             yield f"{method.upper()} {path}", operation

@@ -3,6 +3,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
@@ -21,6 +22,13 @@ def client() -> Iterator[TestClient]:
     app = create_app(Settings(workers=1))
     with TestClient(app, base_url="http://127.0.0.1", raise_server_exceptions=False) as client:
         yield client
+
+
+@pytest.fixture(scope="session")
+def schema(client: TestClient) -> dict[str, Any]:
+    """The OpenAPI schema of the service."""
+    found: dict[str, Any] = client.get("/openapi.json").json()
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from app.models.charts import CellLines, ChartLines, RepeatText
@@ -19,9 +18,8 @@ NAMED_ELSEWHERE = {"interval_source", "intervals"}
 
 
 @pytest.fixture
-def shapes(client: TestClient) -> dict[str, Schema]:
-    assert isinstance(client.app, FastAPI)
-    found: dict[str, Schema] = client.app.openapi()["components"]["schemas"]
+def shapes(schema: Schema) -> dict[str, Schema]:
+    found: dict[str, Schema] = schema["components"]["schemas"]
     assert {operation.result.__name__ for operation in operations().values()} <= set(found)
     return found
 

@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.http.schema import TAGS
+from app.http.schema import TAGS, operations
 from app.jobs.kinds import KINDS
 
 FIXED = ("/openapi.json", "/docs", "/api/v1/patterns", "/api/v1/materials/acrylic")
 
 
-@pytest.fixture
-def schema(client: TestClient) -> dict[str, Any]:
-    assert isinstance(client.app, FastAPI)
-    return client.app.openapi()
-
-
-def _operations(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    for methods in schema["paths"].values():
-        yield from methods.values()
-
-
 def test_every_operation_has_an_id_of_its_own_and_a_described_tag(schema: dict[str, Any]) -> None:
-    ids = [operation["operationId"] for operation in _operations(schema)]
+    ids = [operation["operationId"] for _, operation in operations(schema)]
     assert len(ids) == len(set(ids))
     assert all(name.isidentifier() for name in ids)
-    assert {tag for operation in _operations(schema) for tag in operation["tags"]} == set(TAGS)
+    assert {tag for _, operation in operations(schema) for tag in operation["tags"]} == set(TAGS)
 
 
 def test_ways_to_sign_in_are_declared(schema: dict[str, Any]) -> None:
@@ -45,7 +32,7 @@ def test_headers_are_described(schema: dict[str, Any]) -> None:
     assert {"ETag", "Location", "RateLimit-Remaining"} <= set(made["201"]["headers"])
     assert "Retry-After" in made["429"]["headers"]
     assert "WWW-Authenticate" in made["401"]["headers"]
-    for operation in _operations(schema):
+    for _, operation in operations(schema):
         for response in operation["responses"].values():
             for header in response.get("headers", {}).values():
                 assert header["$ref"].rpartition("/")[2] in schema["components"]["headers"]

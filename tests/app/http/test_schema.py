@@ -6,9 +6,7 @@ import os
 from collections.abc import Iterator
 
 import pytest
-import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
-from schemathesis.specs.openapi import checks
 
 from tests.app.service import Service
 
@@ -26,6 +24,9 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 @pytest.mark.slow
 @pytest.mark.timeout(150)
 def test_every_answer_is_documented(url: str) -> None:
+    import schemathesis  # a second that the default suite has no use for
+    from schemathesis.specs.openapi import checks
+
     schema = schemathesis.openapi.from_url(f"{url}/openapi.json")
     strange: list[str] = []
     count = 0
