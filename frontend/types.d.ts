@@ -371,14 +371,6 @@ export interface CharacterisedFabric {
   curves: Record<Direction, FabricCurve>;
 }
 
-/** A chart in canonical form. */
-export interface ChartResult {
-  rows: number;
-  columns: number;
-  /** K/P lines, the top row first, as seen from the face. */
-  text: string;
-}
-
 /** Ends of a strip: gripped, or free to slide along the clamp. */
 export type Clamps = "clamped" | "sliding";
 
@@ -1178,7 +1170,8 @@ export interface ImportResult {
   note: string | null;
   rows: number;
   columns: number;
-  repeat: ChartResult;
+  /** A repeat: K/P, the top row first, rows separated by /. */
+  repeat: string;
   /** What may have been read wrongly or lost, such as a region. */
   notes: string[];
 }
@@ -1465,13 +1458,14 @@ export interface ParseRequest {
   text: string;
 }
 
-/** A chart and its smallest repeat. */
+/** A chart in canonical form and its smallest repeat. */
 export interface ParsedChart {
   rows: number;
   columns: number;
   /** K/P lines, the top row first, as seen from the face. */
   text: string;
-  repeat: ChartResult;
+  /** A repeat: K/P, the top row first, rows separated by /. */
+  repeat: string;
 }
 
 /** A region of one repeat. */

@@ -7,10 +7,9 @@ from pathlib import Path
 from pydantic import Field
 
 from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartLines
+from app.models.charts import ChartLines, RepeatText
 from app.models.uploads import UploadedFile, stored
 from app.operations.context import Context
-from app.operations.parse import ChartResult
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.formats.chart_files import read_chart, read_piece
@@ -41,7 +40,7 @@ class ImportResult(FoundDesign):
 
     rows: int
     columns: int
-    repeat: ChartResult
+    repeat: RepeatText
     notes: list[str] = Field(
         [], description="What may have been read wrongly or lost, such as a region."
     )
@@ -60,7 +59,7 @@ def import_(request: ImportRequest, context: Context) -> ImportResult:
         design = design_in(path)
     chart = StitchChart.parse(design.chart)
     return ImportResult.of(
-        design, chart, repeat=chart.repeat_cut(), notes=layout_notes(chart, design)
+        design, chart, repeat=chart.repeat_cut().key, notes=layout_notes(chart, design)
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartLines, ChartText
+from app.models.charts import ChartLines, ChartText, RepeatText
 from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.chart import StitchChart
@@ -15,25 +15,20 @@ class ParseRequest(RequestModel):
     text: ChartText
 
 
-class ChartResult(ResultModel):
-    """A chart in canonical form."""
+class ParsedChart(ResultModel):
+    """A chart in canonical form and its smallest repeat."""
 
     rows: int
     columns: int
     text: ChartLines
-
-
-class ParsedChart(ChartResult):
-    """A chart and its smallest repeat."""
-
-    repeat: ChartResult
+    repeat: RepeatText
 
 
 def parse(request: ParseRequest, context: Context) -> ParsedChart:
     """K/P lines, the top row first; errors name line and stitch."""
     del context
     chart = StitchChart.parse(request.text)
-    return ParsedChart.of(chart, repeat=chart.repeat_cut())
+    return ParsedChart.of(chart, repeat=chart.repeat_cut().key)
 
 
 OPERATION = Operation(

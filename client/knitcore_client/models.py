@@ -1309,15 +1309,6 @@ class CharacterisedFabric(BaseModel):
     curves: dict[Direction, FabricCurve]
 
 
-class ChartResult(BaseModel):
-    """A chart in canonical form."""
-
-    rows: int
-    columns: int
-    text: str
-    """K/P lines, the top row first, as seen from the face."""
-
-
 class CompareResult(BaseModel):
     """Errors of each frame, in the order of the stretch."""
 
@@ -1817,7 +1808,8 @@ class ImportResult(BaseModel):
     note: str | None = None
     rows: int
     columns: int
-    repeat: ChartResult
+    repeat: str
+    """A repeat: K/P, the top row first, rows separated by /."""
     notes: list[str] = []
     """What may have been read wrongly or lost, such as a region."""
 
@@ -2048,13 +2040,14 @@ class Painted(BaseModel):
 
 
 class ParsedChart(BaseModel):
-    """A chart and its smallest repeat."""
+    """A chart in canonical form and its smallest repeat."""
 
     rows: int
     columns: int
     text: str
     """K/P lines, the top row first, as seen from the face."""
-    repeat: ChartResult
+    repeat: str
+    """A repeat: K/P, the top row first, rows separated by /."""
 
 
 class PatchResult(BaseModel):

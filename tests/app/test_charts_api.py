@@ -11,7 +11,7 @@ def test_a_text_is_read_and_its_repeat_found(client: TestClient) -> None:
     answer = client.post("/api/v1/charts/parse", json={"text": "kpkpk\n• | • | •"}).json()
     assert (answer["rows"], answer["columns"]) == (2, 5)
     assert answer["text"] == "KPKPK\nPKPKP"
-    assert answer["repeat"] == {"rows": 2, "columns": 2, "text": "KP\nPK"}
+    assert answer["repeat"] == "KP/PK"
 
 
 def test_patterns_are_repeats_without_a_smaller_one(client: TestClient) -> None:

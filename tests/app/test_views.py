@@ -68,8 +68,7 @@ def test_the_same_design_twice_is_one_scene(client: TestClient) -> None:
 def test_a_closed_view_is_drawn_again_by_the_next_request(client: TestClient) -> None:
     body = {"chart": "KP\nPK", "material": "cotton"}
     client.put("/api/v1/views/design-that-slept", json=body)
-    views = client.app.state.views  # type: ignore[attr-defined]
-    views._views.pop("local/design-that-slept").stop()
+    client.app.state.views.close()  # type: ignore[attr-defined]
     assert client.put("/api/v1/views/design-that-slept", json=body).json()["stitches"] == 4
     assert b"/fabric/" in _messages(client, "design-that-slept", b"/fabric/")
 
