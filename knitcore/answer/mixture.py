@@ -142,9 +142,8 @@ def law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Arr
 
 def _law_slopes(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
     """d ln strain / d ln stress of a law: 1 at first, less where it stiffens."""
-    logs = np.log(_STRESSES)
-    slopes = np.gradient(_log_strains(law, direction), logs)
-    return np.asarray(np.interp(np.log(np.maximum(stress_n_per_mm, _STRESSES[0])), logs, slopes))
+    at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
+    return np.asarray(np.interp(at, np.log(_STRESSES), _slopes(law, direction)))
 
 
 def _law_shares(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
@@ -158,6 +157,11 @@ def _shares(law: ConstitutiveLaw, direction: Direction) -> Array:
     free = np.exp(_log_strains(law, direction))
     across = free_transverse_strains(law, direction, free)
     return np.array([across, held_strains_at_stress(law, direction, _STRESSES)]) / free
+
+
+@lru_cache(maxsize=128)
+def _slopes(law: ConstitutiveLaw, direction: Direction) -> Array:
+    return np.asarray(np.gradient(_log_strains(law, direction), np.log(_STRESSES)))
 
 
 @lru_cache(maxsize=128)

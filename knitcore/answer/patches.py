@@ -1,10 +1,12 @@
 """Large charts: patches of stitches, each with its own answer, that pull on each other.
 
 A repeat of at most :data:`SIDE` stitches a side, a rib or a welt is one patch. A larger chart is
-cut into patches of about that size. Each is a pure fabric or a mixed chart of its own; up to twice
-that size, its densities pass gradually from those of the whole chart to its own. The
-densities of mixed patches are shifted so that their mean is the whole chart's: a cut across a
-repeat then does not change the result for the whole.
+cut at its middle and in steps of that size from there. Each patch has the answer of the window of
+that size around it, a pure fabric or a mixed chart of its own. The patches at the ends are smaller
+than their windows and grow with the chart, so one row more changes little. Up to twice that size,
+the densities of patches pass gradually from those of the whole chart to their own. The densities of
+mixed patches are shifted so that their mean is the whole chart's: a cut across a repeat then does
+not change the result for the whole.
 
 Patches form lines along the pull: in a line all patches carry the same force per row (wale), and
 their stretched sizes add up; all lines are strained alike, and their forces add up.
@@ -15,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,7 +36,7 @@ from knitcore.materials import Interval, Material, Origin
 from knitcore.phases import pure_fabric
 
 SIDE = 16
-"""Approximate number of stitches along the side of a patch."""
+"""Stitches along the side of a patch and of its window."""
 MOST_A_SIDE = 8
 """Patches along each side of a chart, at most; they are larger where that is not enough."""
 
@@ -54,6 +56,11 @@ class Patches:
     rows: NDArray[np.intp]
     columns: NDArray[np.intp]
     answers: tuple[tuple[Answer, ...], ...]
+
+    def windows(self) -> list[list[tuple[slice, slice]]]:
+        """Rows and columns of the stitches that decide each patch's answer, [row][column]."""
+        above, aside = _windows(self.rows), _windows(self.columns)
+        return [[(along, across) for across in aside] for along in above]
 
     @property
     def _flat(self) -> list[Answer]:
@@ -155,8 +162,6 @@ def patches_of(
     material: Material,
     gauge: RelaxedSize | None = None,
     swept: SweptChart | None = None,
-    *,
-    gradual: bool = True,
 ) -> Patches:
     """A chart in patches, each with its answer.
 
@@ -166,9 +171,6 @@ def patches_of(
     gauge : measured relaxed size of the whole chart's mean stitch, if known.
     swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
         of the packaged samples.
-
-    gradual : whether patches of a chart slightly larger than one are nearly alike. A swatch, whose
-        textures have positions, does not use this.
 
     Raises
     ------
@@ -186,23 +188,21 @@ def patches_of(
     if swept is not None or small:
         return _one(chart, mixed(repeat, densities(repeat), material, gauge, swept))
     rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
-    cells = [
-        (slice(*across), slice(*along)) for across in pairwise(rows) for along in pairwise(columns)
-    ]
+    cells = list(product(_windows(rows), _windows(columns)))
     parts = [repeat.region(*cell) for cell in cells]
     found = [densities(part) for part in parts]
-    moved = _difference(densities(repeat), found, [part.purl.size for part in parts])
-    # a chart slightly larger than one patch gets almost the answer of one patch
-    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0) if gradual else 1.0
+    counts = np.outer(np.diff(rows), np.diff(columns)).ravel()
+    moved = _difference(densities(repeat), found, counts)
     shifted = [_sum(own, moved) for own in found]
+    # a chart slightly larger than one patch gets almost the answer of one patch
+    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0)
     if apart < 1:
         shifted = [_between(densities(repeat), own, apart) for own in shifted]
-
-    fabrics = cache(partial(measured, material=material)) if apart == 1 else None
+    pure = cache(partial(measured, material=material)) if apart == 1 else None
 
     def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
         given = zip(parts, shifted, sizes, strict=True)
-        flat = [_patch(part, own, material, size, fabrics) for part, own, size in given]
+        flat = [_patch(part, own, material, size, pure) for part, own, size in given]
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
         return Patches(rows, columns, tuple(lines))
@@ -239,11 +239,34 @@ def _one(chart: StitchChart, answer: Answer) -> Patches:
 
 
 def _cuts(stitches: int) -> NDArray[np.intp]:
-    count = min(-(-stitches // SIDE), MOST_A_SIDE)
-    return np.linspace(0, stitches, count + 1).round().astype(np.intp)
+    """Where patches begin and end: the middle and steps from there, as far as there are stitches.
+
+    Examples
+    --------
+    >>> _cuts(16).tolist(), _cuts(20).tolist(), _cuts(40).tolist()
+    ([0, 16], [0, 10, 20], [0, 4, 20, 36, 40])
+    """
+    if stitches <= SIDE:
+        return np.array([0, stitches])
+    step = max(SIDE, stitches / MOST_A_SIDE)
+    steps = step * np.arange(1, MOST_A_SIDE)
+    inside = stitches / 2 + np.concatenate([-steps, [0.0], steps])
+    return np.unique(np.clip(np.append(inside.round(), [0, stitches]), 0, stitches)).astype(np.intp)
 
 
-def _difference(whole: Densities, parts: Sequence[Densities], counts: Sequence[int]) -> Densities:
+def _windows(cuts: NDArray[np.intp]) -> list[slice]:
+    """Of each patch, as many stitches as it has, or :data:`SIDE` if the chart has as many."""
+    end, found = int(cuts[-1]), []
+    for low, high in pairwise(cuts.tolist()):
+        size = min(max(SIDE, high - low), end)
+        start = min(max((low + high - size) // 2, 0), end - size)
+        found.append(slice(start, start + size))
+    return found
+
+
+def _difference(
+    whole: Densities, parts: Sequence[Densities], counts: NDArray[np.intp]
+) -> Densities:
     own = zip(*(part.arrays for part in parts), strict=True)
     means = (np.average(np.stack(values), axis=0, weights=counts) for values in own)
     return Densities(*(a - mean for a, mean in zip(whole.arrays, means, strict=True)))

@@ -83,3 +83,13 @@ def test_a_growing_piece_keeps_its_answer(above: str) -> None:
         parts = [hem.resized(rows, side).purl, body.resized(side - rows, side).purl]
         pieces.append(values(StitchChart(np.vstack(parts)))[0])
     assert np.abs(np.diff(np.array(pieces), axis=0)).max() < 0.15
+
+
+def test_a_row_more_than_two_patches_changes_little() -> None:
+    """From 32 to 33 stitches a side another patch begins."""
+    draw = np.random.default_rng(0).random((33, 33)) < 0.3
+    hem = np.zeros((33, 33), dtype=bool)
+    hem[:10] = StitchChart.parse("KKPP").resized(10, 33).purl
+    for whole in (draw, hem):
+        found, widths = change(StitchChart(whole[:32, :32]), StitchChart(whole))
+        assert max(found, widths) < 0.03
