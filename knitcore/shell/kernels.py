@@ -96,57 +96,56 @@ def quarters(x: Array, corners: Ints, parameters: Array, gradient: Array) -> flo
 
 
 @numba.njit(cache=True)
-def _cross(a: RealOrComplex, b: RealOrComplex, out: RealOrComplex) -> None:
-    out[0] = a[1] * b[2] - a[2] * b[1]
-    out[1] = a[2] * b[0] - a[0] * b[2]
-    out[2] = a[0] * b[1] - a[1] * b[0]
+def _cross(ax: Any, ay: Any, az: Any, bx: Any, by: Any, bz: Any) -> tuple[Any, Any, Any]:
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
 @numba.njit(cache=True)
-def _dot(a: RealOrComplex, b: RealOrComplex) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+def turn_slope(points: RealOrComplex, slope: RealOrComplex) -> tuple[Any, Any, Any, Any]:
+    """Sine and cosine of a hinge's angle, up to a common factor, and the squares of the widths of
+    its sides; ``slope`` (4, 3) receives the angle's.
 
-
-@numba.njit(cache=True)
-def turn_slope(
-    points: RealOrComplex, slope: RealOrComplex, normals: RealOrComplex
-) -> tuple[float, float]:
-    """Sine and cosine of a hinge's angle, up to a common factor, and the angle's slope (4, 3).
-
-    ``points`` (4, 3): p, q, and the two far middles; ``normals`` (2, 3) receives those of the two
-    sides. Written without a conjugate or an absolute value, so that a complex step through it gives
-    the second derivatives to the last digit. Bridson, Marino, Fedkiw, "Simulation of clothing with
+    ``points`` (4, 3): p, q, and the two far middles. Written without a conjugate or an absolute
+    value, so that a complex step through it gives the second derivatives to the last digit, and
+    in scalars, for it takes most of the time. Bridson, Marino, Fedkiw, "Simulation of clothing with
     folds and wrinkles" (2003).
     """
-    e = points[1] - points[0]
-    left0, left1 = points[2] - points[0], points[2] - points[1]
-    right0, right1 = points[3] - points[0], points[3] - points[1]
-    n1, n2, across = normals[0], normals[1], np.empty_like(e)
-    _cross(e, left0, n1)
-    _cross(right0, e, n2)
-    _cross(n1, n2, across)
-    length = np.sqrt(_dot(e, e))
-    s1, s2 = _dot(n1, n1), _dot(n2, n2)
-    along1, along2 = _dot(left1, e) / length / s1, _dot(right1, e) / length / s2
-    back1, back2 = _dot(left0, e) / length / s1, _dot(right0, e) / length / s2
-    for m in range(3):
-        slope[2, m] = -length * n1[m] / s1
-        slope[3, m] = -length * n2[m] / s2
-        slope[0, m] = -(along1 * n1[m] + along2 * n2[m])
-        slope[1, m] = back1 * n1[m] + back2 * n2[m]
-    return _dot(across, e) / length, _dot(n1, n2)
+    px, py, pz = points[0, 0], points[0, 1], points[0, 2]
+    ex, ey, ez = points[1, 0] - px, points[1, 1] - py, points[1, 2] - pz
+    lx, ly, lz = points[2, 0] - px, points[2, 1] - py, points[2, 2] - pz
+    rx, ry, rz = points[3, 0] - px, points[3, 1] - py, points[3, 2] - pz
+    ax, ay, az = _cross(ex, ey, ez, lx, ly, lz)
+    bx, by, bz = _cross(rx, ry, rz, ex, ey, ez)
+    cx, cy, cz = _cross(ax, ay, az, bx, by, bz)
+    square = ex * ex + ey * ey + ez * ez
+    length = np.sqrt(square)
+    s1, s2 = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz
+    back1 = (lx * ex + ly * ey + lz * ez) / (length * s1)
+    back2 = (rx * ex + ry * ey + rz * ez) / (length * s2)
+    along1, along2 = back1 - length / s1, back2 - length / s2
+    far1, far2 = -length / s1, -length / s2
+    slope[2, 0], slope[2, 1], slope[2, 2] = far1 * ax, far1 * ay, far1 * az
+    slope[3, 0], slope[3, 1], slope[3, 2] = far2 * bx, far2 * by, far2 * bz
+    slope[0, 0] = -(along1 * ax + along2 * bx)
+    slope[0, 1] = -(along1 * ay + along2 * by)
+    slope[0, 2] = -(along1 * az + along2 * bz)
+    slope[1, 0] = back1 * ax + back2 * bx
+    slope[1, 1] = back1 * ay + back2 * by
+    slope[1, 2] = back1 * az + back2 * bz
+    sine = (cx * ex + cy * ey + cz * ez) / length
+    return sine, ax * bx + ay * by + az * bz, s1 / square, s2 / square
 
 
 @numba.njit(cache=True)
 def width_slope(points: RealOrComplex, side: int, slope: RealOrComplex) -> Any:
     """Square of the width of a hinge's side (2 or 3), and the slope (4, 3) of its logarithm."""
-    e = points[1] - points[0]
-    f = points[side] - points[0]
-    n, by_far, by_end = np.empty_like(e), np.empty_like(e), np.empty_like(e)
-    _cross(e, f, n)
-    _cross(n, e, by_far)
-    _cross(f, n, by_end)
-    ee, nn = _dot(e, e), _dot(n, n)
+    ex, ey, ez = points[1] - points[0]
+    fx, fy, fz = points[side] - points[0]
+    nx, ny, nz = _cross(ex, ey, ez, fx, fy, fz)
+    by_far = _cross(nx, ny, nz, ex, ey, ez)
+    by_end = _cross(fx, fy, fz, nx, ny, nz)
+    e = (ex, ey, ez)
+    ee, nn = ex * ex + ey * ey + ez * ez, nx * nx + ny * ny + nz * nz
     slope[:] = 0.0
     for m in range(3):
         slope[side, m] = 2.0 * by_far[m] / nn
@@ -188,19 +187,19 @@ def hinges(x: Array, nodes: Ints, parameters: Array, gradient: Array) -> float:
     total = 0.0
     points = np.empty((4, 3))
     slope = np.empty((4, 3))
-    normals = np.empty((2, 3))
     width = np.empty((4, 3))
     for k in range(nodes.shape[0]):
         p, q, a, b, c, d = nodes[k]
         _hinge_points(x, nodes[k], points)
-        sine, cosine = turn_slope(points, slope, normals)
-        angle = np.arctan2(sine, cosine)
-        energy, moment, _ = bent(angle, parameters[k])
+        sine, cosine, left, right = turn_slope(points, slope)
+        energy, moment, _ = bent(np.arctan2(sine, cosine), parameters[k])
         total += energy
-        slope *= moment
+        for i in range(4):
+            for m in range(3):
+                slope[i, m] *= moment
         for side in range(2, 4):
-            narrow = np.log(width_slope(points, side, width) / parameters[k, 3])
-            if narrow < 0.0:
+            if (left if side == 2 else right) < parameters[k, 3]:
+                narrow = np.log(width_slope(points, side, width) / parameters[k, 3])
                 total += 0.5 * parameters[k, 0] * narrow * narrow
                 slope += parameters[k, 0] * narrow * width
         for m in range(3):
@@ -261,10 +260,11 @@ def touches(
 @numba.njit(cache=True)
 def placed(x: Array, points: Ints) -> Array:
     """(k, 3): where the points of the sheet are."""
-    at = np.zeros((points.shape[0], 3))
+    at = np.empty((points.shape[0], 3))
     for i in range(points.shape[0]):
-        for m in range(4):
-            at[i] += 0.25 * x[points[i, m]]
+        a, b, c, d = points[i]
+        for m in range(3):
+            at[i, m] = 0.25 * (x[a, m] + x[b, m] + x[c, m] + x[d, m])
     return at
 
 

@@ -32,7 +32,7 @@ TOLERANCE = 1e-3
 of the load on a corner where that is less."""
 _SHIFT = 3e-3
 """Added to the convex part of the Hessian, in units of the bending stiffness of a corner."""
-_RENEW = 16
+_RENEW = 32
 """Steps with one factor."""
 _LEAST_STEP = 1e-8
 
@@ -73,7 +73,7 @@ def settle(
     Parameters
     ----------
     x : (corners, 3) to begin with, mm.
-    held : (corners,) those that do not move.
+    held : (corners, 3) coordinates that do not change, or (corners,) corners that do not move.
     load_n : (corners, 3) forces that act on the corners, such as their weight.
     time_limit_s : CPU time after which it ends, not converged.
     cancel : called before every step; True stops with CancelledError.
@@ -103,7 +103,9 @@ class _Descent:
         self._sheet = sheet
         self.x = x
         self._load = load_n
-        self._free = np.ones(len(x), bool) if held is None else ~held
+        self._free = np.ones(x.shape, bool)
+        if held is not None:
+            self._free[held] = False
         self._tangent = Tangent(sheet)
         self._unit = sheet.force_scale_n
         if load_n is not None:
@@ -158,14 +160,14 @@ class _Descent:
             self.x, self._pairs, self._free, convex=True, shift=self._shift
         )
         self._factor = splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+            matrix.astype(np.float32), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )  # fmt: skip
         self._age = 0
         self.factors += 1
 
     def _direction(self) -> Array:
-        """Two loops of L-BFGS around the factor."""
+        """Two loops of L-BFGS around the factor, for which single precision is enough."""
         q = self._gradient.copy()
         factors = []
         for moved, change, product in reversed(self._past):
@@ -173,7 +175,7 @@ class _Descent:
             q -= factor * change
             factors.append(factor)
         assert self._factor is not None  # noqa: S101 - made before
-        way = self._factor.solve(q.ravel()).reshape(-1, 3)
+        way = self._factor.solve(q.ravel().astype(np.float32)).reshape(-1, 3).astype(float)
         for (moved, change, product), factor in zip(self._past, reversed(factors), strict=True):
             way += moved * (factor - float((change * way).sum()) / product)
         return -np.asarray(way)

@@ -110,6 +110,44 @@ class Sheet:
         return total, gradient
 
 
+_QUARTERS = ((0, 1, 2), (1, 0, 3), (2, 3, 0), (3, 2, 1))
+"""Corner of a stitch, its neighbour along the row, and that along the column, of every quarter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Net:
+    """Which corners belong together; see :class:`Sheet`. Hinges between the neighbours of the rows,
+    row by row, come before those between the neighbours of the columns, column by column."""
+
+    quads: Ints
+    quarters: Ints
+    hinges: Ints
+
+    @classmethod
+    def of(cls, rows: int, columns: int) -> Net:
+        """The net of so many stitches."""
+        corner = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
+        quads = np.stack(
+            [corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]], axis=-1
+        ).reshape(-1, 4)
+        quarters = np.stack([quads[:, order] for order in _QUARTERS], axis=1).reshape(-1, 3)
+        across = _between(corner.T)
+        across[:, [0, 1]] = across[:, [1, 0]]  # the face stays on the same side
+        hinges = np.concatenate([_between(corner), across])
+        return cls(*(np.ascontiguousarray(part) for part in (quads, quarters, hinges)))
+
+
+def _between(corner: Ints) -> Ints:
+    """Corners of the lines between the neighbours of a row."""
+    return np.stack(
+        [
+            corner[:-1, 1:-1], corner[1:, 1:-1], corner[:-1, :-2], corner[1:, :-2],
+            corner[:-1, 2:], corner[1:, 2:],
+        ],
+        axis=-1,
+    ).reshape(-1, 6)  # fmt: skip
+
+
 def sheet_of(chart: StitchChart, material: Material) -> Sheet:
     """The sheet of a chart.
 
@@ -123,22 +161,17 @@ def sheet_of(chart: StitchChart, material: Material) -> Sheet:
     of = _Fabrics.of(material)
     folds = folds_of(chart, material, of.free_turns)
     size = folds.sizes_mm  # (rows, columns, 2)
-    corner = np.arange((rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
-    quads = np.stack(
-        [corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]], axis=-1
-    ).reshape(-1, 4)
+    net = Net.of(rows, columns)
     by_stitch = phases.reshape(rows, 2, columns, 2).transpose(0, 2, 1, 3).reshape(-1, 4)
-    quarters = np.stack([quads[:, order] for order in _QUARTERS], axis=1).reshape(-1, 3)
     quarter_size = size.reshape(-1, 2).repeat(4, axis=0)
     area = 0.25 * quarter_size.prod(axis=1, keepdims=True)
     membrane = np.concatenate([quarter_size, area * of.membrane[by_stitch].reshape(-1, 4)], axis=1)
-    along = _hinges(chart.purl, phases, of, corner, folds.share)
-    across = _hinges(chart.purl.T, phases.T, of.turned(), corner.T, folds.share.T)
-    across[0][:, [0, 1]] = across[0][:, [1, 0]]  # the face stays on the same side
+    along = _turning(chart.purl, phases, of, folds.share)
+    across = _turning(chart.purl.T, phases.T, of.turned(), folds.share.T)
     rigidity = np.sqrt(of.rigidity_n_mm.prod(axis=1))[by_stitch].mean(axis=1)
     twisting = 4.0 * TWIST * rigidity / size.reshape(-1, 2).prod(axis=1)
     mean = size.mean(axis=(0, 1))
-    flat = np.zeros((corner.size, 3))
+    flat = np.zeros(((rows + 1) * (columns + 1), 3))
     flat[:, 0] = np.tile(np.append(0.0, np.cumsum(size[..., 0].mean(axis=0))), rows + 1)
     flat[:, 1] = np.repeat(np.append(0.0, np.cumsum(size[..., 1].mean(axis=1))), columns + 1)
     flat[:, :2] -= flat[:, :2].mean(axis=0)
@@ -146,19 +179,15 @@ def sheet_of(chart: StitchChart, material: Material) -> Sheet:
         rows=rows,
         columns=columns,
         flat_mm=flat,
-        quarters=np.ascontiguousarray(quarters),
+        quarters=net.quarters,
         membrane=membrane,
-        hinges=np.ascontiguousarray(np.concatenate([along[0], across[0]])),
-        turning=np.concatenate([along[1], across[1]]),
-        quads=np.ascontiguousarray(quads),
+        hinges=net.hinges,
+        turning=np.concatenate([along, across]),
+        quads=net.quads,
         twisting=twisting,
         thickness_mm=of.thickness_mm,
         touch_n_per_mm=float(of.membrane[..., :2].mean() * mean.prod() / of.thickness_mm**2),
     )
-
-
-_QUARTERS = ((0, 1, 2), (1, 0, 3), (2, 3, 0), (3, 2, 1))
-"""Corner of a stitch, its neighbour along the row, and that along the column, of every quarter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,17 +253,10 @@ class _Fabrics:
         )  # fmt: skip
 
 
-def _hinges(
-    purl: NDArray[np.bool_], phases: NDArray[np.uint8], of: _Fabrics, corner: Ints, share: Array
-) -> tuple[Ints, Array]:
-    """Lines between neighbours of a row: their corners, stiffness and rest angle."""
-    nodes = np.stack(
-        [
-            corner[:-1, 1:-1], corner[1:, 1:-1], corner[:-1, :-2], corner[1:, :-2],
-            corner[:-1, 2:], corner[1:, 2:],
-        ],
-        axis=-1,
-    ).reshape(-1, 6)  # fmt: skip
+def _turning(
+    purl: NDArray[np.bool_], phases: NDArray[np.uint8], of: _Fabrics, share: Array
+) -> Array:
+    """Parameters of the lines between neighbours of a row, those of the rows one after another."""
     sign = np.where(purl, -1.0, 1.0).repeat(2, axis=0).repeat(2, axis=1)
     rows, columns = purl.shape
 
@@ -251,5 +273,4 @@ def _hinges(
     stiffness = rigidity * width / length
     shared = 0.5 * (share[:, 1:] + share[:, :-1]).ravel()
     rest = shared * np.clip(free, -closed, closed)
-    turning = np.stack([stiffness, rest, closed, 0.25 * length**2], axis=-1)
-    return nodes, turning
+    return np.stack([stiffness, rest, closed, 0.25 * length**2], axis=-1)

@@ -38,10 +38,11 @@ class Tangent:
     def matrix(
         self, x: Array, pairs: Ints, free: NDArray[np.bool_], *, convex: bool, shift: float = 0.0
     ) -> csc_matrix:
-        """Hessian at a shape; rows of corners that are not free are those of the unit matrix.
+        """Hessian at a shape; rows of coordinates that are not free are those of the unit matrix.
 
         Parameters
         ----------
+        free : (corners, 3)
         convex : leave out the terms that may make it indefinite: the curvature of angles and of
             distances under compression.
         shift : added to the diagonal, N/mm.
@@ -57,21 +58,14 @@ class Tangent:
         )
         if len(touching):
             keys = touching[:, 0] * self._count + touching[:, 1]
-            known = np.searchsorted(blocks, keys)
-            known[known == len(blocks)] = 0
-            inside = blocks[known] == keys
-            np.add.at(data, known[inside], stiff[inside])
-            fresh, place = np.unique(keys[~inside], return_inverse=True)
-            more = np.zeros((len(fresh), 3, 3))
-            np.add.at(more, place, stiff[~inside])
-            order = np.argsort(np.concatenate([blocks, fresh]), kind="stable")
-            blocks = np.concatenate([blocks, fresh])[order]
-            data = np.concatenate([data, more])[order]
+            keys, data = np.concatenate([blocks, keys]), np.concatenate([data, stiff])
+            order = np.argsort(keys, kind="stable")
+            blocks, first = np.unique(keys[order], return_index=True)
+            data = np.add.reduceat(data[order], first)
         row, column = np.divmod(blocks, self._count)
-        data[~(free[row] & free[column])] = 0.0
+        data *= free[row][:, :, None] & free[column][:, None, :]
         own = row == column
-        data[own] += shift * np.eye(3)
-        data[own & ~free[row]] = np.eye(3)
+        data[own] += np.where(free[row[own]], shift, 1.0)[:, :, None] * np.eye(3)
         start = np.searchsorted(row, np.arange(self._count + 1))
         size = 3 * self._count
         return bsr_matrix((data, column, start), shape=(size, size)).tocsc()
@@ -168,10 +162,8 @@ def _hinges(
 ) -> None:
     points = np.empty((4, 3))
     slope = np.empty((4, 3))
-    normals = np.empty((2, 3))
     stepped = np.empty((4, 3), np.complex128)
     complex_slope = np.empty((4, 3), np.complex128)
-    complex_normals = np.empty((2, 3), np.complex128)
     matrix = np.empty((12, 12))
     for k in range(nodes.shape[0]):
         for m in range(3):
@@ -179,19 +171,19 @@ def _hinges(
             points[1, m] = x[nodes[k, 1], m]
             points[2, m] = 0.5 * (x[nodes[k, 2], m] + x[nodes[k, 3], m])
             points[3, m] = 0.5 * (x[nodes[k, 4], m] + x[nodes[k, 5], m])
-        sine, cosine = turn_slope(points, slope, normals)
+        sine, cosine, left, right = turn_slope(points, slope)
         _, moment, stiffness = bent(np.arctan2(sine, cosine), parameters[k])
         matrix[:] = 0.0
         _add_square(slope, stiffness, matrix)
         if not convex:
             for j in range(12):
                 _step(points, j, stepped)
-                turn_slope(stepped, complex_slope, complex_normals)
+                turn_slope(stepped, complex_slope)
                 _add_column(complex_slope, moment, j, matrix)
         for side in range(2, 4):
-            narrow = np.log(width_slope(points, side, slope) / parameters[k, 3])
-            if narrow >= 0.0:
+            if (left if side == 2 else right) >= parameters[k, 3]:
                 continue
+            narrow = np.log(width_slope(points, side, slope) / parameters[k, 3])
             _add_square(slope, parameters[k, 0], matrix)
             if not convex:
                 for j in range(12):

@@ -46,7 +46,7 @@ def test_gradient_is_the_derivative_of_the_energy() -> None:
 def test_hessian_is_the_derivative_of_the_gradient(rough_mm: float) -> None:
     sheet = sheet_of(MIXED, ACRYLIC)
     x, pairs = _crumpled(sheet, rough_mm)
-    matrix = Tangent(sheet).matrix(x, pairs, np.ones(len(x), bool), convex=False)
+    matrix = Tangent(sheet).matrix(x, pairs, np.ones(x.shape, bool), convex=False)
     way, h = np.random.default_rng(1).standard_normal(x.shape), 1e-6
     change = sheet.energy(x + h * way, pairs)[1] - sheet.energy(x - h * way, pairs)[1]
     assert np.allclose(matrix @ way.ravel(), change.ravel() / (2 * h), rtol=1e-5, atol=1e-6)
@@ -56,13 +56,13 @@ def test_hessian_is_the_derivative_of_the_gradient(rough_mm: float) -> None:
 def test_convex_part_of_the_hessian_is_convex() -> None:
     sheet = sheet_of(MIXED, ACRYLIC)
     x, pairs = _crumpled(sheet)
-    matrix = Tangent(sheet).matrix(x, pairs, np.ones(len(x), bool), convex=True)
+    matrix = Tangent(sheet).matrix(x, pairs, np.ones(x.shape, bool), convex=True)
     assert np.linalg.eigvalsh(matrix.toarray()).min() > -1e-12
 
 
 def test_held_corners_have_rows_of_the_unit_matrix() -> None:
     sheet = sheet_of(MIXED, ACRYLIC)
-    free = np.ones(len(sheet.flat_mm), bool)
+    free = np.ones(sheet.flat_mm.shape, bool)
     free[:5] = False
     matrix = Tangent(sheet).matrix(sheet.flat_mm, np.zeros((0, 2), int), free, convex=True)
     assert np.array_equal(matrix[:15].toarray(), np.eye(15, 3 * len(free)))
