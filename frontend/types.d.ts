@@ -505,6 +505,14 @@ export interface Curled {
   id: string;
 }
 
+/** Standard deviations of a stress-strain curve, as logarithms. */
+export interface CurveDeviationDocument {
+  /** of the natural logarithm */
+  log_stress: number;
+  /** of the natural logarithm */
+  log_lock_up: number;
+}
+
 /** A measured stress–strain curve. */
 export interface CurveDocument {
   strain: number[];
@@ -677,12 +685,16 @@ export interface DesignSummary {
   deleted_at: string | null;
 }
 
-/** Standard deviations of the linear constants, in their units. */
+/** Standard deviations of the linear constants, in their units, and of what goes beyond them. */
 export interface DeviationDocument {
   modulus_course: number | null;
   modulus_wale: number | null;
   poisson_yx: number | null;
   poisson_xy: number | null;
+  curve_course: CurveDeviationDocument | null;
+  curve_wale: CurveDeviationDocument | null;
+  log_shear: number | null;
+  source: string;
 }
 
 /** A material direction: course = along rows (x), wale = along columns (y). */
@@ -826,9 +838,13 @@ export interface FabricDocument {
   stitch_wale_mm: number;
   stitch_size_source: string;
   loop_length_mm: number | null;
+  hand_loop_length_mm: number | null;
   yarn_diameter_mm: number | null;
+  hand_yarn_diameter_mm: number | null;
   setting: string;
   origin: Origin;
+  law_source: string;
+  inconsistent: Direction[];
   standard_deviation: DeviationDocument;
   measured: Record<Direction, CurveDocument>;
 }

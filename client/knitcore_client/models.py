@@ -1387,6 +1387,15 @@ class CurlResult(BaseModel):
     notes: list[str]
 
 
+class CurveDeviationDocument(BaseModel):
+    """Standard deviations of a stress-strain curve, as logarithms."""
+
+    log_stress: float
+    """of the natural logarithm"""
+    log_lock_up: float = 0.0
+    """of the natural logarithm"""
+
+
 class CurveDocument(BaseModel):
     """A measured stress–strain curve."""
 
@@ -1506,12 +1515,17 @@ class DesignSummary(BaseModel):
 
 
 class DeviationDocument(BaseModel):
-    """Standard deviations of the linear constants, in their units."""
+    """Standard deviations of the linear constants, in their units, and of what goes beyond
+    them."""
 
     modulus_course: float | None = None
     modulus_wale: float | None = None
     poisson_yx: float | None = None
     poisson_xy: float | None = None
+    curve_course: CurveDeviationDocument | None = None
+    curve_wale: CurveDeviationDocument | None = None
+    log_shear: float | None = None
+    source: str = ""
 
 
 class EstimateResult(BaseModel):
@@ -1608,9 +1622,13 @@ class FabricDocument(BaseModel):
     """mm"""
     stitch_size_source: str = "given by the user"
     loop_length_mm: float | None = None
+    hand_loop_length_mm: float | None = None
     yarn_diameter_mm: float | None = None
+    hand_yarn_diameter_mm: float | None = None
     setting: str = ""
     origin: Origin = "fitted"
+    law_source: str = ""
+    inconsistent: list[Direction] = []
     standard_deviation: DeviationDocument | None = None
     measured: dict[Direction, CurveDocument] | None = None
 

@@ -14,7 +14,7 @@ from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, Constituti
 from knitcore.materials.consistency import check_stated_constants
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.measured import MOST_POINTS, MeasuredCurve
-from knitcore.materials.uncertainty import LawUncertainty, log_deviation
+from knitcore.materials.uncertainty import CurveUncertainty, LawUncertainty, log_deviation
 
 _DEFAULT_RELATIVE_SD = 0.10
 """Assumed where a file gives no standard deviation: the paper's median."""
@@ -103,13 +103,31 @@ class LawDocument(_Model):
         return cls(**asdict(law))
 
 
+LogDeviation = Annotated[float, Field(ge=0, le=5, description="of the natural logarithm")]
+
+
+class CurveDeviationDocument(_Model):
+    """Standard deviations of a stress-strain curve, as logarithms."""
+
+    log_stress: LogDeviation
+    log_lock_up: LogDeviation = 0.0
+
+    def to_uncertainty(self) -> CurveUncertainty:
+        """The uncertainty of the curve."""
+        return CurveUncertainty(self.log_stress, self.log_lock_up)
+
+
 class DeviationDocument(_Model):
-    """Standard deviations of the linear constants, in their units."""
+    """Standard deviations of the linear constants, in their units, and of what goes beyond them."""
 
     modulus_course: Deviation | None = None
     modulus_wale: Deviation | None = None
     poisson_yx: Deviation | None = None
     poisson_xy: Deviation | None = None
+    curve_course: CurveDeviationDocument | None = None
+    curve_wale: CurveDeviationDocument | None = None
+    log_shear: LogDeviation | None = None
+    source: str = ""
 
 
 class CurveDocument(_Model):
@@ -137,9 +155,13 @@ class FabricDocument(_Model):
     stitch_wale_mm: Length
     stitch_size_source: str = "given by the user"
     loop_length_mm: Length | None = None
+    hand_loop_length_mm: Length | None = None
     yarn_diameter_mm: Length | None = None
+    hand_yarn_diameter_mm: Length | None = None
     setting: str = ""
     origin: Origin = Origin.FITTED
+    law_source: str = ""
+    inconsistent: tuple[Direction, ...] = ()
     standard_deviation: DeviationDocument = DeviationDocument()
     measured: dict[Direction, CurveDocument] = Field(default_factory=dict)
 
@@ -158,6 +180,7 @@ class FabricDocument(_Model):
             law=law,
             uncertainty=self._uncertainty(law),
             **{name: getattr(self, name) for name in _SHARED},
+            inconsistent=frozenset(self.inconsistent),
             measured={d: curve.to_curve() for d, curve in self.measured.items()},
         )
 
@@ -173,14 +196,20 @@ class FabricDocument(_Model):
         def absolute(deviation: float | None) -> float:
             return _DEFAULT_POISSON_SD if deviation is None else deviation
 
+        curves = {
+            name: None if curve is None else curve.to_uncertainty()
+            for name in _CURVES
+            for curve in [getattr(given, name)]
+        }
+        assumed = "stated in the file" if stated else "not stated: 10 % assumed, the paper's median"
         return LawUncertainty(
             log_modulus_course=logarithmic(law.modulus_course, given.modulus_course),
             log_modulus_wale=logarithmic(law.modulus_wale, given.modulus_wale),
             poisson_yx=absolute(given.poisson_yx),
             poisson_xy=absolute(given.poisson_xy),
-            source="stated in the file"
-            if stated
-            else "not stated: 10 % assumed, the paper's median",
+            source=given.source or assumed,
+            log_shear=given.log_shear,
+            **curves,
         )
 
     @classmethod
@@ -195,7 +224,15 @@ class FabricDocument(_Model):
                 modulus_wale=law.modulus_wale * _coefficient(spread.log_modulus_wale),
                 poisson_yx=spread.poisson_yx,
                 poisson_xy=spread.poisson_xy,
+                log_shear=spread.log_shear,
+                source=spread.source,
+                **{
+                    name: CurveDeviationDocument(**asdict(curve))
+                    for name in _CURVES
+                    if (curve := getattr(spread, name))
+                },
             ),
+            inconsistent=tuple(sorted(record.inconsistent)),
             measured={d: CurveDocument.from_curve(c) for d, c in record.measured.items()},
         )
 
@@ -206,10 +243,14 @@ _SHARED = (
     "stitch_size_source",
     "origin",
     "loop_length_mm",
+    "hand_loop_length_mm",
     "yarn_diameter_mm",
+    "hand_yarn_diameter_mm",
     "setting",
+    "law_source",
 )
-"""Fields shared with a record."""
+"""Fields shared with a record; only the figures that the paper prints stay in the library."""
+_CURVES = ("curve_course", "curve_wale")
 
 
 class YarnDocument(_Model):
