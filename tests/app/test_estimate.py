@@ -53,6 +53,7 @@ def test_an_estimate_from_one_swatch(client: TestClient) -> None:
     assert asked["warnings"] == []
 
 
+@pytest.mark.slow
 def test_measured_curves_go_from_the_tests_into_the_material(
     client: TestClient, tmp_path: Path
 ) -> None:

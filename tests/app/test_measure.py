@@ -72,6 +72,7 @@ def test_fit_writes_a_law_and_residuals(tmp_path: Path, tests: list[Path]) -> No
     assert pressures[0] == pressures[1]
 
 
+@pytest.mark.slow
 def test_fit_reads_the_authors_layout(tmp_path: Path) -> None:
     files = [write_h5(tmp_path / f"{d}.h5", d) for d in Direction]
     told = run("fit", *files, "--format", "h5")

@@ -46,7 +46,14 @@ CHARTS = _charts()
 SOME = [*list(CHARTS)[:6], *list(CHARTS)[60::40]]
 
 
-@pytest.mark.parametrize("yarn", ["acrylic", "cotton", "lace-bamboo", "acrylic:simulation"])
+@pytest.mark.parametrize(
+    "yarn",
+    [
+        "acrylic",
+        "acrylic:simulation",
+        *(pytest.param(yarn, marks=pytest.mark.slow) for yarn in ("cotton", "lace-bamboo")),
+    ],
+)
 def test_library_operations_and_atlas_give_one_answer(yarn: str) -> None:
     used, charts = material(yarn), list(CHARTS.values())
     atlas = build_atlas(used, [chart.canonical() for chart in charts])

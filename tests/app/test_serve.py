@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 import httpx2
+import pytest
 
 
 def test_it_starts_on_a_free_port_and_stops_on_request() -> None:
@@ -65,6 +66,7 @@ def test_killed_it_leaves_no_worker_behind() -> None:
     assert not worker.exists()
 
 
+@pytest.mark.slow
 def test_killed_while_modules_are_loaded_it_leaves_no_process_behind() -> None:
     code = (
         "import os; from multiprocessing import forkserver\n"

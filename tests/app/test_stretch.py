@@ -125,6 +125,7 @@ def test_the_published_model_warns_beyond_the_lock_up(client: TestClient) -> Non
     assert any("the cloth locks at 1" in message for message in answer["messages"])
 
 
+@pytest.mark.slow
 def test_the_full_model_reports_where_its_law_is_extrapolated(client: TestClient) -> None:
     """Stockinette beside rib locks first; pulled on, the force is thousands of newtons."""
     chart = "\n".join(["KP" * 8 + "K" * 16] * 16 + ["K" * 16 + "KP" * 8] * 16)

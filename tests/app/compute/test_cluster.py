@@ -50,6 +50,9 @@ def _dask(name: str, folder: Path, *options: str, **changed: str) -> subprocess.
         )
 
 
+pytestmark = pytest.mark.slow  # a cluster takes seconds to start
+
+
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("dask")

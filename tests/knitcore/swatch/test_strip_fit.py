@@ -57,6 +57,7 @@ def test_a_law_is_recovered_from_simulated_strips(
         assert stress == pytest.approx(strip.means[0], rel=0.01)
 
 
+@pytest.mark.slow
 def test_pulls_that_differ_make_the_law_less_sure() -> None:
     same, apart = (
         fit_strips([made_strip(d, EVEN, noise=noise) for d in Direction]).uncertainty
@@ -65,6 +66,7 @@ def test_pulls_that_differ_make_the_law_less_sure() -> None:
     assert apart.log_modulus_course > same.log_modulus_course + 0.03
 
 
+@pytest.mark.slow
 def test_a_test_without_the_clamps_distance_strains_evenly(tmp_path: Path) -> None:
     files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
     fit = fit_tests(files[0], files[1])

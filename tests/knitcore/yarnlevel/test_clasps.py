@@ -74,7 +74,7 @@ def test_loose_courses_are_not_fabric():
 
 
 @pytest.mark.parametrize("text", ["K", "KP", "P\nK", "PK\nKP", "KKPP"])
-@pytest.mark.parametrize("branch", ["mirrored", "free"])
+@pytest.mark.parametrize("branch", ["mirrored", pytest.param("free", marks=pytest.mark.slow)])
 def test_relaxed_repeats_are_knitted(text, branch):
     relaxed = relax(StitchChart.parse(text), YARN, 11.28, branch=branch)
     assert cell_is_knitted(relaxed.cell, relaxed.state)

@@ -37,6 +37,7 @@ def test_stress_is_the_slope_of_the_energy(cotton_stockinette):
         assert abs(curve.stress_n_per_mm[0]) < 1e-4
 
 
+@pytest.mark.slow
 def test_published_moduli_of_cotton_stockinette(cotton_stockinette):
     # Supplementary Table 12, simulation
     law = fit_law(*cotton_stockinette).law
@@ -52,6 +53,7 @@ def test_a_stretch_ends_beyond_the_requested_stress(cotton_stockinette):
     assert len(course.cells) < 15
 
 
+@pytest.mark.slow
 def test_contact_takes_over_along_the_wale_of_cotton_garter():
     # Supplementary Fig. 7b: bending leads at rest, contact at high strain
     curve = stretch("cotton", "garter", "wale", 1.0, 11)
