@@ -46,9 +46,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def bundle() -> None:
-    """The page as people get it; `make test` has installed what bundling needs."""
-    if (ROOT / "frontend/node_modules/esbuild").exists():
-        subprocess.run(["node", "frontend/build.mjs"], cwd=ROOT, check=True)
+    """The page as people get it; `make test` has bundled it already."""
+    subprocess.run(["make", "--silent", "page"], cwd=ROOT, check=True)
 
 
 @pytest.fixture(scope="session")

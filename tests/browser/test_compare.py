@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import wait_for_numbers
+
+pytestmark = pytest.mark.slow
 
 
 def test_pieces_limbs_and_yarns_leave_the_console_clean(flat_studio: Page) -> None:

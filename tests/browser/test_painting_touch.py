@@ -10,6 +10,8 @@ from playwright.sync_api import Browser, Page
 from tests.browser.conftest import CHART, TIMEOUT_MS, open_small_chart
 from tests.browser.page import Chart, kept_chart, purls
 
+pytestmark = pytest.mark.slow
+
 Finger = tuple[float, float]
 Touch = Callable[..., None]
 STEPS = 8

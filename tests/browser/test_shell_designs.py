@@ -119,6 +119,7 @@ def test_what_cannot_be_merged_is_a_choice_that_loses_nothing(flat_studio: Page)
     expect(names.filter(has_text="Theirs")).not_to_have_count(0)
 
 
+@pytest.mark.slow
 def test_a_deleted_design_can_be_recovered(flat_studio: Page) -> None:
     painted(flat_studio)
     renamed(flat_studio, "Dispensable")
@@ -131,6 +132,7 @@ def test_a_deleted_design_can_be_recovered(flat_studio: Page) -> None:
     expect(card).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_a_version_is_restored_and_the_state_before_it_kept(flat_studio: Page) -> None:
     first = painted(flat_studio)
     flat_studio.keyboard.press("Control+s")
@@ -176,6 +178,7 @@ def test_a_link_shows_the_design_to_others_and_lets_them_copy_it(
     stranger.close()
 
 
+@pytest.mark.slow
 def test_the_gallery_opens_a_glove_and_the_design_before_it_stays(flat_studio: Page) -> None:
     chart = painted(flat_studio)
     before = flat_studio.url
@@ -191,6 +194,7 @@ def test_the_gallery_opens_a_glove_and_the_design_before_it_stays(flat_studio: P
     assert kept_chart(flat_studio) == chart
 
 
+@pytest.mark.slow
 def test_a_project_file_goes_out_and_comes_in(flat_studio: Page, tmp_path: Path) -> None:
     chart = painted(flat_studio)
     with flat_studio.expect_download() as download:

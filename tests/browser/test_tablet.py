@@ -9,6 +9,8 @@ from playwright.sync_api import Page, ViewportSize, expect
 
 from tests.browser.page import Chart
 
+pytestmark = pytest.mark.slow
+
 TABLET: ViewportSize = {"width": 1024, "height": 768}
 AXES: tuple[tuple[Literal["x", "y"], Literal["width", "height"]], ...] = (
     ("x", "width"),
