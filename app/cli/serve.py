@@ -80,7 +80,7 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
     import uvicorn
 
     from app.compute import memory
-    from app.http.connections import Connection, Door
+    from app.http.connections import Connection, Door, Socket
     from app.main import create_app
     from app.viewer.incoming import MOST_PICTURE_BYTES
 
@@ -103,6 +103,7 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
         uvicorn.Config(
             app,
             http=partial(Connection, door=door),  # type: ignore[arg-type]
+            ws=Socket,
             proxy_headers=bool(settings.trusted_proxies),
             forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
             server_header=False,

@@ -1,7 +1,9 @@
-"""Connections to the service: their number, and how long a client may take to send a request.
+"""Connections to the service: their number, and what a request may be before anybody reads it.
 
-uvicorn limits time only after an answer. A client that sends nothing, or a head or a body byte by
-byte, would keep its connection, and a file handle of the service, for ever.
+uvicorn limits time only after an answer, and neither heads nor frames of websockets. A client that
+sends nothing, or a head or a body byte by byte, would keep its connection, and a file handle of the
+service, for ever; an endless head would fill the memory; bodies in crumbs, requests sent ahead and
+pings would hold up the event loop.
 """
 
 from __future__ import annotations
@@ -14,12 +16,28 @@ from collections.abc import Callable
 from typing import Any
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.frames import Frame
+
+from app.http.rate import RateLimit
 
 log = logging.getLogger("knitcore.app")
 
 BODY_GRACE_S = 20.0
 LEAST_BYTES_PER_S = 20_000
 """Least speed of a body after the grace period."""
+MOST_BESIDE_BYTES = 32_000
+"""Of a request beside its body: address, headers, sizes of chunks, trailers. Chunks may add as much
+as the body has."""
+MOST_HEADERS = 100
+MOST_AHEAD = 8
+"""Requests sent ahead on one connection; browsers send none."""
+FREE_PARTS, LEAST_PART_BYTES = 1_000, 100
+"""A body may come in so many parts of any size; more must be as large as this on average."""
+FRAMES_PER_S, FRAMES_AT_ONCE = 300.0, 1_200
+"""Of one websocket; while a view is turned, the page sends one for each picture on the screen."""
+LOOKED_AT_BYTES = 4_000
+"""Of what has come over a websocket, before its frames are counted."""
 TOLD_EVERY_S = 60.0
 
 
@@ -67,8 +85,12 @@ class Door:
             log.warning("too many connections %s: new ones are closed", whose)
 
 
+class TooMuchError(Exception):
+    """Stops the parser; the client gets status 400."""
+
+
 class Connection(HttpToolsProtocol):
-    """A connection that is closed when a request does not come in time.
+    """A connection that is closed when a request does not come in time, or is out of bounds.
 
     A whole head must come within the time that an idle connection may be kept; a body, after a
     grace period, at a least speed.
@@ -92,7 +114,7 @@ class Connection(HttpToolsProtocol):
         self._body_grace_s = body_grace_s
         self._due: asyncio.TimerHandle | None = None
         self._body_since = 0.0
-        self._body_bytes = 0
+        self._body_bytes = self._body_parts = self._beside_bytes = 0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Start waiting for the first head."""
@@ -117,6 +139,20 @@ class Connection(HttpToolsProtocol):
         self._leave()
         super().handle_websocket_upgrade()
 
+    def data_received(self, data: bytes) -> None:
+        """Read on, unless too much has come that is no body."""
+        self._beside_bytes += len(data)
+        super().data_received(data)
+        too_much = self._beside_bytes > MOST_BESIDE_BYTES + self._body_bytes
+        if too_much and not self.transport.is_closing():
+            self.send_400_response("The request is too long beside its body.")
+
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """A header has come."""
+        super().on_header(name, value)
+        if len(self.headers) > MOST_HEADERS:
+            raise TooMuchError
+
     def on_message_begin(self) -> None:
         """The head has begun; its end is due."""
         super().on_message_begin()
@@ -125,19 +161,26 @@ class Connection(HttpToolsProtocol):
 
     def on_headers_complete(self) -> None:
         """The head is complete; the body is due."""
+        if len(self.pipeline) >= MOST_AHEAD:
+            raise TooMuchError
         self._stop_waiting()
         super().on_headers_complete()
-        self._body_since, self._body_bytes = self.loop.time(), 0
+        self._body_since = self.loop.time()
         self._due = self.loop.call_later(self._body_grace_s, self._look_at_body)
 
     def on_body(self, body: bytes) -> None:
         """A part of the body has come."""
+        self._body_parts += 1
         self._body_bytes += len(body)
+        if self._body_parts > FREE_PARTS + self._body_bytes / LEAST_PART_BYTES:
+            raise TooMuchError
+        self._beside_bytes -= len(body)
         super().on_body(body)
 
     def on_message_complete(self) -> None:
         """The request is complete; the application takes over."""
         self._stop_waiting()
+        self._body_bytes = self._body_parts = self._beside_bytes = 0
         super().on_message_complete()
 
     def _look_at_body(self) -> None:
@@ -166,3 +209,56 @@ class Connection(HttpToolsProtocol):
         if self._door is not None and self._counted is not None:
             self._door.leave(self._counted)
             self._counted = None
+
+
+class Socket(WebSocketsSansIOProtocol):
+    """A websocket that is closed when its client sends too many frames.
+
+    uvicorn would read all that have come before anybody else has a turn, answer every ping, and
+    keep every fragment, also empty ones.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._frames = RateLimit(FRAMES_PER_S, FRAMES_AT_ONCE)
+
+    def data_received(self, data: bytes) -> None:
+        """Read frames, a few at a time."""
+        for start in range(0, len(data), LOOKED_AT_BYTES):
+            if self.transport.is_closing():
+                return
+            super().data_received(data[start : start + LOOKED_AT_BYTES])
+
+    def handle_ping(self) -> None:
+        """Answer a ping."""
+        if self._may_go_on():
+            super().handle_ping()
+
+    def handle_pong(self, event: Frame) -> None:
+        """Take the answer to a ping of the service."""
+        if self._may_go_on():
+            super().handle_pong(event)
+
+    def handle_text(self, event: Frame) -> None:
+        """Take a text, or its beginning."""
+        if self._may_go_on():
+            super().handle_text(event)
+
+    def handle_bytes(self, event: Frame) -> None:
+        """Take a message, or its beginning."""
+        if self._may_go_on():
+            super().handle_bytes(event)
+
+    def handle_cont(self, event: Frame) -> None:
+        """Take a fragment of a message."""
+        if self._may_go_on():
+            super().handle_cont(event)
+
+    def _may_go_on(self) -> bool:
+        if self.transport.is_closing():
+            return False
+        if self._frames.take("")[1]:
+            log.warning("a websocket is closed: its client sends too many frames")
+            self.transport.abort()
+            return False
+        return True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -80,33 +81,36 @@ OPEN = frozenset({"GET /healthz", "GET /readyz"})
 
 def install_schema(app: FastAPI) -> None:
     """Complete the schema, and serve it."""
-    made = app.openapi
+    made, one = app.openapi, threading.Lock()
 
     def openapi() -> dict[str, Any]:
-        if app.openapi_schema is None:
-            schema = made()
-            asked, found = _read("requests.json"), _read("answers.json")
-            for name, operation in operations(schema):
-                _mark_problems(operation["responses"])
-                for status, response in operation["responses"].items():
-                    _add_headers(int(status), response)
-                if name in OPEN:
-                    operation["security"] = []
-                _show(operation, asked.get(name), found["answers"].get(name))
-                for parameter in operation.get("parameters", []):
-                    if parameter["in"] == "path":
-                        parameter["example"] = found["parameters"].get(parameter["name"])
-            schema["components"]["schemas"]["Problem"]["examples"] = [EXAMPLE]
-            schema["info"]["description"] = CONVENTIONS
-            schema["tags"] = [{"name": n, "description": text} for n, text in TAGS.items()]
-            schema["components"]["headers"] = {
-                name: {"description": text, "schema": {"type": "string"}}
-                for name, text in HEADERS.items()
-            }
-            schema["components"]["securitySchemes"] = WAYS_TO_SIGN_IN
-            schema["security"] = [{}, *({name: []} for name in WAYS_TO_SIGN_IN)]
-            app.openapi_schema = schema
-        return app.openapi_schema
+        with one:  # it takes a second: those who ask meanwhile wait instead of making it, too
+            return app.openapi_schema or complete()
+
+    def complete() -> dict[str, Any]:
+        schema = made()
+        asked, found = _read("requests.json"), _read("answers.json")
+        for name, operation in operations(schema):
+            _mark_problems(operation["responses"])
+            for status, response in operation["responses"].items():
+                _add_headers(int(status), response)
+            if name in OPEN:
+                operation["security"] = []
+            _show(operation, asked.get(name), found["answers"].get(name))
+            for parameter in operation.get("parameters", []):
+                if parameter["in"] == "path":
+                    parameter["example"] = found["parameters"].get(parameter["name"])
+        schema["components"]["schemas"]["Problem"]["examples"] = [EXAMPLE]
+        schema["info"]["description"] = CONVENTIONS
+        schema["tags"] = [{"name": n, "description": text} for n, text in TAGS.items()]
+        schema["components"]["headers"] = {
+            name: {"description": text, "schema": {"type": "string"}}
+            for name, text in HEADERS.items()
+        }
+        schema["components"]["securitySchemes"] = WAYS_TO_SIGN_IN
+        schema["security"] = [{}, *({name: []} for name in WAYS_TO_SIGN_IN)]
+        app.openapi_schema = schema
+        return schema
 
     app.openapi = openapi  # type: ignore[method-assign]
 

@@ -144,6 +144,7 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
                 return
             if kept is not None:
                 await inner.send(kept)
+            await asyncio.sleep(0)  # others have their turn between messages that wait already
 
     tasks = [asyncio.create_task(outwards()), asyncio.create_task(inwards())]
     _, pending = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)

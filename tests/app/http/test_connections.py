@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
+import itertools
 import socket
 import threading
 import time
@@ -12,8 +14,18 @@ from functools import partial
 import pytest
 import uvicorn
 from starlette.types import Receive, Scope, Send
+from uvicorn.server import ServerState
 
-from app.http.connections import LEAST_BYTES_PER_S, Connection, Door
+from app.http.connections import (
+    FRAMES_AT_ONCE,
+    FREE_PARTS,
+    LEAST_BYTES_PER_S,
+    MOST_AHEAD,
+    MOST_HEADERS,
+    Connection,
+    Door,
+    Socket,
+)
 
 KEPT_S = 1
 MOST = 6
@@ -144,3 +156,95 @@ def test_a_proxy_speaks_for_many_and_handles_are_bounded(
     door.leave("a")
     assert door.enter("b")
     assert len([r for r in caplog.records if "too many connections" in r.message]) == 1
+
+
+def _chunk(size: int) -> bytes:
+    return b"%x\r\n%s\r\n" % (size, b" " * size)
+
+
+CHUNKED = b"POST /upload HTTP/1.1\r\nHost: here\r\nTransfer-Encoding: chunked\r\n\r\n"
+ENDLESS = {
+    "address": (b"GET /", itertools.repeat(b"a" * 10_000, 10)),
+    "header": (HEAD + b"A: ", itertools.repeat(b"a" * 10_000, 10)),
+    "headers": (HEAD, itertools.repeat(b"a: b\r\n", MOST_HEADERS + 1)),
+    "chunks of one byte": (CHUNKED, itertools.repeat(_chunk(1), 2 * FREE_PARTS)),
+    "trailer": (CHUNKED + b"0\r\nA: ", itertools.repeat(b"a" * 10_000, 10)),
+    "requests ahead": (b"", itertools.repeat(HEAD + b"\r\n", 10 * MOST_AHEAD)),
+}
+
+
+@pytest.mark.parametrize("endless", ENDLESS)
+def test_endless_heads_crumbs_and_requests_ahead_are_refused(
+    address: tuple[str, int], endless: str
+) -> None:
+    begin, more = ENDLESS[endless]
+    answers = b""
+    with socket.create_connection(address, timeout=10) as client:
+        client.sendall(begin + b"".join(more))
+        while part := client.recv(10_000):
+            answers += part
+    assert b"HTTP/1.1 400" in answers
+    assert answers.count(b"HTTP/1.1 200") <= MOST_AHEAD
+
+
+def test_usual_chunks_and_heads_pass(address: tuple[str, int]) -> None:
+    many = b"".join(b"a%d: b\r\n" % n for n in range(MOST_HEADERS - 2))
+    with socket.create_connection(address, timeout=10) as client:
+        client.sendall(HEAD + many + b"\r\n")
+        assert _is_answered(client)
+        client.sendall(CHUNKED + b"".join([_chunk(200)] * 2 * FREE_PARTS) + b"0\r\n\r\n")
+        assert _is_answered(client)
+
+
+class _Wire:
+    """A transport that keeps what is written."""
+
+    def __init__(self) -> None:
+        self.written, self.closed = b"", False
+
+    def write(self, data: bytes) -> None:
+        self.written += data
+
+    def abort(self) -> None:
+        self.closed = True
+
+    close = abort
+
+    def is_closing(self) -> bool:
+        return self.closed
+
+    def get_extra_info(self, name: str, default: object = None) -> object:
+        return default
+
+    def pause_reading(self) -> None:
+        pass
+
+
+FRAMES = {"ping": 0x89, "pong": 0x8A, "text": 0x81, "message": 0x82}
+
+
+@pytest.mark.parametrize("kind", FRAMES)
+def test_a_websocket_with_too_many_frames_is_closed(kind: str) -> None:
+    async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        await send({"type": "websocket.accept"})
+        await asyncio.Event().wait()
+
+    async def flood() -> tuple[bool, bool]:
+        config = uvicorn.Config(app, log_config=None, lifespan="off")  # type: ignore[arg-type]
+        config.load()
+        wire = _Wire()
+        end = Socket(config=config, server_state=ServerState(), app_state={})
+        end.connection_made(wire)  # type: ignore[arg-type]
+        end.data_received(
+            b"GET / HTTP/1.1\r\nHost: here\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+            b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: YWFhYWFhYWFhYWFhYWFhYQ==\r\n\r\n"
+        )
+        while b"101" not in wire.written:
+            await asyncio.sleep(0)
+        frame = bytes([FRAMES[kind], 0x80]) + b"\0\0\0\0"
+        end.data_received(frame * FRAMES_AT_ONCE)
+        before = wire.closed
+        end.data_received(frame * FRAMES_AT_ONCE)
+        return before, wire.closed
+
+    assert asyncio.run(flood()) == (False, True)
