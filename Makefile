@@ -69,7 +69,7 @@ test: $(VENV)/.installed-dev frontend/node_modules/.installed ## Run the default
 test-slow: $(VENV)/.installed-dev $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
-ten-runs: $(VENV)/.installed-dev ## Run the default suite ten times in a row on a busy machine; log in build
+ten-runs: ## Run the default suite ten times, two at a time, in fresh clones; log in build
 	scripts/ten-runs
 
 coverage: $(VENV)/.installed-dev page ## Tell which lines the default suite runs, workers included
