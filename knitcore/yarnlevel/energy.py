@@ -22,6 +22,9 @@ Ints = NDArray[np.int64]
 
 GAUGE_PER_BENDING = 100.0
 """Stiffness of the gauge penalty in units of B / L: keeps the samples evenly spread."""
+STIFF_GAUGE_PER_BENDING = 1000.0
+"""The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
+the lengths, is then convex in them. It costs 1e-4 of the energy, so the last steps go without."""
 PENALTY_PER_BENDING = 3e4
 """Stiffness of the augmented length constraint in units of B / L³."""
 
@@ -55,11 +58,37 @@ class Slope:
     gradient : (unknowns,) of the Lagrangian.
     lengths : (constraints, unknowns), of the prescribed lengths and the other constraints.
     hessian : (unknowns, unknowns) of the Lagrangian; None where it was not wanted.
+    sparse : the same in tiles, where that was wanted.
     """
 
     gradient: Array
     lengths: Array
     hessian: Array | None = None
+    sparse: SparseHessian | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class SparseHessian:
+    """A Hessian in tiles.
+
+    Attributes
+    ----------
+    touching : (blocks, blocks) the tiles that are not zero.
+    matrix : rows and columns of the control points.
+    sizes : (2, unknowns) rows of the two sizes of a stitch.
+    """
+
+    touching: NDArray[np.bool_]
+    matrix: kernels.TiledMatrix
+    sizes: Array
+
+    def times(self, vector: Array) -> Array:
+        """The product with a vector (unknowns,)."""
+        out = np.empty(len(vector))
+        out[:-2] = kernels.tiled_product(self.matrix.tiles, self.matrix.where, vector[:-2])
+        out[:-2] += vector[-2:] @ self.sizes[:, :-2]
+        out[-2:] = self.sizes @ vector
+        return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +104,7 @@ class CellEnergy:
     convention : factors of the terms.
     flat : the middles of all stitches are held in one plane.
     slides : where the yarn may not slide.
+    gauge_per_bending : stiffness of the gauge penalty in units of B / L.
     """
 
     cell: YarnCell
@@ -83,6 +113,7 @@ class CellEnergy:
     convention: Convention
     flat: bool = False
     slides: tuple[SlideConstraint, ...] = ()
+    gauge_per_bending: float = GAUGE_PER_BENDING
 
     @cached_property
     def mean_loop_mm(self) -> float:
@@ -158,7 +189,7 @@ class CellEnergy:
         return kernels.RodLaw(
             bend=self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
             regular=self.convention.regularisation_factor * self.regularisation_n_mm4,
-            gauge=GAUGE_PER_BENDING * self.unit,
+            gauge=self.gauge_per_bending * self.unit,
             step=1.0 / self.cell.grid.samples,
         )
 
@@ -215,9 +246,12 @@ class CellEnergy:
 
     def derivatives(
         self, state: Array, curve: Array, pairs: Pairs, start: Ints, tension: Array,
-        *, hessian: bool = True,
+        *, hessian: bool = True, sparse: bool = False,
     ) -> Slope:  # fmt: skip
-        """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty."""
+        """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
+
+        A sparse Hessian leaves out slides, whose Hessians are dense.
+        """
         layout, law = self.cell.layout, self.contact_law
         force, by_speed = kernels.contact_slopes(curve, state[-2], state[-1], pairs, layout, law)
         along = curve, self.rod_law, self._speeds, tension[self.stretch_of], by_speed
@@ -235,13 +269,36 @@ class CellEnergy:
         gradient += tension[beside:] @ lengths[beside:]
         if not hessian:
             return Slope(gradient, lengths)
-        matrix, position, position_speed = kernels.contact_hessian(
-            curve, state[-2], state[-1], pairs, start, layout, law
+        size = self.cell.unknowns
+        if sparse:
+            block = self.block
+            at = kernels.laid_out(curve, layout.place, state[-2], state[-1])
+            touching = kernels.touching_blocks(
+                at, state[-2], state[-1], pairs, layout, block, 2.0 * law.radius
+            )
+            matrix = kernels.empty_tiles(touching, block, size - 2)
+        else:
+            matrix = kernels.one_tile(size)
+        sizes, position, position_speed = kernels.contact_hessian(
+            curve, state[-2], state[-1], pairs, start, layout, law, matrix.tiles, matrix.where
         )
-        kernels.scatter_local(local, position, position_speed, layout, matrix)
+        kernels.scatter_local(
+            local, position, position_speed, layout, matrix.tiles, matrix.where, sizes
+        )
+        sizes[:, -2:] = 0.5 * (sizes[:, -2:] + sizes[:, -2:].T)
+        if sparse:
+            return Slope(gradient, lengths, sparse=SparseHessian(touching, matrix, sizes))
+        whole = matrix.tiles[0]
+        whole[-2:] = sizes
+        whole[:, -2:] = sizes.T
         for pull, slide in zip(tension[beside + len(self.held) :], self.slides, strict=True):
-            matrix += pull * slide.hessian()
-        return Slope(gradient, lengths, matrix)
+            whole += pull * slide.hessian()
+        return Slope(gradient, lengths, whole)
+
+    @property
+    def block(self) -> int:
+        """Unknowns in a block of the sparse Hessian: those of a third of a stitch."""
+        return self.cell.grid.controls
 
     def along_yarn(
         self, curve: Array, tension: Array, by_speed: Array

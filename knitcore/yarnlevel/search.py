@@ -145,6 +145,10 @@ class Search:
         best = self.best()
         state = refined_state(self.energy.cell, best.state, energy.cell)
         tension = None if energy.held.size else best.tension
+        if self.energy.gauge_per_bending != energy.gauge_per_bending:
+            nearly = replace(energy, gauge_per_bending=self.energy.gauge_per_bending)
+            near = self._minimised(nearly, state, tension, self.options)
+            state, tension = near.state, near.tension
         found = self._minimised(energy, state, tension, options)
         if outcome(energy, found) not in (RELAXED, UNSETTLED):
             # between the old samples the cores may overlap: push them apart first
@@ -205,7 +209,8 @@ class Search:
     def _grow(self, energy: CellEnergy, start: Start) -> Minimum:
         return grow(
             energy.cell, energy.yarn, energy.loop_length_mm, energy.convention, start,
-            options=self.options, flat=energy.flat, cancel=self.cancel,
+            options=self.options, flat=energy.flat, gauge_per_bending=energy.gauge_per_bending,
+            cancel=self.cancel,
         )  # fmt: skip
 
 

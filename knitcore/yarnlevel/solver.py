@@ -1,12 +1,14 @@
 """Damped Newton iterations on the energy of a cell, every step certified.
 
-The Hessian is exact and small (48 unknowns a stitch, half of that with a wale axis). Where the
-energy is not convex, H + mu I is factorised with increasing mu until a factor exists
-(Levenberg-Marquardt). The length of each course is a constraint: a step and the change of the
-tensions follow from one system (Newton on the Lagrangian), and the augmented Lagrangian with these
-tensions is the merit function, which must fall. Inextensible yarn makes its valley narrow and
-curved, so that a step along it leaves it; steps with the factor of the last Hessian return to it at
-a fraction of the cost.
+The Hessian is exact (48 unknowns a stitch, half of that with a wale axis), dense in small cells and
+sparse in large ones. Where the energy is not convex, H + mu I is factorised with increasing mu
+until a factor exists (Levenberg-Marquardt); inverse iterations with the factor then tell how
+negative the lowest curvature is, and the next steps are damped just beyond it, so that they leave a
+saddle fast. The length of each course is a constraint: a step and the change of the tensions follow
+from one system (Newton on the Lagrangian), and the augmented Lagrangian with these tensions is the
+merit function, which must fall. Inextensible yarn makes its valley narrow and curved, so that a
+step along it leaves it; steps with the factor of the last Hessian return to it at a fraction of the
+cost.
 
 On convergence the Hessian distinguishes a minimum from a saddle, where a state can be trapped by a
 symmetry of the first shape; a saddle is left along its direction of most negative curvature.
@@ -17,15 +19,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import blas, lapack
 
 from knitcore.arrays import Array
 from knitcore.errors import CancelledError, UnravelledError
-from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
+from knitcore.yarnlevel.fronts import Front, elimination
+from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System
 from knitcore.yarnlevel.trajectory import Trajectory
 
 COURSE, WALE = -2, -1
@@ -41,6 +42,8 @@ _SINGLE_FROM = 450
 """Systems of at least this many unknowns are factored in single precision, in half the time. With
 its diagonal
 scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two digits."""
+_SPARSE_FROM = 12
+"""Cells of at least this many stitches have a sparse factor."""
 _LEAST_DAMPING_SINGLE = 1e-3
 """Least damping for a factor in single precision, relative to the first."""
 _TRIALS = 60
@@ -50,8 +53,15 @@ _NO_STEP = 1e-9
 _STABLE = 0.02
 """Damping, relative to the first, below which the factor of a minimum exists (rigid motions of the
 sheet have no stiffness)."""
-_POWER_STEPS = 40
+_STABLE_LARGE = 2e-3
+"""The same for cells with a sparse factor, whose folds are softer."""
 _NUDGES = 6
+_BEYOND_LOWEST = 1.3
+"""Damping where the lowest curvature is negative, relative to it."""
+_INDEFINITE_GROWTH = 3.0
+_POWER_STEPS = 2
+_SADDLE_STEPS = 40
+"""Inverse iterations for the direction of lowest curvature, on the way and at a saddle."""
 
 
 @dataclass(frozen=True)
@@ -159,7 +169,11 @@ class _Descent:
         self.held, self.goal = held, goal
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
         self.damping = self.first_damping
-        self.single = energy.cell.unknowns >= _SINGLE_FROM
+        self.sparse = energy.cell.stitches >= _SPARSE_FROM and not energy.slides
+        self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
+        self.fronts: tuple[NDArray[np.bool_], tuple[Front, ...]] | None = None
+        self.lowest = 0.0
+        self.softest: Array | None = None
         self.steps, self.evaluations = 0, 1
         self.converged = self.stable = False
 
@@ -167,17 +181,15 @@ class _Descent:
         """One Newton step and the chord steps after it; False where there is none."""
         trajectory, energy = self.trajectory, self.energy
         here = trajectory.here
-        slope = trajectory.slope(self.tension, hessian=True)
+        slope = trajectory.slope(self.tension, hessian=True, sparse=self.sparse)
         remaining = self.goal - here.state[self.held]
         moving = bool(np.abs(remaining).max(initial=0.0) > 1e-12)
-        system = _System(slope, energy.penalty, self.free, self.single)
+        system = self._system(slope)
         excess = here.terms.excess_mm
-        indefinite = blocked = False
+        blocked = False
+        self.damping = max(self.damping, -_BEYOND_LOWEST * self.lowest)
         for _ in range(_TRIALS):
-            if not system.factorise(self.damping):
-                indefinite = True
-                self._damp(4.0, _INDEFINITE_DAMPING)
-                continue
+            self._factorise(system)
             step, change = system.solve(slope, excess, remaining)
             taken = trajectory.certified(step)
             blocked = taken.fraction < _NO_STEP
@@ -201,7 +213,7 @@ class _Descent:
                 raise UnravelledError("No step from here keeps the strands apart.")
             return False
         damping = self.damping
-        if ratio > 0.5 and not indefinite:
+        if ratio > 0.5:
             self._damp(1.0 / self.options.relief)
         elif ratio < 0.2 and not moving:
             self._damp(2.0)
@@ -221,19 +233,38 @@ class _Descent:
             and np.abs(terms.excess_mm).max() < slack * energy.mean_loop_mm
         )
         if self.converged:
-            least = _STABLE * self.first_damping
+            least = (_STABLE_LARGE if self.sparse else _STABLE) * self.first_damping
             self.stable = damping <= least or system.factorise(least)
-            self.converged = self.stable or not self._leave_saddle(system)
+            self.converged = self.stable or not self._leave_saddle(system, least)
         return True
 
-    def _leave_saddle(self, system: _System) -> bool:
+    def _system(self, slope: Slope) -> System:
+        if slope.sparse is None:
+            return DenseSystem(slope, self.energy.penalty, self.free, self.single)
+        if self.fronts is None or not np.array_equal(self.fronts[0], slope.sparse.touching):
+            self.fronts = slope.sparse.touching, elimination(slope.sparse.touching)
+        return SparseSystem(slope, self.energy.penalty, self.free, self.fronts[1])
+
+    def _factorise(self, system: System) -> None:
+        """Factorise with as much damping as it takes, and learn how negative the lowest
+        curvature is: damping just beyond it leaves a saddle fast."""
+        indefinite = False
+        while not system.factorise(self.damping):
+            indefinite = True
+            self._damp(_INDEFINITE_GROWTH, _INDEFINITE_DAMPING)
+        if indefinite or self.lowest < 0.0:
+            self.lowest, self.softest = system.softest(self.softest, _POWER_STEPS)
+
+    def _leave_saddle(self, system: System, least: float) -> bool:
         """Descend along the most negative curvature; False if that does not lower the energy."""
         energy, trajectory = self.energy, self.trajectory
         here = trajectory.here
-        self.damping = 2.0 * _STABLE * self.first_damping
+        self.damping = 2.0 * least
         while not system.factorise(self.damping):  # the nearer the shift, the faster the iteration
             self._damp(2.0)
-        step = system.softest() * energy.yarn.radius_mm
+        _, direction = system.softest(None, _SADDLE_STEPS)
+        step = np.zeros(len(self.free))
+        step[self.free] = direction * energy.yarn.radius_mm
         before = energy.merit(here.terms, self.tension)
         for _ in range(_NUDGES):
             taken = trajectory.certified(step)
@@ -244,7 +275,7 @@ class _Descent:
             step = 0.25 * step
         return False
 
-    def _take_chord_steps(self, system: _System, gain: float) -> None:
+    def _take_chord_steps(self, system: System, gain: float) -> None:
         """Steps with the factor of the last Hessian, as long as they pay off."""
         trajectory, energy = self.trajectory, self.energy
         none = np.zeros(len(self.held))
@@ -287,102 +318,3 @@ class _Descent:
             steps=self.steps,
             evaluations=self.evaluations,
         )
-
-
-@numba.njit(cache=True)
-def _scaled(matrix: Array, scale: Array, damping: float) -> NDArray[np.float32]:
-    """Lower triangle, damped and scaled, in single precision; entries above it are arbitrary."""
-    n = matrix.shape[0]
-    out = np.empty((n, n), np.float32)
-    for i in range(n):
-        for j in range(i + 1):
-            out[i, j] = matrix[i, j] * scale[i] * scale[j]
-        out[i, i] += damping * scale[i] * scale[i]
-    return out
-
-
-class _System:
-    """The linear system of a step: damped Hessian and lengths of the courses."""
-
-    def __init__(self, slope: Slope, penalty: float, free: NDArray[np.bool_], single: bool) -> None:
-        self._single = single
-        self._penalty = penalty
-        self._free = free
-        self._held = np.flatnonzero(~free)
-        assert slope.hessian is not None  # noqa: S101 - a system is made of both derivatives
-        with one_blas_thread():
-            # the Hessian of the penalty, added in place (the matrix is symmetric)
-            self._hessian = blas.dgemm(
-                penalty, slope.lengths, slope.lengths, beta=1.0, c=slope.hessian.T,
-                trans_a=True, overwrite_c=True,
-            )  # fmt: skip
-
-    def factorise(self, damping: float) -> bool:
-        """Cholesky factor of the damped matrix; False where it is not positive definite."""
-        self._damping = damping
-        matrix = self._hessian.T
-        if len(self._held):
-            matrix = matrix[np.ix_(self._free, self._free)]
-        with one_blas_thread():
-            if self._single:
-                self._scale = 1.0 / np.sqrt(np.abs(np.diagonal(matrix)) + damping)
-                lower = _scaled(matrix, self._scale, damping)
-                self._factor, info = lapack.spotrf(lower.T, lower=0, overwrite_a=1, clean=0)
-            else:
-                damped = matrix.copy()
-                damped[np.diag_indices_from(damped)] += damping
-                self._factor, info = lapack.dpotrf(damped.T, lower=0, overwrite_a=1, clean=0)
-        return int(info) == 0
-
-    def _through_factor(self, right: Array) -> Array:
-        """The damped matrix's inverse times the columns given."""
-        with one_blas_thread():
-            if self._single:
-                scaled, _ = lapack.spotrs(self._factor, right * self._scale[:, None], lower=0)
-                return np.asarray(scaled * self._scale[:, None])
-            found, _ = lapack.dpotrs(self._factor, right, lower=0)
-        return np.asarray(found)
-
-    def softest(self) -> Array:
-        """Step of greatest component 1 along which the matrix that was factorised is least stiff:
-        inverse iteration from a shape without symmetry."""
-        v = np.cos(np.arange(np.count_nonzero(self._free)) ** 2.0)[:, None]
-        for _ in range(_POWER_STEPS):
-            v = self._through_factor(v)
-            v /= np.abs(v).max()
-        step = np.zeros(len(self._free))
-        step[self._free] = v[:, 0]
-        return step
-
-    def solve(self, slope: Slope, excess: Array, remaining: Array) -> tuple[Array, Array]:
-        """Step to the prescribed lengths, and the change of the tensions."""
-        lengths = slope.lengths[:, self._free]
-        missing = excess + slope.lengths[:, self._held] @ remaining
-        gradient = slope.gradient[self._free] + (self._penalty * excess) @ lengths
-        if len(self._held):
-            gradient = gradient + self._hessian[np.ix_(self._free, self._held)] @ remaining
-        both = self._through_factor(np.column_stack([-gradient, lengths.T]))
-        downhill, by_tension = both[:, 0], both[:, 1:]
-        schur, missed = lengths @ by_tension, lengths @ downhill + missing
-        change = np.asarray(np.linalg.solve(schur, missed), dtype=float)
-        step = np.empty(len(self._free))
-        step[self._free] = downhill - by_tension @ change
-        step[self._held] = remaining
-        return step, change
-
-    def decrease(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
-        """Decrease of the merit, with the changed tensions, that the quadratic model predicts."""
-        with one_blas_thread():
-            bent = self._hessian @ step
-        return self._downhill(slope, step, change, excess) - 0.5 * float(step @ bent)
-
-    def decrease_solved(
-        self, slope: Slope, step: Array, change: Array, excess: Array, fraction: float
-    ) -> float:
-        """The same for a fraction of what ``solve`` returned, without a product with the matrix."""
-        along = self._downhill(slope, step, change, excess)
-        return (1.0 - 0.5 * fraction) * along + 0.5 * self._damping * float(step @ step)
-
-    def _downhill(self, slope: Slope, step: Array, change: Array, excess: Array) -> float:
-        by_length = (change + self._penalty * excess) @ (slope.lengths @ step)
-        return -float(slope.gradient @ step + by_length)

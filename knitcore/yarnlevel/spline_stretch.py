@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from knitcore.errors import ConvergenceError, UnravelledError
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.limits import Cancel
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.slides import slides_at
 from knitcore.yarnlevel.solver import COURSE, WALE, Options, minimise
-from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.splines import MAX_STITCHES_RULED, RelaxedRepeat, relaxed_repeat
 from knitcore.yarnlevel.topology import Guard
 
 STRAIGHT = 0.97
@@ -87,7 +87,19 @@ class SplineStretch:
 
 
 def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
-    """The same state with its yarn kept from sliding where it touches."""
+    """The same state with its yarn kept from sliding where it touches.
+
+    Raises
+    ------
+    InputError
+        If the cell is too large.
+    """
+    if cell.cell.stitches > MAX_STITCHES_RULED:
+        raise InputError(
+            "slide_quenching",
+            f"cannot be had in a cell of {cell.cell.stitches} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES_RULED} stitches.",
+        )
     energy = replace(cell.energy, slides=())
     curve = energy.curve(cell.state)
     touch = 2.0 * cell.yarn.radius_mm

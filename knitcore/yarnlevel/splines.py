@@ -16,7 +16,7 @@ from knitcore.chart import StitchChart
 from knitcore.errors import ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, STIFF_GAUGE_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.limits import Cancel, check_loop, check_size
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
@@ -32,8 +32,10 @@ from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.tiling import centre_lines
 from knitcore.yarnlevel.yarn import YarnModel
 
-MAX_STITCHES = 100
-"""Largest cell that is solved; the unknowns fill a dense matrix."""
+MAX_STITCHES = 400
+"""Largest cell that is solved."""
+MAX_STITCHES_RULED = 100
+"""The same where each stitch has a rule of its own (its length, or a plane)."""
 FINE = SplineGrid(controls=20, per_span=4)
 COARSE = SplineGrid(controls=16, per_span=3)
 ROUGH = SplineGrid(controls=10, per_span=5)
@@ -45,7 +47,7 @@ FINE_UP_TO = 2
 """Cells of up to this many stitches are solved on the fine grid (energy within 1e-4)."""
 SEVERAL_UP_TO = 9
 """Cells of up to this many stitches get more than one start."""
-SECONDS_PER_START = 0.12
+SECONDS_PER_START = 0.08
 """CPU time of one start: this times the stitches to the power 1.5 (measured, an upper estimate)."""
 _STRIDE = 0.03
 """Longest step to a prescribed size, as a part of the loop length."""
@@ -135,10 +137,13 @@ def relax_splines(
     shakes = shakes if branch is Branch.FREE and uniform else ()
     if not chosen and not shakes:
         raise InputError("starts", "is empty.", "Give at least one start, or leave it out.")
-    _check_cell(draft, len(chosen) + len(shakes), time_limit_s)
+    most = MAX_STITCHES if lengths.ndim == 1 and not flat else MAX_STITCHES_RULED
+    _check_cell(draft, most, len(chosen) + len(shakes), time_limit_s)
     if lengths.ndim == 1:
         lengths = np.resize(lengths, draft.rows)
     energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
+    if explored != grid:
+        energy = replace(energy, gauge_per_bending=STIFF_GAUGE_PER_BENDING)
     options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
@@ -151,7 +156,9 @@ def relax_splines(
     search.try_starts(chosen)
     best = search.best()
     if explored != grid:
-        energy = replace(energy, cell=replace(draft, grid=grid))
+        energy = replace(
+            energy, cell=replace(draft, grid=grid), gauge_per_bending=GAUGE_PER_BENDING
+        )
         best = search.refined(energy, options)
     if any(size is not None for size in sizes_mm):
         best = _held_at(energy, best, sizes_mm, options, cancel)
@@ -205,12 +212,12 @@ def _starts(branch: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> S
     return MIRRORED_STARTS[: 2 if cell.stitches <= SEVERAL_UP_TO else 1]
 
 
-def _check_cell(cell: YarnCell, starts: int, time_limit_s: float | None) -> None:
-    if cell.stitches > MAX_STITCHES:
+def _check_cell(cell: YarnCell, most: int, starts: int, time_limit_s: float | None) -> None:
+    if cell.stitches > most:
         raise InputError(
             "chart",
             f"its cell has {cell.stitches} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+            f"Use a repeat of at most {most} stitches.",
         )
     if time_limit_s is None:
         return
@@ -218,12 +225,12 @@ def _check_cell(cell: YarnCell, starts: int, time_limit_s: float | None) -> None
         raise InputError("time_limit_s", f"{time_limit_s} is not a time.", "Give seconds above 0.")
     seconds = starts * SECONDS_PER_START * cell.stitches**1.5
     if seconds > time_limit_s:
-        most = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
+        fitting = math.floor((time_limit_s / (starts * SECONDS_PER_START)) ** (2.0 / 3.0))
         raise InputError(
             "chart",
             f"its cell of {cell.stitches} stitches would take about {seconds:.0f} s, more than the "
             f"limit of {time_limit_s:g} s.",
-            f"Use a repeat of at most {max(most, 1)} stitches, or allow more time.",
+            f"Use a repeat of at most {max(fitting, 1)} stitches, or allow more time.",
         )
 
 

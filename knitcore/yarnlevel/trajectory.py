@@ -65,12 +65,13 @@ class Trajectory:
         """Smallest distance between different stretches of yarn."""
         return self.guard.min_distance_mm
 
-    def slope(self, tension: Array, *, hessian: bool) -> Slope:
+    def slope(self, tension: Array, *, hessian: bool, sparse: bool = False) -> Slope:
         """Derivatives of the Lagrangian here."""
         here = self.here
         return self._energy.derivatives(
-            here.state, here.curve, self._pairs, self._start, tension, hessian=hessian
-        )
+            here.state, here.curve, self._pairs, self._start, tension,
+            hessian=hessian, sparse=sparse,
+        )  # fmt: skip
 
     def certified(self, step: Array) -> CertifiedStep:
         """The part of a step that is certified."""

@@ -2,20 +2,31 @@
 
 from knitcore.yarnlevel.kernels.bent import bent_contact
 from knitcore.yarnlevel.kernels.contact import contact_energy, contact_hessian, contact_slopes
-from knitcore.yarnlevel.kernels.curve import control_of, sample_curve
+from knitcore.yarnlevel.kernels.curve import control_of, laid_out, sample_curve
 from knitcore.yarnlevel.kernels.rod import rod_energy, rod_hessian, rod_sample, rod_slopes
 from knitcore.yarnlevel.kernels.scatter import scatter_gradient, scatter_local
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Layout, RodLaw
+from knitcore.yarnlevel.kernels.tiles import (
+    TiledMatrix,
+    empty_tiles,
+    one_tile,
+    tiled_product,
+    touching_blocks,
+)
 
 __all__ = [
     "ContactLaw",
     "Layout",
     "RodLaw",
+    "TiledMatrix",
     "bent_contact",
     "contact_energy",
     "contact_hessian",
     "contact_slopes",
     "control_of",
+    "empty_tiles",
+    "laid_out",
+    "one_tile",
     "rod_energy",
     "rod_hessian",
     "rod_sample",
@@ -23,4 +34,6 @@ __all__ = [
     "sample_curve",
     "scatter_gradient",
     "scatter_local",
+    "tiled_product",
+    "touching_blocks",
 ]

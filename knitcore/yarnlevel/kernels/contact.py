@@ -100,9 +100,15 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     start: Ints,
     layout: Layout,
     law: ContactLaw,
+    tiles: Array,
+    where: Pairs,
 ) -> tuple[Array, Array, Array]:
-    """Hessian of the contact between different samples, (unknowns, unknowns), and the blocks of
-    samples with themselves: (n, 3, 3) in x, and (n, 3, 3) between x (first) and d1 (second).
+    """Hessian of the contact, but for the blocks of samples with themselves.
+
+    What couples different samples is added to the tiles (see
+    :class:`~knitcore.yarnlevel.kernels.tiles.TiledMatrix`). Returned are the rows of the two sizes
+    of a stitch, (2, unknowns), and what couples samples with themselves: (n, 3, 3) in x, (n, 3, 3)
+    between x (first) and d1 (second).
 
     ``start[i] … start[i + 1]`` are the pairs of sample i. Samples of a span share their control
     points, so they are summed before anything is written into the large matrix.
@@ -114,7 +120,8 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     per_span = basis.shape[1]
     count = samples // per_span
     size = layout.unknowns
-    hessian = np.zeros((size, size))
+    tile_size = tiles.shape[1]
+    sizes = np.zeros((2, size))
     position = np.zeros((curve.shape[0], 3, 3))
     position_speed = np.zeros((curve.shape[0], 3, 3))
     n_controls = rows * count
@@ -187,15 +194,15 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                         cell_speed[j, 0, m] += tj[m] * (v1 * si * normal[0] * across + v0 * ti[0])
                         cell_speed[i, 1, m] += v1 * sj * ti[m] * normal[1] * up
                         cell_speed[j, 1, m] += v1 * si * tj[m] * normal[1] * up
-                    hessian[size - 2, size - 2] += (
+                    sizes[0, size - 2] += (
                         stiffness[0, 0] * across * across
                         + 2.0 * v1 * normal[0] * across * both
                         + 2.0 * v0 * ti[0] * tj[0]
                     )
                     mixed = stiffness[0, 1] * across * up + v1 * normal[1] * up * both
-                    hessian[size - 2, size - 1] += mixed
-                    hessian[size - 1, size - 2] += mixed
-                    hessian[size - 1, size - 1] += stiffness[1, 1] * up * up
+                    sizes[0, size - 1] += mixed
+                    sizes[1, size - 2] += mixed
+                    sizes[1, size - 1] += stiffness[1, 1] * up * up
                     # rows of sample i, columns of the control points of sample j
                     row_j = j // samples
                     span_j = (j % samples) // per_span
@@ -236,12 +243,18 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                         s1 = sign[row_i, c, m] * (z_sign if m == 2 else 1.0)
                         if s1 == 0.0:
                             continue
+                        block1, o1 = r1 // tile_size, r1 % tile_size
                         for n in range(3):
                             r2 = dof[j2, k2, n]
                             value = s1 * sign[j2, k2, n] * by_controls[to, a, 3 * m + n]
-                            hessian[r1, r2] += value
+                            block2, o2 = r2 // tile_size, r2 % tile_size
+                            if block1 >= block2:
+                                tiles[where[block1, block2], o1, o2] += value
+                            else:
+                                tiles[where[block2, block1], o2, o1] += value
                 by_controls[to] = 0.0
-    _add_transposed(hessian, size - 2)
+    for b in range(where.shape[0]):
+        _add_transposed(tiles[where[b, b]], tile_size)
     for i in range(curve.shape[0]):
         row_i = i // samples
         span_i = (i % samples) // per_span
@@ -255,6 +268,5 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                 s1 = sign[row_i, c, m] * (z_sign if m == 2 else 1.0)
                 for g in range(2):
                     value = s1 * (b0 * cell_position[i, g, m] + b1 * cell_speed[i, g, m])
-                    hessian[r1, size - 2 + g] += value
-                    hessian[size - 2 + g, r1] += value
-    return hessian, position, position_speed
+                    sizes[g, r1] += value
+    return sizes, position, position_speed

@@ -7,7 +7,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.yarnlevel.kernels.curve import control_of
-from knitcore.yarnlevel.kernels.structures import Layout
+from knitcore.yarnlevel.kernels.structures import Layout, Pairs
 
 
 @numba.njit(cache=True)
@@ -42,9 +42,12 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     position: Array,
     position_speed: Array,
     layout: Layout,
-    hessian: Array,
+    tiles: Array,
+    where: Pairs,
+    sizes: Array,
 ) -> None:
-    """Add the Hessian blocks that one sample has with itself.
+    """Add the Hessian blocks that one sample has with itself to the tiles and the rows of the two
+    sizes of a stitch.
 
     ``local`` (n, 9, 9) in d1, d2, d3; ``position`` (n, 3, 3) in x; ``position_speed`` (n, 3, 3)
     between x (first) and d1 (second).
@@ -54,6 +57,7 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
     samples = layout.place.shape[0]
     count = samples // per_span
     size = layout.unknowns
+    tile_size = tiles.shape[1]
     block = np.zeros((12, 12))
     half = np.zeros((18, 12))
     full = np.zeros((18, 18))
@@ -90,7 +94,7 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
                                 value += basis[d, o, b] * half[row, 3 * d + n]
                             full[row, 3 * b + n] += value
                 # course size enters d1 of every sample (its effect on x is in the contact)
-                hessian[size - 2, size - 2] += local[i, 0, 0]
+                sizes[0, size - 2] += local[i, 0, 0]
                 for a in range(6):
                     for m in range(3):
                         value = factor[3 * a + m] * (
@@ -98,8 +102,12 @@ def scatter_local(  # noqa: PLR0912 - loops over a small tensor product
                             + basis[2, o, a] * local[i, 3 + m, 0]
                             + basis[3, o, a] * local[i, 6 + m, 0]
                         )
-                        hessian[index[3 * a + m], size - 2] += value
-                        hessian[size - 2, index[3 * a + m]] += value
+                        sizes[0, index[3 * a + m]] += value
             for row in range(18):
+                block1, o1 = index[row] // tile_size, index[row] % tile_size
                 for col in range(18):
-                    hessian[index[row], index[col]] += factor[row] * factor[col] * full[row, col]
+                    block2, o2 = index[col] // tile_size, index[col] % tile_size
+                    if block1 >= block2:
+                        tiles[where[block1, block2], o1, o2] += (
+                            factor[row] * factor[col] * full[row, col]
+                        )

@@ -105,6 +105,12 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
         scale = np.abs(hessian @ direction).max()
         np.testing.assert_allclose(hessian @ direction, by_slope, atol=1e-4 * scale)
     np.testing.assert_allclose(hessian, hessian.T, atol=1e-9 * np.abs(hessian).max())
+    tiled = energy.derivatives(state, curve, pairs, start, tension, sparse=True).sparse
+    for direction in (*rng.standard_normal((3, len(state))), *np.eye(len(state))[-2:]):
+        expected = hessian @ direction
+        np.testing.assert_allclose(
+            tiled.times(direction), expected, atol=1e-9 * np.abs(expected).max()
+        )
 
 
 @pytest.mark.parametrize("text", ["K", "KP", "PK\nKP", "KKPP", "PPKK\nPPKK\nKKPP\nKKPP"])

@@ -176,9 +176,11 @@ def test_unusable_loop_lengths_are_refused_with_a_bound(loop, chart, field):
 
 
 def test_a_cell_that_is_too_large_is_refused():
-    chart = StitchChart(np.random.default_rng(0).random((13, 11)) < 0.5)
-    with pytest.raises(InputError, match="at most 100"):
+    chart = StitchChart(np.random.default_rng(0).random((21, 20)) < 0.5)
+    with pytest.raises(InputError, match="at most 400"):
         relax(chart, STUDY_YARN, 11.28)
+    with pytest.raises(InputError, match="at most 100"):
+        relax(chart, STUDY_YARN, 11.28, flat=True)
 
 
 def test_the_published_branch_relaxes_pure_fabrics_with_one_loop_length_only():

@@ -1,0 +1,266 @@
+"""Cholesky factors of a sparse symmetric matrix made of square tiles: the multifrontal method.
+
+Stitches far apart do not touch, so the Hessian of a large cell is sparse. Which of them touch is
+not known beforehand, since fabric folds; the order of elimination is therefore found anew from the
+tiles that are there, always taking the block with the fewest neighbours (minimum degree). Blocks
+that are eliminated together own a dense front, and the dense work is done by BLAS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import blas, lapack
+
+from knitcore.arrays import Array
+from knitcore.yarnlevel.kernels.tiles import TiledMatrix
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Front:
+    """Blocks that are eliminated together.
+
+    Attributes
+    ----------
+    own, border : the blocks, and those that they touch among the later ones, in the order of
+        elimination.
+    children : fronts whose remainders are added to this one, with the place of their border blocks
+        among this front's own and border blocks.
+    """
+
+    own: Ints
+    border: Ints
+    children: tuple[tuple[int, Ints], ...]
+
+
+def elimination(touching: NDArray[np.bool_]) -> tuple[Front, ...]:
+    """The fronts, in the order of elimination, of a symmetric pattern (blocks, blocks)."""
+    order, first, border, border_first = _minimum_degree(touching.copy())
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    owner = np.searchsorted(first, rank, side="right") - 1
+    children: list[list[tuple[int, Ints]]] = [[] for _ in first[1:]]
+    fronts = []
+    for f in range(len(first) - 1):
+        own = order[first[f] : first[f + 1]]
+        edge = border[border_first[f] : border_first[f + 1]]
+        edge = edge[np.argsort(rank[edge])]
+        fronts.append((own, edge))
+    for f, (_, edge) in enumerate(fronts):
+        if len(edge):
+            parent = int(owner[edge[0]])
+            all_of = np.concatenate(fronts[parent])
+            places = np.searchsorted(rank[all_of], rank[edge])
+            children[parent].append((f, places))
+    return tuple(
+        Front(own, edge, tuple(below)) for (own, edge), below in zip(fronts, children, strict=True)
+    )
+
+
+class FrontalFactor:
+    """Factors of one matrix, scaled to a unit diagonal, in single precision.
+
+    Parameters
+    ----------
+    matrix : the matrix.
+    fronts : its order of elimination.
+    """
+
+    def __init__(self, matrix: TiledMatrix, fronts: tuple[Front, ...]) -> None:
+        self._matrix = matrix
+        self._fronts = fronts
+        size = matrix.tiles.shape[1]
+        inside = np.arange(size)
+        self._places = [
+            tuple((part[:, None] * size + inside).ravel() for part in (front.own, front.border))
+            for front in fronts
+        ]
+
+    def factorise(self, damping: float) -> bool:
+        """Factorise the matrix plus ``damping`` on its diagonal; False if not positive definite."""
+        matrix = self._matrix
+        size = matrix.tiles.shape[1]
+        self._scale = _scale(matrix.tiles, matrix.where, matrix.unknowns, damping)
+        self._factors: list[tuple[Floats, Floats]] = []
+        remainders: list[Floats | None] = []
+        for front in self._fronts:
+            own, edge = len(front.own) * size, len(front.border) * size
+            upper = np.zeros((own, own), np.float32, order="F")
+            side = np.zeros((edge, own), np.float32, order="F")
+            rest = np.zeros((edge, edge), np.float32, order="F")
+            _assemble(
+                matrix.tiles, matrix.where, self._scale, damping, matrix.unknowns,
+                front.own, front.border, upper, side,
+            )  # fmt: skip
+            for child, places in front.children:
+                remainder = remainders[child]
+                assert remainder is not None  # noqa: S101 - a child has one parent
+                _extend(remainder, places, len(front.own), size, upper, side, rest)
+                remainders[child] = None
+            upper, info = lapack.spotrf(upper, lower=1, overwrite_a=1, clean=0)
+            if info != 0:
+                return False
+            if edge:
+                side = blas.strsm(
+                    1.0, upper, side, side=1, lower=1, trans_a=1, overwrite_b=1
+                )  # fmt: skip
+                rest = blas.ssyrk(-1.0, side, beta=1.0, c=rest, lower=1, overwrite_c=1)
+            self._factors.append((upper, side))
+            remainders.append(rest)
+        return True
+
+    def solve(self, right: Array) -> Array:
+        """The inverse times the columns (unknowns, k)."""
+        scale = self._scale[: len(right), None]
+        x = np.zeros((len(self._scale), right.shape[1]), np.float32)
+        x[: len(right)] = right * scale
+        for (upper, side), (own, edge) in zip(self._factors, self._places, strict=True):
+            part = blas.strsm(1.0, upper, x[own], lower=1)
+            x[own] = part
+            if len(edge):
+                x[edge] -= side @ part
+        for (upper, side), (own, edge) in zip(
+            reversed(self._factors), reversed(self._places), strict=True
+        ):
+            part = x[own]
+            if len(edge):
+                part = part - side.T @ x[edge]
+            x[own] = blas.strsm(1.0, upper, part, lower=1, trans_a=1)
+        return np.asarray(x[: len(right)] * scale, dtype=float)
+
+
+@numba.njit(cache=True)
+def _minimum_degree(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
+    touching: NDArray[np.bool_],
+) -> tuple[Ints, Ints, Ints, Ints]:
+    """Order of elimination, first of each front in it, border blocks of all fronts, their firsts.
+
+    ``touching`` is overwritten.
+    """
+    n = touching.shape[0]
+    alive = np.ones(n, np.bool_)
+    degree = np.zeros(n, np.int64)
+    for i in range(n):
+        touching[i, i] = False
+        degree[i] = touching[i].sum()
+    order = np.empty(n, np.int64)
+    first = np.zeros(n + 1, np.int64)
+    border_first = np.zeros(n + 1, np.int64)
+    border = np.empty(16 * n, np.int64)
+    around = np.empty(n, np.int64)
+    done = fronts = stored = 0
+    while done < n:
+        k = -1
+        for i in range(n):
+            if alive[i] and (k < 0 or degree[i] < degree[k]):
+                k = i
+        count = 0
+        for j in range(n):
+            if alive[j] and touching[k, j]:
+                around[count] = j
+                count += 1
+        order[done] = k
+        done += 1
+        alive[k] = False
+        for q in range(count):
+            j = around[q]
+            same = degree[j] == count
+            for other in range(count):
+                same = same and (other == q or touching[j, around[other]])
+            if same:  # it touches the same blocks, so it goes at the same time
+                order[done] = j
+                done += 1
+                alive[j] = False
+        gone = 1
+        edge = 0
+        for q in range(count):
+            if alive[around[q]]:
+                around[edge] = around[q]
+                edge += 1
+            else:
+                gone += 1
+        for q in range(edge):
+            a = around[q]
+            degree[a] -= gone
+            for other in range(q):
+                b = around[other]
+                if not touching[a, b]:
+                    touching[a, b] = True
+                    touching[b, a] = True
+                    degree[a] += 1
+                    degree[b] += 1
+        if stored + edge > border.shape[0]:
+            grown = np.empty(2 * (stored + edge), np.int64)
+            grown[:stored] = border[:stored]
+            border = grown
+        border[stored : stored + edge] = around[:edge]
+        stored += edge
+        fronts += 1
+        first[fronts] = done
+        border_first[fronts] = stored
+    return order, first[: fronts + 1], border[:stored], border_first[: fronts + 1]
+
+
+@numba.njit(cache=True)
+def _scale(tiles: Array, where: NDArray[np.int32], unknowns: int, damping: float) -> Array:
+    blocks, size = where.shape[0], tiles.shape[1]
+    scale = np.ones(blocks * size)
+    for u in range(unknowns):
+        b, o = u // size, u % size
+        scale[u] = 1.0 / np.sqrt(abs(tiles[where[b, b], o, o]) + damping)
+    return scale
+
+
+@numba.njit(cache=True)
+def _assemble(
+    tiles: Array, where: NDArray[np.int32], scale: Array, damping: float, unknowns: int,
+    own: Ints, border: Ints, upper: Floats, side: Floats,
+) -> None:  # fmt: skip
+    """A front's part of the damped, scaled matrix; filled up with ones on the diagonal."""
+    size = tiles.shape[1]
+    for q in range(own.shape[0]):
+        b = own[q]
+        for p in range(q, own.shape[0] + border.shape[0]):
+            inside = p < own.shape[0]
+            a = own[p] if inside else border[p - own.shape[0]]
+            tile = where[max(a, b), min(a, b)]
+            if tile < 0:
+                continue
+            out = upper if inside else side
+            row = (p if inside else p - own.shape[0]) * size
+            for n in range(size):
+                for m in range(size):
+                    value = tiles[tile, m, n] if a >= b else tiles[tile, n, m]
+                    out[row + m, q * size + n] = value * scale[a * size + m] * scale[b * size + n]
+        for n in range(size):
+            u = b * size + n
+            at = q * size + n
+            upper[at, at] = upper[at, at] + damping * scale[u] ** 2 if u < unknowns else 1.0
+
+
+@numba.njit(cache=True)
+def _extend(
+    remainder: Floats, places: Ints, own: int, size: int, upper: Floats, side: Floats, rest: Floats
+) -> None:
+    """Add what a child leaves of its border to its parent's front (lower triangles)."""
+    for q in range(places.shape[0]):
+        for p in range(q, places.shape[0]):
+            row, column = places[p], places[q]
+            if row < own:
+                out = upper
+            elif column < own:
+                out = side
+                row -= own
+            else:
+                out = rest
+                row -= own
+                column -= own
+            for n in range(size):
+                for m in range(size):
+                    out[row * size + m, column * size + n] += remainder[p * size + m, q * size + n]
