@@ -36,8 +36,8 @@ class Budgets:
     memory_bytes : memory of computations at work together, each counted with the limit of its
         worker; by default that of the machine.
     views : 3D views kept open; the longest unwatched one makes room for the next.
-    view_stitches : of their charts together; each view takes 10 MB, a million
-        stitches 20 MB more.
+    view_stitches : of their charts together, a rectangle counted as 20; each view takes 10 MB, a
+        million stitches 20 MB more.
     watchers : browsers that show views.
     streams : event streams followed, of jobs and of views.
     pictures : pictures of views that are being taken.
@@ -54,7 +54,7 @@ class Budgets:
     cpu_s: float = 12 * 3_600.0
     memory_bytes: int = field(default_factory=_machine_bytes)
     views: int = 16
-    view_stitches: int = 2_000_000
+    view_stitches: int = 4_000_000
     watchers: int = 32
     streams: int = 32
     pictures: int = 2

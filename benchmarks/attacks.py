@@ -181,6 +181,67 @@ def large_job(client: httpx.Client) -> str:
     return _posted(client, "jobs", [json.dumps(body).encode()] * 2)
 
 
+def rectangles(client: httpx.Client) -> str:
+    """As many views as a user may have, with as much in each as is drawn."""
+    body = {"chart": _chart(200, 4), "material": "acrylic", "rectangles": True}
+    content = json.dumps(body).encode()
+    paths = (f"/api/v1/views/rectangles-{n}" for n in range(16))
+    return _codes(client.put(path, content=content, headers=JSON) for path in paths)
+
+
+def heads(client: httpx.Client) -> str:
+    """A header, an address and a trailer without end, and headers without end."""
+    begins = (HEAD + b"A: ", b"GET /", CHUNKED + b"0\r\nA: ")
+    refused = [_streamed(client, begin, b"a" * 100_000) for begin in begins]
+    refused.append(_streamed(client, HEAD, b"a: b\r\n" * 20_000))
+    return f"{sum(refused)} of {len(refused)} refused"
+
+
+def cookie(client: httpx.Client) -> str:
+    """Quoted, and full of backslashes."""
+    quoted = 'knitcore_session="' + "\\" * 30_000 + '"'
+    return _codes(client.get("/api/v1/session", headers={"Cookie": quoted}) for _ in range(5))
+
+
+def crumbs(client: httpx.Client) -> str:
+    """A body in chunks of one byte, and requests sent ahead."""
+    refused = [_streamed(client, CHUNKED, b"1\r\n \r\n" * 20_000) for _ in range(4)]
+    refused.append(_streamed(client, b"", (HEAD + b"\r\n") * 2_000))
+    return f"{sum(refused)} of {len(refused)} refused"
+
+
+def pings(client: httpx.Client) -> str:
+    """On the websocket of a view, without reading an answer."""
+    client.put("/api/v1/views/pinged", json={"chart": "KP", "material": "acrylic"})
+    upgrade = (
+        "GET /view/pinged HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\n"
+        "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        f"Sec-WebSocket-Protocol: viser-v{viser.__version__}\r\n"
+        "Sec-WebSocket-Key: YWFhYWFhYWFhYWFhYWFhYQ==\r\n\r\n"
+    )
+    ping = bytes([0x89, 0x80]) + b"\0\0\0\0"
+    refused = [_streamed(client, upgrade.encode(), ping * 5_000) for _ in range(4)]
+    return f"{sum(refused)} of {len(refused)} closed"
+
+
+HEAD = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+CHUNKED = b"POST /api/v1/predict HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
+
+
+def _streamed(client: httpx.Client, begin: bytes, more: bytes, times: int = 500) -> bool:
+    """Send bytes again and again; whether the connection was closed before their end."""
+    source = ("127.0.0.2", 0)
+    with socket.create_connection((client.base_url.host, client.base_url.port), 5, source) as one:
+        try:
+            one.sendall(begin)
+            time.sleep(0.2)
+            for _ in range(times):
+                one.sendall(more)
+        except OSError:
+            return True
+    return False
+
+
 def _codes(answers: Iterable[httpx.Response]) -> str:
     codes = [answer.status_code for answer in answers]
     return ", ".join(f"{codes.count(code)} × {code}" for code in sorted(set(codes)))
@@ -201,8 +262,13 @@ ATTACKS: list[Callable[[httpx.Client], str]] = [
     frames,
     slow,
     views,
+    rectangles,
     large_file,
     large_job,
+    heads,
+    cookie,
+    crumbs,
+    pings,
 ]
 
 

@@ -93,9 +93,8 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
 
     def draw() -> ViewResult:
         drawing = large or build_scene(body, found, context).drawing()
-        rows, columns = drawing.ground.shape
         return ViewResult(
-            stitches=state.views.open(name, rows * columns).show(drawing),
+            stitches=state.views.open(name, drawing.weight).show(drawing),
             source=drawing.part.shapes.source,
             scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
             url=f"/view/{design}/",

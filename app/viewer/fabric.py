@@ -17,6 +17,8 @@ from knitcore.geometry.stitches import StitchShapes
 
 Colours = NDArray[np.uint8]
 
+RECTANGLE = 20
+"""Stitches that take as much memory of a view as an extensibility rectangle."""
 BESIDE = 0.8
 """So many stitches from a stitch's centre a click still means it."""
 
@@ -181,3 +183,11 @@ class Drawing:
     part: FabricScene
     ground: Ground
     picture: Colours | None = None
+
+    @property
+    def weight(self) -> int:
+        """Stitches that it counts as in the budget of a user's views."""
+        rectangles = self.part.rectangles_mm
+        return self.ground.centres_mm[..., 0].size + (
+            0 if rectangles is None else RECTANGLE * len(rectangles)
+        )

@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 from app.operations.context import Context
 from app.viewer.clicks import Clicks, clicked_stitch
 from app.viewer.design_view import ViewRequest, build_scene
-from app.viewer.fabric import Box
+from app.viewer.fabric import RECTANGLE, Box
 from knitcore.errors import InputError
 from tests.app.test_stretch import ASKED, GARTER
 
@@ -265,9 +265,11 @@ def test_rectangles_stand_for_stitches_blocks_or_regions(groups: str, count: int
         "rectangle_block": 3,
         "regions": [{"id": "a", "name": "A", "colour": "#ff0000", "runs": [[0, 0, 2]]}],
     }
-    rectangles = build_scene(ViewRequest.model_validate(body), None, HERE).rectangles_mm
+    scene = build_scene(ViewRequest.model_validate(body), None, HERE)
+    rectangles = scene.rectangles_mm
     assert rectangles is not None
     assert rectangles.shape == (count, 4, 2)
+    assert scene.drawing().weight == 12 + RECTANGLE * count
 
 
 def test_so_many_rectangles_are_drawn() -> None:
