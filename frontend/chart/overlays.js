@@ -240,3 +240,10 @@ export function logScale(values) {
 function css(rgb) {
   return `rgb(${rgb.join(" ")})`;
 }
+
+/**
+ * What of it fabric that nobody pulls can show: not how far it is pulled.
+ *
+ * @param {Overlay} overlay
+ */
+export const atRest = (overlay) => (overlay === strain || overlay === utilisation ? fabrics : overlay);

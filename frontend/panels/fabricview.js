@@ -8,7 +8,7 @@
  */
 
 import { ApiError, api } from "../api.js";
-import { shownOverlay } from "../chart/overlays.js";
+import { atRest, shownOverlay } from "../chart/overlays.js";
 import { along } from "../core/directions.js";
 import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
@@ -218,7 +218,7 @@ export function fabricview(host, studio, view) {
 function wanted(studio, view) {
   const { document: chart, seeing } = studio;
   const stretch = pulled(studio);
-  const overlay = shownOverlay(studio);
+  const overlay = seeing.lying.value ? atRest(shownOverlay(studio)) : shownOverlay(studio);
   const colour = seeing.yarnColours.value === "chart" ? overlay.view : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;

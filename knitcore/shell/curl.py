@@ -20,6 +20,8 @@ from knitcore.shell.sheet import Sheet, sheet_of
 MAX_STITCHES = 10_000
 """Largest piece that is calculated."""
 TIME_LIMIT_S = 120.0
+_STRIPS = 0.3
+"""Share of it that each of the two strips may take with which the descent begins."""
 STRIP = 4.0
 """Width of the edge strip whose curl is reported, in thicknesses."""
 NOTE = (
@@ -107,7 +109,7 @@ def curl(
         )
     sheet = sheet_of(chart, material)
     clock = time.process_time()
-    begin = start(sheet, time_limit_s=time_limit_s, cancel=cancel)
+    begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancel=cancel)
     left = time_limit_s - (time.process_time() - clock)
     found = settle(sheet, begin, time_limit_s=left, cancel=cancel)
     shape = (chart.rows + 1, chart.columns + 1, 3)

@@ -87,6 +87,19 @@ def test_a_stretch_is_scrubbed_by_keyboard_in_chart_curve_and_3d(studio: Page) -
     assert {"stockinette", "garter", "rib", "seed", "90 % interval", "stretch test"} <= set(names)
 
 
+@pytest.mark.slow
+def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page) -> None:
+    """Its stretch is no colour of the fabric at rest."""
+    flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    with flat_studio.expect_response(
+        lambda r: "/views/" in r.url and '"curl":{' in (r.request.post_data or "")
+    ) as shown:
+        flat_studio.click("#fabric-lying")
+    assert shown.value.ok, shown.value.text()
+    expect(flat_studio.locator(".fabric-caption")).to_contain_text("As it lies, without friction")
+
+
 def test_a_test_can_be_cancelled(flat_studio: Page) -> None:
     flat_studio.route("**/api/v1/jobs/*/events", lambda route: None)  # its end is never heard
     flat_studio.click("#stretch-run")
