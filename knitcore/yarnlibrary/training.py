@@ -85,6 +85,11 @@ def training_charts() -> dict[StitchChart, str]:
     return found
 
 
+def drawn_charts() -> list[StitchChart]:
+    """Further charts, which are only relaxed: how deep a chart folds is hardest to learn."""
+    return list(dict.fromkeys(chart.canonical() for chart in _drawn()))
+
+
 def anchor_charts() -> list[StitchChart]:
     """Small repeats for every new yarn: the pure fabrics, then some of each kind."""
     texts = [
@@ -213,6 +218,37 @@ def _random() -> Iterator[StitchChart]:
         grid[draw.choice(grid.size, purls, replace=False)] = True
         chart = StitchChart(grid.reshape(rows, columns))
         if chart.repeat() == chart:
+            yield chart
+
+
+def _drawn() -> Iterator[StitchChart]:
+    """Repeats as designers draw them, at random: seven ways in turn."""
+    draw = np.random.default_rng(4)
+    fields = [StitchChart.parse(text) for text in ("K", "K", "K/P", "KP", "KP/PK", "KKPP")]
+    for turn in range(1400):
+        most = 6 if turn < 700 else 8
+        rows, columns = (int(n) for n in draw.integers(3, most + 1, 2))
+        row, side = draw.random(columns) < 0.5, draw.random(rows) < 0.5
+        way = turn % 7
+        if way == 0:  # stitches at random, few or many
+            grid = draw.random((rows, columns)) < draw.choice([0.15, 0.3, 0.5])
+        elif way == 1:  # blocks and baskets: one row or its opposite
+            grid = side[:, None] ^ row
+        elif way == 2:  # slopes and zigzags
+            grid = np.array([np.roll(row, s) for s in np.cumsum(draw.integers(-1, 2, rows))])
+        elif way == 3:  # a small figure in a field
+            grid = draw.choice(np.array(fields, dtype=object)).resized(rows, columns).purl.copy()
+            grid[:2, :3] = draw.random((2, 3)) < 0.5
+        elif way == 4:  # patterned and plain rows
+            grid = np.where(side[:, None], row, draw.random() < 0.5)
+        elif way == 5:  # mirrored about a column
+            grid = draw.random((rows, columns)) < 0.4
+            grid |= grid[:, ::-1]
+        else:  # the upper half is the lower one with K and P swapped
+            grid = draw.random((rows // 2, columns)) < 0.5
+            grid = np.vstack([grid, ~grid])
+        chart = StitchChart(grid)
+        if min(chart.repeat().purl.shape) > 1:
             yield chart
 
 

@@ -11,6 +11,7 @@ import json
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 
 from knitcore.batch import BatchProgress, run_batch
@@ -23,12 +24,17 @@ from knitcore.yarnlevel.splines import COARSE
 from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise_repeat
 from knitcore.yarnlibrary.fingerprint import content_key
 from knitcore.yarnlibrary.store import stored_charts
-from knitcore.yarnlibrary.training import YARN_POINTS, anchor_charts, training_charts
+from knitcore.yarnlibrary.training import (
+    YARN_POINTS,
+    anchor_charts,
+    drawn_charts,
+    training_charts,
+)
 from knitcore.yarnlibrary.yarns import yarn_for
 
-MOST_RELAXED = 25
+MOST_RELAXED = 36
 """Cells with more stitches are left out."""
-MOST_STRETCHED = 18
+MOST_STRETCHED = 25
 """Cells with more stitches are only relaxed, which takes a tenth of the time of curves."""
 
 
@@ -76,9 +82,23 @@ def characterise(task: TrainingTask) -> Document:
 
 def tasks(packed: Path | None = None) -> dict[str, TrainingTask]:
     """All tasks by key, the most informative first, without those in a packed file."""
-    done = set() if packed is None else {_name(entry) for entry in _entries(packed)}
-    ordered = (t for t in _ordered() if (t.yarn_name, t.repeat.chart) not in done)
-    return {task.key: task for task in ordered}
+    entries = [] if packed is None else _entries(packed)
+    done = {(*_name(e), stretched) for e in entries for stretched in {False, _tried(e)}}
+    return {
+        key: task
+        for key, task in _all().items()
+        if (task.yarn_name, task.repeat.chart, task.stretched) not in done
+    }
+
+
+@cache
+def _all() -> dict[str, TrainingTask]:
+    return {task.key: task for task in _ordered()}
+
+
+def _tried(entry: Document) -> bool:
+    """Whether it was to be stretched: with or without success."""
+    return "failure" in entry or "law" in entry
 
 
 def _ordered() -> Iterator[TrainingTask]:
@@ -91,6 +111,9 @@ def _ordered() -> Iterator[TrainingTask]:
         yield _of_material("cotton", chart, stretched=turn % 4 == 0)
         for anchor, point in (entry for entry in (next(anchors, None),) if entry is not None):
             yield _of_point(YARN_POINTS.index(point), anchor, stretched=True)
+    for chart in drawn_charts():
+        if mirrored_cell(chart, COARSE).stitches <= MOST_STRETCHED:
+            yield _of_material("acrylic", chart, stretched=False)
     for name in ("acrylic", "cotton"):
         for chart in stored_charts(name):
             yield _of_material(name, chart, stretched=True)
