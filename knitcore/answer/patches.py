@@ -57,11 +57,6 @@ class Patches:
     columns: NDArray[np.intp]
     answers: tuple[tuple[Answer, ...], ...]
 
-    def windows(self) -> list[list[tuple[slice, slice]]]:
-        """Rows and columns of the stitches that decide each patch's answer, [row][column]."""
-        above, aside = _windows(self.rows), _windows(self.columns)
-        return [[(along, across) for across in aside] for along in above]
-
     @property
     def _flat(self) -> list[Answer]:
         return [answer for line in self.answers for answer in line]
@@ -162,6 +157,8 @@ def patches_of(
     material: Material,
     gauge: RelaxedSize | None = None,
     swept: SweptChart | None = None,
+    *,
+    gradual: bool = True,
 ) -> Patches:
     """A chart in patches, each with its answer.
 
@@ -171,6 +168,8 @@ def patches_of(
     gauge : measured relaxed size of the whole chart's mean stitch, if known.
     swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
         of the packaged samples.
+    gradual : whether the answer is to change little with each row more. A swatch, whose textures
+        have positions, does not use this: its patches are of one size and their own windows.
 
     Raises
     ------
@@ -187,15 +186,16 @@ def patches_of(
     small = max(repeat.rows, repeat.columns) <= SIDE or min(repeat.rows, repeat.columns) == 1
     if swept is not None or small:
         return _one(chart, mixed(repeat, densities(repeat), material, gauge, swept))
-    rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
-    cells = list(product(_windows(rows), _windows(columns)))
+    cuts = _cuts if gradual else _even_cuts
+    rows, columns = cuts(repeat.rows), cuts(repeat.columns)
+    cells = list(product(_windows(rows, gradual), _windows(columns, gradual)))
     parts = [repeat.region(*cell) for cell in cells]
     found = [densities(part) for part in parts]
     counts = np.outer(np.diff(rows), np.diff(columns)).ravel()
     moved = _difference(densities(repeat), found, counts)
     shifted = [_sum(own, moved) for own in found]
     # a chart slightly larger than one patch gets almost the answer of one patch
-    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0)
+    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0) if gradual else 1.0
     if apart < 1:
         shifted = [_between(densities(repeat), own, apart) for own in shifted]
     pure = cache(partial(measured, material=material)) if apart == 1 else None
@@ -254,11 +254,16 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
     return np.unique(np.clip(np.append(inside.round(), [0, stitches]), 0, stitches)).astype(np.intp)
 
 
-def _windows(cuts: NDArray[np.intp]) -> list[slice]:
-    """Of each patch, as many stitches as it has, or :data:`SIDE` if the chart has as many."""
+def _even_cuts(stitches: int) -> NDArray[np.intp]:
+    count = min(-(-stitches // SIDE), MOST_A_SIDE)
+    return np.linspace(0, stitches, count + 1).round().astype(np.intp)
+
+
+def _windows(cuts: NDArray[np.intp], gradual: bool) -> list[slice]:
+    """Of each patch its stitches; a gradual one has :data:`SIDE`, if the chart has as many."""
     end, found = int(cuts[-1]), []
     for low, high in pairwise(cuts.tolist()):
-        size = min(max(SIDE, high - low), end)
+        size = min(max(SIDE if gradual else 0, high - low), end)
         start = min(max((low + high - size) // 2, 0), end - size)
         found.append(slice(start, start + size))
     return found

@@ -80,7 +80,7 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    patches = patches_of(chart, material)
+    patches = patches_of(chart, material, gradual=False)
     phases = quarter_phases(chart)
     laws: list[ConstitutiveLaw] = []
     extent = (
@@ -89,14 +89,12 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
     )  # of the repeat, if it has several patches
     number = np.zeros(extent, dtype=np.intp)
     spread = np.zeros((2, len(SPREAD_AT)))
-    lines = zip(pairwise(patches.rows), patches.answers, patches.windows(), strict=True)
-    for (below, above), line, windows in lines:
-        each = zip(pairwise(patches.columns), line, windows, strict=True)
-        for (left, right), answer, window in each:
+    for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
+        for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
             here = slice(below, above), slice(left, right)
             cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
             number[here] = len(laws) // len(PHASES)
-            if pure_fabric(chart.region(*window)) is not None:
+            if pure_fabric(chart.region(*here)) is not None:
                 laws += _own_laws(cells, material)
                 continue
             laws += _fitted_laws(cells, answer, material, even)

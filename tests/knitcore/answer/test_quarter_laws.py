@@ -34,4 +34,6 @@ def test_stitches_fold_by_their_surroundings_and_on_average_like_the_answer() ->
     assert scale[2, :, 0].max() < 0.9 * scale[50, :, 0].min()
     assert np.abs(np.diff(np.log(scale[..., 0]), axis=0)).max() < 0.1
     sheet = chart_sheet(piece, acrylic)
-    assert sheet.grid.width_mm == pytest.approx(40 * predict(piece, acrylic).relaxed_course_mm)
+    assert sheet.grid.width_mm == pytest.approx(
+        40 * predict(piece, acrylic).relaxed_course_mm, rel=0.02
+    )
