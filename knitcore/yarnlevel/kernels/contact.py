@@ -129,13 +129,14 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
     # between the samples of a span and the control points that touch them, which have slots
     slot = np.full(n_controls, -1, np.int64)
     touched = np.empty(n_controls, np.int64)
-    by_position = np.zeros((n_controls, 9))
-    by_speed = np.zeros((n_controls, 9))
+    # rows by the position of a sample, then those by its speed
+    by_sample = np.zeros((n_controls, 18))
     by_controls = np.zeros((n_controls, 6, 9))
     cell_position = np.zeros((curve.shape[0], 2, 3))
     cell_speed = np.zeros((curve.shape[0], 2, 3))
     stiffness = np.zeros((3, 3))
-    blocks = np.zeros((4, 9))
+    row_block, row_in, row_sign = np.empty(18, np.int64), np.empty(18, np.int64), np.empty(18)
+    of_position, of_speed = np.zeros(18), np.zeros(18)
     w = law.weight
     for row_i in range(rows):
         for span_i in range(count):
@@ -176,10 +177,10 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                             position[j, m, n] += fm * fn * stiff
                             position_speed[i, m, n] -= v1 * sj * normal[m] * ti[n]
                             position_speed[j, m, n] += v1 * si * fm * normal[m] * tj[n]
-                            blocks[0, 3 * m + n] = fn * stiff
-                            blocks[1, 3 * m + n] = v1 * si * normal[m] * tj[n]
-                            blocks[2, 3 * m + n] = v1 * sj * ti[m] * fn * normal[n]
-                            blocks[3, 3 * m + n] = v0 * ti[m] * tj[n]
+                            of_position[3 * m + n] = -fn * stiff
+                            of_position[9 + 3 * m + n] = v1 * sj * ti[m] * fn * normal[n]
+                            of_speed[3 * m + n] = -v1 * si * normal[m] * tj[n]
+                            of_speed[9 + 3 * m + n] = v0 * ti[m] * tj[n]
                     # derivatives with respect to the size of the cell
                     both = sj * ti[0] + si * tj[0]
                     for m in range(3):
@@ -217,41 +218,44 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                         to = slot[c]
                         b0 = basis[0, o_j, b]
                         b1 = basis[1, o_j, b]
+                        into = by_sample[to]
+                        for m in range(18):
+                            into[m] += b0 * of_position[m] + b1 * of_speed[m]
                         if z_sign < 0.0:
-                            blocks[:, 2::3] *= -1.0
-                        for m in range(9):
-                            by_position[to, m] -= b0 * blocks[0, m] + b1 * blocks[1, m]
-                            by_speed[to, m] += b0 * blocks[2, m] + b1 * blocks[3, m]
-                        if z_sign < 0.0:
-                            blocks[:, 2::3] *= -1.0
+                            for m in range(2, 18, 3):
+                                into[m] -= 2.0 * (b0 * of_position[m] + b1 * of_speed[m])
                 for to in range(n_touched):
+                    rows_of = by_sample[to]
                     for a in range(6):
                         b0 = basis[0, o_i, a]
                         b1 = basis[1, o_i, a]
+                        into = by_controls[to, a]
                         for m in range(9):
-                            by_controls[to, a, m] += b0 * by_position[to, m] + b1 * by_speed[to, m]
-                    by_position[to] = 0.0
-                    by_speed[to] = 0.0
+                            into[m] += b0 * rows_of[m] + b1 * rows_of[9 + m]
+                    rows_of[:] = 0.0
+            for a in range(6):
+                c, z_sign = control_of(span_i, a, count, mirror)
+                for m in range(3):
+                    row_block[3 * a + m] = dof[row_i, c, m] // tile_size
+                    row_in[3 * a + m] = dof[row_i, c, m] % tile_size
+                    row_sign[3 * a + m] = sign[row_i, c, m] * (z_sign if m == 2 else 1.0)
             for to in range(n_touched):
                 c2 = touched[to]
                 slot[c2] = -1
                 j2, k2 = c2 // count, c2 % count
-                for a in range(6):
-                    c, z_sign = control_of(span_i, a, count, mirror)
-                    for m in range(3):
-                        r1 = dof[row_i, c, m]
-                        s1 = sign[row_i, c, m] * (z_sign if m == 2 else 1.0)
-                        if s1 == 0.0:
-                            continue
-                        block1, o1 = r1 // tile_size, r1 % tile_size
-                        for n in range(3):
-                            r2 = dof[j2, k2, n]
-                            value = s1 * sign[j2, k2, n] * by_controls[to, a, 3 * m + n]
-                            block2, o2 = r2 // tile_size, r2 % tile_size
-                            if block1 >= block2:
-                                tiles[where[block1, block2], o1, o2] += value
-                            else:
-                                tiles[where[block2, block1], o2, o1] += value
+                for n in range(3):
+                    s2 = sign[j2, k2, n]
+                    if s2 == 0.0:
+                        continue
+                    block2 = dof[j2, k2, n] // tile_size
+                    o2 = dof[j2, k2, n] % tile_size
+                    for q in range(18):
+                        block1, o1 = row_block[q], row_in[q]
+                        value = row_sign[q] * s2 * by_controls[to, q // 3, 3 * (q % 3) + n]
+                        if block1 >= block2:
+                            tiles[where[block1, block2], o1, o2] += value
+                        else:
+                            tiles[where[block2, block1], o2, o1] += value
                 by_controls[to] = 0.0
     for b in range(where.shape[0]):
         _add_transposed(tiles[where[b, b]], tile_size)
