@@ -92,7 +92,7 @@ def test_spare_rows_are_dropped():
         ("loop_length_mm", {"loop_length_mm": [[11.0, 12.0, 13.0]]}, "every stitch"),
         ("loop_length_mm", {"loop_length_mm": [[11.0], [12.0, 13.0]]}, "every stitch"),
         ("cell_course_mm", {"cell_course_mm": 40.0}, "10.15"),
-        ("chart", {"chart": "KKPP\nKPKP\nPKKK\nPPKP", "time_limit_s": 0.5}, "at most 2 stitches"),
+        ("chart", {"chart": "KKPP\nKPKP\nPKKK\nPPKP", "time_limit_s": 0.5}, "at most 3 stitches"),
     ],
 )
 def test_impossible_input_is_refused_with_a_bound(field, arguments, bound):
