@@ -18,6 +18,7 @@ import { sharedBanner } from "./panels/sharedbanner.js";
 import { panelOpener } from "./panels/registry.js";
 import { chartstrip } from "./panels/chartstrip.js";
 import { messages } from "./widgets/messages.js";
+import { tips } from "./widgets/tips.js";
 import { overlaybar } from "./panels/overlaybar.js";
 import { rail } from "./panels/rail.js";
 import { selectionbar } from "./panels/selectionbar.js";
@@ -77,6 +78,7 @@ rail(byId("rail"), studio, context);
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);
 messages(byId("messages"), byId("offline"), studio);
+tips();
 themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));
 stretchdrawer(byId("stretch"), studio, stretcher);
 split(byId("split-columns"), "--side-width", {

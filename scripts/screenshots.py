@@ -194,8 +194,50 @@ def glove(page: Page) -> str | None:
     return None
 
 
+def fill(page: Page) -> str | None:
+    """A part that was made softer, on the chart, with the fabric in sight."""
+    page.keyboard.press("Shift+W")
+    page.click("#part-add")
+    page.wait_for_timeout(800)
+    page.select_option("#part-0-like", "seed")
+    page.click("#fill-run")
+    page.locator("#fill-keep").wait_for(timeout=120_000)
+    drawn(page)
+    return None
+
+
+def compare(page: Page) -> str | None:
+    page.keyboard.press("Shift+C")
+    page.locator("#compare-numbers tbody tr").first.wait_for()
+    page.select_option("#compare-b", "now")
+    page.select_option("#compare-b-yarn", "cotton")
+    page.locator("#compare-dialog:not(.busy) #compare-plot .main-svg").first.wait_for()
+    page.wait_for_timeout(1000)
+    return "#compare-dialog"
+
+
+def pattern(page: Page) -> str | None:
+    """The first page of the pattern that the page exports."""
+    drawn(page)
+    page.keyboard.press("Control+e")
+    page.check("input[value='pattern-svg']")
+    with page.expect_download() as download:
+        page.click("#export-make")
+    drawing = download.value.path().read_text(encoding="utf-8")
+    page.goto("about:blank")
+    sheet = "<style>body { margin: 0 } #sheet { width: 800px; height: 1131px; overflow: hidden }"
+    page.set_content(f"{sheet} svg {{ width: 800px; height: auto }}</style><div id=sheet>{drawing}")
+    return "#sheet"
+
+
 ATLAS = ".inverse-plot[data-count]:not([data-count='0'])"
-WHOLE: dict[str, Scene] = {"page": page, "glove": glove, "fabric": fabric}
+WHOLE: dict[str, Scene] = {
+    "page": page,
+    "glove": glove,
+    "fabric": fabric,
+    "fill": fill,
+    "pattern": pattern,
+}
 """Pictures with the fabric in 3D, each from its own visit."""
 
 PARTS: dict[str, Scene] = {
@@ -216,6 +258,7 @@ PARTS: dict[str, Scene] = {
     "exports": opened("Export, all formats", "#export-dialog"),
     "garments": opened("Plan a garment", "#planner-dialog", "#planner-facts:not(.busy) table"),
     "atlas": opened("Atlas of all repeats", "#inverse", ATLAS),
+    "compare": compare,
     "designs": designs,
     "regions": regions,
     "repeats": repeats,

@@ -23,11 +23,14 @@ import { combine, deliver } from "./delivery.js";
 import { designs } from "./designs.js";
 import { drafts } from "./drafts.js";
 import { same } from "./merge.js";
+import { Windows } from "./windows.js";
 
 const SAVE_MS = 250;
 /** Strokes follow each other: they are sent together. */
 const SEND_MS = 900;
 const RETRY_MS = 4000;
+/** How often the service is asked what others did. */
+const LOOK_MS = 4000;
 
 export class Keeper {
   /** @type {Signal<KeepState>} */
@@ -42,6 +45,8 @@ export class Keeper {
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #sendTimer;
   #warned = false;
   #over = false;
+  /** The service's name of the design on show while it is deleted there. @type {string | null} */ #deleted = null;
+  /** Other windows of this browser. */ windows = new Windows();
 
   /**
    * @param {Studio} studio with the design already open
@@ -67,6 +72,15 @@ export class Keeper {
     studio.online.listen((online) => {
       if (online) void this.catchUp();
     });
+    this.windows.onChanged = (revision) => {
+      if (revision > this.revision) void this.look();
+    };
+    setInterval(() => {
+      const { kind } = this.state.value;
+      const idle = kind === "kept" && this.#deleted !== this.remoteId;
+      if (idle && studio.online.value && document.visibilityState === "visible") void this.look();
+    }, LOOK_MS);
+    this.windows.show(this.remoteId);
     this.save();
   }
 
@@ -118,6 +132,7 @@ export class Keeper {
     this.#leave();
     this.#follow(() => this.studio.open(document, newIdentifier()));
     this.#parcel = this.#parcelOf(this.studio.designId, null);
+    this.windows.show(null);
     this.state.value = { kind: "shared", mode, token };
   }
 
@@ -304,6 +319,8 @@ export class Keeper {
     drafts.drop(this.#parcel.id);
     this.save();
     this.state.value = { kind: "kept" };
+    this.#deleted = null;
+    this.windows.delivered(this.revision);
   }
 
   /** @param {ApiError} error */
@@ -347,6 +364,7 @@ export class Keeper {
       if (!(error instanceof ApiError)) throw error;
       // Deleted elsewhere: it stays here, and the next change brings it back.
       if (error.problem.status !== 404) this.#failed(error);
+      else this.#deleted = remote.id;
     }
   }
 
@@ -443,6 +461,7 @@ export class Keeper {
 
   /** So that a reload and a bookmark lead to the design again. */
   showAddress() {
+    this.windows.show(this.remoteId);
     const hash = this.remoteId ? `#design/${this.remoteId}` : "";
     if (location.hash !== hash) history.replaceState(null, "", location.pathname + location.search + hash);
   }

@@ -22,8 +22,10 @@ import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
-/** A viewer that has drawn no cloth for so long is loaded again, then after twice as long. */
+/** A viewer that draws, but no cloth for so long, is loaded again, then after twice as long. */
 const RELOAD_MS = 6000;
+/** A busy machine needs so many times as long until it draws at all. */
+const STARTING = 5;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
@@ -68,9 +70,17 @@ export function fabricview(host, studio, view) {
   };
   frame.addEventListener("load", () => {
     if (!frame.contentWindow || !shown) return;
-    governor.govern(frame.contentWindow, () => knitted());
-    clearTimeout(reloading);
-    reloading = setTimeout(reloadUnseen, patience);
+    /** @param {number} ms */
+    const reloadAfter = (ms) => {
+      clearTimeout(reloading);
+      reloading = setTimeout(reloadUnseen, ms);
+    };
+    governor.govern(
+      frame.contentWindow,
+      () => knitted(),
+      () => reloadAfter(patience),
+    );
+    reloadAfter(STARTING * patience);
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let holding;

@@ -48,5 +48,12 @@ export function saveState(context) {
     chip.title = title;
     if (kind === "conflict") context.open("conflict");
   });
-  return chip;
+  const others = h("span", { class: "others", id: "others", role: "status" });
+  keeper.windows.others.watch((count) => {
+    others.hidden = count === 0;
+    const words = count === 1 ? "open in another window" : `open in ${count} other windows`;
+    others.replaceChildren(icon("copy"), h("span", { class: "label" }, words));
+    others.title = `This design is ${words}: strokes there come here at once`;
+  });
+  return h("span", { class: "kept-group" }, chip, others);
 }

@@ -50,13 +50,14 @@ export function stretchdrawer(host, studio, stretcher) {
 
   const amount = numberField({
     id: "stretch-amount",
-
     min: "1",
     max: "400",
     step: "1",
     value: "30",
     "aria-label": "How far or how hard to pull",
-    onkeydown: (/** @type {KeyboardEvent} */ { key }) => key === "Enter" && start(),
+    onkeydown: (/** @type {KeyboardEvent} */ { key }) => {
+      if (key === "Enter") start(); // returning false would keep every other key from the field
+    },
   });
   const unit = h(
     "select",

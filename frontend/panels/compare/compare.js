@@ -168,6 +168,7 @@ export function create(studio, { keeper }) {
   };
 
   return async () => {
+    element.classList.add("busy"); // what is on show may be old
     element.showModal();
     await keeper.flush();
     const { against } = studio.seeing;
@@ -177,6 +178,7 @@ export function create(studio, { keeper }) {
       all = await choices(studio, keeper);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
+      element.classList.remove("busy");
       status.replaceChildren(problemBox(error.problem));
       return;
     }

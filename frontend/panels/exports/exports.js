@@ -16,7 +16,7 @@ import { download } from "../../services/exporter.js";
 import { attempt } from "../../widgets/attempt.js";
 import { dialog } from "../../widgets/dialog.js";
 import { choice, labelled, numberField } from "../../widgets/fields.js";
-import { viewPicture } from "../fabric/share.js";
+import { isKnitted, viewPicture } from "../fabric/share.js";
 import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
 
@@ -174,6 +174,7 @@ export function create(studio) {
 
   /** What the 3D view shows, base64; null where there is no view. */
   async function photo() {
+    if (!isKnitted()) return null;
     try {
       return toBase64(await (await viewPicture(studio, PHOTO_PX)).arrayBuffer());
     } catch (error) {

@@ -32,6 +32,7 @@ export class FrameGovernor {
 
   /** What to call when the viewer shows something; null once it was called. @type {(() => void) | null} */ #seen =
     null;
+  /** @type {(() => void) | null} */ #started = null;
   /** @type {Document | null} */ #document = null;
 
   /**
@@ -39,10 +40,12 @@ export class FrameGovernor {
    *
    * @param {Window} viewer of our own origin; its event `news` tells that the service sent something
    * @param {() => void} seen called when its first picture is there
+   * @param {() => void} started called when it draws for the first time, even if there is nothing yet
    */
-  govern(viewer, seen) {
+  govern(viewer, seen, started) {
     this.#waiting.clear();
     this.#seen = seen;
+    this.#started = started;
     this.#fed = -1;
     this.#document = viewer.document;
     const own = viewer.requestAnimationFrame.bind(viewer);
@@ -117,6 +120,8 @@ export class FrameGovernor {
   #frame(callback, time) {
     const start = performance.now();
     callback(time);
+    this.#started?.();
+    this.#started = null;
     if (this.#fed >= 0) this.#fed++;
     if (this.#seen && this.#fed >= FIRST_FRAMES && hasPicture(this.#document)) {
       this.#seen();

@@ -23,6 +23,9 @@ export async function savePicture(studio, width) {
   await save(studio, "png", () => viewPicture(studio, width));
 }
 
+/** Whether the view shows a cloth, of which a picture can be made. */
+export const isKnitted = () => document.querySelector(".fabric-status:empty") !== null;
+
 /**
  * A picture (PNG) as this browser sees the fabric.
  *

@@ -55,6 +55,7 @@ export function toolbar(studio, look, wish) {
     class: "button",
   });
   button.title = "Colours of the yarn";
+  button.ariaLabel = "Yarn: its colours";
   studio.seeing.yarnColours.watch((chosen) =>
     setItems(
       COLOURS.map(([id, content]) => ({
@@ -87,6 +88,7 @@ function shareMenu(studio, wish) {
     class: "button",
   });
   button.title = "A picture, page, recording or solid of this fabric";
+  button.ariaLabel = "Save the view";
   /** @param {string} id @param {string} content @param {(files: typeof import("./share.js")) => Promise<void>} save @param {boolean} [disabled] */
   const item = (id, content, save, disabled = false) => ({
     id: `share-${id}`,

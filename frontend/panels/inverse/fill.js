@@ -4,23 +4,35 @@
  * @import {Studio} from "../../studio.js"
  * @import {FillResult} from "../../types.js"
  *
- * @typedef {{name: string, cells: number[], course: number | null, wale: number | null}} Part
+ * @typedef {{course: number, wale: number}} Stiffness moduli in N/mm
+ * @typedef {{name: string, cells: number[], course: number | null, wale: number | null, now: Stiffness | null,
+ *   tell?: () => void}} Part
  */
 
+import { ApiError, api } from "../../api.js";
 import { figure, percent } from "../../core/format.js";
 import { Grid } from "../../core/grid.js";
+import { largestRectangle } from "../../core/inscribed.js";
 import { FABRICS } from "../../core/segments.js";
 import { selectedCells } from "../../core/selection.js";
 import { outlineText } from "../../core/snapshot.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
-import { thumbnail } from "../../widgets/thumbnail.js";
-import { nameOf } from "./apply.js";
+import { nameOf, repeatPicture } from "./apply.js";
 import { field } from "./find.js";
 import { Run } from "../../widgets/jobrun.js";
 
 const SHOWN_PATCHES = 6;
+/** @type {{axis: "course" | "wale", label: string}[]} */
+const AXES = [
+  { axis: "course", label: "rows" },
+  { axis: "wale", label: "columns" },
+];
+/** What one says of a cloth, and the change of its stiffness. @type {Record<string, number>} */
+const STEPS = { "a little softer": 1 / 1.3, "much softer": 1 / 2.5, "a little stiffer": 1.3, "much stiffer": 2.5 };
+/** Nearer than this is as wanted. */
+const NEAR = 0.1;
 
 /** @param {Studio} studio */
 export function fillTab(studio) {
@@ -40,7 +52,7 @@ export function fillTab(studio) {
     if (!cells.length) return;
     if (size !== sizeNow()) parts = [];
     size = sizeNow();
-    parts.push({ name, cells, course: null, wale: null });
+    parts.push({ name, cells, course: null, wale: null, now: null });
     show();
   };
   const addSelection = () => {
@@ -56,43 +68,81 @@ export function fillTab(studio) {
     }
   };
 
+  /** Ask what a part does now, and say so in its card. @param {Part} part */
+  const measure = async (part) => {
+    const { grid } = chart;
+    const mask = new Uint8Array(grid.purl.length);
+    for (const i of part.cells) mask[i] = 1;
+    const inside = largestRectangle(mask, grid.columns);
+    if (!inside || size !== sizeNow()) return;
+    const body = { chart: grid.region(inside).text, material: studio.materialId.value };
+    try {
+      const found = await api.predict(body);
+      part.now = { course: found.modulus_course_n_per_mm, wale: found.modulus_wale_n_per_mm };
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      part.now = null; // the inspector says why
+    }
+    part.tell?.();
+  };
+  const measureAll = () => {
+    if (parts.length && element.checkVisibility()) for (const part of parts) void measure(part);
+  };
+
   /** @param {Part} part @param {number} at */
   const item = (part, at) => {
-    /** @param {"course" | "wale"} axis @param {string} label */
-    const value = (axis, label) => {
-      const input = field(`${label}: ${part.name}`, 0, {
+    const inputs = AXES.map(({ axis, label }) => {
+      const input = field(`Wanted stiffness along ${label}, N/mm: ${part.name}`, 0, {
         min: "0.0001",
         step: "any",
         required: false,
         placeholder: "any",
         id: `part-${at}-${axis}`,
       });
-      input.value = part[axis] === null ? "" : String(part[axis]);
-      input.onchange = () => (part[axis] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : null);
-      return h(
-        "label",
-        { class: "part-value" },
-        h("span", { class: "muted" }, axis === "course" ? "rows" : "columns"),
-        input,
-      );
-    };
+      input.onchange = () => {
+        part[axis] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : null;
+        part.tell?.();
+      };
+      return input;
+    });
+    const now = AXES.map(({ axis }) => h("td", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
+    const verdicts = AXES.map(() => h("td", { class: "muted" }));
+    part.tell = () =>
+      AXES.forEach(({ axis }, i) => {
+        now[i].textContent = figure(part.now?.[axis]);
+        const wanted = part[axis];
+        inputs[i].value = wanted === null ? "" : String(wanted);
+        verdicts[i].textContent = wanted && part.now ? against(part.now[axis], wanted) : "";
+      });
+    part.tell();
+    const others = parts.filter((other) => other !== part);
     const like = h(
       "select",
       {
-        class: "text",
-        "aria-label": `As stiff as a fabric: ${part.name}`,
+        class: "text part-like",
+        id: `part-${at}-like`,
+        "aria-label": `Make ${part.name} …`,
         onchange: () => {
-          const fabrics = studio.materials.value.find(({ id }) => id === studio.materialId.value)?.fabrics;
-          const one = fabrics?.[/** @type {typeof FABRICS[number]} */ (like.value)];
-          if (!one) return;
-          part.course = Number(one.modulus_course_n_per_mm.toPrecision(3));
-          part.wale = Number(one.modulus_wale_n_per_mm.toPrecision(3));
-          show();
+          const wanted = wantedAs(like.value);
+          like.value = "";
+          if (wanted) for (const { axis } of AXES) part[axis] = Number(wanted[axis].toPrecision(3));
+          part.tell?.();
         },
       },
-      h("option", { value: "" }, "like …"),
-      ...FABRICS.map((fabric) => h("option", { value: fabric }, `like ${fabric}`)),
+      h("option", { value: "" }, "make it …"),
+      ...Object.entries(STEPS).map(([words]) => h("option", { value: words }, words)),
+      ...FABRICS.map((fabric) => h("option", { value: fabric }, `as stretchy as ${fabric}`)),
+      ...others.map(({ name }, i) => h("option", { value: `part ${i}` }, `as stretchy as ${name} now`)),
     );
+    /** @param {string} chosen @returns {Stiffness | null} */
+    const wantedAs = (chosen) => {
+      const { now: mine } = part;
+      if (chosen in STEPS) return mine && scaled(mine, STEPS[chosen]);
+      if (chosen.startsWith("part ")) return others[Number(chosen.slice(5))].now;
+      const fabrics = studio.materials.value.find(({ id }) => id === studio.materialId.value)?.fabrics;
+      const one = fabrics?.[/** @type {typeof FABRICS[number]} */ (chosen)];
+      return one ? { course: one.modulus_course_n_per_mm, wale: one.modulus_wale_n_per_mm } : null;
+    };
     return h(
       "li",
       { class: "wish" },
@@ -109,20 +159,34 @@ export function fillTab(studio) {
             (part.name = /** @type {HTMLInputElement} */ (target).value.trim() || part.name),
         }),
         h("span", { class: "muted figures part-count" }, `${part.cells.length} sts`),
+        like,
         iconButton("close", `Remove ${part.name}`, () => {
           parts = parts.filter((other) => other !== part);
           show();
         }),
       ),
       h(
-        "div",
-        { class: "wish-extra" },
-        h("span", { class: "muted" }, "stiffness along"),
-        value("course", "Stiffness along rows, N/mm"),
-        value("wale", "Stiffness along columns, N/mm"),
-        h("span", { class: "muted" }, "N/mm"),
-        h("span", { class: "spacer" }),
-        like,
+        "table",
+        { class: "part-numbers" },
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("th", { scope: "col" }, "Stiffness, N/mm"),
+            h("th", { scope: "col" }, "now"),
+            h("th", { scope: "col" }, "wanted"),
+            h("th", { scope: "col" }, h("span", { class: "visually-hidden" }, "how near")),
+          ),
+        ),
+        h(
+          "tbody",
+          {},
+          ...AXES.map(({ label }, i) =>
+            h("tr", {}, h("th", { scope: "row" }, `along ${label}`), now[i], h("td", {}, inputs[i]), verdicts[i]),
+          ),
+        ),
       ),
     );
   };
@@ -134,14 +198,15 @@ export function fillTab(studio) {
             h(
               "li",
               { class: "muted inverse-hint" },
-              "Select stitches in the chart (M, Q or W) and add them as a part, or add all regions; then enter how stiff each should be. Leave a field empty for no preference.",
+              "Select stitches in the chart (M, Q or W) and add them as a part, or add all regions; then say how each should be: stiffer, softer, as stretchy as another fabric, or a number. An empty field is no preference.",
             ),
           ]),
     );
+    measureAll();
   };
 
   const smallest = field("Smallest patch, stitches", 4, { min: "1", max: "100", step: "1" });
-  const seed = field("Variant", 0, { min: "0", step: "1" });
+  let seed = 0;
   const large = h("input", { type: "checkbox" });
 
   const fill = async () => {
@@ -175,64 +240,71 @@ export function fillTab(studio) {
         })),
         repeats: large.checked ? "all" : "small",
         smallest_patch: smallest.valueAsNumber || 4,
-        seed: seed.valueAsNumber || 0,
+        seed,
       },
       "Filling",
     );
     if (found) preview(found, wished);
   };
 
-  /** @param {FillResult} found @param {Part[]} wished */
+  /**
+   * The result goes onto the chart at once, so that chart, 3D and numbers show it.
+   *
+   * @param {FillResult} found
+   * @param {Part[]} wished
+   */
   const preview = (found, wished) => {
+    if (size !== sizeNow()) return;
     const filled = Grid.fromText(found.chart);
     const cells = [...new Set(wished.flatMap((part) => part.cells))];
-    const use = textButton(
-      "check",
-      "Apply",
+    const before = cells.map((i) => chart.grid.purl[i]);
+    /** @param {(at: number, i: number) => number} label @param {string} words */
+    const put = (label, words) =>
+      chart.set(
+        cells.map((i, at) => [i, label(at, i)]),
+        words,
+      );
+    put((_, i) => filled.purl[i], "Fill from a target");
+    const done = (/** @type {string} */ words) => {
+      answer.replaceChildren();
+      studio.tell(words);
+    };
+    const keep = textButton("check", "Keep it", () => done("The chart is filled. Undo with Ctrl+Z."), {
+      class: "button primary",
+      id: "fill-keep",
+    });
+    const back = textButton(
+      "undo",
+      "Take it back",
       () => {
-        if (size !== sizeNow()) {
-          run.say({
-            title: "The chart has another size now",
-            detail: "The preview does not fit it any more.",
-            remedy: "Fill again.",
-          });
-          return;
-        }
-        chart.set(
-          cells.map((i) => [i, filled.purl[i]]),
-          "Fill from a target",
-        );
-        studio.tell("The chart is filled. Undo with Ctrl+Z.");
+        if (size === sizeNow()) put((at) => before[at], "Take the fill back");
+        done("The chart is as it was.");
       },
-      { class: "button primary", id: "fill-apply" },
+      { id: "fill-back" },
     );
+    const other = textButton("wand", "Another try", () => {
+      seed += 1;
+      if (size === sizeNow()) put((at) => before[at], "Take the fill back");
+      void fill();
+    });
     const good = found.off_share <= 0.05;
     answer.replaceChildren(
       h(
         "p",
         { class: good ? "inverse-verdict good" : "inverse-verdict" },
         icon(good ? "check" : "info"),
-        h("span", {}, `${percent(1 - found.off_share)} of the area with a target is within 10 % of it.`),
+        h("span", {}, verdict(found.off_share)),
       ),
+      h("div", { class: "inverse-buttons" }, keep, back, other),
       h(
-        "div",
-        { class: "inverse-preview" },
-        thumbnail({ chart: found.chart, outline: outlineNow() }, { side: 190, label: "The filled chart" }),
-        h(
-          "div",
-          { class: "preview-words" },
-          ...found.messages.slice(0, 4).map((message) => h("p", {}, message)),
-          found.patches.length > 0 && patchTable(found),
-          h(
-            "div",
-            { class: "inverse-buttons" },
-            use,
-            h("button", { class: "button", onclick: () => answer.replaceChildren() }, "Discard"),
-          ),
-        ),
+        "details",
+        {},
+        h("summary", {}, "Which patterns, and how near they come"),
+        found.patches.length > 0 && patchTable(found),
+        ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, message)),
       ),
     );
-    use.focus();
+    keep.focus();
   };
 
   selection.listen(
@@ -258,40 +330,56 @@ export function fillTab(studio) {
         { class: "inverse-bar" },
         addButton,
         textButton("plus", "Regions", addRegions, { id: "part-regions" }),
-        h("label", { class: "check" }, "patches from", smallest, "sts"),
-        h("label", { class: "check", title: "The same number gives the same chart again" }, "variant", seed),
-        h(
-          "label",
-          { class: "check", title: "Choose from repeats up to 4 × 4; the first time takes up to a minute" },
-          large,
-          "Up to 4 × 4",
-        ),
         h("span", { class: "spacer" }),
         h("button", { class: "button primary", type: "submit", id: "fill-run" }, "Fill"),
+      ),
+      h(
+        "details",
+        { class: "inverse-more" },
+        h("summary", {}, "Options"),
+        h("label", { class: "check" }, "No patch narrower than", smallest, "stitches"),
+        h("label", { class: "check" }, large, "Larger patterns, too (the first time takes up to a minute)"),
       ),
     ),
     run.element,
     answer,
   );
-  return { element };
+  chart.onSettle(measureAll);
+  studio.materialId.listen(measureAll);
+  return { element, opened: measureAll };
+}
+
+/** @param {number} off share that misses its target */
+function verdict(off) {
+  if (off <= 0.05) return `On the chart now, as wanted: ${percent(1 - off)} of it is within 10 %.`;
+  const share = off >= 1 ? "none" : percent(1 - off);
+  return `On the chart now, the nearest that was found: ${share} of it is within 10 % of what was wanted.`;
+}
+
+/** @param {Stiffness} now @param {number} times @returns {Stiffness} */
+const scaled = ({ course, wale }, times) => ({ course: course * times, wale: wale * times });
+
+/** How a stiffness compares with the wanted one, in words. @param {number} now @param {number} wanted */
+function against(now, wanted) {
+  const share = now / wanted;
+  if (Math.abs(share - 1) <= NEAR) return "as wanted";
+  const times = Math.max(share, 1 / share);
+  const more = times >= 2 ? `${times.toFixed(1)} times ` : `${percent(times - 1)} `;
+  return `${more}${share > 1 ? "stiffer" : "softer"} than wanted`;
 }
 
 /** @param {FillResult} found */
 function patchTable({ patches }) {
   const rows = patches.toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
   /** @param {number | null} share */
-  const away = (share) => (share === null ? "–" : `${share < 0 ? "−" : "+"}${Math.abs(100 * share).toFixed(0)} %`);
+  const away = (share) => (share === null ? "any" : against(1 + share, 1));
   return h(
     "table",
     { class: "inverse-numbers patches" },
     h(
       "thead",
       {},
-      h(
-        "tr",
-        {},
-        ...["Patch", "sts", "rows", "columns", "in the swatch"].map((text) => h("th", { scope: "col" }, text)),
-      ),
+      h("tr", {}, ...["Pattern", "Stitches", "Rows", "Columns"].map((text) => h("th", { scope: "col" }, text))),
     ),
     h(
       "tbody",
@@ -300,11 +388,10 @@ function patchTable({ patches }) {
         h(
           "tr",
           {},
-          h("td", {}, nameOf(p.repeat)),
+          h("td", { class: "patch-name" }, repeatPicture(p.repeat, 36), nameOf(p.repeat)),
           h("td", { class: "figures" }, figure(p.stitches)),
-          h("td", { class: "figures" }, away(p.deviation_course)),
-          h("td", { class: "figures" }, away(p.deviation_wale)),
-          h("td", { class: "figures muted" }, `${away(p.swatch_course)}, ${away(p.swatch_wale)}`),
+          h("td", {}, away(p.deviation_course)),
+          h("td", {}, away(p.deviation_wale)),
         ),
       ),
     ),

@@ -45,8 +45,9 @@ export const opening = (tab) => (studio, context) => {
 function panel(studio, context) {
   const atlas = atlasTab(studio, context);
   const find = findTab(studio, context);
+  const stiffness = fillTab(studio);
   const ways = [
-    { id: "stiffness", label: "Stiffness of parts", ...fillTab(studio) },
+    { id: "stiffness", label: "Stiffness of parts", ...stiffness },
     { id: "outline", label: "Outline under a stretch", ...outlineTab(studio) },
   ];
   const way = h(
@@ -142,6 +143,7 @@ function panel(studio, context) {
   const show = (/** @type {TabName} */ tab) => {
     current = tab;
     section.hidden = false;
+    section.dataset.tab = tab; // filling leaves the fabric in sight
     for (const { id } of TABS) {
       contents[/** @type {TabName} */ (id)].hidden = id !== tab;
       const button = byId(`inverse-${id}`);
@@ -149,6 +151,7 @@ function panel(studio, context) {
       button.tabIndex = id === tab ? 0 : -1;
     }
     if (tab === "atlas") atlas.open();
+    if (tab === "fill") stiffness.opened();
     byId(`inverse-${tab}`).focus({ preventScroll: true });
   };
   return show;

@@ -1,0 +1,79 @@
+/**
+ * Other windows of this browser that show the same design: how many there are, and when one of them has
+ * delivered something.
+ */
+
+import { Signal } from "../core/signal.js";
+import { newIdentifier } from "../core/store.js";
+
+/** How often the others are asked whether they are still there, and how long they have to answer. */
+const ASK_MS = 4000;
+const ANSWER_MS = 1000;
+
+/**
+ * @typedef {{kind: "here" | "gone" | "who", window: string, design: string | null}
+ *   | {kind: "changed", window: string, design: string, revision: number}} Word
+ */
+
+export class Windows {
+  /** Number of other windows with the design. */
+  others = new Signal(0);
+  /** Called when another window has delivered a revision of the design. @type {(revision: number) => void} */
+  onChanged = () => {};
+  #channel = new BroadcastChannel("knitcore-windows");
+  #name = newIdentifier();
+  /** @type {string | null} */ #design = null;
+  /** @type {(name: string) => void} */ #answered = () => {};
+  /** Design of each other window. @type {Map<string, string | null>} */ #seen = new Map();
+
+  constructor() {
+    this.#channel.onmessage = (event) => this.#heard(/** @type {Word} */ (event.data));
+    window.addEventListener("pagehide", () => this.#say({ kind: "gone", window: this.#name, design: null }));
+    // A window that was closed by force says nothing any more.
+    setInterval(() => document.visibilityState === "visible" && this.#seen.size && this.#ask(), ASK_MS);
+    window.addEventListener("pageshow", () => this.#say({ kind: "who", window: this.#name, design: this.#design }));
+  }
+
+  /** This window shows a design; null while the service does not know it. @param {string | null} design */
+  show(design) {
+    if (design === this.#design) return;
+    this.#design = design;
+    this.#say({ kind: "who", window: this.#name, design });
+    this.#count();
+  }
+
+  /** This window has delivered a revision. @param {number} revision */
+  delivered(revision) {
+    if (this.#design) this.#say({ kind: "changed", window: this.#name, design: this.#design, revision });
+  }
+
+  #ask() {
+    const silent = new Set(this.#seen.keys());
+    this.#answered = (name) => silent.delete(name);
+    this.#say({ kind: "who", window: this.#name, design: this.#design });
+    setTimeout(() => {
+      for (const name of silent) this.#seen.delete(name);
+      this.#count();
+    }, ANSWER_MS);
+  }
+
+  /** @param {Word} word */
+  #say(word) {
+    this.#channel.postMessage(word);
+  }
+
+  /** @param {Word} word */
+  #heard(word) {
+    this.#answered(word.window);
+    if (word.kind === "gone") this.#seen.delete(word.window);
+    else this.#seen.set(word.window, word.design);
+    if (word.kind === "who") this.#say({ kind: "here", window: this.#name, design: this.#design });
+    if (word.kind === "changed" && word.design === this.#design) this.onChanged(word.revision);
+    this.#count();
+  }
+
+  #count() {
+    const design = this.#design;
+    this.others.value = design ? [...this.#seen.values()].filter((one) => one === design).length : 0;
+  }
+}

@@ -1,0 +1,34 @@
+"""Two windows with one design: each knows of the other, and shows its strokes."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import wait_for_numbers
+from tests.browser.page import drag
+
+
+@pytest.mark.slow
+def test_a_stroke_in_one_window_is_seen_in_the_other_which_nobody_touches(
+    flat_studio: Page,
+) -> None:
+    first = flat_studio
+    expect(first.locator("#others")).to_be_hidden()
+    drag(first, 60, 0)
+    expect(first.locator("#kept")).to_have_attribute("data-state", "kept")
+    second = first.context.new_page()
+    second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+    second.goto(first.url)
+    wait_for_numbers(second)
+    expect(first.locator("#others")).to_contain_text("open in another window")
+    expect(second.locator("#others")).to_contain_text("open in another window")
+    theirs, ours = (page.locator("#segments-course") for page in (second, first))
+    expect(theirs).to_have_text(ours.text_content() or "")
+    before = theirs.text_content() or ""
+    drag(first, 0, 60, start=(-60, -40))
+    expect(theirs).not_to_have_text(before)
+    expect(theirs).to_have_text(ours.text_content() or "")
+
+    second.close()
+    expect(first.locator("#others")).to_be_hidden()
