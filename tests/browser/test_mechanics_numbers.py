@@ -154,9 +154,9 @@ def test_a_target_for_a_shaped_chart_covers_only_its_stitches(visitor: Page, ser
 
 
 def fill_first_part(page: Page, *, course: str, wale: str) -> None:
-    """Wish for stiffness of the only part, fill and apply."""
+    """Give a target to the only part, fill it and keep that."""
     page.fill("#part-0-course", course)
     page.fill("#part-0-wale", wale)
     page.click("#fill-run")
-    expect(page.locator("#fill-answer")).to_contain_text("of the area with a target")
-    page.click("#fill-apply")
+    expect(page.locator("#fill-answer")).to_contain_text("On the chart now")
+    page.click("#fill-keep")
