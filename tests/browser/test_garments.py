@@ -38,6 +38,7 @@ def test_a_glove_becomes_a_design_with_its_regions(flat_studio: Page, tmp_path: 
     page.locator("#planner-make").click()
     expect(page.locator("#planner-dialog")).not_to_be_visible()
     page.keyboard.press("Control+E")
+    page.locator("input[name=export-kind][value=written]").check()
     with page.expect_download() as caught:
         page.locator("#export-make").click()
     caught.value.save_as(tmp_path / "glove.txt")
