@@ -177,13 +177,19 @@ ENDLESS = {
 def test_endless_heads_crumbs_and_requests_ahead_are_refused(
     address: tuple[str, int], endless: str
 ) -> None:
+    """The service answers 400 and closes; what it has left unread may reset the connection, so
+    that the answer is lost. One that waited for more would end this test by its time limit.
+    """
     begin, more = ENDLESS[endless]
-    answers = b""
+    answers, reset = b"", False
     with socket.create_connection(address, timeout=10) as client:
-        client.sendall(begin + b"".join(more))
-        while part := client.recv(10_000):
-            answers += part
-    assert b"HTTP/1.1 400" in answers
+        try:
+            client.sendall(begin + b"".join(more))
+            while part := client.recv(10_000):
+                answers += part
+        except (ConnectionResetError, BrokenPipeError):
+            reset = True
+    assert reset or b"HTTP/1.1 400" in answers
     assert answers.count(b"HTTP/1.1 200") <= MOST_AHEAD
 
 
