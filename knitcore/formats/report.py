@@ -73,7 +73,7 @@ def assumptions(found: Answer) -> list[str]:
     """How an answer was found and what it takes for granted, in sentences."""
     return [
         f"Law: {found.method}.",
-        f"Shear modulus {found.shear_modulus_n_per_mm:g} N/mm: an assumption unless calibrated.",
+        f"Shear modulus {found.shear_modulus_n_per_mm:.2g} N/mm: an assumption unless calibrated.",
         "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
         *found.notes,
     ]
