@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError, UnravelledError
+from knitcore.errors import CancelledError, ConvergenceError, UnravelledError
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.fronts import Front, elimination
 from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System
@@ -250,6 +250,8 @@ class _Descent:
         curvature is: damping just beyond it leaves a saddle fast."""
         indefinite = False
         while not system.factorise(self.damping):
+            if not np.isfinite(self.damping):  # then the Hessian is not finite either
+                raise ConvergenceError("the Hessian of the yarn's energy is not finite.")
             indefinite = True
             self._damp(_INDEFINITE_GROWTH, _INDEFINITE_DAMPING)
         if indefinite or self.lowest < 0.0:
