@@ -16,7 +16,7 @@ from app.http.problems import ServiceError
 from app.http.rate import RateLimit
 
 DAY_S = 86_400.0
-LEAST_S = 60.0
+MIN_S = 60.0
 """Computing time that has come back when a user may compute again."""
 
 
@@ -127,7 +127,7 @@ class ComputingTime:
         """
         left = self._left.left(owner)
         if left <= 0:
-            raise SpentError(self._most_s, (LEAST_S - left) / self._left.per_s)
+            raise SpentError(self._most_s, (MIN_S - left) / self._left.per_s)
 
     def spend(self, owner: str, seconds: float) -> None:
         """Count a computation, which may have taken more than was left."""

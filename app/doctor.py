@@ -22,8 +22,8 @@ from knitcore.errors import InputError
 if TYPE_CHECKING:
     from app.compute.cluster import Cluster
 
-LEAST_FREE_BYTES = 100_000_000
-LEAST_HANDLES = 4_096
+MIN_FREE_BYTES = 100_000_000
+MIN_HANDLES = 4_096
 
 
 class Check(BaseModel):
@@ -137,7 +137,7 @@ def check_space(folder: Path) -> None:
     if not folder.is_dir():
         return
     free = shutil.disk_usage(folder).free
-    if free < LEAST_FREE_BYTES:
+    if free < MIN_FREE_BYTES:
         raise InputError(
             "data_dir",
             f"The disk of the designs has {free / 1e6:.0f} MB left.",
@@ -176,11 +176,11 @@ def check_handles() -> None:
     InputError
     """
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if hard != resource.RLIM_INFINITY and hard < LEAST_HANDLES:
+    if hard != resource.RLIM_INFINITY and hard < MIN_HANDLES:
         raise InputError(
             "nofile",
             f"this process may open {hard} files only.",
-            f"Raise the limit (ulimit -n, LimitNOFILE) to {LEAST_HANDLES} or more.",
+            f"Raise the limit (ulimit -n, LimitNOFILE) to {MIN_HANDLES} or more.",
         )
 
 

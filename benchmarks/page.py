@@ -29,7 +29,7 @@ ROOT = Path(__file__).resolve().parent.parent
 RUNS = int(os.environ.get("RUNS", "5"))
 STROKES = int(os.environ.get("STROKES", "20"))
 FORCED = "--use-angle=swiftshader"
-SHORTEST_MS = 8.0
+MIN_MS = 8.0
 
 WATCH = """() => {
     window.measured = [];
@@ -127,8 +127,8 @@ def strokes(page: Page) -> tuple[list[float], list[float]]:
         events = page.evaluate("start => window.measured.filter(([, at]) => at >= start)", start)
         painted = [ms for name, _, ms in events if name in ("pointerdown", "pointermove")]
         ended = [ms for name, _, ms in events if name == "pointerup"]
-        worst.append(max(painted, default=SHORTEST_MS))
-        last.append(max(painted + ended, default=SHORTEST_MS))
+        worst.append(max(painted, default=MIN_MS))
+        last.append(max(painted + ended, default=MIN_MS))
     return worst, last
 
 

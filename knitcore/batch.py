@@ -30,7 +30,7 @@ Document = dict[str, Any]
 
 LOOK_EVERY_S = 0.5
 CONNECT_S = 10
-MOST_LOSSES = 3
+MAX_LOSSES = 3
 """A task is given up after its process was lost this often, since the task may be the cause."""
 _KEY = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,119}")
 
@@ -175,10 +175,10 @@ def _outcomes(
                         yield key, error if isinstance(error, Exception) else future.result()
         for key in lost:  # one task ended the processes of all; each is tried again
             losses[key] += 1
-            if losses[key] < MOST_LOSSES:
+            if losses[key] < MAX_LOSSES:
                 waiting.appendleft(key)
             else:
-                yield key, RuntimeError(f"its process was lost {MOST_LOSSES} times")
+                yield key, RuntimeError(f"its process was lost {MAX_LOSSES} times")
 
 
 def _attempt(function: Callable[[Task], Document], task: Task) -> Document | Exception:
@@ -224,7 +224,7 @@ def _cluster(scheduler: str) -> Iterator[tuple[Executor, int]]:
         ) from None
     with client:
         threads = sum(client.nthreads().values())
-        executor = client.get_executor(retries=MOST_LOSSES - 1, pure=False)
+        executor = client.get_executor(retries=MAX_LOSSES - 1, pure=False)
         try:
             yield executor, max(8, 2 * threads)
         finally:

@@ -229,7 +229,7 @@ class StitchChart:
         return f"StitchChart({self.rows} rows, {self.columns} columns)"
 
     def _repr_html_(self) -> str:
-        most = showing.MOST_CELLS
+        most = showing.MAX_CELLS
         size = f"{self.columns} columns × {self.rows} rows, the face side"
         cut = f"; the lower left {most} × {most}" if max(self.purl.shape) > most else ""
         return showing.figure(showing.stitches(self.purl), size + cut)

@@ -17,7 +17,7 @@ from knitcore.arrays import Array
 
 INKS = ("#3f74b5", "#d98032")
 """Colours of the first and the second curve."""
-MOST_CELLS = 80
+MAX_CELLS = 80
 """Most rows or columns of a chart that are drawn."""
 WIDTH, HEIGHT = 300, 200
 _LEFT, _BOTTOM, _RIGHT, _TOP = 46, 34, 10, 22
@@ -60,7 +60,7 @@ def stitches(purl: NDArray[np.bool_], inside: NDArray[np.bool_] | None = None) -
     purl : bool (rows, columns).
     inside : bool (rows, columns), where there are stitches; everywhere by default.
     """
-    rows, columns = (min(n, MOST_CELLS) for n in purl.shape)
+    rows, columns = (min(n, MAX_CELLS) for n in purl.shape)
     there = np.ones_like(purl) if inside is None else inside
     cell = float(np.clip(480 / max(rows, columns), 4, 18))
     knits, purls, dashes = "", "", ""

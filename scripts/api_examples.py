@@ -42,7 +42,7 @@ LAST = [
 ]
 ENDLESS = ("/events", "/picture")
 """Streams, and operations that need a browser watching."""
-MOST_ITEMS, MOST_CHARACTERS = 2, 160
+MAX_ITEMS, MAX_CHARACTERS = 2, 160
 TUPLE = 4
 """Lists up to this length are kept whole: their length may matter."""
 
@@ -52,8 +52,8 @@ def short(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: short(item) for name, item in value.items()}
     if isinstance(value, list):
-        return [short(item) for item in (value[:MOST_ITEMS] if len(value) > TUPLE else value)]
-    return value[:MOST_CHARACTERS] if isinstance(value, str) else value
+        return [short(item) for item in (value[:MAX_ITEMS] if len(value) > TUPLE else value)]
+    return value[:MAX_CHARACTERS] if isinstance(value, str) else value
 
 
 def in_order(found: Iterable[str]) -> list[str]:

@@ -23,7 +23,7 @@ from tests.browser.page import wait_for_colour
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
-MOST_BYTES = 200_000
+MAX_BYTES = 200_000
 SCREEN = {"width": 1440, "height": 900}
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 LOOPS_PX = 5000
@@ -308,7 +308,7 @@ def keep(name: str, picture: bytes) -> None:
         image.quantize(palette=palette(image, colours), dither=Image.Dither.NONE).save(
             packed, "PNG", optimize=True
         )
-        if packed.tell() <= MOST_BYTES:
+        if packed.tell() <= MAX_BYTES:
             break
     file.write_bytes(packed.getvalue())
     print(f"{file.relative_to(ROOT)}  {packed.tell() / 1000:.0f} kB", flush=True)

@@ -23,7 +23,7 @@ from app.models.charts import size_of
 from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Operation, operations
 
-MOST_LIGHT = 2_500
+MAX_LIGHT = 2_500
 """Most stitches of a request that the service answers itself. A larger one goes to a worker, with
 its limits on memory and time: a mixed chart of 10,000 stitches takes 0.3 s."""
 MISSING: dict[int | str, dict[str, Any]] = {
@@ -45,7 +45,7 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     async def post(body: BaseModel | Undecoded, request: Request) -> Any:
         answers: Answers = request.app.state.answers
         wanted = body.content if isinstance(body, Undecoded) else body
-        if isinstance(wanted, BaseModel) and not operation.heavy and size_of(wanted) <= MOST_LIGHT:
+        if isinstance(wanted, BaseModel) and not operation.heavy and size_of(wanted) <= MAX_LIGHT:
             gate: Gate = request.app.state.light_work
             async with gate.turn(current_user.get()):
                 return await run_in_threadpool(light, wanted, request)

@@ -22,7 +22,7 @@ from knitcore.errors import InputError
 
 log = logging.getLogger("knitcore.app")
 
-MOST_HANDLES = 65_536
+MAX_HANDLES = 65_536
 SPARE_HANDLES = 400
 """For databases, workers, views and files."""
 
@@ -82,7 +82,7 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
     from app.compute import memory
     from app.http.connections import Connection, Door, Socket
     from app.main import create_app
-    from app.viewer.incoming import MOST_PICTURE_BYTES
+    from app.viewer.incoming import MAX_PICTURE_BYTES
 
     memory.keep_no_large_blocks()
     app = create_app(settings)
@@ -109,7 +109,7 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
             server_header=False,
             log_config=None,
             ws_per_message_deflate=False,  # deflate drops most frames of an animation
-            ws_max_size=MOST_PICTURE_BYTES,
+            ws_max_size=MAX_PICTURE_BYTES,
             ws_max_queue=2,
             # longer than clients and proxies keep theirs, or they send on one that closes just then
             timeout_keep_alive=75,
@@ -127,7 +127,7 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
 def _raise_handles() -> int:
     """Raise the limit on file handles as far as the system allows; returns it."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    most = MOST_HANDLES if hard == resource.RLIM_INFINITY else min(hard, MOST_HANDLES)
+    most = MAX_HANDLES if hard == resource.RLIM_INFINITY else min(hard, MAX_HANDLES)
     if soft == resource.RLIM_INFINITY or soft >= most:
         return most
     resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))

@@ -13,7 +13,7 @@ from app.budgets import OverBudgetError
 from app.http.problems import UnavailableError
 
 Place = TypeVar("Place")
-MOST_AT_A_GATE = 100
+MAX_AT_A_GATE = 100
 Lane = OrderedDict[str, deque["Ticket[Place]"]]
 
 
@@ -148,7 +148,7 @@ class Gate:
 
     def __init__(self) -> None:
         self._turns = Turns(
-            [None], most_background=1, most_waiting=MOST_AT_A_GATE, most_waiting_each=0
+            [None], most_background=1, most_waiting=MAX_AT_A_GATE, most_waiting_each=0
         )
 
     @contextlib.asynccontextmanager

@@ -23,9 +23,9 @@ from app.http.identity import current_user
 
 SMALL_BYTES = 64_000
 """Of a body that is decoded at once."""
-MOST_DECODED_BYTES = 4_000_000
+MAX_DECODED_BYTES = 4_000_000
 """Of one that the service decodes at all: a design of the largest chart has less."""
-MOST_VALUES = 150_000
+MAX_VALUES = 150_000
 """Values in a JSON body, counted by commas and opening brackets: reading and checking them takes
 some 30 ms. Charts and files are one value each."""
 LARGE = {"Connection": "close"}
@@ -57,15 +57,15 @@ class BoundedRoute(APIRoute):
 
         async def bounded(request: Request) -> Response:
             length = request.headers.get("content-length", "0")
-            if not self.to_worker and int(length) > MOST_DECODED_BYTES:
-                raise _too_large(MOST_DECODED_BYTES)
+            if not self.to_worker and int(length) > MAX_DECODED_BYTES:
+                raise _too_large(MAX_DECODED_BYTES)
             content = await request.body()
             if len(content) <= SMALL_BYTES:
                 return await handle(request)
             if self.to_worker:
                 return await handle(_Uncut(request.scope, request.receive, content))
-            if len(content) > MOST_DECODED_BYTES:
-                raise _too_large(MOST_DECODED_BYTES)
+            if len(content) > MAX_DECODED_BYTES:
+                raise _too_large(MAX_DECODED_BYTES)
             gate: Gate = request.app.state.large_bodies
             async with gate.turn(current_user.get()):
                 return await handle(request)
@@ -107,7 +107,7 @@ def limited(receive: Receive, most_bytes: int, count: Callable[[int], None]) -> 
         if message["type"] == "http.request" and (body := message.get("body", b"")):
             seen += len(body)
             values += body.count(b",") + body.count(b"[") + body.count(b"{")
-            if seen > most_bytes or values > MOST_VALUES:
+            if seen > most_bytes or values > MAX_VALUES:
                 raise _too_large(most_bytes)
             count(len(body))
         return message
@@ -116,5 +116,5 @@ def limited(receive: Receive, most_bytes: int, count: Callable[[int], None]) -> 
 
 
 def _too_large(most_bytes: int) -> HTTPException:
-    detail = f"A request has at most {most_bytes} bytes and {MOST_VALUES} values here."
+    detail = f"A request has at most {most_bytes} bytes and {MAX_VALUES} values here."
     return HTTPException(413, detail, LARGE)

@@ -24,15 +24,15 @@ from app.http.rate import RateLimit
 log = logging.getLogger("knitcore.app")
 
 BODY_GRACE_S = 20.0
-LEAST_BYTES_PER_S = 20_000
+MIN_BYTES_PER_S = 20_000
 """Least speed of a body after the grace period."""
-MOST_BESIDE_BYTES = 32_000
+MAX_BESIDE_BYTES = 32_000
 """Of a request beside its body: address, headers, sizes of chunks, trailers. Chunks may add as much
 as the body has."""
-MOST_HEADERS = 100
-MOST_AHEAD = 8
+MAX_HEADERS = 100
+MAX_AHEAD = 8
 """Requests sent ahead on one connection; browsers send none."""
-FREE_PARTS, LEAST_PART_BYTES = 1_000, 100
+FREE_PARTS, MIN_PART_BYTES = 1_000, 100
 """A body may come in so many parts of any size; more must be as large as this on average."""
 FRAMES_PER_S, FRAMES_AT_ONCE = 300.0, 1_200
 """Of one websocket; while a view is turned, the page sends one for each picture on the screen."""
@@ -143,14 +143,14 @@ class Connection(HttpToolsProtocol):
         """Read on, unless too much has come that is no body."""
         self._beside_bytes += len(data)
         super().data_received(data)
-        too_much = self._beside_bytes > MOST_BESIDE_BYTES + self._body_bytes
+        too_much = self._beside_bytes > MAX_BESIDE_BYTES + self._body_bytes
         if too_much and not self.transport.is_closing():
             self.send_400_response("The request is too long beside its body.")
 
     def on_header(self, name: bytes, value: bytes) -> None:
         """A header has come."""
         super().on_header(name, value)
-        if len(self.headers) > MOST_HEADERS:
+        if len(self.headers) > MAX_HEADERS:
             raise TooMuchError
 
     def on_message_begin(self) -> None:
@@ -161,7 +161,7 @@ class Connection(HttpToolsProtocol):
 
     def on_headers_complete(self) -> None:
         """The head is complete; the body is due."""
-        if len(self.pipeline) >= MOST_AHEAD:
+        if len(self.pipeline) >= MAX_AHEAD:
             raise TooMuchError
         self._stop_waiting()
         super().on_headers_complete()
@@ -172,7 +172,7 @@ class Connection(HttpToolsProtocol):
         """A part of the body has come."""
         self._body_parts += 1
         self._body_bytes += len(body)
-        if self._body_parts > FREE_PARTS + self._body_bytes / LEAST_PART_BYTES:
+        if self._body_parts > FREE_PARTS + self._body_bytes / MIN_PART_BYTES:
             raise TooMuchError
         self._beside_bytes -= len(body)
         super().on_body(body)
@@ -189,7 +189,7 @@ class Connection(HttpToolsProtocol):
         left = (
             self._body_since
             + self._body_grace_s
-            + self._body_bytes / LEAST_BYTES_PER_S
+            + self._body_bytes / MIN_BYTES_PER_S
             - self.loop.time()
         )
         if left <= 0:

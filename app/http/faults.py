@@ -12,14 +12,14 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from app.models.checks import faults_of
 from knitcore.errors import InputError
 
-MOST_BYTES = 10_000
+MAX_BYTES = 10_000
 """Of a request that is read here, in the event loop. Of a larger one, the library's faults are told
 when the rest is in order."""
 
 
 def also_wrong(error: RequestValidationError, request: Request) -> Iterator[InputError]:
     """What the library says against the fields that are of their kinds."""
-    if int(request.headers.get("Content-Length", MOST_BYTES + 1)) > MOST_BYTES:
+    if int(request.headers.get("Content-Length", MAX_BYTES + 1)) > MAX_BYTES:
         return
     body, model = error.body, _model(request)
     wrong = [place[1:] for place in (fault["loc"] for fault in error.errors()) if len(place) > 1]

@@ -31,7 +31,7 @@ log = logging.getLogger("knitcore.app")
 PROBLEM_TYPE = "application/problem+json"
 
 
-MOST_FAULTS = 100
+MAX_FAULTS = 100
 
 
 class Fault(BaseModel):
@@ -59,7 +59,7 @@ class Problem(BaseModel):
     )
     errors: list[Fault] = Field(
         [],
-        description=f"Of inputs that cannot be used: all that is wrong, at most {MOST_FAULTS}; "
+        description=f"Of inputs that cannot be used: all that is wrong, at most {MAX_FAULTS}; "
         "`field`, `detail` and `remedy` are those of the first.",
     )
 
@@ -220,7 +220,7 @@ def _unusable(faults: list[Fault], most: float | None = None) -> Problem:
         field=first.field,
         remedy=first.remedy,
         most=most,
-        errors=faults[:MOST_FAULTS],
+        errors=faults[:MAX_FAULTS],
     )
 
 
@@ -234,7 +234,7 @@ def _invalid(found: Sequence[Any]) -> Problem:
     faults: dict[str | None, Fault] = {}
     for fault in map(_fault, found):  # of alternatives that all fail, the first is reported
         faults.setdefault(fault.field, fault)
-    return _unusable(list(islice(faults.values(), MOST_FAULTS)))
+    return _unusable(list(islice(faults.values(), MAX_FAULTS)))
 
 
 def _fault(error: dict[str, Any]) -> Fault:
@@ -296,7 +296,7 @@ def install_problem_handlers(app: FastAPI) -> None:
         told = {fault.field for fault in problem.errors}
         for other in also_wrong(error, request):
             fault = _of_library(other)
-            if fault.field not in told and len(problem.errors) < MOST_FAULTS:
+            if fault.field not in told and len(problem.errors) < MAX_FAULTS:
                 problem.errors.append(fault)
         return problem_response(problem)
 

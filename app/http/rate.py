@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import OrderedDict
 
-MOST_KNOWN = 50_000
+MAX_KNOWN = 50_000
 
 
 class RateLimit:
@@ -45,5 +45,5 @@ class RateLimit:
     def _set(self, who: str, level: float, at: float) -> None:
         self._buckets[who] = (level, at)
         self._buckets.move_to_end(who)
-        if len(self._buckets) > MOST_KNOWN:
+        if len(self._buckets) > MAX_KNOWN:
             self._buckets.popitem(last=False)

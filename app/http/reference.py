@@ -17,7 +17,7 @@ from app.http.schema import FIRST_PROBLEM
 
 Schema = dict[str, Any]
 
-LONGEST_EXAMPLE = 3_000
+MAX_EXAMPLE = 3_000
 """Characters; longer examples are cut, since they end in lists of numbers."""
 UNSAID = "Successful Response"
 """FastAPI's description of answers without one."""
@@ -147,8 +147,8 @@ def _example(content: Schema) -> str:
     if content.get("example") is None:
         return ""
     text = json.dumps(content["example"], indent=2, ensure_ascii=False)
-    if len(text) > LONGEST_EXAMPLE:
-        text = f"{text[:LONGEST_EXAMPLE]}\n…"
+    if len(text) > MAX_EXAMPLE:
+        text = f"{text[:MAX_EXAMPLE]}\n…"
     return f"<pre>{escape(text)}</pre>"
 
 

@@ -12,7 +12,7 @@ from starlette.types import Receive, Scope
 from app.http.pages import page
 
 PATH = "/sign-in"
-MOST_BYTES = 4_000
+MAX_BYTES = 4_000
 POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; frame-ancestors 'none'; "
     "base-uri 'none'"
@@ -56,7 +56,7 @@ async def sign_in_form(scope: Scope, receive: Receive) -> tuple[str, str]:
     try:
         async for part in Request(scope, receive).stream():
             content += part
-            if len(content) > MOST_BYTES:
+            if len(content) > MAX_BYTES:
                 return "", ""
     except ClientDisconnect:
         return "", ""

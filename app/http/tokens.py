@@ -23,7 +23,7 @@ from knitcore.errors import InputError
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
 REMEMBERED_S = 5.0
 """How long an answer of the database is cached: a revoked token works no longer than this."""
-MOST_REMEMBERED = 10_000
+MAX_REMEMBERED = 10_000
 ENVIRONMENT = "environment"
 """Identifier of the token in the settings."""
 
@@ -212,7 +212,7 @@ class Login:
         if known is not None and at - known[0] < REMEMBERED_S:
             return known[1]
         found = self._find(by, value)
-        if len(self._remembered) >= MOST_REMEMBERED:
+        if len(self._remembered) >= MAX_REMEMBERED:
             self._remembered.clear()
         self._remembered[by, value] = (at, found)
         return found

@@ -16,7 +16,7 @@ from app.models.base import RequestModel
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 """Files of the API's examples (``scripts/example_files.py``), and the answers to them."""
-MOST_NAME_BYTES = 200
+MAX_NAME_BYTES = 200
 """A length that every file system accepts."""
 
 
@@ -85,7 +85,7 @@ def stored(files: Sequence[UploadedFile]) -> Iterator[list[Path]]:
 def _name(given: str) -> str:
     """The last part of a name, which cannot lead out of its folder, cut to the permitted length."""
     name = PurePosixPath(given.replace("\\", "/").replace("\0", ""))
-    room = MOST_NAME_BYTES - len(name.suffix.encode())
+    room = MAX_NAME_BYTES - len(name.suffix.encode())
     if name.name in ("", ".", "..") or room < 1:
         return "file"
     return name.stem.encode()[:room].decode(errors="ignore") + name.suffix

@@ -24,7 +24,7 @@ from knitcore.design.targets import USUAL_LOAD_N_PER_MM
 from knitcore.fabric import Direction
 
 DIGITS = 5
-MOST_STITCHES = 8
+MAX_STITCHES = 8
 
 
 def _rounded(values: Iterable[float]) -> list[float]:
@@ -100,7 +100,7 @@ def _result(found: Atlas) -> AtlasResult:
 @click.option(
     "--most-stitches",
     type=click.IntRange(1, 64),
-    default=MOST_STITCHES,
+    default=MAX_STITCHES,
     show_default=True,
     help="Of the largest repeat that goes to the yarn level.",
 )

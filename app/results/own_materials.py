@@ -20,8 +20,8 @@ from knitcore.materials.document import MaterialDocument
 FOLDER = "materials"
 PREFIX = "own:"
 KINDS = (".json", ".yaml", ".yml")
-MOST_FILES = 200
-MOST_KEPT = 40
+MAX_FILES = 200
+MAX_KEPT = 40
 """Materials that one user keeps through the service."""
 
 _log = logging.getLogger("knitcore.materials")
@@ -54,7 +54,7 @@ def own_materials(data_dir: Path) -> dict[str, Material]:
         return {}
     files = sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS)
     found = {}
-    for file in files[:MOST_FILES]:
+    for file in files[:MAX_FILES]:
         try:
             facts = file.stat()
             own = _read(file, facts.st_mtime_ns, facts.st_size)
@@ -78,7 +78,7 @@ def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Mat
     document.to_material()
     mine = _kept_by(owner, data_dir)
     place = data_dir / FOLDER / f"{_tag(owner)}{document.identifier.replace(':', '_')}.json"
-    if place not in mine and len(mine) >= MOST_KEPT:
+    if place not in mine and len(mine) >= MAX_KEPT:
         raise InputError("identifier", f"you keep {len(mine)} yarns.", "Remove one of them first.")
     place.parent.mkdir(parents=True, exist_ok=True)
     new = place.with_suffix(".new")
@@ -107,7 +107,7 @@ def _tag(owner: str) -> str:
     return f"kept-{hashlib.sha256(owner.encode()).hexdigest()[:12]}-"
 
 
-@lru_cache(maxsize=MOST_FILES)
+@lru_cache(maxsize=MAX_FILES)
 def _read(file: Path, _modified_ns: int, _size: int) -> Material:
     own = load_material_file(file)
     mark = hashlib.sha256(file.read_bytes()).hexdigest()[:6]

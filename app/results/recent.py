@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import Any
 
-MOST_BYTES = 32_000_000
+MAX_BYTES = 32_000_000
 
 
 class RecentResults:
     """The latest results, bounded by their size; the longest unused ones go first."""
 
-    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, most_bytes: int = MAX_BYTES) -> None:
         self._most_bytes = most_bytes
         self._bytes = 0
         self._items: OrderedDict[str, tuple[Any, int]] = OrderedDict()

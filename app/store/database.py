@@ -34,7 +34,7 @@ FAILURES = (OperationalError, InterfaceError, PoolTimeoutError)
 FULL = ("disk is full", "No space left on device")
 DAMAGED = ("malformed", "file is not a database")
 BUSY_TIMEOUT_MS = 10_000
-LARGEST_BATCH = 64
+MAX_BATCH = 64
 UNREACHABLE = "The designs cannot be reached or written now ({reason}); nothing was changed."
 
 
@@ -222,7 +222,7 @@ class Database:
             while entry is not None:
                 if entry[1].set_running_or_notify_cancel():  # not cancelled meanwhile
                     batch.append(entry)
-                if len(batch) == LARGEST_BATCH:
+                if len(batch) == MAX_BATCH:
                     break
                 try:
                     entry = self._waiting.get_nowait()

@@ -36,7 +36,7 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
-from knitcore.geometry.instances import MOST_STITCHES
+from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.placing import Placement, at_rest, carried, lying
 from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
@@ -44,7 +44,7 @@ from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
 
 MAX_REGIONS = 200
-MOST_LETTERS = 41_000
+MAX_LETTERS = 41_000
 """Of a chart whose stitches the service lays itself: one that is drawn whole, with its line ends.
 That takes 0.1 s of CPU and 25 MB."""
 
@@ -110,7 +110,7 @@ class ViewResult(BaseModel):
 
 def is_large(request: ViewRequest) -> bool:
     """Whether a worker shall lay its stitches: it is not drawn whole, and no test is as large."""
-    return size_of_chart(request.chart) > MOST_LETTERS
+    return size_of_chart(request.chart) > MAX_LETTERS
 
 
 def build_drawing(
@@ -219,11 +219,11 @@ def _rectangles(
     else:
         single = request.rectangle_groups is RectangleGroups.STITCH
         block = 1 if single else request.rectangle_block
-        if chart.rows * chart.columns > block**2 * MOST_STITCHES:
+        if chart.rows * chart.columns > block**2 * MAX_STITCHES:
             raise InputError(
                 "rectangle_block",
                 f"the chart is too large for a rectangle at each {block} × {block} stitches.",
-                f"Use blocks of {math.ceil((chart.purl.size / MOST_STITCHES) ** 0.5)} or more.",
+                f"Use blocks of {math.ceil((chart.purl.size / MAX_STITCHES) ** 0.5)} or more.",
             )
         labels = stitch_labels(chart.rows, chart.columns, block)
     if drawn is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.geometry.instances import MOST_STITCHES
+from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import Lattice
 from knitcore.geometry.placing import Placement
 from knitcore.geometry.stitches import StitchShapes
@@ -146,10 +146,10 @@ class FabricScene:
     def window(self) -> FabricScene:
         """The part drawn as yarn: all of it, or as much as a browser can draw."""
         rows, columns = self.shapes.index.shape
-        if rows * columns <= MOST_STITCHES:
+        if rows * columns <= MAX_STITCHES:
             return self
-        height = min(rows, max(int(MOST_STITCHES**0.5), MOST_STITCHES // columns))
-        width = min(columns, MOST_STITCHES // height)
+        height = min(rows, max(int(MAX_STITCHES**0.5), MAX_STITCHES // columns))
+        width = min(columns, MAX_STITCHES // height)
         row, column = self.focus or (rows // 2, columns // 2)
         bottom = min(max(row - height // 2, 0), rows - height)
         left = min(max(column - width // 2, 0), columns - width)

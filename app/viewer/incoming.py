@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import msgspec
 
-MOST_BYTES = 64_000
+MAX_BYTES = 64_000
 """Of a message; clicks and cameras have less than 1,000."""
-MOST_PICTURE_BYTES = 16_000_000
+MAX_PICTURE_BYTES = 16_000_000
 PER_S, BURST = 300.0, 1_200
 """Messages of one browser; while the view is turned it sends one a frame."""
 
@@ -86,7 +86,7 @@ def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
     RefusedMessageError
         If it is larger than any that a page sends, or a picture other than that asked for.
     """
-    if len(data) > (MOST_BYTES if wanted is None else MOST_PICTURE_BYTES):
+    if len(data) > (MAX_BYTES if wanted is None else MAX_PICTURE_BYTES):
         raise RefusedMessageError("the message is too large")
     if isinstance(data, str):
         return None
@@ -95,7 +95,7 @@ def passed_on(data: bytes | str, wanted: WantedPicture | None) -> bytes | None:
     except msgspec.DecodeError:
         return None
     if not isinstance(message, _Picture):
-        if len(data) > MOST_BYTES:
+        if len(data) > MAX_BYTES:
             raise RefusedMessageError("the message is too large")
         return data
     if wanted is None:

@@ -20,7 +20,7 @@ FRAME_S = 0.14
 PICTURE_TIMEOUT_S = 25.0
 SOLID_LEVELS = ((1_000, 33, 8), (4_000, 17, 6), (10_000, 11, 5))
 """(largest number of stitches, points, sides) of solids."""
-MOST_SOLID = SOLID_LEVELS[-1][0]
+MAX_SOLID = SOLID_LEVELS[-1][0]
 
 
 PAGE_POLICY = (

@@ -13,7 +13,7 @@ from app.operations.curl import CurlView
 from app.operations.stretch import StretchView
 from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene
-from app.viewer.share import MOST_SOLID, page_html, recording, solid_glb
+from app.viewer.share import MAX_SOLID, page_html, recording, solid_glb
 from knitcore.errors import InputError
 
 MAX_SHARED_STITCHES = 40_000
@@ -58,7 +58,7 @@ def shared_solid(
     InputError
         If there are too many stitches for a solid of use.
     """
-    _check_size(request, MOST_SOLID)
+    _check_size(request, MAX_SOLID)
     return solid_glb(build_scene(request, found, Context(data_dir, cancelled=cancelled)))
 
 

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 from knitcore_client.models import Problem
 
 ATTEMPTS = 4
-LONGEST_WAIT_S = 60.0
+MAX_WAIT_S = 60.0
 """Longest wait that is accepted before a request is repeated."""
 PAUSE_S = 0.5
 """Before a job is followed again whose events ended early."""
@@ -54,7 +54,7 @@ def wait_s(answer: httpx.Response, attempt: int) -> float:
         If it is not to be sent again.
     """
     wait = float(answer.headers.get("Retry-After", "inf"))
-    if attempt == ATTEMPTS or wait > LONGEST_WAIT_S:
+    if attempt == ATTEMPTS or wait > MAX_WAIT_S:
         raise ProblemError(_problem(answer))
     return wait
 

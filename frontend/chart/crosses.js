@@ -8,7 +8,7 @@
  */
 
 /** Smaller blocks cannot be read. */
-const SMALLEST_PX = 36;
+const MIN_PX = 36;
 /** The longest arm of a test, over half a block. */
 const ROOM = 0.92;
 const STRETCHED = "rgb(24 18 14 / 0.9)";
@@ -28,7 +28,7 @@ export function drawCrosses(context, viewport, studio, box) {
   if (!fields || !course || !wale) return;
   const { grid, shaped, outline } = studio.document;
   const { cellWidth: w, cellHeight: h } = viewport;
-  const size = Math.max(1, Math.ceil(SMALLEST_PX / Math.min(w, h)));
+  const size = Math.max(1, Math.ceil(MIN_PX / Math.min(w, h)));
   const longest = largest(fields.strain_course, fields.strain_wale);
   const paths = { [STRETCHED]: new Path2D(), [NARROWED]: new Path2D() };
   for (let row0 = box.row0 - (box.row0 % size); row0 < box.row1; row0 += size) {

@@ -11,7 +11,7 @@
 import { lightness } from "./palette.js";
 
 /** Symbols are left out on cells narrower than this. */
-const SMALLEST_SYMBOL = 7;
+const MIN_SYMBOL = 7;
 
 /**
  * A dot on every purl (the chart's symbol), or every stitch as it looks in the cloth.
@@ -26,7 +26,7 @@ const SMALLEST_SYMBOL = 7;
  */
 export function drawSymbols(context, view, grid, layer, box, style, back) {
   const { cellWidth: w, cellHeight: h } = view;
-  if (Math.min(w, h) < SMALLEST_SYMBOL) return;
+  if (Math.min(w, h) < MIN_SYMBOL) return;
   const onLight = new Path2D();
   const onDark = new Path2D();
   const radius = Math.min(w, h) * 0.15;

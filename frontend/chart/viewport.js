@@ -9,7 +9,7 @@
 /** Room for the rulers. */
 export const MARGIN = { left: 50, right: 50, top: 42, bottom: 32 };
 const LARGEST = 44;
-const MOST_ENLARGED = 72;
+const MAX_ENLARGED = 72;
 
 export class Viewport {
   width = 1;
@@ -47,7 +47,7 @@ export class Viewport {
    */
   zoom(factor, px, py, grid) {
     const smallest = Math.min(this.#fittedWidth(grid), LARGEST);
-    const width = Math.min(MOST_ENLARGED, Math.max(smallest, this.#wanted * factor));
+    const width = Math.min(MAX_ENLARGED, Math.max(smallest, this.#wanted * factor));
     if (width <= smallest * 1.001) {
       this.fit(grid);
       return;

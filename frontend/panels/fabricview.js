@@ -29,7 +29,7 @@ const STARTING = 5;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
-const MOST_DRAWN = 40_000;
+const MAX_DRAWN = 40_000;
 
 /**
  * @param {HTMLElement} host
@@ -245,7 +245,7 @@ function wanted(studio, view) {
     stretch: stretch && studio.step.value !== REST ? { id: stretch.id, step: studio.step.value } : null,
     curl: seeing.curled.value ? { id: seeing.curled.value.id } : null,
     focus:
-      rows * columns > MOST_DRAWN
+      rows * columns > MAX_DRAWN
         ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }
         : null,
   };

@@ -18,7 +18,7 @@ import { runJob } from "./jobs.js";
 const STEPS = 20;
 const FRAME_MS = 140;
 /** Most tests to find a force, and the tolerance. */
-const MOST_TRIES = 8;
+const MAX_TRIES = 8;
 const NEAR = 0.005;
 const FIRST_STRAIN = 0.2;
 /** Tests that took no longer than this are repeated automatically after a change. */
@@ -120,7 +120,7 @@ export class Stretcher {
     const { studio } = this;
     let strain = this.#guess(direction, newtons);
     let limit = Infinity;
-    for (let tries = 0; tries < MOST_TRIES; tries++) {
+    for (let tries = 0; tries < MAX_TRIES; tries++) {
       const test = await this.run(direction, strain, options);
       if (!test) {
         const { problem } = studio.stretch.value;

@@ -12,7 +12,7 @@ steps, each a kernel regression on the chart's densities and the yarn's dimensio
 A known size (a gauge, or a relaxation on the yarn level) replaces the first step. Stress is
 compared in units of B / L³. :mod:`knitcore.answer.learned_build` fits both regressions, calibrates
 their intervals on charts left out, and reports the errors for those. Real fabric folds less than
-the yarn level predicts: see :data:`MOST_FOLDED`.
+the yarn level predicts: see :data:`MAX_FOLDED`.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ from knitcore.materials import Material, Origin
 STRESS_GRID = np.array([400.0, 800.0, 2000.0, 4000.0, 8000.0, 12000.0])
 """Stresses over B / L³ at which strains are learned: about .01 to .3 N/mm."""
 
-MOST_FOLDED = 0.87
+MAX_FOLDED = 0.87
 """Knitted fabric folds less than the yarn level predicts, which has no friction and no set. In
-logarithms a fold f becomes f / (1 + |f| / MOST_FOLDED), times the squared straightness of the fold
+logarithms a fold f becomes f / (1 + |f| / MAX_FOLDED), times the squared straightness of the fold
 lines: folds that cross hinder each other. The number was fitted to the 29 swatches of KnitDB, and
 the power was chosen there from 1, 2 and 3 (benchmarks/knitdb.py)."""
 
@@ -171,7 +171,7 @@ class LearnedModel:
         regression's variance, such that 90 % of the left-out values lie in their 90 % intervals:
         for ribs, welts and others. A chart between these kinds has their mean.
     sweeps : of each sample; None where it was only relaxed.
-    most_folded : see :data:`MOST_FOLDED`.
+    most_folded : see :data:`MAX_FOLDED`.
     """
 
     charts: tuple[str, ...]
@@ -184,7 +184,7 @@ class LearnedModel:
     folding_scale: Array
     unfolding_scale: Array
     sweeps: tuple[SweptChart | None, ...]
-    most_folded: float = MOST_FOLDED
+    most_folded: float = MAX_FOLDED
 
     def answer(
         self,

@@ -37,7 +37,7 @@ from knitcore.phases import pure_fabric
 
 SIDE = 16
 """Stitches along the side of a patch and of its window."""
-MOST_A_SIDE = 8
+MAX_SIDE = 8
 """Patches along each side of a chart, at most; they are larger where that is not enough."""
 
 _FORCES_N: Array = np.geomspace(1e-6, 30.0, 200)
@@ -248,14 +248,14 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
     """
     if stitches <= SIDE:
         return np.array([0, stitches])
-    step = max(SIDE, stitches / MOST_A_SIDE)
-    steps = step * np.arange(1, MOST_A_SIDE)
+    step = max(SIDE, stitches / MAX_SIDE)
+    steps = step * np.arange(1, MAX_SIDE)
     inside = stitches / 2 + np.concatenate([-steps, [0.0], steps])
     return np.unique(np.clip(np.append(inside.round(), [0, stitches]), 0, stitches)).astype(np.intp)
 
 
 def _even_cuts(stitches: int) -> NDArray[np.intp]:
-    count = min(-(-stitches // SIDE), MOST_A_SIDE)
+    count = min(-(-stitches // SIDE), MAX_SIDE)
     return np.linspace(0, stitches, count + 1).round().astype(np.intp)
 
 

@@ -48,7 +48,7 @@ SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
 _FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
 _LOCKED: Array = np.concatenate([np.linspace(0.3, 0.9, 25), np.linspace(0.905, 0.995, 19)])
 """Shares of the lock-up strain that the largest of the strains may be."""
-_MOST_POISSON = 0.9
+_MAX_POISSON = 0.9
 """Limit of the product of both Poisson ratios, so that the law is stable."""
 
 
@@ -199,7 +199,7 @@ def _fitted_laws(
         # One coupling for both, as an energy needs; neither contraction is more than the answer's.
         nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
         nu_yx = nu_xy * modulus_x / modulus_y
-        held = 1 - min(nu_yx * nu_xy, _MOST_POISSON)
+        held = 1 - min(nu_yx * nu_xy, _MAX_POISSON)
         found.append(
             ConstitutiveLaw(
                 stiffness_xxxx=modulus_x / held,

@@ -26,7 +26,7 @@ from knitcore.materials.uncertainty import LawUncertainty
 
 STRESS = np.geomspace(0.005, 0.33, 24)
 """Stresses (N/mm) at which curves are compared."""
-LEAST_REACHED_N_PER_MM = 0.1
+MIN_REACHED_N_PER_MM = 0.1
 """Curves that end below this stress, as those of wide ribs do at a strain of 3, are not used."""
 
 
@@ -69,7 +69,7 @@ def over_mixture(
     Returns
     -------
     (2,) logarithms of width and height; (14,) logarithms of strain at the stresses of the learned
-    model, nan where a stretch ended below :data:`LEAST_REACHED_N_PER_MM`, and differences of
+    model, nan where a stretch ended below :data:`MIN_REACHED_N_PER_MM`, and differences of
     Poisson's ratios.
     """
     at = np.log(STRESS / mixture.bending_stress_n_per_mm)
@@ -77,7 +77,7 @@ def over_mixture(
     for direction, strain in zip(Direction, strains, strict=True):
         logs = np.log(strain / mixture.strain(direction, STRESS))
         known = np.isfinite(logs)
-        if known.any() and STRESS[known][-1] >= LEAST_REACHED_N_PER_MM:
+        if known.any() and STRESS[known][-1] >= MIN_REACHED_N_PER_MM:
             ratio[direction.axis] = np.interp(np.log(STRESS_GRID), at[known], logs[known])
     fold = np.log(np.array(size_mm) / mixture.size_mm)
     return fold, np.append(ratio.ravel(), np.array(poisson) - mixture.poisson)

@@ -13,11 +13,11 @@ from scipy.optimize import brentq
 
 from knitcore.answer.answer import Along
 from knitcore.errors import InputError
-from knitcore.law.response import MOST_STRESS_N_PER_MM
+from knitcore.law.response import MAX_STRESS_N_PER_MM
 from knitcore.materials.uncertainty import Interval
 from knitcore.mechanics.pressure import (
-    LEAST_LENGTH,
-    MAXIMUM_CIRCUMFERENCE_MM,
+    MAX_CIRCUMFERENCE_MM,
+    MIN_LENGTH,
     MMHG_PER_KPA,
     worn_strain,
 )
@@ -71,7 +71,7 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
     """
     strain = worn_strain(rest_mm, worn_mm)
     tensions = _tensions(along, strain)
-    if tensions.high >= MOST_STRESS_N_PER_MM:
+    if tensions.high >= MAX_STRESS_N_PER_MM:
         raise InputError(
             "worn_mm",
             f"a strain of {strain:.2f} is at or beyond the lock-up of this chart.",
@@ -101,7 +101,7 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
     """
     if not (math.isfinite(mmhg) and 0 < mmhg <= 300):
         raise InputError("target_mmhg", f"{mmhg:g} mmHg cannot be used.", "Give above 0 to 300.")
-    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAXIMUM_CIRCUMFERENCE_MM):
+    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAX_CIRCUMFERENCE_MM):
         raise InputError("worn_mm", f"{worn_mm:g} mm is not a circumference.", "Give it in mm.")
     wanted = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
     found = []
@@ -125,6 +125,6 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
 def _tensions(along: Along, strain: float) -> Interval:
     """Hoop tension per worn length (N/mm), axially free and axially fixed."""
     free = float(along.stress(strain))
-    shortened = free / max(1 + float(along.across_strain(free)), LEAST_LENGTH)
+    shortened = free / max(1 + float(along.across_strain(free)), MIN_LENGTH)
     fixed = float(along.held_stress(strain))
     return Interval(min(shortened, fixed), max(shortened, fixed))

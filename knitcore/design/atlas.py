@@ -24,7 +24,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
 FORMAT = 5
-MAXIMUM_BYTES = 50_000_000
+MAX_BYTES = 50_000_000
 
 STRESS_N_PER_MM: Array = np.array(
     [
@@ -247,7 +247,7 @@ def load_atlas(file: Path) -> Atlas:
     """
     if not file.is_file():
         raise InputError("atlas", f"there is no file {file}.", "Build it with `knitcore atlas`.")
-    if file.stat().st_size > MAXIMUM_BYTES:
+    if file.stat().st_size > MAX_BYTES:
         raise InputError("atlas", f"{file.name} is too large.", "Build it again.")
     version = FORMAT
     try:

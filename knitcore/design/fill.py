@@ -36,11 +36,11 @@ Labels = NDArray[np.intp]
 
 CLOSE = 0.03
 """A repeat of the atlas nearer than this (in logarithms) is taken as it is."""
-MOST_MIXED = 8
+MAX_MIXED = 8
 """Most patches that may hold a mixture of two repeats; the largest come first."""
-LEAST_MIXED = 48
+MIN_MIXED = 48
 """Fewest stitches of a patch with a mixture."""
-MOST_CHECKED = 10_000
+MAX_CHECKED = 10_000
 """Stitches of the largest chart that is pulled in the finite swatch."""
 _CHECKS = 3
 _NEARLY = 0.25
@@ -133,7 +133,7 @@ def fill_field(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
     fill = _Fill(wanted, kept, stitch, material, atlas, seed, Progress(progress, cancelled))
-    return fill.run(smallest_patch, check=check and wanted[0].size <= MOST_CHECKED)
+    return fill.run(smallest_patch, check=check and wanted[0].size <= MAX_CHECKED)
 
 
 @dataclass(frozen=True)
@@ -223,8 +223,8 @@ class _Fill:
         wishes = self._wishes(patches, len(choices))
         off = np.nan_to_num(np.abs(np.stack([c.log_moduli for c in choices]) - wishes)).max(axis=1)
         sizes = np.bincount(patches.ravel())
-        large = [k for k in np.argsort(-sizes[: len(choices)]) if sizes[k] >= LEAST_MIXED]
-        poor = [k for k in large if off[k] > CLOSE][:MOST_MIXED]
+        large = [k for k in np.argsort(-sizes[: len(choices)]) if sizes[k] >= MIN_MIXED]
+        poor = [k for k in large if off[k] > CLOSE][:MAX_MIXED]
         known: dict[tuple[float, ...], _Choice | None] = {}
         found = list(choices)
         for count, patch in enumerate(poor):

@@ -25,15 +25,15 @@ from knitcore.phases import quarter_phases
 
 CLOSE = 0.02
 """A mixture nearer than this (in logarithms) is taken at once."""
-MOST_PREDICTED = 100
+MAX_PREDICTED = 100
 """Most mixtures that are predicted for one target."""
-MOST_TURNED = 200
+MAX_TURNED = 200
 """Most charts with turned stitches that are predicted for one target, if no mixture is near."""
 NEAR = 0.045
 """Nothing is turned if a mixture is nearer than this."""
 _PARTNERS = 140
-_LEAST_WIDTH, _MOST_WIDTH = 1, 9
-_MOST_SIDE = 12
+_MIN_WIDTH, _MAX_WIDTH = 1, 9
+_MAX_SIDE = 12
 
 
 @dataclass(frozen=True)
@@ -78,8 +78,8 @@ class Mixer:
         course_n_per_mm: float,
         wale_n_per_mm: float,
         *,
-        most_rows: int = _MOST_SIDE,
-        most_columns: int = _MOST_SIDE,
+        most_rows: int = _MAX_SIDE,
+        most_columns: int = _MAX_SIDE,
         look: Callable[[], None] = lambda: None,
     ) -> Mixture | None:
         """The mixture nearest to a target (NaN is none); None if there is no room for one.
@@ -94,7 +94,7 @@ class Mixer:
         best: Mixture | None = None
         learnt = np.zeros(2)
         tried: set[StitchChart] = set()
-        for _ in range(MOST_PREDICTED):
+        for _ in range(MAX_PREDICTED):
             look()
             found = self._next(tables, wish - learnt, tried)
             if found is None:
@@ -130,7 +130,7 @@ class Mixer:
         starts = [chart for chart in starts if chart.rows <= most[0] and chart.columns <= most[1]]
         pool = [] if best is None else [best]
         pool += [self._predicted(chart, wish) for chart in starts]
-        for _ in range(MOST_TURNED if pool else 0):
+        for _ in range(MAX_TURNED if pool else 0):
             look()
             pool = sorted(pool, key=lambda mixture: mixture.off)[:4]
             if pool[0].off < NEAR:
@@ -179,9 +179,9 @@ class Mixer:
         side = np.array([shape[direction.other.axis == 0] for shape in grids])
         sizes = _sizes(atlas, self._material, direction)
         common = np.lcm(side[pairs[:, 0]], side[pairs[:, 1]])
-        pairs = pairs[common <= _MOST_SIDE]
-        span = np.arange(_LEAST_WIDTH, _MOST_WIDTH + 1)
-        widths = np.array([(a, b) for a in span for b in span if 4 <= a + b <= _MOST_SIDE])
+        pairs = pairs[common <= _MAX_SIDE]
+        span = np.arange(_MIN_WIDTH, _MAX_WIDTH + 1)
+        widths = np.array([(a, b) for a in span for b in span if 4 <= a + b <= _MAX_SIDE])
         partners = np.repeat(pairs, len(widths), axis=0)
         widths = np.tile(widths, (len(pairs), 1))
         share = widths * sizes[partners]

@@ -13,7 +13,7 @@ from knitcore.phases import surroundings
 
 Labels = NDArray[np.intp]
 
-MOST_LABELS = 48
+MAX_LABELS = 48
 """Most repeats in one chart."""
 _BIN = 0.02
 """Targets that differ by less than this (in logarithms) are looked up together."""
@@ -58,7 +58,7 @@ def wanted_labels(
     # Small repeats come first in an atlas, so argmin prefers them among equals.
     best = np.argmin(off.round(6), axis=0)
     votes = np.bincount(best, weights=counts, minlength=len(atlas))
-    chosen = np.argsort(-votes, kind="stable")[:MOST_LABELS]
+    chosen = np.argsort(-votes, kind="stable")[:MAX_LABELS]
     chosen = np.sort(chosen[votes[chosen] > 0])
     wanted = np.stack([log_course, log_wale])
     cost = np.nansum((have[:, chosen, None, None] - wanted[:, None]) ** 2, axis=0)

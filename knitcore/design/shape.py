@@ -35,7 +35,7 @@ TRIES = 72
 _STEPS = 4
 _PALETTE = 40
 _DAMPING = 0.8
-_MOST_STITCHES = 10_000
+_MAX_STITCHES = 10_000
 OFF = 0.03
 """Smallest error of a width, over the width at rest, that a message reports."""
 
@@ -371,11 +371,11 @@ def _checked(
         )
     lines = (across, len(wanted)) if direction is Direction.COURSE else (len(wanted), across)
     check_size(*lines)
-    if across < 3 or across * len(wanted) > _MOST_STITCHES:
+    if across < 3 or across * len(wanted) > _MAX_STITCHES:
         raise InputError(
             "across",
             f"{across} x {len(wanted)} stitches are too many to pull repeatedly.",
-            f"Use at least 3 across and at most {_MOST_STITCHES} stitches.",
+            f"Use at least 3 across and at most {_MAX_STITCHES} stitches.",
         )
     if not 0 < strain <= 5:
         raise InputError(

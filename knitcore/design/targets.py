@@ -12,10 +12,10 @@ from knitcore.arrays import Array
 from knitcore.design.atlas import Atlas
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.mechanics.pressure import LEAST_LENGTH, MMHG_PER_KPA
+from knitcore.mechanics.pressure import MIN_LENGTH, MMHG_PER_KPA
 
 USUAL_LOAD_N_PER_MM = 0.1
-MOST_LOAD_N_PER_MM = 0.5
+MAX_LOAD_N_PER_MM = 0.5
 
 
 class Quantity(StrEnum):
@@ -113,11 +113,11 @@ class Target:
                 raise InputError(
                     f"targets.{self.quantity}", f"its {name} is {number:g}.", "Give more than 0."
                 )
-        if self.quantity.needs_load and not 0 < self.load_n_per_mm <= MOST_LOAD_N_PER_MM:
+        if self.quantity.needs_load and not 0 < self.load_n_per_mm <= MAX_LOAD_N_PER_MM:
             raise InputError(
                 f"targets.{self.quantity}",
                 f"its load is {self.load_n_per_mm:g} N/mm.",
-                f"Give above 0 to {MOST_LOAD_N_PER_MM:g} N/mm.",
+                f"Give above 0 to {MAX_LOAD_N_PER_MM:g} N/mm.",
             )
         if self.quantity.needs_limb and self.limb is None:
             raise InputError(
@@ -181,7 +181,7 @@ def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:
         return (
             atlas.strain_at(direction, load),
             atlas.strain_at(direction, load * value / high),
-            atlas.strain_at(direction, np.minimum(load * value / low, MOST_LOAD_N_PER_MM)),
+            atlas.strain_at(direction, np.minimum(load * value / low, MAX_LOAD_N_PER_MM)),
         )
     if target.limb is not None and quantity.needs_limb:
         loose, tight = _pressures_mmhg(atlas, direction, target.limb)
@@ -199,6 +199,6 @@ def _pressures_mmhg(atlas: Atlas, direction: Direction, limb: Limb) -> tuple[Arr
     """
     free = atlas.stress_at(direction, limb.strain)
     fixed = atlas.held_stress_at(direction, limb.strain)
-    shortened = free / np.maximum(1 + atlas.across_at(direction, free), LEAST_LENGTH)
+    shortened = free / np.maximum(1 + atlas.across_at(direction, free), MIN_LENGTH)
     to_mmhg = 2 * math.pi / limb.worn_mm * 1000.0 * MMHG_PER_KPA
     return np.minimum(shortened, fixed) * to_mmhg, np.maximum(shortened, fixed) * to_mmhg

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from knitcore.errors import InputError
 from knitcore.garment.piece import Piece, Stretch
 
-MOST_CARRIERS = 10
+MAX_CARRIERS = 10
 """Carriers of a Shima Seiki SWG091N2 and of the virtual machine; one is kept for waste yarn."""
 
 
@@ -67,11 +67,11 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
                 taken[index] = waiting.pop() if waiting else len(yarns) + 1
                 yarns[taken[index]] = stretch.yarn
                 new.add(taken[index])
-        if len(yarns) >= MOST_CARRIERS:
+        if len(yarns) >= MAX_CARRIERS:
             raise InputError(
                 "regions",
                 f"row {row + 1} brings the blocks of colour to {len(yarns)}, each with a carrier "
-                f"of its own; the machine has {MOST_CARRIERS}, one of them for waste.",
+                f"of its own; the machine has {MAX_CARRIERS}, one of them for waste.",
                 "Use fewer or larger blocks, or knit it by hand from the written rows.",
             )
         active = {taken[index]: stretch for index, stretch in enumerate(stretches)}

@@ -34,7 +34,7 @@ from knitcore.garment.piece import Piece
 from knitcore.worked import Construction, Side, side_of_row
 
 CELL_MM = 5.0
-SMALLEST_CELL_MM = 3.0
+MIN_CELL_MM = 3.0
 OVERLAP = 2
 """Rows and stitches at the edge of a page that are repeated from the page before."""
 TENTHS = 10
@@ -74,7 +74,7 @@ def chart_pages(
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
     room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
     cell = min(CELL_MM, room_x / chart.columns, room_y / (chart.rows * style.aspect))
-    cell = max(cell, SMALLEST_CELL_MM)
+    cell = max(cell, MIN_CELL_MM)
     if chart.columns * cell <= room_x + 1e-9 and chart.rows * cell * style.aspect <= room_y + 1e-9:
         whole = _Part(piece, style, range(chart.rows), range(chart.columns), cell)
         return (whole.page(paper=A4_MM),)

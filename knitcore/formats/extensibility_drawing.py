@@ -23,7 +23,7 @@ from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.mechanics.local import local_moduli
 
-MOST_RECTANGLES = 900
+MAX_RECTANGLES = 900
 """Rectangles of stitches in a drawing; of larger pieces every second, third, … is drawn."""
 _INK, _OUTSIDE = "#222222", "#e5e1d9"
 
@@ -118,7 +118,7 @@ def field_shapes(
             if index > -2:
                 fill = tinted(regions[index].colour) if index >= 0 else "#ffffff"
                 yield Box(left + cell * start, y, cell * (stop - start), high, fill=fill)
-    step = max(1, int(np.ceil(np.sqrt(stitch.sum() / MOST_RECTANGLES))))
+    step = max(1, int(np.ceil(np.sqrt(stitch.sum() / MAX_RECTANGLES))))
     scale = 0.9 * step * min(cell, high) / most
     for row, column in np.argwhere(stitch).tolist():
         if row % step or column % step:

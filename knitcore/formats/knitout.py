@@ -29,13 +29,13 @@ from knitcore.errors import InputError
 from knitcore.formats.carriers import CarrierPlan, CarrierRow, plan_carriers
 from knitcore.garment.piece import Piece
 
-MAXIMUM_NEEDLES = 540
+MAX_NEEDLES = 540
 """Needles of one bed of a wide machine (Shima Seiki SWG091N2), and of the interpreter's."""
 WASTE_COURSES = 6
 TAG_STITCHES = 4
 ANCHOR_TUCKS = 3
 """Tucks that hold a yarn brought in within a course."""
-MOST_LOOPS = 3
+MAX_LOOPS = 3
 """Loops that a needle's hook holds well."""
 
 
@@ -67,7 +67,7 @@ class KnitoutProgram:
 
 
 def knitout_program(
-    chart: StitchChart | Piece, *, finish: Finish = Finish.WASTE, needles: int = MAXIMUM_NEEDLES
+    chart: StitchChart | Piece, *, finish: Finish = Finish.WASTE, needles: int = MAX_NEEDLES
 ) -> KnitoutProgram:
     """The program of a chart; :func:`knitcore.formats.knitout_reader.verified` checks it.
 
@@ -277,7 +277,7 @@ class _Body:
 
     def _tie(self, column: int, row: int, carrier: int, sign: str) -> Iterator[str]:
         """Tuck a yarn into a stitch of another, unless that needle is full."""
-        if self._held[column] < MOST_LOOPS:
+        if self._held[column] < MAX_LOOPS:
             self._held[column] += 1
             yield f"tuck {sign} {_needle(self._piece.chart.purl[row, column], column)} {carrier}"
 

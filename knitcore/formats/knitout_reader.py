@@ -19,10 +19,10 @@ from knitcore.errors import InputError, KnitcoreError
 from knitcore.formats.knit_graph import carrier_of as _carrier
 from knitcore.formats.knit_graph import piece_of_loops
 from knitcore.formats.knit_graph import time_of as _time
-from knitcore.formats.knitout import MAXIMUM_NEEDLES, Finish, KnitoutProgram, knitout_program
+from knitcore.formats.knitout import MAX_NEEDLES, Finish, KnitoutProgram, knitout_program
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn
 
-MAXIMUM_BYTES = 4_000_000
+MAX_BYTES = 4_000_000
 _HOLDS = re.compile(r"^; carrier (\d{1,2}) knits (#[0-9a-f]{6}) (.+)$", re.MULTILINE)
 
 
@@ -61,8 +61,8 @@ def knitted_chart(program: str) -> KnittedChart:
         If the program is too long, violates the language or the machine, or makes anything but
         knits and purls within an outline.
     """
-    if len(program.encode()) > MAXIMUM_BYTES:
-        raise InputError("knitout", "the program is too long.", f"Use at most {MAXIMUM_BYTES} B.")
+    if len(program.encode()) > MAX_BYTES:
+        raise InputError("knitout", "the program is too long.", f"Use at most {MAX_BYTES} B.")
     loops, said = _interpreted(program)
     if not loops:
         raise InputError("knitout", "the program makes no loops.", "Give one that knits.")
@@ -88,7 +88,7 @@ def verified(
     """
     piece = (chart if isinstance(chart, Piece) else Piece.plain(chart)).cropped()
     made = knitout_program(
-        piece, finish=finish, needles=MAXIMUM_NEEDLES if needles is None else needles
+        piece, finish=finish, needles=MAX_NEEDLES if needles is None else needles
     )
     try:
         knitted = knitted_chart(made.text)

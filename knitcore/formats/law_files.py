@@ -28,7 +28,7 @@ from knitcore.materials.document import CurveDocument, LawDocument
 from knitcore.materials.measured import MeasuredCurve
 
 FORMAT = "knitcore-law"
-MAXIMUM_BYTES = 10_000_000
+MAX_BYTES = 10_000_000
 _UNIT = "_n_per_mm"
 
 
@@ -77,7 +77,7 @@ def load_law(path: Path) -> LawFile:
     path = Path(path)
     if not path.is_file():
         raise InputError("law", f"{path} is not a file.", "Give a file that `knitcore fit` wrote.")
-    if path.stat().st_size > MAXIMUM_BYTES:
+    if path.stat().st_size > MAX_BYTES:
         raise InputError("law", f"{path.name} is too large for a law.", "Give a LAW.json.")
     try:
         data = json.loads(path.read_text(encoding="utf-8"))

@@ -43,8 +43,8 @@ LINE = 1.45
 """Distance of lines over the size of their type."""
 FOOT_MM = 16.0
 PHOTO_MM = (A4_MM[0] - 2 * MARGIN_MM, 100.0)
-MOST_PHOTO_BYTES, MOST_PHOTO_PIXELS = 4_000_000, 4096
-MOST_SECTIONS = 24
+MAX_PHOTO_BYTES, MAX_PHOTO_PIXELS = 4_000_000, 4096
+MAX_SECTIONS = 24
 """Rows of designs with more borders between regions are written without sections."""
 PULL_N_PER_MM = 0.05
 _EM = 0.5
@@ -245,17 +245,17 @@ def _wrapped(text: str, size: float, width: float) -> list[str]:
 
 def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
     """The picture on white paper, its file free of anything else, and its size in pixels."""
-    if len(png) > MOST_PHOTO_BYTES:
+    if len(png) > MAX_PHOTO_BYTES:
         raise InputError(
-            "photo", f"it has {len(png)} bytes.", f"Send at most {MOST_PHOTO_BYTES:,} bytes."
+            "photo", f"it has {len(png)} bytes.", f"Send at most {MAX_PHOTO_BYTES:,} bytes."
         )
     try:
         with Image.open(io.BytesIO(png), formats=["PNG"]) as image:
-            if max(image.size) > MOST_PHOTO_PIXELS:  # before any pixel is decoded
+            if max(image.size) > MAX_PHOTO_PIXELS:  # before any pixel is decoded
                 raise InputError(
                     "photo",
                     f"it has {image.width}x{image.height} pixels.",
-                    f"Use at most {MOST_PHOTO_PIXELS} a side.",
+                    f"Use at most {MAX_PHOTO_PIXELS} a side.",
                 )
             flat = Image.new("RGBA", image.size, "white")
             flat.alpha_composite(image.convert("RGBA"))
@@ -350,7 +350,7 @@ def _breaks(piece: Piece, regions: Sequence[RegionMark]) -> list[int]:
         if len(rows):
             breaks |= {int(rows[0]), int(rows[-1]) + 1}
     inner = sorted(breaks - {0, piece.chart.rows})
-    return inner if len(inner) <= MOST_SECTIONS else []
+    return inner if len(inner) <= MAX_SECTIONS else []
 
 
 def _abbreviations(flow: _Flow, lines: Sequence[str]) -> None:

@@ -22,7 +22,7 @@ from knitcore.garment.piece import Piece, PieceYarn
 from knitcore.garment.shaped import ShapedChart
 
 TEXT_KEY = "knitcore-yarns"
-MOST_YARNS = 127
+MAX_YARNS = 127
 _LIGHT, _DARK = 170.0, 84.0
 """Least brightness of knits, and greatest of purls."""
 
@@ -46,9 +46,9 @@ def write_png(chart: StitchChart | Piece) -> bytes:
 
 
 def _save_piece(piece: Piece, buffer: io.BytesIO) -> None:
-    if len(piece.yarns) > MOST_YARNS:
+    if len(piece.yarns) > MAX_YARNS:
         raise InputError(
-            "yarns", f"{len(piece.yarns)} are too many.", f"Use at most {MOST_YARNS} yarns."
+            "yarns", f"{len(piece.yarns)} are too many.", f"Use at most {MAX_YARNS} yarns."
         )
     index = np.where(piece.shaped.stitch, 1 + 2 * piece.yarn_of + piece.chart.purl, 0)
     image = Image.fromarray(index[::-1].astype(np.uint8), mode="P")

@@ -26,7 +26,7 @@ from knitcore.segments import segment_map
 _CIVIDIS = np.array([[0, 32, 76], [65, 77, 107], [124, 123, 120], [187, 173, 108], [255, 234, 70]])
 _DIRECTION_INK = {Direction.COURSE: "#3b6fb6", Direction.WALE: "#b3322b"}
 _LEVELS, _NO_STITCH = 32, -1
-MOST_REGIONS = 12
+MAX_REGIONS = 12
 """Most lines in the table of regions, as fit a page; the rest is in the CSV export."""
 LOCAL_ASSUMPTIONS = (
     "Means of local values over the stitches of a region; intervals cover 90 %.",
@@ -93,7 +93,7 @@ def _regions(
         yield Label(x, 30.0, text, 3.0)
     yield Strokes(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
     y = 37.0
-    for part in region_fields(piece, regions, material)[:MOST_REGIONS]:
+    for part in region_fields(piece, regions, material)[:MAX_REGIONS]:
         yield Box(MARGIN_MM, y - 2.6, 3.0, 3.0, fill=tinted(part.colour))
         sides = f"{1 / part.modulus_course[0]:.2f} × {1 / part.modulus_wale[0]:.2f}"
         cells = (f"    {part.name[:28]}", str(part.stitches), _factor(*part.modulus_course))

@@ -11,7 +11,7 @@ from knitcore.arrays import Array
 from knitcore.chart import MAX_STITCHES_PER_SIDE, check_size
 from knitcore.errors import InputError
 
-MAXIMUM_BYTES = 80_000_000
+MAX_BYTES = 80_000_000
 WANTED = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 
 
@@ -26,7 +26,7 @@ def read_wanted_moduli(file: Path) -> tuple[Array, Array]:
     InputError
         Naming the line that cannot be read.
     """
-    if not file.is_file() or file.stat().st_size > MAXIMUM_BYTES:
+    if not file.is_file() or file.stat().st_size > MAX_BYTES:
         raise InputError("target", f"{file} is not a usable CSV file.", "Check the path and size.")
     try:
         with file.open(newline="", encoding="utf-8-sig") as stream:

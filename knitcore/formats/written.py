@@ -36,7 +36,7 @@ from knitcore.worked import Construction, Side
 
 LATER_USE = 2
 """Least number of repetitions that are written as a bracket."""
-LEAST_TO_INCREASE = 4
+MIN_TO_INCREASE = 4
 """Rows of fewer stitches than this cast on instead of making one between two stitches."""
 
 
@@ -178,7 +178,7 @@ def _edge_forms(row: PieceRow) -> tuple[list[str], list[str], list[str]]:
     after: list[str] = []
     if row.first == row.last == -1 and count == 1:
         return ["k3tog"], before, after
-    increase = count >= LEAST_TO_INCREASE
+    increase = count >= MIN_TO_INCREASE
     if row.first == -1:
         forms[0] = "ssk"
     elif row.first == 1 and increase:

@@ -20,7 +20,7 @@ from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.geometry.tubes import TriangleMesh, tube
 from knitcore.materials import Material
 
-MAXIMUM_STITCHES = 10_000
+MAX_STITCHES = 10_000
 POINTS, SIDES = 17, 6
 DEFAULT_DIAMETER_SHARE = 0.3
 """Yarn diameter over stitch width if the material has no yarn diameter."""
@@ -68,11 +68,11 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
         If there are too many stitches for a mesh of use.
     """
     grid = chart if isinstance(chart, StitchChart) else chart.shaped.continued()
-    if grid.rows * grid.columns > MAXIMUM_STITCHES:
+    if grid.rows * grid.columns > MAX_STITCHES:
         raise InputError(
             "chart",
             f"{grid.columns}x{grid.rows} stitches are too many for a mesh.",
-            f"Export at most {MAXIMUM_STITCHES} stitches, such as 100x100.",
+            f"Export at most {MAX_STITCHES} stitches, such as 100x100.",
         )
     return solid(course_centre_lines(chart, material), yarn_radius_mm(grid, material))
 

@@ -27,7 +27,7 @@ from knitcore.materials import Material
 
 CROTCH_ROWS = 2
 PALM_TOLERANCE = 0.10
-LEAST_EASE, MOST_EASE = -0.4, 0.3
+MIN_EASE, MAX_EASE = -0.4, 0.3
 STUDY_GLOVE = "glove-wool:glove"
 
 
@@ -138,9 +138,9 @@ def glove(
     InputError
         If measurements or ease cannot be used, or the material lacks a fabric.
     """
-    if not (math.isfinite(ease) and LEAST_EASE <= ease <= MOST_EASE):
+    if not (math.isfinite(ease) and MIN_EASE <= ease <= MAX_EASE):
         raise InputError(
-            "ease", f"{ease:g} is not an ease for a glove.", f"Give {LEAST_EASE} to {MOST_EASE}."
+            "ease", f"{ease:g} is not an ease for a glove.", f"Give {MIN_EASE} to {MAX_EASE}."
         )
     gauges = gauges or GaugeSet.of_material(material)
     palm, seed, rib = (gauges[f] for f in (Fabric.GARTER, Fabric.SEED, Fabric.RIB))

@@ -16,7 +16,7 @@ from knitcore.garment.plan import GarmentPlan, Part, make_plan
 from knitcore.garment.worn import Fit, Worn, worn
 from knitcore.materials import Material
 
-LARGEST_CHANGE = 2
+MAX_CHANGE = 2
 """Stitches that a row may gain or lose: one at each edge."""
 SNUG = Fit()
 PLACES = 5
@@ -213,7 +213,7 @@ def _limit_changes(counts: Sequence[int]) -> list[int]:
     for order in (range(1, len(limited)), range(len(limited) - 2, -1, -1)):
         for row in order:
             before = limited[row - order.step]
-            limited[row] = min(limited[row], before + LARGEST_CHANGE)
+            limited[row] = min(limited[row], before + MAX_CHANGE)
     return limited
 
 

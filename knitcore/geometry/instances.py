@@ -19,7 +19,7 @@ LEVELS = ((1_500, 48, 8), (10_000, 16, 6), (40_000, 10, 4))
 """(largest number of stitches, points, sides): how finely each stitch is drawn."""
 OVERLAP = 0.012
 """Tubes overlap the next by this share of a stitch, so that joins show no gap."""
-MOST_STITCHES = LEVELS[-1][0]
+MAX_STITCHES = LEVELS[-1][0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,9 +45,9 @@ from knitcore.phases import (
 )
 from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
 
-MOST_STORED = 36
+MAX_STORED = 36
 """Stitches of the largest repeats that are looked up in the store."""
-MOST_SHAPES = 192
+MAX_SHAPES = 192
 """With more shapes than this, crossings with the rows above and below are drawn less exactly."""
 FULLNESS = 1.1
 """Yarn is soft, so it is drawn a little thicker than the distance of touching strands allows."""
@@ -109,7 +109,7 @@ def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | Non
     if pure_fabric(chart) is not None:
         return None  # its quarters are exact
     repeat = chart.repeat_cut()
-    if repeat.rows * repeat.columns > MOST_STORED:
+    if repeat.rows * repeat.columns > MAX_STORED:
         return None
     return stored_stitch(repeat, stored_material(material))
 
@@ -148,7 +148,7 @@ def _of_quarters(chart: StitchChart, fabrics: FabricLines) -> tuple[Array, NDArr
     bits = _parities(chart)
     code = bits @ (1 << np.arange(bits.shape[-1]))
     found, index = np.unique(code, return_inverse=True)
-    if len(found) > MOST_SHAPES:  # leave out the crossings' bits
+    if len(found) > MAX_SHAPES:  # leave out the crossings' bits
         bits[..., [7, 9]], bits[..., [8, 10]] = bits[..., 1:2], bits[..., 2:3]
         code = bits @ (1 << np.arange(bits.shape[-1]))
         found, index = np.unique(code, return_inverse=True)

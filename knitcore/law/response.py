@@ -70,9 +70,9 @@ def response_through(stress_n_per_mm: Array, strains: Array) -> Response:
     return Response(modulus, strain)
 
 
-MOST_STRESS_N_PER_MM = 10.0
+MAX_STRESS_N_PER_MM = 10.0
 """Locks any fabric."""
-_STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, MOST_STRESS_N_PER_MM, 600)])
+_STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, MAX_STRESS_N_PER_MM, 600)])
 
 
 def stress_at_strain(response: Response, strain: ArrayLike) -> Array:

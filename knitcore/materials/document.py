@@ -13,7 +13,7 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.materials.consistency import check_stated_constants
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
-from knitcore.materials.measured import MOST_POINTS, MeasuredCurve
+from knitcore.materials.measured import MAX_POINTS, MeasuredCurve
 from knitcore.materials.uncertainty import CurveUncertainty, LawUncertainty, log_deviation
 
 _DEFAULT_RELATIVE_SD = 0.10
@@ -133,8 +133,8 @@ class DeviationDocument(_Model):
 class CurveDocument(_Model):
     """A measured stress–strain curve."""
 
-    strain: Annotated[list[float], Field(min_length=2, max_length=MOST_POINTS)]
-    stress_n_per_mm: Annotated[list[float], Field(min_length=2, max_length=MOST_POINTS)]
+    strain: Annotated[list[float], Field(min_length=2, max_length=MAX_POINTS)]
+    stress_n_per_mm: Annotated[list[float], Field(min_length=2, max_length=MAX_POINTS)]
     pulls: Annotated[int, Field(ge=1)] = 1
 
     def to_curve(self) -> MeasuredCurve:

@@ -8,7 +8,7 @@ import numpy as np
 
 from knitcore.errors import InputError
 
-MOST_POINTS = 100
+MAX_POINTS = 100
 """Most points of a stored curve: more than a plot shows."""
 
 
@@ -34,11 +34,11 @@ class MeasuredCurve:
 
     def __post_init__(self) -> None:
         points = len(self.strain)
-        if points != len(self.stress_n_per_mm) or not 2 <= points <= MOST_POINTS:
+        if points != len(self.stress_n_per_mm) or not 2 <= points <= MAX_POINTS:
             raise InputError(
                 "measured",
                 f"a curve of {points} strains and {len(self.stress_n_per_mm)} stresses.",
-                f"Give 2 to {MOST_POINTS} points, a stress for each strain.",
+                f"Give 2 to {MAX_POINTS} points, a stress for each strain.",
             )
         if not np.all(np.isfinite([self.strain, self.stress_n_per_mm])):
             raise InputError("measured", "a curve is not finite.", "Leave out lost points.")

@@ -22,15 +22,15 @@ from knitcore.errors import InputError
 
 Mask = NDArray[np.bool_]
 
-MAXIMUM_PIXELS = 60_000_000
-MAXIMUM_BYTES = 100 * 2**20
+MAX_PIXELS = 60_000_000
+MAX_BYTES = 100 * 2**20
 WORKING_PIXELS = 1400
 """Long side of the image that is traced; a yarn is then 10 to 60 pixels wide."""
-MINIMUM_CONTRAST = 0.12
+MIN_CONTRAST = 0.12
 """Least contrast between the yarn and its background, over full scale."""
-MINIMUM_SLENDERNESS = 6.0
+MIN_SLENDERNESS = 6.0
 """Length over width below which a bright spot is not a yarn."""
-MAXIMUM_UNEVENNESS = 0.25
+MAX_UNEVENNESS = 0.25
 """Standard deviation over mean of the width along a yarn (0.05 to 0.13 in the paper's photos)."""
 
 
@@ -72,13 +72,13 @@ def load_grey(path: Path) -> Array:
     path = Path(path)
     if not path.is_file():
         raise InputError(str(path), "is not a file.", "Give the path of a photo.")
-    if path.stat().st_size > MAXIMUM_BYTES:
+    if path.stat().st_size > MAX_BYTES:
         raise InputError(path.name, "is larger than 100 MB.", "Give a JPEG or PNG photo.")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
             with Image.open(path, formats=("JPEG", "PNG", "TIFF", "BMP", "WEBP")) as image:
-                if image.width * image.height > MAXIMUM_PIXELS:
+                if image.width * image.height > MAX_PIXELS:
                     raise InputError(
                         path.name,
                         f"has {image.width} x {image.height} pixels.",
@@ -147,7 +147,7 @@ def _yarn_mask(grey: Array, name: str) -> tuple[Mask, float]:
     low, high = np.percentile(grey, [0.5, 99.5])
     lighter = high - ground >= ground - low
     signal = gaussian(grey - ground if lighter else ground - grey, sigma=1.0)
-    if max(high - ground, ground - low) < MINIMUM_CONTRAST:
+    if max(high - ground, ground - low) < MIN_CONTRAST:
         raise _no_yarn(name, "nothing stands out from the background")
     mask: Mask = signal > threshold_otsu(signal)
     if mask.mean() > 0.6:
@@ -156,7 +156,7 @@ def _yarn_mask(grey: Array, name: str) -> tuple[Mask, float]:
     mask, _ = _largest(mask, name)
     # Fibres are thinner than half a yarn: opening removes them and leaves the yarn.
     area, length = float(mask.sum()), float(skeletonize(mask).sum())
-    if length**2 < MINIMUM_SLENDERNESS * area:
+    if length**2 < MIN_SLENDERNESS * area:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
     radius = max(1.0, 0.3 * area / length)
     _, next_largest = _largest(isotropic_opening(whole, radius), name)
@@ -233,17 +233,17 @@ def _ribbon_axis(mask: Mask, name: str) -> tuple[Array, float]:
     """
     # A frame of background lets the skeleton end at the border like anywhere else.
     area, length = float(mask.sum()), float(skeletonize(mask).sum())
-    if length**2 < MINIMUM_SLENDERNESS * area:
+    if length**2 < MIN_SLENDERNESS * area:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
     frame = max(4, round(1.5 * area / length))
     wide = np.pad(np.pad(mask, frame, mode="edge"), 1)
     path, width = _longest_path(wide)
-    if len(path) < MINIMUM_SLENDERNESS * width:
+    if len(path) < MIN_SLENDERNESS * width:
         raise _no_yarn(name, "what stands out is a spot, not a yarn")
     cut = round(width)
     core = path[cut:-cut]
     radius = distance_transform_edt(wide)[tuple(core.astype(int).T)]
-    if radius.std() > MAXIMUM_UNEVENNESS * radius.mean():
+    if radius.std() > MAX_UNEVENNESS * radius.mean():
         raise _no_yarn(name, "what stands out has no even width")
     ends = (_straight_end(core[::-1], wide, width)[::-1], _straight_end(core, wide, width))
     path = np.concatenate([ends[0], core, ends[1]]) - (frame + 1)

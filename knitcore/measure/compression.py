@@ -24,7 +24,7 @@ TOUCH_N = 1e-3
 FIT_LIMIT_N = 1.0
 CORE_N = 3.0
 CORE_TOLERANCE = 0.02
-MINIMUM_READINGS = 15
+MIN_READINGS = 15
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +108,11 @@ def fit_compression(
     part = slice(touch, core)
     used = (test.force_n[part] <= FIT_LIMIT_N) & (test.depth_mm[part] < depth_core)
     depth, force = test.depth_mm[part][used], test.force_n[part][used]
-    if len(depth) < MINIMUM_READINGS:
+    if len(depth) < MIN_READINGS:
         raise InputError(
             test.name,
             f"has {len(depth)} readings between 1 mN and 1 N.",
-            f"Record at least {MINIMUM_READINGS}.",
+            f"Record at least {MIN_READINGS}.",
         )
     area = probe_width_mm * diameter
 
@@ -174,9 +174,9 @@ def average_compression(samples: Sequence[CompressionSample]) -> list[Compressio
 def _touch_and_core(test: CompressionTest) -> tuple[int, int]:
     """Indices of the first reading in contact for good, and of the one at the core's depth."""
     force, depth = test.force_n, test.depth_mm
-    if len(force) < MINIMUM_READINGS or len(force) != len(depth):
+    if len(force) < MIN_READINGS or len(force) != len(depth):
         raise InputError(
-            test.name, f"has {len(force)} readings.", f"Record at least {MINIMUM_READINGS}."
+            test.name, f"has {len(force)} readings.", f"Record at least {MIN_READINGS}."
         )
     if not (np.all(np.isfinite(force)) and np.all(np.isfinite(depth))):
         row = int(np.argmax(~(np.isfinite(force) & np.isfinite(depth))))

@@ -25,7 +25,7 @@ from knitcore.measure.tables import numbers, read_csv
 
 Array = NDArray[np.float64]
 
-MAXIMUM_BYTES = 50 * 2**20
+MAX_BYTES = 50 * 2**20
 _XLS_MAGIC = bytes.fromhex("d0cf11e0a1b11ae1")
 
 
@@ -59,7 +59,7 @@ def read_compression(path: Path) -> list[CompressionTest]:
     path = Path(path)
     if not path.is_file():
         raise InputError(str(path), "is not a file.", "Give the path of an XLS or CSV file.")
-    if path.stat().st_size > MAXIMUM_BYTES:
+    if path.stat().st_size > MAX_BYTES:
         raise InputError(path.name, "is larger than 50 MB.", "Give the tests only.")
     with path.open("rb") as file:
         start = file.read(8)

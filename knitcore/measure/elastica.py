@@ -19,7 +19,7 @@ from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, InputError
 
 NODES = 401
-MAXIMUM_LOAD = 1e6
+MAX_LOAD = 1e6
 """Beyond, the bend is shorter than a hundredth of the yarn and no photo resolves it."""
 
 
@@ -50,7 +50,7 @@ def heavy_elastica(load: float, clamp_angle: float = 0.0) -> tuple[Array, Array,
     >>> round(float(y[-1] / 0.01), 4)
     0.125
     """
-    if not (np.isfinite(load) and 0 <= load <= MAXIMUM_LOAD):
+    if not (np.isfinite(load) and 0 <= load <= MAX_LOAD):
         raise InputError("load", f"{load} cannot be used.", "Give a number between 0 and 1e6.")
     # Even nodes in u with s = u**2 resolve the bend of a long yarn.
     u = np.linspace(0.0, 1.0, NODES)

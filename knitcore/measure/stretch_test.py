@@ -12,7 +12,7 @@ from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
-MINIMUM_POINTS = 20
+MIN_POINTS = 20
 """With fewer points a linear part cannot be distinguished from a stiffening one."""
 PERCENT_STRAIN = 6.0
 """A strain above this (600 %) must be in per cent: no knit reaches it before it locks."""
@@ -122,7 +122,7 @@ def until_unloaded(run: StretchRun) -> StretchRun:
     """A pull up to its largest stress, if it is unloaded or tears afterwards."""
     peak = int(np.argmax(run.stress))
     lowest = float(run.stress[peak:].min(initial=np.inf))
-    if peak < MINIMUM_POINTS or lowest > (1 - FALL_SHARE) * run.stress[peak]:
+    if peak < MIN_POINTS or lowest > (1 - FALL_SHARE) * run.stress[peak]:
         return run
     part = slice(0, peak + 1)
     return StretchRun(run.name, run.strain_along[part], run.strain_across[part], run.stress[part])
@@ -142,11 +142,11 @@ def check_run(run: StretchRun, *, first_row: int = 1) -> None:
         If the points are too few, a strain is in percent, the columns are exchanged, the force is
         in another unit, falls, or never rises.
     """
-    if run.length < MINIMUM_POINTS:
+    if run.length < MIN_POINTS:
         raise InputError(
             run.name,
             f"has {run.length} usable points.",
-            f"Give at least {MINIMUM_POINTS} points between rest and the largest force.",
+            f"Give at least {MIN_POINTS} points between rest and the largest force.",
         )
     _check_percent(run, first_row)
     _check_stress(run, first_row)

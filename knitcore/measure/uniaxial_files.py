@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.measure.stretch_test import (
-    MINIMUM_POINTS,
+    MIN_POINTS,
     StretchRun,
     StretchTest,
     check_run,
@@ -37,11 +37,11 @@ from knitcore.measure.tables import numbers, read_csv
 
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
-MAXIMUM_CSV_BYTES = 64 * 2**20
-MAXIMUM_PIXEL = 1e6
-MAXIMUM_FORCE_N = 1e6
-MAXIMUM_FRAMES = 2_000_000
-MAXIMUM_VIDEOS = 100
+MAX_CSV_BYTES = 64 * 2**20
+MAX_PIXEL = 1e6
+MAX_FORCE_N = 1e6
+MAX_FRAMES = 2_000_000
+MAX_VIDEOS = 100
 WIDER_THAN_CLAMPED = 1.2
 """Tracked points farther apart than this share of the clamped width mean a misread width."""
 _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
@@ -131,11 +131,11 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
         for key in file
         if (match := re.fullmatch(r"video[ _]?(\d+)", key, re.IGNORECASE))
     )
-    if not videos or len(videos) > MAXIMUM_VIDEOS:
+    if not videos or len(videos) > MAX_VIDEOS:
         raise InputError(
             name,
             f"has {len(videos)} groups named video1, video2, ….",
-            f"Give 1 to {MAXIMUM_VIDEOS} pulls in the layout of docs/fit-a-law.md.",
+            f"Give 1 to {MAX_VIDEOS} pulls in the layout of docs/fit-a-law.md.",
         )
     notes: list[str] = []
     if len(videos) > 1 and videos[0][0] == 1:
@@ -240,11 +240,11 @@ def _tracked(
     force, points = force[:frames], points[:, :, :frames]
     used = points[[_RIGHT, _LEFT, *gauge.points]]
     # A point that leaves the image sticks to its border.
-    lost = ~np.all((used > 0) & (used < MAXIMUM_PIXEL), axis=(0, 1))
-    unread = ~(np.abs(force) < MAXIMUM_FORCE_N)
+    lost = ~np.all((used > 0) & (used < MAX_PIXEL), axis=(0, 1))
+    unread = ~(np.abs(force) < MAX_FORCE_N)
     good = ~(lost | unread)
     good[good] = ~misread_forces(force[good])
-    if good.sum() < max(MINIMUM_POINTS, 0.5 * frames):
+    if good.sum() < max(MIN_POINTS, 0.5 * frames):
         notes.append(
             f"{key} is left out: {int(lost.sum())} of {frames} frames have an untracked point,"
             f" {int(unread.sum())} no force."
@@ -290,9 +290,9 @@ def _numbers(name: str, file: h5py.File, key: str) -> Array:
     data = file[key]
     if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "iuf" or data.external:
         raise InputError(f"{name}, {key}", "is not a dataset of numbers.", "Store plain numbers.")
-    if data.size > 14 * MAXIMUM_FRAMES:
+    if data.size > 14 * MAX_FRAMES:
         raise InputError(
-            f"{name}, {key}", f"holds {data.size} numbers.", f"Up to {MAXIMUM_FRAMES} frames."
+            f"{name}, {key}", f"holds {data.size} numbers.", f"Up to {MAX_FRAMES} frames."
         )
     return np.asarray(data[()], dtype=float)
 
@@ -305,7 +305,7 @@ def _text(value: object) -> str:
 
 
 def _read_csv(path: Path) -> StretchTest:
-    if path.stat().st_size > MAXIMUM_CSV_BYTES:
+    if path.stat().st_size > MAX_CSV_BYTES:
         raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
     table = read_csv(path, ", ".join(CSV_COLUMNS))
     table.columns = [_column_name(str(c)) for c in table.columns]

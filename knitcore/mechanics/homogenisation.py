@@ -29,7 +29,7 @@ from knitcore.mechanics.lamination import SheetGrid, coarsened
 from knitcore.mechanics.periodic_mesh import PeriodicMesh
 from knitcore.phases import quarter_phases
 
-MOST_CELLS = 1024
+MAX_CELLS = 1024
 """Quarter cells solved as they are: a repeat of 16 x 16. Larger grids are first coarsened."""
 
 
@@ -116,7 +116,7 @@ def homogenise(
     material: Material,
     *,
     periodic: bool = True,
-    most_cells: int = MOST_CELLS,
+    most_cells: int = MAX_CELLS,
 ) -> EffectiveSheet:
     """Effective linear constants of a chart that repeats indefinitely.
 

@@ -30,8 +30,8 @@ NEAR_LOCK_UP = 0.8
 """Share of the lock-up strain above which small errors of size change the pressure much."""
 TESTED_SHARE = 0.7
 """Share of the lock-up strain that stretch tests typically reach (0.6 to 0.8 in the paper's)."""
-MAXIMUM_CIRCUMFERENCE_MM = 5000.0
-LEAST_LENGTH = 0.05
+MAX_CIRCUMFERENCE_MM = 5000.0
+MIN_LENGTH = 0.05
 """Least share of its length that an axially free tube keeps; laws do not apply beyond."""
 ELASTIC_MEAN = (
     "A mean over the circumference from an elastic law: pressure is higher where the limb curves "
@@ -71,11 +71,11 @@ def worn_strain(rest_mm: float, worn_mm: float) -> float:
         If a circumference is impossible, or the tube is loose.
     """
     for name, value in (("rest_mm", rest_mm), ("worn_mm", worn_mm)):
-        if not (math.isfinite(value) and 0 < value <= MAXIMUM_CIRCUMFERENCE_MM):
+        if not (math.isfinite(value) and 0 < value <= MAX_CIRCUMFERENCE_MM):
             raise InputError(
                 name,
                 f"{value:g} mm is not a circumference.",
-                f"Give up to {MAXIMUM_CIRCUMFERENCE_MM:g} mm.",
+                f"Give up to {MAX_CIRCUMFERENCE_MM:g} mm.",
             )
     if worn_mm < rest_mm:
         raise InputError(
@@ -153,7 +153,7 @@ def rest_circumference(
     """
     if not (math.isfinite(mmhg) and 0 < mmhg <= 300):
         raise InputError("mmhg", f"{mmhg:g} mmHg cannot be used.", "Give above 0 to 300 mmHg.")
-    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAXIMUM_CIRCUMFERENCE_MM):
+    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAX_CIRCUMFERENCE_MM):
         raise InputError("worn_mm", f"{worn_mm:g} mm is not a circumference.", "Give it in mm.")
     tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
     found = []
@@ -183,7 +183,7 @@ def _tension(
 ) -> float:
     """Hoop tension per worn length (N/mm)."""
     curve = uniaxial_response(law, direction, strain, transverse=transverse)
-    return float(curve.stress[0] / max(1 + curve.transverse_strain[0], LEAST_LENGTH))
+    return float(curve.stress[0] / max(1 + curve.transverse_strain[0], MIN_LENGTH))
 
 
 def _tensions(law: ConstitutiveLaw, direction: Direction, strain: float) -> tuple[Interval, float]:

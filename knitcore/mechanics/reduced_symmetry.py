@@ -36,7 +36,7 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.materials import paper_figures
 from knitcore.mechanics.elastica import Parity
 
-_FEWEST_POINTS = 5
+_MIN_POINTS = 5
 
 MATERIALS = ("acrylic", "cotton")
 """Yarns whose RS geometry the paper gives (tables 15 and 16)."""
@@ -99,11 +99,11 @@ class SegmentGeometry:
             If there are fewer than 5 points or they do not describe a segment.
         """
         curve = np.asarray(curve_mm, dtype=float)
-        if curve.ndim != 2 or curve.shape[1] not in (2, 3) or len(curve) < _FEWEST_POINTS:
+        if curve.ndim != 2 or curve.shape[1] not in (2, 3) or len(curve) < _MIN_POINTS:
             raise InputError(
                 "curve_mm",
                 f"has the shape {curve.shape}.",
-                f"Give at least {_FEWEST_POINTS} points of 2 or 3 coordinates.",
+                f"Give at least {_MIN_POINTS} points of 2 or 3 coordinates.",
             )
         length = float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum())
         points = curve[:, :2]

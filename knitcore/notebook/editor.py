@@ -11,7 +11,7 @@ import traitlets
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 
-MOST_STITCHES = 3600
+MAX_STITCHES = 3600
 """Cells of a chart that can be painted."""
 
 
@@ -40,7 +40,7 @@ class ChartEditor(anywidget.AnyWidget):
     _esm = Path(__file__).with_name("editor.js")
     _css = Path(__file__).with_name("editor.css")
     text = traitlets.Unicode("K").tag(sync=True)
-    most_stitches = traitlets.Int(MOST_STITCHES).tag(sync=True)
+    most_stitches = traitlets.Int(MAX_STITCHES).tag(sync=True)
 
     def __init__(self, chart: StitchChart | str = "KKKK/KKKK/KKKK/KKKK") -> None:
         read = StitchChart.parse(chart) if isinstance(chart, str) else chart
@@ -62,8 +62,8 @@ class ChartEditor(anywidget.AnyWidget):
 
 def _checked(chart: StitchChart) -> StitchChart:
     stitches = chart.rows * chart.columns
-    if stitches > MOST_STITCHES:
+    if stitches > MAX_STITCHES:
         raise InputError(
-            "chart", f"it has {stitches} stitches.", f"Edit at most {MOST_STITCHES}, or a region."
+            "chart", f"it has {stitches} stitches.", f"Edit at most {MAX_STITCHES}, or a region."
         )
     return chart

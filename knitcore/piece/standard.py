@@ -22,7 +22,7 @@ from knitcore.piece.uncertainty import force_log_sd
 from knitcore.swatch.run import Progress
 from knitcore.swatch.strip import LOCK_UP_SHARE, MAX_STRAIN
 
-LEAST_STRAIN = 1e-9
+MIN_STRAIN = 1e-9
 """Of a test: forces of smaller ones cannot be told from rounding."""
 
 
@@ -197,8 +197,8 @@ def biaxial_test(
     """
     for name, value in (("strain_x", strain_x), ("strain_y", strain_y)):
         _check_strain(name, value, least=0.0)
-    if max(strain_x, strain_y) < LEAST_STRAIN:
-        remedy = f"Give one of {LEAST_STRAIN:g} or more."
+    if max(strain_x, strain_y) < MIN_STRAIN:
+        remedy = f"Give one of {MIN_STRAIN:g} or more."
         raise InputError("strain_x", "both strains are 0, or nearly.", remedy)
     piece = CutPiece.rectangle(width_mm, length_mm, grain_deg=grain_deg)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
@@ -263,11 +263,11 @@ def trellis_test(
         If the angle is not between 0 and 1.2 rad.
     CancelledError
     """
-    if not LEAST_STRAIN <= shear_angle <= MAX_SHEAR_ANGLE:
+    if not MIN_STRAIN <= shear_angle <= MAX_SHEAR_ANGLE:
         raise InputError(
             "shear_angle",
             f"{shear_angle} rad is out of range.",
-            f"Use {LEAST_STRAIN:g} to {MAX_SHEAR_ANGLE}.",
+            f"Use {MIN_STRAIN:g} to {MAX_SHEAR_ANGLE}.",
         )
     piece = CutPiece.rectangle(side_mm, side_mm, grain_deg=grain_deg)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
@@ -295,7 +295,7 @@ def trellis_test(
     )
 
 
-def _check_strain(name: str, strain: float, least: float = LEAST_STRAIN) -> None:
+def _check_strain(name: str, strain: float, least: float = MIN_STRAIN) -> None:
     if not least <= strain <= MAX_STRAIN:
         remedy = f"Use {least:g} to {MAX_STRAIN:g}."
         raise InputError(name, f"{strain} is not a stretch that can be computed.", remedy)

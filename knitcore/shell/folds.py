@@ -22,7 +22,7 @@ from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.phases import quarter_phases
 
-LEAST_FOLD = 0.3
+MIN_FOLD = 0.3
 """Share of its length by which a row of opposed runs would fold by itself, at least. For the
 resolver baskets have about the size of flat cloth; they pillow all the same, about as much as
 relaxed baskets at the yarn level."""
@@ -55,7 +55,7 @@ def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
     InputError
         If the material lacks a pure fabric that the chart needs.
     """
-    span = np.minimum(neighbourhood_folds(chart, material), 1.0 - LEAST_FOLD)
+    span = np.minimum(neighbourhood_folds(chart, material), 1.0 - MIN_FOLD)
     side = turning(chart)
     run = np.stack([opposed(side), opposed(side.T).T], axis=-1)
     folded = run > 1

@@ -34,7 +34,7 @@ _SHIFT = 3e-3
 """Added to the convex part of the Hessian, in units of the bending stiffness of a corner."""
 _RENEW = 32
 """Steps with one factor."""
-_LEAST_STEP = 1e-8
+_MIN_STEP = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +132,7 @@ class _Descent:
         slope = float((way * self._gradient).sum())
         longest = float(np.sqrt((way**2).sum(axis=1).max()))
         fraction = min(1.0, self._stride / longest)
-        while fraction > _LEAST_STEP:
+        while fraction > _MIN_STEP:
             moved = fraction * way
             energy, gradient = self._at(self.x + moved)
             if energy <= self.energy + 1e-4 * fraction * slope:

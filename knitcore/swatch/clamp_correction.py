@@ -17,7 +17,7 @@ from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.stretch_test import StretchTest
 
-_LEAST_HELD = 0.05
+_MIN_HELD = 0.05
 """Of 1 - nu_xy nu_yx, so that a converted law stays stable."""
 
 
@@ -66,7 +66,7 @@ def converted(law: ConstitutiveLaw, correction: ClampCorrection) -> Constitutive
     """
     strain, waist = correction.strain_ratio, correction.strain_ratio * correction.waist_ratio
     yx, xy = waist * law.poisson_yx, waist * law.poisson_xy
-    held = max(1.0 - yx * xy, _LEAST_HELD)
+    held = max(1.0 - yx * xy, _MIN_HELD)
     stiffness_xx, stiffness_yy = (strain * law.modulus(d) / held for d in Direction)
     return replace(
         law,

@@ -19,7 +19,7 @@ from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask
 
 CELLS_ACROSS = 96
-LARGEST_STEP = 0.05
+MAX_STEP = 0.05
 """Largest increase of the stretch in one load step."""
 
 
@@ -137,7 +137,7 @@ def follow_field(
     previous, stretch = grid.corners, 0.0
     for frame in field.frames:
         goal = _prescribed(frame, grid, direction, edges)
-        count = max(1, int(np.ceil((field.stretch(frame) - stretch) / LARGEST_STEP - 1e-9)))
+        count = max(1, int(np.ceil((field.stretch(frame) - stretch) / MAX_STEP - 1e-9)))
         targets += [previous + (goal - previous) * k / count for k in range(1, count + 1)]
         last_steps.append(len(targets) - 1)
         previous, stretch = goal, field.stretch(frame)

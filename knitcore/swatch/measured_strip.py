@@ -23,7 +23,7 @@ BINS = 80
 """Strain intervals over which a pull is averaged first."""
 CELLS = 10
 """Cells across the shorter side of the strip."""
-MOST_CELLS = 60
+MAX_CELLS = 60
 FORCE_NOISE = 0.04
 """Relative error of a force that a fit may leave, above about ``QUIET_STRESS_N_PER_MM``."""
 WAIST_NOISE = 0.015
@@ -98,7 +98,7 @@ class MeasuredStrip:
         sides = (self.length_mm, self.width_mm)
         width, height = sides if self.direction is Direction.COURSE else sides[::-1]
         step = min(sides) / cells
-        columns, rows = (min(MOST_CELLS, round(side / step)) for side in (width, height))
+        columns, rows = (min(MAX_CELLS, round(side / step)) for side in (width, height))
         return Sheet(QuarterGrid.uniform(columns, rows, width, height), [law], SheetModel())
 
     def simulate(

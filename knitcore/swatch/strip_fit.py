@@ -45,7 +45,7 @@ from knitcore.swatch.strip_errors import LinearFit
 ROUGH_CELLS = 6
 """Cells across the shorter side of the strip while the best of several starts is sought."""
 ROUGH_STEPS = 8
-MOST_STEPS = 40
+MAX_STEPS = 40
 KAPPA_STARTS = ((0.4, 0.02), (0.05, 0.4))
 """Starts of kappa_xx and kappa_yy besides their prior: the sum of squares has several minima."""
 LOG_SHEAR_PRIOR = (math.log(0.02), 0.4)
@@ -198,7 +198,7 @@ def fit_strips(
     problem = _Problem(tuple(strips), cancelled or (lambda: False))
     tried = [problem.solve(start, ROUGH_CELLS, ROUGH_STEPS) for start in problem.starts]
     best = min(tried, key=lambda found: float(found.cost))
-    fit = problem.solve(best.x, CELLS, MOST_STEPS)
+    fit = problem.solve(best.x, CELLS, MAX_STEPS)
     law = _law(fit.x)
     simulated = [strip.simulate(law) for strip in strips]
     about = LinearFit(problem.strips, fit.x, fit.fun, fit.jac, _law, _ALPHAS, _SHEAR)

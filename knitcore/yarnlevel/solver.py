@@ -34,7 +34,7 @@ COURSE, WALE = -2, -1
 
 _DAMPING = 100.0
 """First damping, in B / L³."""
-_LEAST_DAMPING = 1e-6
+_MIN_DAMPING = 1e-6
 """Least damping, relative to the first."""
 _INDEFINITE_DAMPING = 0.05
 """Least damping that is tried where the Hessian is not positive definite, relative to the first."""
@@ -44,7 +44,7 @@ its diagonal
 scaled to one the damped matrix has a condition of some 1e5, which leaves steps of two digits."""
 _SPARSE_FROM = 12
 """Cells of at least this many stitches have a sparse factor."""
-_LEAST_DAMPING_SINGLE = 1e-3
+_MIN_DAMPING_SINGLE = 1e-3
 """Least damping for a factor in single precision, relative to the first."""
 _TRIALS = 60
 _WORTH = 0.2
@@ -302,7 +302,7 @@ class _Descent:
             gain = actual
 
     def _damp(self, factor: float, least: float = 0.0) -> None:
-        least = max(least, _LEAST_DAMPING_SINGLE if self.single else _LEAST_DAMPING)
+        least = max(least, _MIN_DAMPING_SINGLE if self.single else _MIN_DAMPING)
         self.damping = max(factor * self.damping, least * self.first_damping)
 
     def minimum(self) -> Minimum:

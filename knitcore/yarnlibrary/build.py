@@ -28,15 +28,15 @@ from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise
 from knitcore.yarnlibrary.store import MATERIALS
 from knitcore.yarnlibrary.yarns import yarn_for
 
-MOST_STITCHES = 8
+MAX_STITCHES = 8
 SQUARE = 3
 """Repeats of this many rows and columns are also in the store, though they have more stitches."""
 
 
-def charts_of_the_store(most_stitches: int = MOST_STITCHES) -> dict[StitchChart, str]:
+def charts_of_the_store(most_stitches: int = MAX_STITCHES) -> dict[StitchChart, str]:
     """The repeats to make, representatives of their fabrics, with the names of known ones."""
     names = {StitchChart.parse(text).canonical(): name for name, text in COMMON.items()}
-    square = primitive_repeats(SQUARE, SQUARE) if most_stitches >= MOST_STITCHES else ()
+    square = primitive_repeats(SQUARE, SQUARE) if most_stitches >= MAX_STITCHES else ()
     small = repeats_up_to(most_stitches, most_stitches, stitches=most_stitches)
     some = [*names, *small, *square]
     return {chart: names.get(chart, "") for chart in some}
@@ -46,7 +46,7 @@ def build(
     folder: Path,
     *,
     keep: Path,
-    most_stitches: int = MOST_STITCHES,
+    most_stitches: int = MAX_STITCHES,
     scheduler: str | None = None,
     workers: int | None = None,
 ) -> None:
@@ -167,7 +167,7 @@ def _tell(progress: BatchProgress) -> None:
 def main() -> None:
     """Run ``python -m knitcore.yarnlibrary.build``."""
     parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.build")
-    parser.add_argument("--most-stitches", type=int, default=MOST_STITCHES)
+    parser.add_argument("--most-stitches", type=int, default=MAX_STITCHES)
     parser.add_argument("--folder", type=Path, default=Path(__file__).parent / "data")
     parser.add_argument("--keep", type=Path, default=Path("build/stitches"))
     parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")

@@ -21,7 +21,7 @@ from knitcore.yarnlevel.results import Sweep
 
 MAX_STRESS_N_PER_MM = 0.3
 """Upper end of the range that is fitted unless another is asked for."""
-_LEAST_POINTS = 5
+_MIN_POINTS = 5
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def _in_range(sweep: Sweep, max_stress: float) -> tuple[Array, Array, Array]:
     beyond = np.flatnonzero(~inside)
     if len(beyond):  # the first excess ends the range, even if the stress falls again at a jump
         inside[beyond[0] :] = False
-    if np.count_nonzero(inside) < _LEAST_POINTS:
+    if np.count_nonzero(inside) < _MIN_POINTS:
         raise InputError(
             "max_stress_n_per_mm",
             f"only {np.count_nonzero(inside)} points of the {sweep.direction} stretch lie below "

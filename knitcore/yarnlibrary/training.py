@@ -18,7 +18,7 @@ import numpy as np
 from knitcore.chart import StitchChart
 from knitcore.yarnlevel.yarn import YarnModel
 
-MOST_STITCHES = 36
+MAX_STITCHES = 36
 """Largest repeat."""
 
 
@@ -80,7 +80,7 @@ def training_charts() -> dict[StitchChart, str]:
             continue
         kind, chart = entry
         repeat = chart.canonical()
-        if repeat.rows * repeat.columns <= MOST_STITCHES:
+        if repeat.rows * repeat.columns <= MAX_STITCHES:
             found.setdefault(repeat, kind)
     return found
 
@@ -155,7 +155,7 @@ def _baskets() -> Iterator[StitchChart]:
     for rows, columns in [*blocks, (1, 5), (5, 1), (2, 5), (5, 2), (3, 5), (5, 3), (1, 6), (6, 1)]:
         block = np.zeros((rows, columns), dtype=bool)
         pair = np.hstack([block, ~block])
-        if 4 * rows * columns <= MOST_STITCHES:
+        if 4 * rows * columns <= MAX_STITCHES:
             yield StitchChart(np.vstack([pair, ~pair]))
             if columns % 2 == 0:  # bricks: the next rows moved by half a block
                 yield StitchChart(np.vstack([pair, np.roll(pair, columns // 2, axis=1)]))

@@ -32,9 +32,9 @@ from knitcore.yarnlibrary.training import (
 )
 from knitcore.yarnlibrary.yarns import yarn_for
 
-MOST_RELAXED = 36
+MAX_RELAXED = 36
 """Cells with more stitches are left out."""
-MOST_STRETCHED = 25
+MAX_STRETCHED = 25
 """Cells with more stitches are only relaxed, which takes a tenth of the time of curves."""
 
 
@@ -104,7 +104,7 @@ def _tried(entry: Document) -> bool:
 def _ordered() -> Iterator[TrainingTask]:
     anchors = iter([(chart, point) for chart in anchor_charts() for point in YARN_POINTS])
     for turn, chart in enumerate(training_charts()):
-        if mirrored_cell(chart, COARSE).stitches > MOST_RELAXED:
+        if mirrored_cell(chart, COARSE).stitches > MAX_RELAXED:
             continue
         yield _of_material("acrylic", chart, stretched=True)
         yield _of_point(0, chart, stretched=turn % 4 == 2)
@@ -112,7 +112,7 @@ def _ordered() -> Iterator[TrainingTask]:
         for anchor, point in (entry for entry in (next(anchors, None),) if entry is not None):
             yield _of_point(YARN_POINTS.index(point), anchor, stretched=True)
     for chart in drawn_charts():
-        if mirrored_cell(chart, COARSE).stitches <= MOST_STRETCHED:
+        if mirrored_cell(chart, COARSE).stitches <= MAX_STRETCHED:
             yield _of_material("acrylic", chart, stretched=False)
     for name in ("acrylic", "cotton"):
         for chart in stored_charts(name):
@@ -132,7 +132,7 @@ def _of_point(index: int, chart: StitchChart, *, stretched: bool) -> TrainingTas
 
 def _task(name: str, repeat: RepeatTask, stretched: bool) -> TrainingTask:
     chart = StitchChart.parse(repeat.chart)
-    small = mirrored_cell(chart, COARSE).stitches <= MOST_STRETCHED
+    small = mirrored_cell(chart, COARSE).stitches <= MAX_STRETCHED
     return TrainingTask(name, repeat, stretched and small)
 
 

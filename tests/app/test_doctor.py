@@ -134,9 +134,9 @@ BROKEN = {
     "files open to all": Broken(
         "file modes", "other users", spoil=_open_to_all, starts=True, ready=True
     ),
-    "little room": Broken("free space", "MB left", limits=("LEAST_FREE_BYTES",), starts=True),
+    "little room": Broken("free space", "MB left", limits=("MIN_FREE_BYTES",), starts=True),
     "few file handles": Broken(
-        "file handles", "ulimit", limits=("LEAST_HANDLES",), starts=True, ready=True
+        "file handles", "ulimit", limits=("MIN_HANDLES",), starts=True, ready=True
     ),
     "no cluster": Broken(
         "cluster", "reached", {"KNITCORE_SCHEDULER": "tcp://127.0.0.1:9"}, starts=True

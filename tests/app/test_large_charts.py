@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.api.operations import MOST_LIGHT
+from app.api.operations import MAX_LIGHT
 from app.models.charts import size_of
 from app.operations.predict import PredictRequest
 
-SMALL = {"fabric": "garter", "columns": 10, "rows": MOST_LIGHT // 10 - 10}
-LARGE = {"fabric": "garter", "columns": 101, "rows": MOST_LIGHT // 100}
+SMALL = {"fabric": "garter", "columns": 10, "rows": MAX_LIGHT // 10 - 10}
+LARGE = {"fabric": "garter", "columns": 101, "rows": MAX_LIGHT // 100}
 TEXT = "\n".join(["KP" * 60] * 90)
 
 
@@ -63,4 +63,4 @@ def test_what_is_given_away_of_a_view_is_made_in_a_worker(
 def test_the_size_of_a_request_counts_texts_and_named_fabrics() -> None:
     request = PredictRequest(chart="KP", material="acrylic", outline="xx")
     assert size_of(request) == len("KP" + "acrylic" + "xx")
-    assert size_of(PredictRequest(chart=LARGE, material="")) == 101 * (MOST_LIGHT // 100)
+    assert size_of(PredictRequest(chart=LARGE, material="")) == 101 * (MAX_LIGHT // 100)

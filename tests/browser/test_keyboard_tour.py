@@ -8,16 +8,16 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import CHART, wait_for_numbers
 from tests.browser.page import kept_chart, number
 
-MOST_TABS = 90
+MAX_TABS = 90
 
 
 def tab_to(page: Page, selector: str) -> None:
     """Press Tab until an element has the focus, as a person would."""
-    for _ in range(MOST_TABS):
+    for _ in range(MAX_TABS):
         if page.evaluate("selector => document.activeElement.matches(selector)", selector):
             return
         page.keyboard.press("Tab")
-    raise AssertionError(f"{selector} is not reached with {MOST_TABS} tabs")
+    raise AssertionError(f"{selector} is not reached with {MAX_TABS} tabs")
 
 
 def command(page: Page, words: str) -> None:

@@ -35,7 +35,7 @@ def test_a_chart_draws_each_stitch_once() -> None:
 
 def test_a_large_chart_is_cut_with_a_note() -> None:
     html = shown(StitchChart.of_fabric("stockinette", rows=200, columns=90))
-    assert html.count("M") - 1 <= showing.MOST_CELLS**2
+    assert html.count("M") - 1 <= showing.MAX_CELLS**2
     assert "lower left 80 × 80" in html
 
 

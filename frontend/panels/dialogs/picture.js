@@ -16,7 +16,7 @@ import { dialog } from "../../widgets/dialog.js";
 import { numberField } from "../../widgets/fields.js";
 
 /** Larger pictures are made smaller before they are looked at. */
-const MOST_PIXELS = 1600;
+const MAX_PIXELS = 1600;
 
 /**
  * @param {ActionContext} context
@@ -31,7 +31,7 @@ export async function importPicture(context, file) {
   } catch {
     return refusal(`${file.name} is not a picture that this browser can read.`, "Use a PNG file.");
   }
-  const scale = Math.min(1, MOST_PIXELS / Math.max(bitmap.width, bitmap.height));
+  const scale = Math.min(1, MAX_PIXELS / Math.max(bitmap.width, bitmap.height));
   const width = Math.max(1, Math.round(bitmap.width * scale));
   const height = Math.max(1, Math.round(bitmap.height * scale));
   const canvas = new OffscreenCanvas(width, height);

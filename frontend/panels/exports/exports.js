@@ -21,7 +21,7 @@ import { KINDS, hindrance, isPattern, ofExtensions } from "./kinds.js";
 import { textButton } from "../../widgets/buttons.js";
 
 /** Characters of a text file that are shown. */
-const MOST_SHOWN = 6000;
+const MAX_SHOWN = 6000;
 
 /** Width of the picture in a pattern. */
 const PHOTO_PX = 1400;
@@ -200,7 +200,7 @@ export function create(studio) {
       ...file.notes,
     ];
     const text =
-      kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MOST_SHOWN)) : "";
+      kind.text || file.media_type.startsWith("text/") ? new TextDecoder().decode(bytes.slice(0, MAX_SHOWN)) : "";
     outcome.replaceChildren(
       h("ul", { class: "planner-notes" }, ...found.map((words) => h("li", {}, icon("check"), words))),
       text && !kind.to.endsWith("svg")

@@ -9,7 +9,7 @@ const SHORT_MS = 30;
 /** So many times as long as a long frame took the page has the thread: with news from the service, and without. */
 const PAUSE = { news: 1, idle: 8 };
 /** At most; the first cloth is not kept waiting. */
-const LONGEST_PAUSE_MS = 4000;
+const MAX_PAUSE_MS = 4000;
 /** Frames in which a first scene is taken in; viser shows its own axes until then. */
 const FIRST_FRAMES = 3;
 /** How long something new takes to be drawn. */
@@ -93,7 +93,7 @@ export class FrameGovernor {
     if (!this.slow || this.#seen) return 0;
     const now = performance.now();
     const pause = this.#cost * (now < this.#newsUntil ? PAUSE.news : PAUSE.idle);
-    return Math.max(0, this.#lastEnd + Math.min(pause, LONGEST_PAUSE_MS) - now);
+    return Math.max(0, this.#lastEnd + Math.min(pause, MAX_PAUSE_MS) - now);
   }
 
   #open() {

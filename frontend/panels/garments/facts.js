@@ -8,7 +8,7 @@ import { figure, percent } from "../../core/format.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 
-const MOST_PLACES = 9;
+const MAX_PLACES = 9;
 
 /**
  * @param {Garment} garment
@@ -80,7 +80,7 @@ function regions({ regions: all }, unit) {
 /** @param {Garment} garment @param {string} unit @returns {Node[]} */
 function pressure({ worn }, unit) {
   if (!worn.length) return [];
-  const shown = worn.slice(0, MOST_PLACES);
+  const shown = worn.slice(0, MAX_PLACES);
   const warned = [...new Set(shown.flatMap(({ warnings }) => warnings))];
   return [
     h(

@@ -4,8 +4,8 @@
  * @import {DesignDocument} from "../../types.js"
  */
 
-const MOST_WIDE = 520;
-const MOST_HIGH = 330;
+const MAX_WIDTH = 520;
+const MAX_HEIGHT = 330;
 
 /**
  * @param {HTMLCanvasElement} canvas
@@ -16,7 +16,7 @@ export function drawGarment(canvas, design, aspect) {
   const lines = design.chart.split("\n");
   const outline = design.outline?.split("\n") ?? null;
   const [rows, columns] = [lines.length, lines[0].length];
-  const cell = Math.min(MOST_WIDE / columns, MOST_HIGH / (rows * aspect));
+  const cell = Math.min(MAX_WIDTH / columns, MAX_HEIGHT / (rows * aspect));
   const ratio = devicePixelRatio;
   const [wide, high] = [cell * columns, cell * rows * aspect];
   canvas.width = Math.round(wide * ratio);

@@ -22,7 +22,7 @@ const HEIGHT = 190;
 const PAD = { left: 44, right: 12, top: 10, bottom: 34 };
 const LOW = 0.7;
 const HIGH = 1.05;
-const MOST_STITCHES = 10_000;
+const MAX_STITCHES = 10_000;
 /** Where the handles stand, as shares of the length; the clamps hold the ends. */
 const PLACES = [0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9];
 
@@ -138,11 +138,11 @@ export function outlineTab(studio) {
 
   const fill = async () => {
     const { rows, columns } = studio.document.grid;
-    if (rows * columns > MOST_STITCHES) {
+    if (rows * columns > MAX_STITCHES) {
       run.say({
         title: "The chart is too large for this",
         detail: `It is pulled about a hundred times; ${rows * columns} stitches would take too long.`,
-        remedy: `Use at most ${MOST_STITCHES} stitches, such as 100 × 100.`,
+        remedy: `Use at most ${MAX_STITCHES} stitches, such as 100 × 100.`,
       });
       return;
     }

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 
 from app.api import routers
 from app.budgets import BUDGETS, Budgets, InUse
-from app.http.bodies import MOST_DECODED_BYTES, MOST_VALUES, SMALL_BYTES, BoundedRoute
+from app.http.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
 from app.http.identity import LOCAL_USER
 from app.models.base import RequestModel
 
@@ -109,7 +109,7 @@ def test_a_large_design_is_decoded_in_its_turn(client: TestClient, sent: list[An
 
 
 def test_no_design_is_larger_than_the_service_decodes(client: TestClient) -> None:
-    content = b" " * (MOST_DECODED_BYTES + 1)
+    content = b" " * (MAX_DECODED_BYTES + 1)
 
     def parts() -> Any:
         yield content
@@ -124,7 +124,7 @@ def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
     """They have few commas, and decoding millions of them takes seconds."""
     deep = 100
     nest = b"[" * deep + b"]" * deep
-    body = b"[" + b",".join([nest] * (MOST_VALUES // deep)) + b"]"
+    body = b"[" + b",".join([nest] * (MAX_VALUES // deep)) + b"]"
     refused = _post(client, "designs", body)
     assert (refused.status_code, refused.json()["type"]) == (413, "/problems/refused")
 

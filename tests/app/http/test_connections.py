@@ -19,9 +19,9 @@ from uvicorn.server import ServerState
 from app.http.connections import (
     FRAMES_AT_ONCE,
     FREE_PARTS,
-    LEAST_BYTES_PER_S,
-    MOST_AHEAD,
-    MOST_HEADERS,
+    MAX_AHEAD,
+    MAX_HEADERS,
+    MIN_BYTES_PER_S,
     Connection,
     Door,
     Socket,
@@ -100,7 +100,7 @@ def _upload(size: int) -> bytes:
 
 
 def test_a_body_that_comes_fast_enough_is_waited_for(address: tuple[str, int]) -> None:
-    part = bytes(2 * LEAST_BYTES_PER_S * KEPT_S)
+    part = bytes(2 * MIN_BYTES_PER_S * KEPT_S)
     with socket.create_connection(address, timeout=10) as client:
         client.sendall(_upload(3 * len(part)))
         for _ in range(3):
@@ -166,10 +166,10 @@ CHUNKED = b"POST /upload HTTP/1.1\r\nHost: here\r\nTransfer-Encoding: chunked\r\
 ENDLESS = {
     "address": (b"GET /", itertools.repeat(b"a" * 10_000, 10)),
     "header": (HEAD + b"A: ", itertools.repeat(b"a" * 10_000, 10)),
-    "headers": (HEAD, itertools.repeat(b"a: b\r\n", MOST_HEADERS + 1)),
+    "headers": (HEAD, itertools.repeat(b"a: b\r\n", MAX_HEADERS + 1)),
     "chunks of one byte": (CHUNKED, itertools.repeat(_chunk(1), 2 * FREE_PARTS)),
     "trailer": (CHUNKED + b"0\r\nA: ", itertools.repeat(b"a" * 10_000, 10)),
-    "requests ahead": (b"", itertools.repeat(HEAD + b"\r\n", 10 * MOST_AHEAD)),
+    "requests ahead": (b"", itertools.repeat(HEAD + b"\r\n", 10 * MAX_AHEAD)),
 }
 
 
@@ -190,11 +190,11 @@ def test_endless_heads_crumbs_and_requests_ahead_are_refused(
         except (ConnectionResetError, BrokenPipeError):
             reset = True
     assert reset or b"HTTP/1.1 400" in answers
-    assert answers.count(b"HTTP/1.1 200") <= MOST_AHEAD
+    assert answers.count(b"HTTP/1.1 200") <= MAX_AHEAD
 
 
 def test_usual_chunks_and_heads_pass(address: tuple[str, int]) -> None:
-    many = b"".join(b"a%d: b\r\n" % n for n in range(MOST_HEADERS - 2))
+    many = b"".join(b"a%d: b\r\n" % n for n in range(MAX_HEADERS - 2))
     with socket.create_connection(address, timeout=10) as client:
         client.sendall(HEAD + many + b"\r\n")
         assert _is_answered(client)

@@ -19,7 +19,7 @@ from websockets.sync.client import connect
 from websockets.typing import Subprotocol
 
 from app.cli.main import main
-from app.http.bodies import MOST_VALUES
+from app.http.bodies import MAX_VALUES
 from app.http.rate import RateLimit
 from app.http.security import LOGIN_FAILURES, PAGE_POLICY, _with_own_cookie_only
 from app.http.tokens import Tokens
@@ -360,7 +360,7 @@ def test_bodies_of_more_values_than_can_be_read_at_once_are_refused(client: Test
     body = {"name": "a", "material": "acrylic", "chart": "K", "regions": runs}
     response = client.post("/api/v1/designs", json=body)
     assert (response.status_code, response.json()["type"]) == (413, "/problems/refused")
-    assert str(MOST_VALUES) in response.json()["detail"]
+    assert str(MAX_VALUES) in response.json()["detail"]
 
 
 def test_every_response_carries_the_headers(client: TestClient) -> None:

@@ -17,8 +17,8 @@ from PIL import Image
 from starlette.websockets import WebSocketDisconnect
 
 from app.viewer.incoming import (
-    MOST_BYTES,
-    MOST_PICTURE_BYTES,
+    MAX_BYTES,
+    MAX_PICTURE_BYTES,
     ONE_PIXEL,
     RefusedMessageError,
     WantedPicture,
@@ -84,7 +84,7 @@ def test_other_messages_are_dropped(message: bytes | str) -> None:
 
 def test_a_huge_message_is_refused_and_never_built() -> None:
     """Two to the 24 nils in an array: 1.2 GB once they are Python objects."""
-    count = MOST_PICTURE_BYTES - 100
+    count = MAX_PICTURE_BYTES - 100
     nils = b"\xdd" + count.to_bytes(4, "big") + b"\xc0" * count
     head = b"\x82\xa4type\xb8GetRenderResponseMessage\xa7payload"
     tracemalloc.start()
@@ -93,10 +93,10 @@ def test_a_huge_message_is_refused_and_never_built() -> None:
             passed_on(nils, None)
         for message in (nils, head + nils):
             assert passed_on(message, WantedPicture(100, 100)) is None
-        assert tracemalloc.get_traced_memory()[1] < 2 * MOST_PICTURE_BYTES + 1_000_000
+        assert tracemalloc.get_traced_memory()[1] < 2 * MAX_PICTURE_BYTES + 1_000_000
     finally:
         tracemalloc.stop()
-    padded = _packed(**CAMERA | {"more": "x" * MOST_BYTES})
+    padded = _packed(**CAMERA | {"more": "x" * MAX_BYTES})
     with pytest.raises(RefusedMessageError, match="too large"):
         passed_on(padded, WantedPicture(100, 100))
 
@@ -167,7 +167,7 @@ def test_a_picture_is_requested_from_a_browser(
 
 def test_a_browser_that_floods_a_view_is_disconnected(client: TestClient) -> None:
     with _shown(client, "a-loud-view") as socket:
-        socket.send_bytes(b"\0" * (MOST_BYTES + 1))
+        socket.send_bytes(b"\0" * (MAX_BYTES + 1))
         with pytest.raises(WebSocketDisconnect) as closed:
             _drain(socket)
     assert closed.value.code == 1008

@@ -30,7 +30,7 @@ from knitcore.formats.export import (
 from knitcore.formats.extensibility_drawing import region_fields
 from knitcore.formats.garment_design import design_of_plan
 from knitcore.formats.layout import DesignLayout, DesignRegion, DesignRepeat, Placement, layout_of
-from knitcore.formats.yarn_mesh import MAXIMUM_STITCHES, yarn_mesh, yarn_radius_mm
+from knitcore.formats.yarn_mesh import MAX_STITCHES, yarn_mesh, yarn_radius_mm
 from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
 from knitcore.materials import material
@@ -271,7 +271,7 @@ def test_the_yarn_is_a_solid_of_its_length(kind: ExportKind, unit: float, tmp_pa
 
 
 def test_a_mesh_has_a_limit() -> None:
-    side = int(MAXIMUM_STITCHES**0.5) + 1
+    side = int(MAX_STITCHES**0.5) + 1
     with pytest.raises(InputError, match="too many"):
         yarn_mesh(StitchChart.of_fabric("rib", side, side), ACRYLIC)
 

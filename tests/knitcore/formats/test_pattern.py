@@ -14,7 +14,7 @@ from knitcore import InputError, StitchChart
 from knitcore.formats.chart_key import ChartStyle, RegionMark
 from knitcore.formats.drawing import Label, Page, Photo, to_long_svg
 from knitcore.formats.export import ExportKind, ExportOptions, export_chart
-from knitcore.formats.pattern import MOST_PHOTO_PIXELS, pattern_pages
+from knitcore.formats.pattern import MAX_PHOTO_PIXELS, pattern_pages
 from knitcore.formats.written import write_rows
 from knitcore.formats.written_reader import read_rows
 from knitcore.garment.piece import Piece
@@ -111,7 +111,7 @@ def test_pdf_and_svg_have_the_same_pages(pages: tuple[Page, ...]) -> None:
     ("photo", "problem"),
     [
         (b"GIF89a" + bytes(30), "not a readable PNG"),
-        (png(MOST_PHOTO_PIXELS + 1, 1), "pixels"),
+        (png(MAX_PHOTO_PIXELS + 1, 1), "pixels"),
         (bytes(4_000_001), "4000001 bytes"),
         (png(8, 8)[:40], "not a readable PNG"),
     ],

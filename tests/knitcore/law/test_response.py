@@ -7,7 +7,7 @@ import pytest
 
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.response import (
-    MOST_STRESS_N_PER_MM,
+    MAX_STRESS_N_PER_MM,
     free_response,
     held_response,
     response_through,
@@ -51,4 +51,4 @@ def test_the_stress_at_a_strain_is_the_inverse() -> None:
     assert stress_at_strain(found, STRAIN[:2]) == pytest.approx(STRESS[:2], rel=0.03)
     assert stress_at_strain(found, [0, 0.04]) == pytest.approx([0.0, 0.002], abs=1e-6)
     law = free_response(LAW, Direction.COURSE)
-    assert stress_at_strain(law, 50.0) == pytest.approx(MOST_STRESS_N_PER_MM)
+    assert stress_at_strain(law, 50.0) == pytest.approx(MAX_STRESS_N_PER_MM)

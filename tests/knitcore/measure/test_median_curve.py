@@ -13,7 +13,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import MeasuredCurve
-from knitcore.materials.measured import MOST_POINTS
+from knitcore.materials.measured import MAX_POINTS
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest
 from knitcore.measure.uniaxial import fit_files
@@ -34,7 +34,7 @@ def test_a_fit_keeps_curves_that_are_those_of_its_law(tmp_path: Path) -> None:
     for direction in Direction:
         curve = fit.curves[direction]
         assert curve.pulls == 4
-        assert 20 <= len(curve.strain) <= MOST_POINTS
+        assert 20 <= len(curve.strain) <= MAX_POINTS
         response = uniaxial_response(LAW, direction, np.array(curve.strain))
         peak = max(curve.stress_n_per_mm)
         assert np.array(curve.stress_n_per_mm) == pytest.approx(response.stress, abs=0.01 * peak)

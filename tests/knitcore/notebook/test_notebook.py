@@ -7,7 +7,7 @@ import pytest
 
 from knitcore import InputError, StitchChart, curve, material, predict
 from knitcore.notebook import ChartEditor, figure, view
-from knitcore.notebook.editor import MOST_STITCHES
+from knitcore.notebook.editor import MAX_STITCHES
 from tests.knitcore.notebook.results import curled, relaxed_cell, sweep
 
 ACRYLIC = material("acrylic")
@@ -64,5 +64,5 @@ class TestEditor:
         with pytest.raises(InputError):
             editor.text = "KX"
         with pytest.raises(InputError):
-            ChartEditor(StitchChart.of_fabric("rib", rows=MOST_STITCHES + 1, columns=1))
+            ChartEditor(StitchChart.of_fabric("rib", rows=MAX_STITCHES + 1, columns=1))
         assert editor.chart.key == "KP"
