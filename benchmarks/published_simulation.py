@@ -26,7 +26,7 @@ from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.samples import Sample, load_samples
 from knitcore.yarnlevel.sweep import follow
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.lawfit import SimulatedLaw, fit_law
+from knitcore.yarnlibrary.lawfit import SimulatedLaw, fit_sweeps
 
 STEPS_MM = {  # along the course and the wale, as in the authors' code
     Fabric.STOCKINETTE: (0.09, 0.03),
@@ -86,7 +86,7 @@ def run(sample: Sample) -> Outcome:
     """Relax a sample, stretch it both ways and fit the law."""
     zero = relax_published(sample.fabric, sample.yarn, sample.loop_length_mm)
     course, wale = (stretch(sample, direction, zero) for direction in Direction)
-    return Outcome(sample, zero, course, wale, fit_law(course, wale, FIT_STRESS))
+    return Outcome(sample, zero, course, wale, fit_sweeps(course, wale, FIT_STRESS))
 
 
 def rms_factor(ratios: list[float]) -> float:
@@ -178,7 +178,7 @@ def remarks(outcomes: list[Outcome]) -> list[str]:
         if o.sample.fabric is not Fabric.SEED:
             continue
         for variant in (SlideQuenching.NONE, SlideQuenching.AS_CODED):
-            other = fit_law(
+            other = fit_sweeps(
                 stretch(o.sample, Direction.COURSE, o.zero, variant), o.wale, FIT_STRESS
             )
             lines.append(
@@ -218,7 +218,7 @@ def sensitivity(outcomes: list[Outcome]) -> str:
     for stress in (0.2, 0.4):
         ratios, others = [], []
         for o in outcomes:
-            law, (x, y, *_) = fit_law(o.course, o.wale, stress).law, published(o.sample)
+            law, (x, y, *_) = fit_sweeps(o.course, o.wale, stress).law, published(o.sample)
             pair = [law.modulus_course / x, law.modulus_wale / y]
             ratios += pair
             if title(o.sample) != "acrylic garter":

@@ -20,7 +20,7 @@ from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.samples import Sample, load_samples
 from knitcore.yarnlevel.sweep import sweep
-from knitcore.yarnlibrary.lawfit import fit_law
+from knitcore.yarnlibrary.lawfit import fit_sweeps
 
 RANGE_N_PER_MM = {
     Fabric.STOCKINETTE: (0.445, 0.313),
@@ -55,7 +55,7 @@ def moduli(sample: Sample) -> tuple[float, float]:
         curves[direction] = replace(
             curve, cells=curve.cells[:end], stress_n_per_mm=curve.stress_n_per_mm[:end]
         )
-    law = fit_law(curves[Direction.COURSE], curves[Direction.WALE], np.inf).law
+    law = fit_sweeps(curves[Direction.COURSE], curves[Direction.WALE], np.inf).law
     return law.modulus_course, law.modulus_wale
 
 

@@ -108,7 +108,7 @@ class StitchChart:
         return cls(np.array(rows[::-1], dtype=bool))
 
     @classmethod
-    def of_fabric(cls, fabric: Fabric | str, rows: int, columns: int) -> StitchChart:
+    def of_fabric(cls, fabric: Fabric | str, rows: int = 2, columns: int = 2) -> StitchChart:
         """A pure fabric of the given size.
 
         Rows 1, 3, 5 … and columns 1, 3, 5 … begin with a knit at the bottom left.

@@ -22,7 +22,7 @@ from app.http.problems import NotFoundError, Problem
 from app.http.waiting import abandoned
 from app.models.base import RequestModel
 from app.operations.curl import CurlView
-from app.operations.perform import Answer
+from app.operations.perform import Reply
 from app.operations.stretch import StretchView
 from app.viewer.camera import CameraSide
 from app.viewer.design_id import DesignId, private_name
@@ -229,7 +229,7 @@ async def _in(threads: ThreadPoolExecutor, function: Callable[..., T], *args: An
 def _found(body: ViewRequest, request: Request) -> Found:
     """What a test or a shape that was computed before shows."""
     wanted = body.stretch or body.curl
-    answer: Answer | None = request.app.state.recent.get(wanted.id) if wanted else None
+    answer: Reply | None = request.app.state.recent.get(wanted.id) if wanted else None
     view = answer.view if answer else None
     return view if isinstance(view, StretchView | CurlView) else None
 

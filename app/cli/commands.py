@@ -21,11 +21,12 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user_data_dir
-from app.models.charts import IS_REPEAT, fabric_repeat
+from app.models.charts import IS_REPEAT
 from app.models.uploads import UploadedFile
 from app.operations.context import Context
 from app.operations.perform import carried_out
 from app.operations.registry import Command, Operation
+from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 
@@ -130,7 +131,7 @@ class _Options:
             return {name: value for name, value in held if name in fields and value is not None}
         if chart.lower() in set(Fabric):
             if size is None and IS_REPEAT in self._fields["chart"].metadata:
-                return {"chart": fabric_repeat(Fabric.parse(chart)).text}
+                return {"chart": StitchChart.of_fabric(chart).repeat().text}
             of = resolve_chart(chart, size)
             return {"chart": {"fabric": chart.lower(), "columns": of.columns, "rows": of.rows}}
         piece = resolve_piece(chart, size)

@@ -39,7 +39,7 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
                 "size", "goes with the name of a fabric, not with a file.", "Leave --size out."
             )
         return read_chart(chart)
-    named = {str(fabric): StitchChart.of_fabric(fabric, 2, 2) for fabric in Fabric}
+    named = {str(fabric): StitchChart.of_fabric(fabric) for fabric in Fabric}
     if chart.lower() not in named:
         named |= {pattern.identifier: pattern.chart for pattern in patterns()}
     if chart.lower() not in named:

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from app.compute.compute import Compute
 from app.operations.context import Context
-from app.operations.perform import Answer, perform
+from app.operations.perform import Reply, perform
 from app.operations.registry import Operation
 from app.results.recent import RecentResults
 
@@ -40,7 +40,7 @@ class Answers:
         operation: Operation[Any, Any],
         request: BaseModel | bytes,
         **turn: Any,
-    ) -> Answer:
+    ) -> Reply:
         """The answer of an operation to a request, which may be JSON that a worker shall decode;
         ``turn`` goes to :meth:`Compute.run`.
 
@@ -49,10 +49,10 @@ class Answers:
         ServiceError, KnitcoreError, InvalidRequestError
         """
         key = "" if isinstance(request, bytes) else operation.key(request)
-        known: Answer | None = self._recent.get(key)
+        known: Reply | None = self._recent.get(key)
         if known is not None:
             return known
         args = operation.run, operation.request, request, self._data_dir
-        answer: Answer = await self.compute.run(abandoned, perform, *args, **turn)
+        answer: Reply = await self.compute.run(abandoned, perform, *args, **turn)
         self._recent.put(answer.key or key, answer, answer.size_bytes)
         return answer

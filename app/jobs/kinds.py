@@ -47,7 +47,7 @@ else:
     ]
 
 
-def content_key(kind: str, request: str) -> str:
+def job_key(kind: str, request: str) -> str:
     """A key of everything that determines a result: the request, the operation's code and data, and
     the versions of packages that bring yarns.
 

@@ -16,7 +16,7 @@ from app.designs.idempotency import Retry
 from app.http.bodies import SMALL_BYTES
 from app.http.problems import Problem, ServiceError, problem_of
 from app.jobs.document import JobState, JobStatus
-from app.jobs.kinds import KINDS, content_key, read_job
+from app.jobs.kinds import KINDS, job_key, read_job
 from app.jobs.store import JobStore
 from app.store.database import StoreError
 
@@ -85,7 +85,7 @@ class JobRunner:
         OverBudgetError
             If too many jobs of this owner wait.
         """
-        key = await asyncio.to_thread(content_key, kind, request)
+        key = await asyncio.to_thread(job_key, kind, request)
         known = await asyncio.to_thread(self.store.knows, key)
         state = JobState.DONE if known else JobState.WAITING
         if not known:
@@ -202,7 +202,7 @@ class JobRunner:
                 timeout_s=self.timeout_s,
                 on_share=on_share,
             )
-            key = await asyncio.to_thread(content_key, kind, request)
+            key = await asyncio.to_thread(job_key, kind, request)
             await self._keep(lambda: self.store.finish(job, kind, key, answer.body))
             log.info("job done", extra=extra)
         except asyncio.CancelledError:

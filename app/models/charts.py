@@ -102,10 +102,5 @@ def to_chart(chart: ChartInput) -> StitchChart:
 def to_repeat(chart: ChartInput) -> StitchChart:
     """The repeat of a request: the chart itself, or a pure fabric's own repeat."""
     if isinstance(chart, PureFabricChart):
-        return fabric_repeat(chart.fabric)
+        return StitchChart.of_fabric(chart.fabric).repeat()
     return StitchChart.parse(chart)
-
-
-def fabric_repeat(fabric: Fabric) -> StitchChart:
-    """The repeat of a pure fabric."""
-    return StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()

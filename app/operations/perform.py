@@ -22,7 +22,7 @@ LEVEL = 4
 """Level of gzip: twice as fast as the default, for a few per cent more bytes."""
 
 
-class View(Protocol):
+class ViewData(Protocol):
     """Data of a result for the 3D view."""
 
     @property
@@ -36,11 +36,11 @@ class Viewed(Generic[Result]):
     """A result that the 3D view shows, too; an operation may return it in place of the result."""
 
     result: Result
-    view: View
+    view: ViewData
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class Reply:
     """What came of a request.
 
     Attributes
@@ -51,7 +51,7 @@ class Answer:
     """
 
     body: bytes
-    view: View | None = None
+    view: ViewData | None = None
     key: str = ""
 
     @property
@@ -88,7 +88,7 @@ def perform(
     *,
     cancelled: Callable[[], bool],
     progress: Callable[[float, float], None],
-) -> Answer:
+) -> Reply:
     """Do an operation; megabytes are decoded and packed here and not on the event loop.
 
     Raises
@@ -101,4 +101,4 @@ def perform(
     found = carried_out(run, wanted, context)
     result, view = (found.result, found.view) if isinstance(found, Viewed) else (found, None)
     body = gzip.compress(result.model_dump_json().encode(), LEVEL)
-    return Answer(body, view, "" if wanted is request else key_of(run, wanted))
+    return Reply(body, view, "" if wanted is request else key_of(run, wanted))

@@ -24,7 +24,7 @@ from knitcore.materials.uncertainty import (
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.results import Sweep
 from knitcore.yarnlevel.sweep import sweep as swept
-from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_law
+from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
 from knitcore.yarnlibrary.yarns import ChartYarn
 
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
@@ -124,7 +124,7 @@ def _result(
         for d in Direction:
             both[d] = stretch(d, _FAR_STRAIN[d], _FAR_POINTS, 1.2 * MAX_STRESS_N_PER_MM)
             seconds += both[d].seconds
-        law = fit_law(both[Direction.COURSE], both[Direction.WALE])
+        law = fit_sweeps(both[Direction.COURSE], both[Direction.WALE])
         notes += [note for found in both.values() for note in _jumps_fitted(found, law)]
     except KnitcoreError as error:
         if context.cancelled():

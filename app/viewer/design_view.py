@@ -38,7 +38,7 @@ from knitcore.formats.layout import DesignRegion
 from knitcore.garment.shaped import outline_marks
 from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import flat_lattice
-from knitcore.geometry.placing import Placement, at_rest, carried, lying
+from knitcore.geometry.placing import PlacedStitches, at_rest, carried, lying
 from knitcore.geometry.rectangles import extensibility_rectangles, stitch_labels
 from knitcore.geometry.stitches import stitch_shapes
 from knitcore.materials import Material
@@ -209,7 +209,7 @@ def _rectangles(
     request: ViewRequest,
     chart: StitchChart,
     material: Material,
-    placement: Placement,
+    placement: PlacedStitches,
     drawn: NDArray[np.bool_] | None,
 ) -> NDArray[np.float64] | None:
     if not request.rectangles or placement.frames is not None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import Lattice
-from knitcore.geometry.placing import Placement
+from knitcore.geometry.placing import PlacedStitches
 from knitcore.geometry.stitches import StitchShapes
 
 Colours = NDArray[np.uint8]
@@ -114,7 +114,7 @@ class FabricScene:
     """
 
     shapes: StitchShapes
-    placement: Placement
+    placement: PlacedStitches
     colours: Colours
     drawn: NDArray[np.bool_] | None = None
     rectangles_mm: Array | None = None

@@ -124,7 +124,7 @@ def densities_of(purl: NDArray[np.bool_]) -> Densities:
 @cache
 def _pure() -> Array:
     """(4, densities) of the pure fabrics."""
-    charts = [StitchChart.of_fabric(fabric, 2, 2) for fabric in PHASES]
+    charts = [StitchChart.of_fabric(fabric) for fabric in PHASES]
     return np.array([_values(np.where(chart.purl, -1.0, 1.0)) for chart in charts])
 
 

@@ -88,7 +88,7 @@ class Row:
         return self.chart in _PURE
 
 
-_PURE = {StitchChart.of_fabric(fabric, 2, 2).canonical(): fabric for fabric in PHASES}
+_PURE = {StitchChart.of_fabric(fabric).canonical(): fabric for fabric in PHASES}
 
 
 def simulated_materials() -> dict[str, Material]:

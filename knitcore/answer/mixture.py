@@ -191,7 +191,7 @@ def present(shares: Array) -> NDArray[np.int64]:
 
 def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array | None:
     """(phases, 5) numbers of the yarn in each pure fabric; None where too little is known."""
-    charts = [StitchChart.of_fabric(PHASES[phase], 2, 2) for phase in phases]
+    charts = [StitchChart.of_fabric(PHASES[phase]) for phase in phases]
     try:
         used = [yarn_for(material, chart) for chart in charts]
     except InputError:

@@ -23,7 +23,7 @@ from knitcore.design.atlas import Atlas
 from knitcore.design.explain import OFF, Patch, unreached
 from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
-from knitcore.design.patches import patches_of, smooth, unevenness, wanted_labels
+from knitcore.design.patches import connected, smooth, unevenness, wanted_labels
 from knitcore.design.placing import placed
 from knitcore.design.progress import Progress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
@@ -189,7 +189,7 @@ class _Fill:
         chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
         labels = smooth(cost, smallest_patch)
         effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
-        patches = patches_of(np.where(self._fixed, len(chosen), labels))
+        patches = connected(np.where(self._fixed, len(chosen), labels))
         count = len(np.unique(patches[~self._fixed]))
         patches[self._fixed] = count  # labels are in order, so these were last
         first = np.unique(patches, return_index=True)[1][:count]

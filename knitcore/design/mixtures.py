@@ -37,7 +37,7 @@ _MAX_SIDE = 12
 
 
 @dataclass(frozen=True)
-class Mixture:
+class Stripes:
     """Stripes of two repeats.
 
     Attributes
@@ -81,7 +81,7 @@ class Mixer:
         most_rows: int = _MAX_SIDE,
         most_columns: int = _MAX_SIDE,
         look: Callable[[], None] = lambda: None,
-    ) -> Mixture | None:
+    ) -> Stripes | None:
         """The mixture nearest to a target (NaN is none); None if there is no room for one.
 
         Parameters
@@ -91,7 +91,7 @@ class Mixer:
         """
         wish = np.log([course_n_per_mm, wale_n_per_mm])
         tables = [table.within(most_rows, most_columns) for table in self._estimates]
-        best: Mixture | None = None
+        best: Stripes | None = None
         learnt = np.zeros(2)
         tried: set[StitchChart] = set()
         for _ in range(MAX_PREDICTED):
@@ -111,18 +111,18 @@ class Mixer:
             best = self._turned(best, wish, (most_rows, most_columns), look)
         return best
 
-    def _predicted(self, chart: StitchChart, wish: Array) -> Mixture:
+    def _predicted(self, chart: StitchChart, wish: Array) -> Stripes:
         found = predict_repeat(chart, self._material)
         moduli = found.modulus_course_n_per_mm, found.modulus_wale_n_per_mm
-        return Mixture(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - wish))))
+        return Stripes(chart, *moduli, float(np.nanmax(np.abs(np.log(moduli) - wish))))
 
     def _turned(
         self,
-        best: Mixture | None,
+        best: Stripes | None,
         wish: Array,
         most: tuple[int, int],
         look: Callable[[], None],
-    ) -> Mixture | None:
+    ) -> Stripes | None:
         """The best mixtures and repeats, improved by turning a stitch, row or column at a time."""
         rng = np.random.default_rng(0)
         near = np.argsort(np.nan_to_num(np.abs(self._atlas.log_moduli - wish)).max(axis=1))[:4]

@@ -85,7 +85,7 @@ def smooth(cost: Array, smallest: int) -> Labels:
     return _absorb(labels, cost, smallest)
 
 
-def patches_of(labels: Labels) -> Labels:
+def connected(labels: Labels) -> Labels:
     """Connected patches of one label, numbered from 0."""
     numbered = np.zeros(labels.shape, dtype=np.intp)
     count = 0
@@ -108,7 +108,7 @@ def _absorb(labels: Labels, cost: Array, smallest: int) -> Labels:
     rows = min(smallest, labels.shape[0])
     columns = min(smallest, labels.shape[1])
     while True:
-        patches = patches_of(labels)
+        patches = connected(labels)
         boxes = ndimage.find_objects(patches + 1)
         sizes = np.bincount(patches.ravel())
         small = [

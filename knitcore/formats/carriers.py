@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from knitcore.errors import InputError
-from knitcore.garment.piece import Piece, Stretch
+from knitcore.garment.piece import Piece, Run
 
 MAX_CARRIERS = 10
 """Carriers of a Shima Seiki SWG091N2 and of the virtual machine; one is kept for waste yarn."""
@@ -13,16 +13,16 @@ MAX_CARRIERS = 10
 
 @dataclass(frozen=True)
 class CarrierRow:
-    """A row's stretches, each with its carrier, from left to right.
+    """A row's runs, each with its carrier, from left to right.
 
     Attributes
     ----------
-    stretches : with their carriers.
+    runs : with their carriers.
     new : carriers that are brought in for this row.
     ended : carriers that knitted the row below and are taken out.
     """
 
-    stretches: tuple[tuple[Stretch, int], ...]
+    runs: tuple[tuple[Run, int], ...]
     new: frozenset[int]
     ended: tuple[int, ...]
 
@@ -43,7 +43,7 @@ class CarrierPlan:
 def plan_carriers(piece: Piece) -> CarrierPlan:
     """Carriers that stay with a block of a colour for as long as it continues.
 
-    A block takes over the carrier of the stretch below it that it shares most columns with.
+    A block takes over the carrier of the run below it that it shares most columns with.
 
     Raises
     ------
@@ -52,20 +52,20 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
     """
     yarns: dict[int, int] = {}
     free: dict[int, list[int]] = {}
-    active: dict[int, Stretch] = {}
+    active: dict[int, Run] = {}
     rows = []
     for row in range(piece.chart.rows):
-        stretches = piece.stretches(row)
-        taken = _inherited(active, stretches)
+        runs = piece.runs(row)
+        taken = _inherited(active, runs)
         ended = tuple(carrier for carrier in active if carrier not in taken.values())
         for carrier in ended:
             free.setdefault(yarns[carrier], []).append(carrier)
         new = set()
-        for index, stretch in enumerate(stretches):
+        for index, run in enumerate(runs):
             if index not in taken:
-                waiting = free.get(stretch.yarn)
+                waiting = free.get(run.yarn)
                 taken[index] = waiting.pop() if waiting else len(yarns) + 1
-                yarns[taken[index]] = stretch.yarn
+                yarns[taken[index]] = run.yarn
                 new.add(taken[index])
         if len(yarns) >= MAX_CARRIERS:
             raise InputError(
@@ -74,20 +74,20 @@ def plan_carriers(piece: Piece) -> CarrierPlan:
                 f"of its own; the machine has {MAX_CARRIERS}, one of them for waste.",
                 "Use fewer or larger blocks, or knit it by hand from the written rows.",
             )
-        active = {taken[index]: stretch for index, stretch in enumerate(stretches)}
-        placed = tuple((stretch, taken[index]) for index, stretch in enumerate(stretches))
+        active = {taken[index]: run for index, run in enumerate(runs)}
+        placed = tuple((run, taken[index]) for index, run in enumerate(runs))
         rows.append(CarrierRow(placed, frozenset(new), ended))
     return CarrierPlan(tuple(rows), yarns)
 
 
-def _inherited(active: dict[int, Stretch], stretches: tuple[Stretch, ...]) -> dict[int, int]:
-    """Carriers by the index of the stretch that continues with them."""
+def _inherited(active: dict[int, Run], runs: tuple[Run, ...]) -> dict[int, int]:
+    """Carriers by the index of the run that continues with them."""
     shared = sorted(
         (
-            (min(below.stop, stretch.stop) - max(below.start, stretch.start), index, carrier)
-            for index, stretch in enumerate(stretches)
+            (min(below.stop, run.stop) - max(below.start, run.start), index, carrier)
+            for index, run in enumerate(runs)
             for carrier, below in active.items()
-            if carrier_fits(below, stretch)
+            if carrier_fits(below, run)
         ),
         key=lambda found: (-found[0], found[1]),
     )
@@ -98,6 +98,6 @@ def _inherited(active: dict[int, Stretch], stretches: tuple[Stretch, ...]) -> di
     return taken
 
 
-def carrier_fits(below: Stretch, stretch: Stretch) -> bool:
-    """Whether a stretch of one row can continue with the yarn of one in the row below."""
-    return below.yarn == stretch.yarn and below.start < stretch.stop and stretch.start < below.stop
+def carrier_fits(below: Run, run: Run) -> bool:
+    """Whether a run of one row can continue with the yarn of one in the row below."""
+    return below.yarn == run.yarn and below.start < run.stop and run.start < below.stop

@@ -225,11 +225,11 @@ class _Part:
         if not is_coloured(self.piece):
             return
         for row in self.rows:
-            for stretch in self.piece.stretches(row):
-                first = max(stretch.start, self.columns.start)
-                last = min(stretch.stop, self.columns.stop)
+            for run in self.piece.runs(row):
+                first = max(run.start, self.columns.start)
+                last = min(run.stop, self.columns.stop)
                 if first < last:
-                    fill = tinted(self.piece.yarns[stretch.yarn].colour)
+                    fill = tinted(self.piece.yarns[run.yarn].colour)
                     width = self.cell * (last - first)
                     yield Box(self.x(first), self.y(row), width, self._row_height, fill=fill)
 

@@ -139,9 +139,9 @@ class _Body:
     def cast_on(self) -> Iterator[str]:
         """Tucks on every other needle and back on the rest, each on its first stitch's bed."""
         yield "; cast-on"
-        for stretch, carrier in reversed(self._plan.rows[0].stretches):
+        for run, carrier in reversed(self._plan.rows[0].runs):
             yield f"inhook {carrier}"
-            yield from self._there_and_back(range(stretch.start, stretch.stop), carrier, 0)
+            yield from self._there_and_back(range(run.start, run.stop), carrier, 0)
             yield f"releasehook {carrier}"
 
     def courses(self) -> Iterator[str]:
@@ -172,15 +172,13 @@ class _Body:
             yield from self._there_and_back(gains[end], strand, row)
             yield f"releasehook {strand}"
             yield f"outhook {strand}"
-        # A chain goes on as the course's first stretch, or it needs a strand of its own.
-        first, parked = (
-            self._plan.rows[r].stretches[-1 if leftwards else 0][1] for r in (row, row - 1)
-        )
+        # A chain goes on as the course's first run, or it needs a strand of its own.
+        first, parked = (self._plan.rows[r].runs[-1 if leftwards else 0][1] for r in (row, row - 1))
         chain = parked if parked == first and first not in carriers.new else None
         yield from self._lose(list(losses[begin]), chain, inwards=inwards)
         edge = gains[begin]
-        for stretch, carrier in carriers.stretches:
-            new = range(max(stretch.start, edge.start), min(stretch.stop, edge.stop))
+        for run, carrier in carriers.runs:
+            new = range(max(run.start, edge.start), min(run.stop, edge.stop))
             if new:
                 yield from self._gain(new, carrier, row, waiting)
 
@@ -255,9 +253,9 @@ class _Body:
     def _course(self, row: int, carriers: CarrierRow, waiting: set[int]) -> Iterator[str]:
         beds, leftwards = self._piece.chart.purl[row], _leftwards(row)
         sign = "-" if leftwards else "+"
-        order = carriers.stretches[::-1] if leftwards else carriers.stretches
-        for place, (stretch, carrier) in enumerate(order):
-            columns = range(stretch.start, stretch.stop)
+        order = carriers.runs[::-1] if leftwards else carriers.runs
+        for place, (run, carrier) in enumerate(order):
+            columns = range(run.start, run.stop)
             if carrier in waiting:
                 yield f"inhook {carrier}"
                 if not leftwards:  # the hook brings yarn in leftwards only
@@ -285,7 +283,7 @@ class _Body:
         """Courses of another yarn on the same needles, after which all loops are dropped."""
         beds, columns = self._piece.chart.purl[-1], range(*self._spans[-1])
         strand = self._plan.waste
-        for _, carrier in self._plan.rows[-1].stretches:
+        for _, carrier in self._plan.rows[-1].runs:
             yield f"outhook {carrier}"
         yield "; waste yarn"
         yield f"inhook {strand}"
@@ -306,8 +304,8 @@ class _Body:
         rightwards = _leftwards(len(self._spans) - 1)
         sign, back = ("+", "-") if rightwards else ("-", "+")
         columns = range(*self._spans[-1])[:: 1 if rightwards else -1]
-        stretches = self._plan.rows[-1].stretches
-        (_, carrier), *others = stretches if rightwards else stretches[::-1]
+        runs = self._plan.rows[-1].runs
+        (_, carrier), *others = runs if rightwards else runs[::-1]
         for _, other in others:
             yield f"outhook {other}"
         for column in columns:

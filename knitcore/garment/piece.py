@@ -27,7 +27,7 @@ MAIN_YARN: Final = PieceYarn("main yarn", "#efe9dd")
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Run:
     """Adjacent stitches of one yarn in a row: columns ``start`` … ``stop - 1``."""
 
     start: int
@@ -87,12 +87,12 @@ class Piece:
         """Whether it is a rectangle of the main yarn, with nothing beyond its chart."""
         return self.is_rectangle and self.yarns == (MAIN_YARN,)
 
-    def stretches(self, row: int) -> tuple[Stretch, ...]:
+    def runs(self, row: int) -> tuple[Run, ...]:
         """The yarns of a row from left to right."""
         first, last = self.shaped.spans[row]
         yarns = self.yarn_of[row, first:last]
         edges = [0, *(np.flatnonzero(np.diff(yarns)) + 1).tolist(), last - first]
-        return tuple(Stretch(first + a, first + b, int(yarns[a])) for a, b in pairwise(edges))
+        return tuple(Run(first + a, first + b, int(yarns[a])) for a, b in pairwise(edges))
 
     def cells(self, yarn: int) -> NDArray[np.bool_]:
         """The stitches of one yarn."""

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.chart import StitchChart
 from knitcore.fabric import Direction, Fabric
 from knitcore.garment.gauge import GaugeSet
 from knitcore.garment.regions import (
-    Misfit,
     Region,
+    RegionMisfit,
     RegionNumbers,
     YarnUse,
-    fabric_repeat,
     fill_regions,
     misfits,
     region_numbers,
@@ -61,7 +61,7 @@ class GarmentPlan:
     worn: tuple[Worn, ...]
     closing: str
     notes: tuple[str, ...]
-    misfits: tuple[Misfit, ...]
+    misfits: tuple[RegionMisfit, ...]
     numbers: tuple[RegionNumbers, ...]
     yarn: YarnUse
 
@@ -106,7 +106,8 @@ def make_plan(
     """
     used = tuple(part for part in parts if (part.cells & stitch).any())
     regions = tuple(
-        Region(p.name, p.cells, fabric_repeat(p.fabric), FABRIC_COLOURS[p.fabric]) for p in used
+        Region(p.name, p.cells, StitchChart.of_fabric(p.fabric).repeat(), FABRIC_COLOURS[p.fabric])
+        for p in used
     )
     sizes = [gauges[part.fabric] for part in used]
     shaped = fill_regions(stitch, regions)

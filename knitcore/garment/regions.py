@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import PHASES, Fabric
+from knitcore.fabric import PHASES
 from knitcore.garment.gauge import Gauge
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
@@ -42,7 +42,7 @@ class Region:
 
 
 @dataclass(frozen=True)
-class Misfit:
+class RegionMisfit:
     """Two regions of different gauge that share an edge.
 
     Attributes
@@ -102,7 +102,7 @@ def fill_regions(stitch: NDArray[np.bool_], regions: Sequence[Region]) -> Shaped
 
 def misfits(
     regions: Sequence[Region], gauges: Sequence[Gauge], stitch: NDArray[np.bool_]
-) -> tuple[Misfit, ...]:
+) -> tuple[RegionMisfit, ...]:
     """Borders between regions of different gauge.
 
     Regions side by side share row heights; regions above each other share stitch widths.
@@ -130,7 +130,7 @@ def misfits(
                 "unless one of them is knitted on other needles or with short rows."
             )
             count = int(np.count_nonzero((edges == [[a], [b]]).all(axis=0)))
-            found.append(Misfit(regions[a].name, regions[b].name, count, difference, text))
+            found.append(RegionMisfit(regions[a].name, regions[b].name, count, difference, text))
     return tuple(found)
 
 
@@ -232,8 +232,3 @@ def yarn_use(
             "Give g per km.",
         )
     return YarnUse(metres, metres * linear_density_tex / 1000)
-
-
-def fabric_repeat(fabric: Fabric) -> StitchChart:
-    """The repeat of a pure fabric."""
-    return StitchChart.of_fabric(fabric, rows=2, columns=2).repeat()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from knitcore.arrays import Array
-from knitcore.geometry.placing import Placement, mean_sizes_mm
+from knitcore.geometry.placing import PlacedStitches, mean_sizes_mm
 from knitcore.geometry.stitches import StitchShapes
 from knitcore.geometry.tubes import tube_faces, tube_vertices
 
@@ -54,7 +54,7 @@ def level_of(stitches: int) -> tuple[int, int]:
 
 
 def stitch_meshes(
-    shapes: StitchShapes, placement: Placement, points: int, sides: int
+    shapes: StitchShapes, placement: PlacedStitches, points: int, sides: int
 ) -> StitchMeshes:
     """Tubes of the yarn's thickness around every shape, at its mean size in a placement."""
     sizes = mean_sizes_mm(shapes, placement)
@@ -79,7 +79,7 @@ def resampled(lines: Array, points: int) -> Array:
     return between
 
 
-def quaternions(placement: Placement) -> Floats:
+def quaternions(placement: PlacedStitches) -> Floats:
     """Rotation of every stitch as a quaternion w, x, y, z, (rows * columns, 4)."""
     if placement.frames is not None:
         turns = Rotation.from_matrix(placement.frames.reshape(-1, 3, 3))

@@ -15,7 +15,7 @@ DEPTH = (0.55, 1.4)
 
 
 @dataclass(frozen=True, eq=False)
-class Placement:
+class PlacedStitches:
     """Stitches of a chart in space.
 
     Attributes
@@ -36,9 +36,9 @@ class Placement:
     heights_mm: Array | None = None
     frames: Array | None = None
 
-    def part(self, of: tuple[slice, slice]) -> Placement:
+    def part(self, of: tuple[slice, slice]) -> PlacedStitches:
         """Some rows and columns."""
-        return Placement(
+        return PlacedStitches(
             self.centres_mm[of],
             self.sizes_mm[of],
             self.angles[of],
@@ -48,13 +48,13 @@ class Placement:
         )
 
 
-def at_rest(shapes: StitchShapes) -> Placement:
+def at_rest(shapes: StitchShapes) -> PlacedStitches:
     """The fabric as it lies."""
     lattice = shapes.lattice
-    return Placement(*_turned(lattice.centres_mm, lattice.sizes_mm), 1.0)
+    return PlacedStitches(*_turned(lattice.centres_mm, lattice.sizes_mm), 1.0)
 
 
-def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placement:
+def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> PlacedStitches:
     """The fabric moved with a stretched sheet.
 
     Loops turn with their course and grow or shrink with the distances to their neighbours. The
@@ -67,7 +67,7 @@ def carried(shapes: StitchShapes, centres_mm: Array, sheet: Lattice) -> Placemen
     sheet : where the stitches lay before.
     """
     placed = _turned(centres_mm, stretched_sizes_mm(centres_mm, sheet))
-    return Placement(*placed, _depth(shapes, placed[1]))
+    return PlacedStitches(*placed, _depth(shapes, placed[1]))
 
 
 def _turned(centres_mm: Array, sizes_mm: Array) -> tuple[Array, Array, Array]:
@@ -77,7 +77,7 @@ def _turned(centres_mm: Array, sizes_mm: Array) -> tuple[Array, Array, Array]:
     return centres_mm, sizes_mm * np.concatenate([1 / cosine, cosine], axis=-1), angles
 
 
-def lying(corners_mm: Array) -> Placement:
+def lying(corners_mm: Array) -> PlacedStitches:
     """The fabric on a curled sheet, every stitch as a whole.
 
     Parameters
@@ -93,12 +93,12 @@ def lying(corners_mm: Array) -> Placement:
     face = np.cross(course, up)
     face /= np.maximum(np.linalg.norm(face, axis=-1)[..., None], 1e-12)
     frames = np.stack([course, np.cross(face, course), face], axis=-1)
-    return Placement(
+    return PlacedStitches(
         centres[..., :2], sizes, np.zeros(sizes.shape[:2]), 1.0, centres[..., 2], frames
     )
 
 
-def mean_sizes_mm(shapes: StitchShapes, placement: Placement) -> Array:
+def mean_sizes_mm(shapes: StitchShapes, placement: PlacedStitches) -> Array:
     """Mean size of the stitches of each shape, (shapes, 2); 1 mm for shapes that do not occur."""
     index, count = shapes.index.ravel(), len(shapes.lines)
     number = np.bincount(index, minlength=count)
@@ -109,7 +109,7 @@ def mean_sizes_mm(shapes: StitchShapes, placement: Placement) -> Array:
     return np.where(number > 0, np.array(sums) / np.maximum(number, 1), 1.0).T
 
 
-def placed_lines(shapes: StitchShapes, placement: Placement) -> Array:
+def placed_lines(shapes: StitchShapes, placement: PlacedStitches) -> Array:
     """Centre lines of all stitches, (rows, columns, points, 3), mm."""
     lines = shapes.lines[shapes.index]
     flat = lines[..., :2] * placement.sizes_mm[:, :, None]
@@ -128,7 +128,7 @@ def _depth(shapes: StitchShapes, sizes_mm: Array) -> float:
     """The change of thickness that conserves the yarn's length, within bounds."""
     number = np.bincount(shapes.index.ravel(), minlength=len(shapes.lines))
     rest = mean_sizes_mm(shapes, at_rest(shapes))
-    now = mean_sizes_mm(shapes, Placement(sizes_mm, sizes_mm, sizes_mm[..., 0], 1.0))
+    now = mean_sizes_mm(shapes, PlacedStitches(sizes_mm, sizes_mm, sizes_mm[..., 0], 1.0))
 
     def length(sizes: Array, depth: float) -> float:
         steps = np.diff(shapes.lines, axis=1)

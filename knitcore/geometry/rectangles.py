@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
-from knitcore.geometry.placing import Placement
+from knitcore.geometry.placing import PlacedStitches
 from knitcore.materials import Material
 from knitcore.mechanics.local import stitch_table
 from knitcore.phases import surroundings
@@ -39,7 +39,7 @@ def stitch_labels(rows: int, columns: int, block: int = 1) -> Labels:
 
 
 def extensibility_rectangles(
-    chart: StitchChart, material: Material, placement: Placement, labels: Labels
+    chart: StitchChart, material: Material, placement: PlacedStitches, labels: Labels
 ) -> Array:
     """Corners of one rectangle for each group of stitches, (groups, 4, 2), mm.
 

@@ -24,6 +24,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore.arrays import Array
+
 EXTENSION_START = 0.98
 """s above which the full form is continued by its osculating quadratic."""
 
@@ -60,9 +62,6 @@ def stiffening(
     """``w``, ``w'`` and ``w''`` at s (dimensionless arrays of the shape of s)."""
     x = np.asarray(s, dtype=float)
     return published(x) if form is StiffeningForm.PUBLISHED else full(x)
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,12 +14,15 @@ from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, Constituti
 from knitcore.materials.consistency import check_stated_constants
 from knitcore.materials.material import FabricRecord, Material, Origin, Yarn
 from knitcore.materials.measured import MAX_POINTS, MeasuredCurve
-from knitcore.materials.uncertainty import CurveUncertainty, LawUncertainty, log_deviation
+from knitcore.materials.uncertainty import (
+    DEFAULT_POISSON_SD,
+    CurveUncertainty,
+    LawUncertainty,
+    log_deviation,
+)
 
 _DEFAULT_RELATIVE_SD = 0.10
 """Assumed where a file gives no standard deviation: the paper's median."""
-
-_DEFAULT_POISSON_SD = 0.02
 
 Length = Annotated[float, Field(gt=0, le=500, description="mm")]
 Modulus = Annotated[float, Field(gt=0, le=1000, description="N/mm")]
@@ -194,7 +197,7 @@ class FabricDocument(_Model):
             )
 
         def absolute(deviation: float | None) -> float:
-            return _DEFAULT_POISSON_SD if deviation is None else deviation
+            return DEFAULT_POISSON_SD if deviation is None else deviation
 
         curves = {
             name: None if curve is None else curve.to_uncertainty()

@@ -17,7 +17,7 @@ from knitcore.materials.consistency import LAW_QUANTITIES, consistent_law
 from knitcore.materials.figures import Figure, paper_figures, read_packaged
 from knitcore.materials.material import MM_PER_INCH, FabricRecord, Laws, Material, Origin, Yarn
 from knitcore.materials.refitted import refitted
-from knitcore.materials.uncertainty import LawUncertainty, log_deviation
+from knitcore.materials.uncertainty import DEFAULT_POISSON_SD, LawUncertainty, log_deviation
 
 SIMULATION = "simulation"
 NEEDLE_2_MM = "needle-2.0mm"
@@ -27,9 +27,6 @@ INCONSISTENT = {("acrylic", Fabric.GARTER): frozenset({Direction.COURSE})}
 """Rows of the paper's tables that its own data contradict. Acrylic garter course-wise: the raw file
 has the clamp measured twice in place of the width, so stress, C_xxxx, beta_xx and Y_x are 1.6 to
 1.8 times too high, and its loop length (10.55 mm) contradicts its stitch area (7.98 mm²)."""
-
-_DEFAULT_POISSON_SD = 0.02
-"""Largest ± printed for acrylic and cotton."""
 
 
 @cache
@@ -245,8 +242,8 @@ def _uncertainty(printed: Mapping[str, Figure], law: ConstitutiveLaw) -> LawUnce
     return LawUncertainty(
         log_modulus_course=course,
         log_modulus_wale=wale,
-        poisson_yx=printed["nu_yx"].standard_deviation or _DEFAULT_POISSON_SD,
-        poisson_xy=printed["nu_xy"].standard_deviation or _DEFAULT_POISSON_SD,
+        poisson_yx=printed["nu_yx"].standard_deviation or DEFAULT_POISSON_SD,
+        poisson_xy=printed["nu_xy"].standard_deviation or DEFAULT_POISSON_SD,
         source=f"± of table {moduli[0].table}, and rounding"
         if stated
         else "none printed: the median relative ± of acrylic and cotton, and rounding",

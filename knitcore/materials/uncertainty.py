@@ -23,6 +23,9 @@ COVERAGE = 0.90
 Z_SCORE = NormalDist().inv_cdf(0.5 + COVERAGE / 2)
 """Half width of such an interval in standard deviations."""
 
+DEFAULT_POISSON_SD = 0.02
+"""Of a measured Poisson ratio without one: the largest ± printed for acrylic and cotton."""
+
 MODEL_POISSON_SD = 0.05
 """Standard deviation of a Poisson ratio from a model."""
 

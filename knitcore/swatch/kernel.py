@@ -22,10 +22,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.gridsolver.numbering import corners_of
 from knitcore.law import stiffening
-
-Array = NDArray[np.float64]
 
 WRINKLED_SHARE = 0.05
 """Share of the compressive energy that a wrinkled sheet keeps, so that its tangent has a bound."""

@@ -19,13 +19,11 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.uncertainty import QUIET_STRESS_N_PER_MM, CurveUncertainty, LawUncertainty
 from knitcore.swatch.measured_strip import LEVELS, WAIST_NOISE, MeasuredStrip, force_noise
-
-Array = NDArray[np.float64]
 
 LOG_WIDTH_READING = 0.03
 """Standard deviation of the logarithm of a clamped width read from a picture."""

@@ -34,7 +34,7 @@ COMMON: dict[str, str] = {
 
 
 @dataclass(frozen=True)
-class Placement:
+class Symmetry:
     """How a chart follows from a repeat that is the same up to symmetry.
 
     ``chart = shift(swap(mirror(repeat)))``: mirrored left to right, K and P swapped (the back of
@@ -47,17 +47,17 @@ class Placement:
     swap: bool
 
 
-def placements(grid: Grid) -> Iterator[tuple[Placement, Grid]]:
+def placements(grid: Grid) -> Iterator[tuple[Symmetry, Grid]]:
     """All charts of the same size that are the same fabric, with their placements."""
     rows, columns = grid.shape
     for mirror, swap in product((False, True), repeat=2):
         turned = grid[:, ::-1] if mirror else grid
         turned = ~turned if swap else turned
         for up, right in product(range(rows), range(columns)):
-            yield Placement(up, right, mirror, swap), np.roll(turned, (up, right), axis=(0, 1))
+            yield Symmetry(up, right, mirror, swap), np.roll(turned, (up, right), axis=(0, 1))
 
 
-def placement(chart: StitchChart, representative: StitchChart) -> Placement | None:
+def placement(chart: StitchChart, representative: StitchChart) -> Symmetry | None:
     """How a repeat follows from its representative; None if it does not."""
     wanted = chart.repeat().purl
     if wanted.shape != representative.purl.shape:

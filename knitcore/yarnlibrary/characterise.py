@@ -23,7 +23,7 @@ from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.tiling import tiled_controls
 from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.fingerprint import content_key
-from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, fit_law
+from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, fit_sweeps
 
 Document = dict[str, Any]
 
@@ -87,7 +87,7 @@ def characterise_repeat(task: RepeatTask) -> Document:
     try:
         for direction in Direction:
             stretches[direction] = _stretch(rest, direction, task.max_stress_n_per_mm)
-        found = fit_law(
+        found = fit_sweeps(
             stretches[Direction.COURSE], stretches[Direction.WALE], task.max_stress_n_per_mm
         )
         fields = asdict(found)

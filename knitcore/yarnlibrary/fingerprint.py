@@ -63,7 +63,7 @@ def content_key(content: Mapping[str, Any], modules: tuple[str, ...] = SOLVERS) 
 
 
 @dataclass(frozen=True)
-class Source:
+class ModuleCode:
     """What decides in a module: its imports, the file names in it, a digest of its code."""
 
     imports: frozenset[str]
@@ -71,11 +71,11 @@ class Source:
     digest: str
 
 
-def reached(modules: tuple[str, ...]) -> dict[str, Source]:
+def reached(modules: tuple[str, ...]) -> dict[str, ModuleCode]:
     """Modules and all that they import from these packages, by name."""
     packages = {name.partition(".")[0] for name in modules}
     packages.add("knitcore")
-    found: dict[str, Source] = {}
+    found: dict[str, ModuleCode] = {}
     waiting = list(modules)
     while waiting:
         name = waiting.pop()
@@ -88,10 +88,10 @@ def reached(modules: tuple[str, ...]) -> dict[str, Source]:
 
 
 @cache
-def _read(text: str) -> Source:
+def _read(text: str) -> ModuleCode:
     tree = ast.parse(text)
     constants = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
-    return Source(
+    return ModuleCode(
         imports=frozenset(_imports(tree)),
         files=frozenset(c for c in constants if isinstance(c, str) and _FILE_NAME.fullmatch(c)),
         digest=hashlib.sha256(ast.dump(_without_docstrings(tree)).encode()).hexdigest(),
@@ -113,7 +113,7 @@ def _imports(tree: ast.Module) -> Iterator[str]:
             yield from (name.name for name in node.names)
 
 
-def _named_data(module: str, source: Source) -> Iterator[Path]:
+def _named_data(module: str, source: ModuleCode) -> Iterator[Path]:
     """Files in the data folders around a module that it names."""
     parts = module.split(".")
     folders = [ROOT.joinpath(*parts[:k], "data") for k in range(1, len(parts))]

@@ -45,7 +45,7 @@ class SimulatedLaw:
     rms_wale_n_per_mm: float
 
 
-def fit_law(
+def fit_sweeps(
     course: Sweep,
     wale: Sweep,
     max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM,

@@ -73,7 +73,7 @@ class YarnPlan:
         for setting in self.settings:
             for fabric, yarn in self.yarns.items():
                 task = RepeatTask(
-                    StitchChart.of_fabric(fabric, 2, 2).repeat().key,
+                    StitchChart.of_fabric(fabric).repeat().key,
                     yarn, setting.loop_length_mm[fabric], self.branch, self.convention,
                     self.max_stress_n_per_mm,
                 )  # fmt: skip
@@ -103,7 +103,7 @@ def plan_for_material(
     InputError
         If the material cannot give its yarn (see :func:`yarn_for`), or a number cannot be used.
     """
-    used = {f: yarn_for(material, StitchChart.of_fabric(f, 2, 2)) for f in _distinct(fabrics)}
+    used = {f: yarn_for(material, StitchChart.of_fabric(f)) for f in _distinct(fabrics)}
     own = {fabric: entry.loop_length_mm for fabric, entry in used.items()}
     if loop_lengths_mm:
         settings = _given_settings(loop_lengths_mm, tuple(used))

@@ -21,7 +21,7 @@ from app.compute.processes import processes
 from app.http.problems import NotFoundError
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
-from app.jobs.kinds import KINDS, content_key
+from app.jobs.kinds import KINDS, job_key
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
 from app.main import create_app
@@ -185,9 +185,9 @@ def test_a_result_of_other_code_is_computed_again(
 def test_a_result_of_other_yarns_is_computed_again(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    before = content_key("work", "{}")
+    before = job_key("work", "{}")
     install(monkeypatch, tmp_path, "yarns", "1.0", {Group.MATERIALS: {"yarns": "yarns:all"}})
-    assert content_key("work", "{}") != before
+    assert job_key("work", "{}") != before
 
 
 def test_progress_and_cancel(database: Database, compute: Compute) -> None:

@@ -17,7 +17,7 @@ from knitcore.yarnlevel.yarn import YarnModel
 
 def shown_chart(fabric: Fabric) -> StitchChart:
     """The repeat as its centre lines show it: the ansatz is seen from the back."""
-    return StitchChart.of_fabric(fabric, 2, 2).repeat().swap()
+    return StitchChart.of_fabric(fabric).repeat().swap()
 
 
 def pure_fabric(chart: StitchChart) -> Fabric:

@@ -7,7 +7,7 @@ from hypothesis import given
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
-from knitcore.design.patches import patches_of
+from knitcore.design.patches import connected
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
@@ -252,7 +252,7 @@ def test_it_reports_progress_and_can_be_cancelled() -> None:
 
 def test_patches_are_connected() -> None:
     labels = np.array([[0, 0, 1], [1, 0, 1], [1, 1, 0]])
-    assert len(np.unique(patches_of(labels))) == 4
+    assert len(np.unique(connected(labels))) == 4
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,6 @@ from knitcore.garment.piece import Piece
 from knitcore.garment.plan import GarmentPlan
 from knitcore.garment.regions import (
     Region,
-    fabric_repeat,
     fill_regions,
     misfits,
     region_numbers,
@@ -198,8 +197,8 @@ def test_different_gauges_are_reported_where_they_meet() -> None:
     left = np.zeros_like(stitch)
     left[:, :3] = True
     regions = [
-        Region("a", left, fabric_repeat(Fabric.RIB)),
-        Region("b", ~left, fabric_repeat(Fabric.GARTER)),
+        Region("a", left, StitchChart.of_fabric(Fabric.RIB).repeat()),
+        Region("b", ~left, StitchChart.of_fabric(Fabric.GARTER).repeat()),
     ]
     found = misfits(regions, [Gauge(3.0, 3.0), Gauge(2.0, 2.0)], stitch)
     assert [(m.first, m.second, m.stitches) for m in found] == [("a", "b", 4)]
@@ -210,7 +209,7 @@ def test_different_gauges_are_reported_where_they_meet() -> None:
 
 def test_contradictory_regions_are_named() -> None:
     stitch = np.ones((2, 2), dtype=bool)
-    both = Region("a", stitch, fabric_repeat(Fabric.RIB))
+    both = Region("a", stitch, StitchChart.of_fabric(Fabric.RIB).repeat())
     with pytest.raises(InputError, match="4 stitches belong to two regions, the first in row 1"):
         fill_regions(stitch, [both, replace(both, name="b")])
     with pytest.raises(InputError, match="no region"):
@@ -229,7 +228,9 @@ def test_yarn_of_a_pure_fabric_is_its_loop_length(fabric: Fabric) -> None:
 
 def test_numbers_of_a_pure_region_are_its_fabrics() -> None:
     shaped = ShapedChart.rectangle(StitchChart.of_fabric("garter", rows=6, columns=6))
-    region = Region("all", np.ones((6, 6), dtype=bool), fabric_repeat(Fabric.GARTER))
+    region = Region(
+        "all", np.ones((6, 6), dtype=bool), StitchChart.of_fabric(Fabric.GARTER).repeat()
+    )
     (numbers,) = region_numbers(shaped, [region], WOOL)
     assert numbers.modulus_wale_n_per_mm == pytest.approx(WOOL.law(Fabric.GARTER).modulus_wale)
 

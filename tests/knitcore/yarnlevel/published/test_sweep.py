@@ -9,7 +9,7 @@ from knitcore.yarnlevel.published.stitch import Stitch
 from knitcore.yarnlevel.published.stretch import PublishedStretch
 from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.sweep import follow, sweep
-from knitcore.yarnlibrary.lawfit import fit_law
+from knitcore.yarnlibrary.lawfit import fit_sweeps
 
 
 def stretch(yarn_id, fabric, direction, max_strain, points, **options):
@@ -40,7 +40,7 @@ def test_stress_is_the_slope_of_the_energy(cotton_stockinette):
 @pytest.mark.slow
 def test_published_moduli_of_cotton_stockinette(cotton_stockinette):
     # Supplementary Table 12, simulation
-    law = fit_law(*cotton_stockinette).law
+    law = fit_sweeps(*cotton_stockinette).law
     assert law.modulus_course == pytest.approx(0.298, rel=0.15)
     assert law.modulus_wale == pytest.approx(0.536, rel=0.15)
     assert law.poisson_yx == pytest.approx(0.441, abs=0.05)
