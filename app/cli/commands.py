@@ -47,13 +47,24 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         run: Callable[..., Any] = described.run or operation.run
         run = partial(run, **_taken(described.run, given))
         result = carried_out(run, request, context)
-        emit(result, described.text(result), as_json=given["as_json"])
+        emit(result, "\n".join(described.lines(result)), as_json=given["as_json"])
+        for remark in () if given["as_json"] else _remarks(result):
+            click.echo(remark, err=True)  # the result may be piped on
 
     help_text = described.help or f"{operation.summary}."
     made = json_option(click.command(name, help=help_text)(callback))
     own = [*_declared(described.fields), *_declared(described.run)]
     made.params = [*options.parameters, *own, *made.params]
     return made
+
+
+def _remarks(result: BaseModel) -> list[str]:
+    """What a result says besides its figures."""
+    return [
+        f"{head}{remark}"
+        for field, head in (("notes", "note: "), ("messages", ""), ("warnings", "warning: "))
+        for remark in getattr(result, field, ())
+    ]
 
 
 def _declared(function: Callable[..., Any] | None) -> list[click.Parameter]:

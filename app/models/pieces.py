@@ -199,10 +199,9 @@ def interval(force: Any, log_sd: Any) -> tuple[Any, Any]:
     return force / factor, force * factor
 
 
-def table(columns: dict[str, list[float]], messages: list[str]) -> str:
+def table(columns: dict[str, list[float]]) -> list[str]:
     """Lines of a table with a heading."""
-    lines = [" ".join(f"{name:>12}" for name in columns)]
-    lines += [
-        " ".join(f"{value:12.4f}" for value in row) for row in zip(*columns.values(), strict=True)
+    return [
+        " ".join(f"{name:>12}" for name in columns),
+        *(" ".join(f"{v:12.4f}" for v in row) for row in zip(*columns.values(), strict=True)),
     ]
-    return "\n".join([*lines, *messages])

@@ -134,14 +134,14 @@ def _teller(what: str) -> Callable[[int, int], None]:
     return progress
 
 
-def _text(r: AtlasResult) -> str:
+def _lines(r: AtlasResult) -> list[str]:
     course, wale = r.modulus_course_n_per_mm, r.modulus_wale_n_per_mm
     sources = ", ".join(f"{n} {source}" for source, n in Counter(r.provenance).most_common())
-    return (
+    return [
         f"{len(r.repeats)} repeats of {r.material}; "
         f"course {min(course):.4f} to {max(course):.4f} N/mm, "
         f"wale {min(wale):.4f} to {max(wale):.4f} N/mm; laws: {sources}"
-    )
+    ]
 
 
 OPERATION = Operation(
@@ -152,7 +152,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Predict all repeats of a material; stopped at any point, it goes on where it was.",
         names={"repeats": None},
         run=_command,

@@ -189,7 +189,7 @@ def _compared(mirrored: FabricBending | None, free: FabricBending | None) -> lis
     ]
 
 
-def _text(r: BendResult) -> str:
+def _lines(r: BendResult) -> list[str]:
     shear = (
         "unknown" if r.shear_modulus_n_per_mm is None else f"{r.shear_modulus_n_per_mm:.4f} N/mm"
     )
@@ -205,16 +205,13 @@ def _text(r: BendResult) -> str:
             f"bending length [mm]       {r.bending_length_course_mm:10.1f} "
             f"{r.bending_length_wale_mm:14.1f}"
         )
-    return "\n".join(
-        [
-            *lines,
-            f"shear modulus   {shear}",
-            f"thickness       {r.thickness_mm:.2f} mm",
-            f"free edges      {r.curl}",
-            f"source          {r.provenance}",
-            *(f"note: {note}" for note in r.notes),
-        ]
-    )
+    return [
+        *lines,
+        f"shear modulus   {shear}",
+        f"thickness       {r.thickness_mm:.2f} mm",
+        f"free edges      {r.curl}",
+        f"source          {r.provenance}",
+    ]
 
 
 OPERATION = Operation(
@@ -225,6 +222,6 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text, help="Bending rigidity, curl and shear of the repeat CHART, without friction."
+        _lines, help="Bending rigidity, curl and shear of the repeat CHART, without friction."
     ),
 )

@@ -66,7 +66,7 @@ def bending(request: BendingRequest, context: Context) -> BendingResult:
     return BendingResult.of(found)
 
 
-def _text(r: BendingResult) -> str:
+def _lines(r: BendingResult) -> list[str]:
     lines = [f"{'photo':24} {'B mN·mm²':>9} {'length mm':>10} {'px/mm':>7} {'rms mm':>7}"]
     lines += [
         f"{p.name:24} {1000 * p.bending_modulus_n_mm2:9.2f} {p.length_mm:10.1f} {p.px_per_mm:7.2f}"
@@ -76,7 +76,7 @@ def _text(r: BendingResult) -> str:
     spread = "" if r.standard_deviation is None else f" ± {1000 * r.standard_deviation:.3g}"
     error = "" if r.standard_error is None else f" (mean ± {1000 * r.standard_error:.2g})"
     lines.append(f"bending modulus {1000 * r.bending_modulus_n_mm2:.4g}{spread} mN·mm²{error}")
-    return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
+    return lines
 
 
 OPERATION = Operation(
@@ -92,7 +92,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         group="measure",
         help="Bending modulus from IMAGES of yarn hanging from a horizontal clamp.",
     ),

@@ -67,7 +67,7 @@ def bias(request: BiasRequest, context: Context) -> BiasResult:
     return BiasResult.of(test, force_interval_n=ends, **of_test(test.test))
 
 
-def _text(r: BiasResult) -> str:
+def _lines(r: BiasResult) -> list[str]:
     columns = {
         "strain": r.strain,
         "force N": r.force_n,
@@ -76,7 +76,7 @@ def _text(r: BiasResult) -> str:
         "sideways N": r.sideways_n,
         "waist": r.waist_strain,
     }
-    return table(columns, r.messages)
+    return table(columns)
 
 
 OPERATION = Operation(
@@ -87,7 +87,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Pull a strip of CHART cut at an angle to its rows, on the bias by default.",
         names={"shear_modulus_n_per_mm": "--shear-modulus"},
     ),

@@ -67,7 +67,7 @@ def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
     )
 
 
-def _text(r: BiaxialResult) -> str:
+def _lines(r: BiaxialResult) -> list[str]:
     columns = {
         "strain x": r.strain_x,
         "strain y": r.strain_y,
@@ -78,7 +78,7 @@ def _text(r: BiaxialResult) -> str:
         "low  N": r.force_y_interval_n[0],
         "high  N": r.force_y_interval_n[1],
     }
-    return table(columns, r.messages)
+    return table(columns)
 
 
 OPERATION = Operation(
@@ -89,7 +89,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Pull all four edges of a rectangle of CHART outwards.",
         names={"shear_modulus_n_per_mm": "--shear-modulus"},
     ),

@@ -124,7 +124,7 @@ def _command(
     return _result(request, found)
 
 
-def _text(r: CalibrateResult) -> str:
+def _lines(r: CalibrateResult) -> list[str]:
     lines = [
         f"{name:20} {value:8.4f} ± {r.standard_errors[name]:.4f}"
         for name, value in r.parameters.items()
@@ -133,7 +133,7 @@ def _text(r: CalibrateResult) -> str:
     if r.force_ratio:
         low, high = min(r.force_ratio), max(r.force_ratio)
         lines.append(f"simulated / measured force: {low:.2f} to {high:.2f}")
-    return "\n".join(lines)
+    return lines
 
 
 OPERATION = Operation(
@@ -149,7 +149,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Fit shear modulus and couplings to the measured displacement FIELD (.npz).",
         names={"frames": "--frame"},
         run=_command,

@@ -323,11 +323,11 @@ def _write_curves(results: list[CharacteriseResult], file: Path) -> None:
                     writer.writerows([*head, *point] for point in points)
 
 
-def _text(results: YarnsResult) -> str:
-    return "\n\n".join(map(_of_yarn, results.root))
+def _lines(results: YarnsResult) -> list[str]:
+    return [line for result in results.root for line in ("", *_of_yarn(result))][1:]
 
 
-def _of_yarn(result: CharacteriseResult) -> str:
+def _of_yarn(result: CharacteriseResult) -> list[str]:
     lines = [
         f"{result.identifier}: {result.provenance}",
         f"{result.branch} branch, {result.convention} convention; "
@@ -336,7 +336,7 @@ def _of_yarn(result: CharacteriseResult) -> str:
         "   v yx  v xy  strains fitted",
     ]
     lines += [_line(row) for row in result.rows]
-    return "\n".join(lines)
+    return lines
 
 
 def _line(row: CharacterisedFabric) -> str:
@@ -365,7 +365,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Characterise yarns at the yarn level: laws, sizes and energies of their pure "
         "fabrics.\n\nEvery fabric is relaxed at every loop length and stretched both ways. A "
         "stopped command continues where it left off. FOLDER holds table.csv, curves.csv, and "

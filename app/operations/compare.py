@@ -78,10 +78,8 @@ def _law_and_model(request: CompareRequest, context: Context) -> tuple[Constitut
     return context.material(request.material).law(request.fabric), model
 
 
-def _text(r: CompareResult) -> str:
-    return "\n".join(
-        [f"{r.model} model, {r.edges} edges", *errors_table(r.frames), *r.messages],
-    )
+def _lines(r: CompareResult) -> list[str]:
+    return [f"{r.model} model, {r.edges} edges", *errors_table(r.frames)]
 
 
 OPERATION = Operation(
@@ -97,7 +95,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Compare a law with the measured displacement FIELD (.npz).",
         names={"frames": "--frame"},
     ),

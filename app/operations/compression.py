@@ -113,7 +113,7 @@ def _command(
     )
 
 
-def _text(r: CompressionResult) -> str:
+def _lines(r: CompressionResult) -> list[str]:
     lines = [f"{'sample':16} {'k mN/mm³':>9} {'p':>7}"]
     lines += [f"{s.name:16} {1000 * s.k_n_per_mm3:9.4g} {s.p:7.3f}" for s in r.samples]
     for m in r.mean.values():
@@ -121,7 +121,7 @@ def _text(r: CompressionResult) -> str:
         k = "" if k_spread is None else f" ± {1000 * k_spread:.2g}"
         p = "" if p_spread is None else f" ± {p_spread:.2g}"
         lines.append(f"{m.yarn}: k {1000 * m.k_n_per_mm3:.4g}{k} mN/mm³, p {m.p:.3f}{p}")
-    return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
+    return lines
 
 
 OPERATION = Operation(
@@ -133,7 +133,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         group="measure",
         help="Constants k and p of the contact law from compression tests (XLS or CSV).",
         run=_command,

@@ -118,19 +118,16 @@ def _and_write(request: CurlRequest, context: Context, out: Path | None) -> Curl
     return _result(piece, request)
 
 
-def _text(r: CurlResult) -> str:
+def _lines(r: CurlResult) -> list[str]:
     state = "" if r.converged else "  NOT converged: a preview"
-    return "\n".join(
-        [
-            f"{r.columns} columns x {r.rows} rows, flat {r.flat_width_mm:.0f} x "
-            f"{r.flat_height_mm:.0f} mm",
-            f"as it lies      {r.width_mm:.0f} x {r.height_mm:.0f} x {r.depth_mm:.0f} mm{state}",
-            f"sides           {_where(r.curl_course_mm, r.thickness_mm)}",
-            f"top and bottom  {_where(r.curl_wale_mm, r.thickness_mm)}",
-            f"solved          {r.seconds:.1f} s CPU",
-            *(f"note: {note}" for note in r.notes),
-        ]
-    )
+    return [
+        f"{r.columns} columns x {r.rows} rows, flat {r.flat_width_mm:.0f} x "
+        f"{r.flat_height_mm:.0f} mm",
+        f"as it lies      {r.width_mm:.0f} x {r.height_mm:.0f} x {r.depth_mm:.0f} mm{state}",
+        f"sides           {_where(r.curl_course_mm, r.thickness_mm)}",
+        f"top and bottom  {_where(r.curl_wale_mm, r.thickness_mm)}",
+        f"solved          {r.seconds:.1f} s CPU",
+    ]
 
 
 def _where(curl_mm: float, thickness_mm: float) -> str:
@@ -147,7 +144,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help=f"How the whole piece CHART (up to {MAX_STITCHES} stitches) curls and folds.",
         names={"corners": None},
         run=_and_write,

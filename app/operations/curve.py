@@ -77,13 +77,13 @@ def _stresses(max_stress: float, points: int) -> dict[str, Any]:
     return {"stress_n_per_mm": np.linspace(0, max_stress, points).tolist()}
 
 
-def _text(r: CurveResult) -> str:
+def _lines(r: CurveResult) -> list[str]:
     lines = [f"{'N/mm':>8} {'strain':>8}   90 % interval"]
     columns = (r.stress_n_per_mm, r.strain, *r.strain_interval)
     lines += [
         f"{s:8.4f} {e:8.4f}   {a:.4f} to {b:.4f}" for s, e, a, b in zip(*columns, strict=True)
     ]
-    return "\n".join([*lines, f"source: {r.provenance}"])
+    return [*lines, f"source: {r.provenance}"]
 
 
 OPERATION = Operation(
@@ -99,7 +99,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Stress-strain curve of CHART, a repeat or a swatch of any size.",
         names={"stress_n_per_mm": None},
         fields=_stresses,

@@ -12,8 +12,13 @@ from app.cli.options import out_option
 from app.models.base import UNIT, Ends, RequestModel, ResultModel
 from app.models.laws import LawResult
 from app.operations.context import Context
-from app.operations.estimate_report import LeftOutResult, ModelReport, report, text_of_left_out
-from app.operations.estimate_report import text as report_text
+from app.operations.estimate_report import (
+    LeftOutResult,
+    ModelReport,
+    report,
+    report_lines,
+    text_of_left_out,
+)
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.estimate.estimate import (
@@ -231,9 +236,9 @@ def _swatch(
     return MeasuredSwatch(fabric, law, length, setting or known, curves)
 
 
-def _text(r: EstimateResult | ModelReport) -> str:
+def _lines(r: EstimateResult | ModelReport) -> list[str]:
     if isinstance(r, ModelReport):
-        return report_text(r)
+        return report_lines(r)
     lines = ["extension at 0.1 N/mm (90 % interval), then Young's modulus in N/mm"]
     for fabric, f in r.fabrics.items():
         kind = " (measured)" if f.measured else ""
@@ -247,7 +252,7 @@ def _text(r: EstimateResult | ModelReport) -> str:
             )
     if r.left_out is not None:
         lines += ["", text_of_left_out(r.left_out)]
-    return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
+    return lines
 
 
 OPERATION = Operation(
@@ -256,7 +261,7 @@ OPERATION = Operation(
     summary="The four fabrics of a yarn that is not in the library",
     example={"bending_modulus_n_mm2": 0.04, "loop_length_mm": 14.0},
     command=Command(
-        _text,
+        _lines,
         help="Estimate the four fabrics of a yarn that is not in the library.",
         run=_command,
         request=YarnFacts,

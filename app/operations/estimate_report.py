@@ -84,7 +84,7 @@ def text_of_left_out(r: LeftOutResult) -> str:
     )
 
 
-def text(r: ModelReport) -> str:
+def report_lines(r: ModelReport) -> list[str]:
     """The report for people."""
     lines = [f"{r.yarns} yarns; K in Y = K B / L³, alpha, beta (N/mm)"]
     lines += [
@@ -93,7 +93,7 @@ def text(r: ModelReport) -> str:
         for fabric in Fabric
         for d in Direction
     ]
-    return "\n".join([*lines, "", *(text_of_left_out(found) for found in r.left_out)])
+    return [*lines, "", *map(text_of_left_out, r.left_out)]
 
 
 OPERATION = Operation(

@@ -128,13 +128,13 @@ def _command(request: ExportRequest, context: Context, out: Path) -> ExportFacts
     return _facts(chart, file)
 
 
-def _text(facts: ExportFacts) -> str:
+def _lines(facts: ExportFacts) -> list[str]:
     lines = [f"{facts.columns} columns x {facts.rows} rows, {facts.bytes} bytes of {facts.kind}"]
     if facts.transfers is not None:
         lines.append(f"{facts.transfers} transfers")
     if facts.carriers is not None:
         lines.append(f"{facts.carriers} carriers")
-    return "\n".join([*lines, *facts.notes])
+    return lines
 
 
 OPERATION = Operation(
@@ -144,7 +144,7 @@ OPERATION = Operation(
     example={"chart": "KP\nPK", "to": "text"},
     heavy=True,
     command=Command(
-        _text,
+        _lines,
         help="Write CHART to a file: knitout is checked on a virtual machine before it is written.",
         names={
             "linear_density_tex": "--tex",

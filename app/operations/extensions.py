@@ -54,12 +54,12 @@ def extensions(request: NoRequest, context: Context) -> Extensions:
     return Extensions(extensions=found)
 
 
-def _text(found: Extensions) -> str:
+def _lines(found: Extensions) -> list[str]:
     lines = [
         f"{e.group:20} {e.name} ({e.package}): {e.problem or ', '.join(e.offers)}"
         for e in found.extensions
     ]
-    return "\n".join(lines) or "no extensions are installed"
+    return lines or ["no extensions are installed"]
 
 
 OPERATION = Operation(
@@ -67,5 +67,5 @@ OPERATION = Operation(
     method="GET",
     tag="materials",
     summary="What installed packages add",
-    command=Command(_text),
+    command=Command(_lines),
 )

@@ -209,12 +209,12 @@ def _command(
     return result
 
 
-def _text(r: FillResult) -> str:
+def _lines(r: FillResult) -> list[str]:
     head = (
         f"{r.columns} columns x {r.rows} rows in {len(r.patches)} patches; "
         f"{r.off_share:.1%} of the stitches with a target miss it by more than 10 %"
     )
-    return "\n".join([r.chart, head, *r.messages])
+    return [r.chart, head]
 
 
 OPERATION = Operation(
@@ -229,7 +229,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Make a chart for TARGET: a CSV of row, column and wanted moduli, such as "
         "`export --to csv` writes.",
         names=dict.fromkeys((*MAPS, "rows", "columns", "wishes", "chart")),

@@ -255,11 +255,11 @@ def _target(text: str) -> TargetInput:
     )
 
 
-def _text(r: FindResult) -> str:
+def _lines(r: FindResult) -> list[str]:
     lines = [r.message, "", *map(_line, r.candidates)]
     if r.elsewhere:
         lines += ["", "In other yarns:", *map(_line, r.elsewhere)]
-    return "\n".join(lines)
+    return lines
 
 
 def _line(c: CandidateResult) -> str:
@@ -292,7 +292,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Rank the repeats of atlases (or of materials, up to 3x3) by how near they come.",
         names=dict.fromkeys(("laws", "materials", "targets", "repeats", "elsewhere"))
         | {

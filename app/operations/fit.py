@@ -163,7 +163,7 @@ def _write_residuals(found: LawFit, path: Path) -> None:
             writer.writerows([str(direction), *map(float, row)] for row in columns)
 
 
-def _text(r: FitResult) -> str:
+def _lines(r: FitResult) -> list[str]:
     lines = []
     for name, error in r.standard_errors.model_dump(exclude_none=True).items():
         unit = " N/mm" if name.endswith("_n_per_mm") else ""
@@ -173,9 +173,8 @@ def _text(r: FitResult) -> str:
         f"residuals        {r.rms_n_per_mm:.4f} N/mm rms "
         f"(course {r.rms_course_n_per_mm:.4f}, wale {r.rms_wale_n_per_mm:.4f})",
         f"reduction        {r.reduction}; errors: {r.error_method}",
-        *(f"note: {note}" for note in r.notes),
     ]
-    return "\n".join(lines)
+    return lines
 
 
 OPERATION = Operation(
@@ -189,7 +188,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Fit a law to a course-wise and a wale-wise stretch test (HDF5 or CSV).",
         names={"residuals": None},
         run=_command,

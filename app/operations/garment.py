@@ -365,7 +365,7 @@ def _command(request: GarmentRequest, context: Context, out: Path | None) -> Gar
     return result
 
 
-def _text(r: GarmentResult) -> str:
+def _lines(r: GarmentResult) -> list[str]:
     lines = [
         f"{r.name}: {r.columns} columns x {r.rows} rows, {r.stitches} stitches, "
         f"{r.yarn_m:.0f} m of yarn ({r.yarn_interval_m[0]:.0f} to {r.yarn_interval_m[1]:.0f}); "
@@ -378,7 +378,7 @@ def _text(r: GarmentResult) -> str:
         for region in r.regions
     ]
     lines += [_pressure(place) for place in r.worn]
-    return "\n".join([*lines, *r.notes, *(f"warning: {w}" for w in r.warnings)])
+    return lines
 
 
 def _pressure(place: WornResult) -> str:
@@ -400,7 +400,7 @@ OPERATION = Operation(
         "material": "acrylic",
     },
     command=Command(
-        _text,
+        _lines,
         help="Plan a garment from a TEMPLATE and measurements.",
         names={"garment": None, "gauge": None, "linear_density_tex": "--tex"},
         fields=_asked,

@@ -84,7 +84,7 @@ OPERATION = Operation(
     example={"file": {"name": "rib.txt", "content": "S1BLUApLUEtQ"}},
     heavy=True,
     command=Command(
-        lambda r: r.chart,
+        lambda r: [r.chart],
         help="Read the chart in FILE: K/P text, written rows, PNG, knitout or a design.",
     ),
 )

@@ -39,10 +39,10 @@ def _command(request: NoRequest, context: Context, name: str | None) -> Material
     return material(MaterialRequest(identifier=name), context)
 
 
-def _text(found: Materials | MaterialDetail) -> str:
+def _lines(found: Materials | MaterialDetail) -> list[str]:
     if isinstance(found, Materials):
-        return "\n".join(f"{m.id:24} {m.name}: {m.description}" for m in found.materials)
-    lines = [f"{found.name} ({found.id}): {found.description}", *found.notes]
+        return [f"{m.id:24} {m.name}: {m.description}" for m in found.materials]
+    lines = [f"{found.name} ({found.id}): {found.description}"]
     if found.bending_modulus_n_mm2 is not None:
         deviation = found.bending_modulus_sd_n_mm2
         spread = "" if deviation is None else f" ± {1000 * deviation:.3g}"
@@ -63,7 +63,7 @@ def _text(found: Materials | MaterialDetail) -> str:
             for f in record.figures
             if f.reason
         ]
-    return "\n".join(lines)
+    return lines
 
 
 OPERATION = Operation(
@@ -72,6 +72,6 @@ OPERATION = Operation(
     tag="materials",
     summary="The library of materials",
     command=Command(
-        _text, help="List the library, or explain one MATERIAL (an id or a file).", run=_command
+        _lines, help="List the library, or explain one MATERIAL (an id or a file).", run=_command
     ),
 )

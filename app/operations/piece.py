@@ -158,7 +158,7 @@ def _command(request: PieceRequest, context: Context, out: Path | None) -> Piece
     return _result(request, test, material)
 
 
-def _text(r: PieceResult) -> str:
+def _lines(r: PieceResult) -> list[str]:
     lines = [f"{len(r.share)} steps, {r.nodes} nodes"]
     for e in r.edges if r.share else []:
         lines += [
@@ -168,7 +168,7 @@ def _text(r: PieceResult) -> str:
             f"  y {_last(e.force_y_n, e.force_y_interval_n)} N"
             f" {_last(e.moved_y_mm, e.moved_y_interval_mm)} mm",
         ]
-    return "\n".join([*lines, *r.messages])
+    return lines
 
 
 def _last(values: list[float], ends: tuple[list[float], list[float]]) -> str:
@@ -201,7 +201,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Load a piece of any outline, cut from cloth of CHART, at its edges.",
         names={"shear_modulus_n_per_mm": "--shear-modulus", "piece": None},
         fields=_piece_file,

@@ -103,31 +103,28 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
     )
 
 
-def _text(r: PredictResult) -> str:
+def _lines(r: PredictResult) -> list[str]:
     course, wale = r.segments.values()
     low_x, high_x = r.modulus_course_interval_n_per_mm
     low_y, high_y = r.modulus_wale_interval_n_per_mm
-    return "\n".join(
-        [
-            f"{r.columns} columns x {r.rows} rows",
-            f"segments        course {course.even} even, {course.odd} odd   "
-            f"wale {wale.even} even, {wale.odd} odd",
-            f"Young's modulus course {r.modulus_course_n_per_mm:.4f} N/mm "
-            f"(90 %: {low_x:.4f} to {high_x:.4f})",
-            f"                wale   {r.modulus_wale_n_per_mm:.4f} N/mm "
-            f"(90 %: {low_y:.4f} to {high_y:.4f})",
-            f"extensibility   course {r.extensibility_course_mm_per_n:.2f} mm/N   "
-            f"wale {r.extensibility_wale_mm_per_n:.2f} mm/N",
-            f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
-            f"stitch at rest  {_relaxed(r)}",
-            f"source          {r.provenance} ({r.method})",
-            *(
-                f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
-                for m in r.measures
-            ),
-            *(f"note: {note}" for note in r.notes),
-        ]
-    )
+    return [
+        f"{r.columns} columns x {r.rows} rows",
+        f"segments        course {course.even} even, {course.odd} odd   "
+        f"wale {wale.even} even, {wale.odd} odd",
+        f"Young's modulus course {r.modulus_course_n_per_mm:.4f} N/mm "
+        f"(90 %: {low_x:.4f} to {high_x:.4f})",
+        f"                wale   {r.modulus_wale_n_per_mm:.4f} N/mm "
+        f"(90 %: {low_y:.4f} to {high_y:.4f})",
+        f"extensibility   course {r.extensibility_course_mm_per_n:.2f} mm/N   "
+        f"wale {r.extensibility_wale_mm_per_n:.2f} mm/N",
+        f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
+        f"stitch at rest  {_relaxed(r)}",
+        f"source          {r.provenance} ({r.method})",
+        *(
+            f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
+            for m in r.measures
+        ),
+    ]
 
 
 def _measured(measure: MeasureResult) -> str:
@@ -149,7 +146,7 @@ OPERATION = Operation(
     summary="Moduli and extensibility of a chart",
     example={"chart": "KKPP", "material": "acrylic"},
     command=Command(
-        _text,
+        _lines,
         help="Moduli, Poisson's ratios and extensibility of CHART.",
         names={"measures": "--measure"},
     ),

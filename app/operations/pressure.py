@@ -171,7 +171,7 @@ def _command(request: PressureRequest, context: Context, law: Path | None) -> Pr
     return _of_file(load_law(law), request)
 
 
-def _text(r: PressureResult) -> str:
+def _lines(r: PressureResult) -> list[str]:
     (low, high), (low_kpa, high_kpa) = r.mmhg, r.kpa
     lines = [
         f"pressure  {low:.1f} to {high:.1f} mmHg "
@@ -184,7 +184,7 @@ def _text(r: PressureResult) -> str:
     if r.rest_mm_for_target is not None:
         low, high = r.rest_mm_for_target
         lines.append(f"size      {low:.1f} to {high:.1f} mm unworn; middle shown above")
-    return "\n".join([*lines, *(f"warning: {w}" for w in r.warnings)])
+    return lines
 
 
 def _locked(share: float | None) -> str:
@@ -203,7 +203,7 @@ OPERATION = Operation(
         "worn_mm": 180.0,
     },
     command=Command(
-        _text,
+        _lines,
         help="Pressure of a knitted tube on a limb, as an interval; never a medical class.",
         names={"law": None, "chart": None},
         run=_command,

@@ -43,7 +43,7 @@ class Command:
 
     Attributes
     ----------
-    text : prints a result for people.
+    lines : a result for people; its notes, warnings and messages are printed besides.
     help : of the command; by default the operation's summary.
     group : the command that it is a part of, such as ``measure``.
     names : options that are not named after their field; None leaves the field out.
@@ -53,7 +53,7 @@ class Command:
     request : model of the command's options, where it takes more or less than the operation.
     """
 
-    text: Callable[[Any], str]
+    lines: Callable[[Any], list[str]]
     help: str = ""
     group: str = ""
     names: Mapping[str, str | None] = field(default_factory=dict)

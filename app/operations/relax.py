@@ -117,21 +117,18 @@ def _between(ends: tuple[float, float] | None) -> str:
     return "" if ends is None else f" ({ends[0]:.2f} to {ends[1]:.2f})"
 
 
-def _text(r: RelaxResult) -> str:
-    return "\n".join(
-        [
-            f"repeat          {r.repeat_columns} columns x {r.repeat_rows} rows, {r.branch} branch",
-            f"stitch          {r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
-            f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}",
-            f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
-            f"bending, {100 * r.contact_share:.1f} % contact",
-            f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
-            f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
-            f"{'converged' if r.converged else 'NOT converged'}"
-            f"{'; stored result' if r.known else ''}",
-            *(f"note: {note}" for note in r.notes),
-        ]
-    )
+def _lines(r: RelaxResult) -> list[str]:
+    return [
+        f"repeat          {r.repeat_columns} columns x {r.repeat_rows} rows, {r.branch} branch",
+        f"stitch          {r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
+        f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}",
+        f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
+        f"bending, {100 * r.contact_share:.1f} % contact",
+        f"yarn            {r.yarn_length_mm:.2f} mm a stitch; {r.yarn.provenance}",
+        f"solved          {r.seconds:.2f} s CPU, {r.evaluations} evaluations, "
+        f"{'converged' if r.converged else 'NOT converged'}"
+        f"{'; stored result' if r.known else ''}",
+    ]
 
 
 OPERATION = Operation(
@@ -142,7 +139,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Relax the repeat CHART at the yarn level: free of force, without friction.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,

@@ -70,7 +70,7 @@ def rs(request: RSRequest, context: Context) -> RSResult:
     return RSResult(material=request.material, fabrics=fabrics, interval_source=RS_ERRORS)
 
 
-def _text(result: RSResult) -> str:
+def _lines(result: RSResult) -> list[str]:
     lines = [f"{'':24}{'Y N/mm':>9} {'published':>10}   segment"]
     for fabric, found in result.fabrics.items():
         for direction, s in found.segments.items():
@@ -82,12 +82,10 @@ def _text(result: RSResult) -> str:
                 f"v {s.slope:.3f}{angle}"
             )
     factor = log_interval(1.0, RS_LOG_SD).high
-    return "\n".join(
-        [
-            *lines,
-            f"90 % interval of Y: a factor of {factor:.1f} either way. {result.interval_source}",
-        ]
-    )
+    return [
+        *lines,
+        f"90 % interval of Y: a factor of {factor:.1f} either way. {result.interval_source}",
+    ]
 
 
 OPERATION = Operation(
@@ -96,5 +94,5 @@ OPERATION = Operation(
     path="/rs/{material}",
     tag="mechanics",
     summary="Moduli from the shape of the yarn",
-    command=Command(_text, help="The reduced-symmetry model of the four fabrics."),
+    command=Command(_lines, help="The reduced-symmetry model of the four fabrics."),
 )

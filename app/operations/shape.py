@@ -130,13 +130,13 @@ def _read(file: Path) -> list[float | None]:
         ) from None
 
 
-def _text(r: ShapeResult) -> str:
+def _lines(r: ShapeResult) -> list[str]:
     bands = ", ".join(f"{b.lines} of {b.repeat}" for b in r.bands)
     head = (
         f"{r.columns} columns x {r.rows} rows; widths {r.rms:.1%} off (rms), {r.largest:.1%} at "
         f"most; {r.force_n:.2f} N; from the first line: {bands}"
     )
-    return "\n".join([r.chart, head, *r.messages])
+    return [r.chart, head]
 
 
 OPERATION = Operation(
@@ -152,7 +152,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Make a chart that, stretched, has the widths of PROFILE: a CSV with a column "
         "`width`, stretched width over width at rest, one line across the pull after the other "
         "from the bottom (or the left); empty where any width will do.",

@@ -346,7 +346,7 @@ def _command(request: StretchRequest, context: Context, out: Path | None) -> Str
     return _curve(chart, request, test, margins)
 
 
-def _text(curve: StretchCurve) -> str:
+def _lines(curve: StretchCurve) -> list[str]:
     lines = [f"{'strain':>8} {'force N':>9} {'90 %':>17} {'N/mm':>8} {'waist':>8}"]
     rows = zip(
         curve.strain,
@@ -366,7 +366,7 @@ def _text(curve: StretchCurve) -> str:
             f"nearest to lock-up: {spot.utilisation:.0%} {spot.direction}-wise in {spot.fabric}, "
             f"row {spot.row + 1}, stitch {spot.column + 1}"
         )
-    return "\n".join([*lines, *curve.messages])
+    return lines
 
 
 OPERATION = Operation(
@@ -383,7 +383,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Pull CHART between two clamps: a simulated strip test, not a certified one.",
         names={"shear_modulus_n_per_mm": "--shear-modulus"},
         run=_command,

@@ -155,7 +155,7 @@ def _jumps_fitted(stretch: Sweep, law: SimulatedLaw) -> list[str]:
     ]
 
 
-def _text(r: SweepResult) -> str:
+def _lines(r: SweepResult) -> list[str]:
     columns = zip(r.strain, r.transverse_strain, r.stress_n_per_mm, r.energy_n_mm, strict=True)
     lines = ["strain   across   stress N/mm   energy N·mm"]
     lines += [f"{a:6.3f}  {b:7.3f}  {c:11.5f}  {d:12.5f}" for a, b, c, d in columns]
@@ -170,7 +170,7 @@ def _text(r: SweepResult) -> str:
         f"90 % interval of the strains of knitted cloth: a factor of {factor:.1f} either way. "
         f"{r.interval_source}"
     )
-    return "\n".join([*lines, *(f"note: {note}" for note in r.notes)])
+    return lines
 
 
 OPERATION = Operation(
@@ -187,7 +187,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Stretch the repeat CHART at the yarn level, free across, and fit its law.",
         names={"loop_lengths_mm": None},
         fields=loop_lengths,

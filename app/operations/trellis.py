@@ -71,7 +71,7 @@ def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
     )
 
 
-def _text(r: TrellisResult) -> str:
+def _lines(r: TrellisResult) -> list[str]:
     columns = {
         "angle °": r.angle_deg,
         "force N": r.force_n,
@@ -80,7 +80,7 @@ def _text(r: TrellisResult) -> str:
         "N·mm": r.moment_n_mm,
         "N/mm": r.shear_stress_n_per_mm,
     }
-    return table(columns, r.messages)
+    return table(columns)
 
 
 OPERATION = Operation(
@@ -91,7 +91,7 @@ OPERATION = Operation(
     heavy=True,
     job=True,
     command=Command(
-        _text,
+        _lines,
         help="Shear a square of CHART in a hinged frame (picture frame).",
         names={"shear_modulus_n_per_mm": "--shear-modulus"},
     ),

@@ -93,7 +93,7 @@ ASKING = Operation(
     tell,
     tag="tests",
     summary="Ask",
-    command=Command(lambda r: r.asked, names={"parts": "--part"}),
+    command=Command(lambda r: [r.asked], names={"parts": "--part"}),
 )
 
 
@@ -157,9 +157,30 @@ def repeat(request: Repeat, context: Context) -> Told:
 
 
 def test_a_repeat_needs_no_size() -> None:
-    operation = Operation(repeat, tag="tests", summary="Repeat", command=Command(lambda r: r.asked))
+    operation = Operation(
+        repeat, tag="tests", summary="Repeat", command=Command(lambda r: [r.asked])
+    )
     told = CliRunner().invoke(command_of(operation, "repeat"), ["rib"])
     assert told.output == "KP\n"
+
+
+class Remarked(ResultModel):
+    """A result with remarks."""
+
+    notes: list[str]
+    warnings: list[str]
+
+
+def remark(request: Repeat, context: Context) -> Remarked:
+    return Remarked(notes=["one"], warnings=["two"])
+
+
+def test_remarks_do_not_mix_with_the_result() -> None:
+    operation = Operation(remark, tag="tests", summary="Remark", command=Command(lambda _: ["4"]))
+    told = CliRunner().invoke(command_of(operation, "remark"), ["rib"])
+    assert (told.stdout, told.stderr) == ("4\n", "note: one\nwarning: two\n")
+    told = CliRunner().invoke(command_of(operation, "remark"), ["rib", "--json"])
+    assert told.stderr == ""
 
 
 def test_an_operation_is_described_by_its_function() -> None:
