@@ -293,6 +293,8 @@ export interface CandidateResult {
   intervals: Record<string, [number | null, number | null]>;
   /** Predicted over wanted, minus one; the difference for Poisson's ratios. */
   deviations: Record<string, number | null>;
+  /** Probability that all quantities are within their tolerances, by the intervals. */
+  chance: number;
   /** Weighted rms of deviations in units of their tolerances. */
   misfit: number | null;
   reached: boolean;
@@ -961,7 +963,7 @@ export interface FindRequest {
   elsewhere?: boolean;
 }
 
-/** Ranked repeats, the best first. */
+/** Ranked repeats, the surest first. */
 export interface FindResult {
   kind: "find";
   reached: boolean;

@@ -108,6 +108,9 @@ class CandidateResult(ResultModel):
     deviations: dict[str, Known] = Field(
         description="Predicted over wanted, minus one; the difference for Poisson's ratios."
     )
+    chance: float = Field(
+        description="Probability that all quantities are within their tolerances, by the intervals."
+    )
     misfit: Known = Field(description="Weighted rms of deviations in units of their tolerances.")
     reached: bool
     provenance: str
@@ -119,7 +122,7 @@ class CandidateResult(ResultModel):
 
 
 class FindResult(ResultModel):
-    """Ranked repeats, the best first."""
+    """Ranked repeats, the surest first."""
 
     kind: Literal["find"] = "find"
     reached: bool
@@ -158,9 +161,8 @@ def _ranked(
             find_fabric([atlas], targets, count=1, limits=limits).candidates[0]
             for atlas in _atlases(others, request.repeats, context)
         ]
-        elsewhere = sorted(best, key=lambda c: (not c.reached, c.misfit))[:ELSEWHERE]
-        if elsewhere[0].reached:
-            first = elsewhere[0]
+        elsewhere = sorted(best, key=lambda c: (-c.chance, c.misfit))[:ELSEWHERE]
+        if first := next((c for c in elsewhere if c.reached), None):
             message += f" In {first.material}, {first.repeat} is within all tolerances."
         else:
             message += " Nor does any other yarn of the library reach it."

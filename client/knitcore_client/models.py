@@ -1244,6 +1244,8 @@ class CandidateResult(BaseModel):
     """90 % intervals; null where an end lies beyond the computed curve."""
     deviations: dict[str, float | None]
     """Predicted over wanted, minus one; the difference for Poisson's ratios."""
+    chance: float
+    """Probability that all quantities are within their tolerances, by the intervals."""
     misfit: float | None
     """Weighted rms of deviations in units of their tolerances."""
     reached: bool
@@ -1700,7 +1702,7 @@ class FillResult(BaseModel):
 
 
 class FindResult(BaseModel):
-    """Ranked repeats, the best first."""
+    """Ranked repeats, the surest first."""
 
     kind: Literal["find"] = "find"
     reached: bool

@@ -1,4 +1,4 @@
-"""Find a fabric: the repeats of one or more atlases that come nearest to the targets."""
+"""Find a fabric: the repeats of one or more atlases that meet the targets most surely."""
 
 from __future__ import annotations
 
@@ -37,6 +37,8 @@ class Candidate:
         the lock-up.
     intervals : 90 % intervals of these.
     deviations : predicted over wanted, minus one; the difference for Poisson's ratios.
+    chance : that all quantities are within their tolerances, by their intervals and as if
+        independent.
     misfit : weighted rms of the deviations in units of their tolerances (logarithms).
     reached : whether all deviations are within their tolerances.
     provenance : where the law comes from.
@@ -48,6 +50,7 @@ class Candidate:
     values: dict[str, float]
     intervals: dict[str, Interval]
     deviations: dict[str, float]
+    chance: float
     misfit: float
     reached: bool
     provenance: str
@@ -60,8 +63,8 @@ class FoundFabrics:
 
     Attributes
     ----------
-    candidates : best first.
-    reached : whether any repeat is within all tolerances.
+    candidates : the surest first.
+    reached : whether any repeat is predicted within all tolerances.
     ranges : what all repeats together span, by label.
     message : the answer in words.
     """
@@ -79,8 +82,8 @@ def find_fabric(
     count: int = 10,
     limits: CostLimits | None = None,
 ) -> FoundFabrics:
-    """Rank all repeats by their distance from the targets; of equal ones the simpler to knit comes
-    first.
+    """Rank all repeats by how surely they meet the targets: by their chance to the nearest per
+    cent, then by the weighted rms of their deviations; of equals the smaller repeat comes first.
 
     Parameters
     ----------
@@ -115,19 +118,20 @@ def find_fabric(
         t.label: np.concatenate([table[t.label] for table in tables], axis=1) for t in targets
     }
     misfit, worst = _misfit(values, targets)
+    chance = np.prod([target.chance(*values[target.label]) for target in targets], axis=0)
     stitches = np.concatenate([a.stitches[rows] for a, rows in zip(atlases, allowed, strict=True)])
     doubtful = np.array(
         [_doubtful(atlases[k], int(i), targets) for k, i in zip(owner, index, strict=True)]
     )
-    # What is within all tolerances comes first even if its mean deviation is larger; what rests on
-    # contradictory figures never does.
-    order = np.lexsort((stitches, misfit.round(3), worst > 1, doubtful))[:count]
+    # What rests on contradictory figures never comes first.
+    order = np.lexsort((stitches, misfit.round(3), -chance.round(2), doubtful))[:count]
     candidates = tuple(
         _candidate(
             atlases[owner[k]],
             int(index[k]),
             {label: table[:, k] for label, table in values.items()},
             targets,
+            float(chance[k]),
             float(misfit[k]),
         )
         for k in order
@@ -137,8 +141,9 @@ def find_fabric(
         for label, table in values.items()
         if (known := ~np.isnan(table[0])).any()
     }
-    reached = candidates[0].reached
-    return FoundFabrics(candidates, reached, ranges, _message(candidates[0], targets, ranges))
+    reached = bool(np.any(worst <= 1))
+    message = _most_surely(candidates[0]) if reached else _nothing(candidates[0], targets, ranges)
+    return FoundFabrics(candidates, reached, ranges, message)
 
 
 def _doubtful(atlas: Atlas, index: int, targets: Sequence[Target]) -> bool:
@@ -191,6 +196,7 @@ def _candidate(
     index: int,
     rows: Mapping[str, Array],
     targets: Sequence[Target],
+    chance: float,
     misfit: float,
 ) -> Candidate:
     values = {label: float(row[0]) for label, row in rows.items()}
@@ -200,6 +206,7 @@ def _candidate(
         values=values,
         intervals={label: Interval(float(r[1]), float(r[2])) for label, r in rows.items()},
         deviations={t.label: t.deviation(values[t.label]) for t in targets},
+        chance=chance,
         misfit=misfit,
         reached=all(float(t.off(np.array(values[t.label]))) <= 1 for t in targets),
         provenance=atlas.provenance[index],
@@ -207,9 +214,14 @@ def _candidate(
     )
 
 
-def _message(best: Candidate, targets: Sequence[Target], ranges: dict[str, Interval]) -> str:
-    if best.reached:
-        return f"{_short(best)} in {best.material} is within all tolerances."
+def _most_surely(best: Candidate) -> str:
+    return (
+        f"{_short(best)} in {best.material} meets this most surely, "
+        f"with a chance of {best.chance:.0%}."
+    )
+
+
+def _nothing(best: Candidate, targets: Sequence[Target], ranges: dict[str, Interval]) -> str:
     parts = [
         f"{_departure(best, target)} ({_reach(target, ranges.get(target.label), len(targets) > 1)})"
         for target in targets

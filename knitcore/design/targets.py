@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
+from scipy.special import ndtr
 
 from knitcore.arrays import Array
 from knitcore.design.atlas import Atlas
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.mechanics.pressure import MIN_LENGTH, MMHG_PER_KPA
 
 USUAL_LOAD_N_PER_MM = 0.1
@@ -152,6 +154,32 @@ class Target:
         else:
             away = np.abs(np.log(values / self.value)) / math.log1p(self.tolerance)
         return np.where(np.isnan(away), np.inf, away) - 1e-12  # allows for rounding
+
+    def chance(self, value: Array, low: Array, high: Array) -> Array:
+        """Probability that a quantity is within the tolerance; 0 where there is no value.
+
+        Parameters
+        ----------
+        value, low, high : prediction and the ends of its 90 % interval, alike in shape. On either
+            side of the value the quantity is taken as normal, on a logarithmic scale except for
+            Poisson's ratios; an end that is NaN is taken as far away as the other.
+        """
+        if not self.quantity.is_poisson:
+            value, low, high = np.log(value), np.log(low), np.log(high)
+            wanted, half = math.log(self.value), math.log1p(self.tolerance)
+        else:
+            wanted, half = self.value, self.tolerance
+        below, above = (np.maximum(width, 1e-12) / Z_SCORE for width in (value - low, high - value))
+        below, above = (
+            np.where(np.isnan(below), above, below),
+            np.where(np.isnan(above), below, above),
+        )
+
+        def up_to(end: float) -> Array:
+            away = end - value
+            return np.asarray(ndtr(away / np.where(away < 0, below, above)))
+
+        return np.nan_to_num(up_to(wanted + half) - up_to(wanted - half))
 
 
 def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:

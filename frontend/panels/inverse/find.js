@@ -6,7 +6,7 @@
  * @import {CandidateResult, FindResult, TargetInput} from "../../types.js"
  */
 
-import { figure } from "../../core/format.js";
+import { figure, percent } from "../../core/format.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { iconButton, textButton } from "../../widgets/buttons.js";
@@ -271,7 +271,15 @@ export function findTab(studio, context) {
           { class: "candidate-title" },
           h("strong", {}, nameOf(key)),
           h("span", { class: "muted ellipsis" }, name),
-          candidate.reached && h("span", { class: "reached-mark" }, icon("check"), "within tolerance"),
+          h(
+            "span",
+            {
+              class: candidate.reached ? "reached-mark" : "muted",
+              title: "How surely all targets are met within their tolerances, by the 90 % intervals",
+            },
+            candidate.reached && icon("check"),
+            `${percent(candidate.chance)} sure`,
+          ),
         ),
         h(
           "div",
@@ -340,7 +348,10 @@ export function findTab(studio, context) {
 function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) {
   const within = candidates.filter((candidate) => candidate.reached).length;
   if (reached)
-    return `${within === candidates.length ? `The nearest ${within}` : within} of ${searched} repeats are within all tolerances.`;
+    return [
+      `The surest of ${searched} repeats.`,
+      within === 1 ? "One of these is within all tolerances." : `${within} of these are within all tolerances.`,
+    ].join(" ");
   const beyond = Object.entries(ranges).flatMap(([label, [low, high]]) => {
     const q = quantityOf(label);
     const wanted = targets.find(({ quantity }) => quantity === q.id)?.value ?? low;
@@ -350,9 +361,11 @@ function verdict({ reached, candidates, searched, ranges, elsewhere }, targets) 
       : [];
   });
   return [
-    `None of ${searched} repeats reaches all of it; the nearest stand first.`,
+    `None of ${searched} repeats reaches all of it; the surest stand first.`,
     ...(beyond.length ? beyond : targets.length > 1 ? ["Each target can be met, but not all at once."] : []),
-    elsewhere[0]?.reached ? "Another yarn does, see below." : "Widen a tolerance, or search more yarns.",
+    elsewhere.some((candidate) => candidate.reached)
+      ? "Another yarn does, see below."
+      : "Widen a tolerance, or search more yarns.",
   ].join(" ");
 }
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -229,19 +230,33 @@ def test_the_values_of_a_repeat_find_that_repeat(index: int) -> None:
             Quantity.EXTENSIBILITY_WALE, 1 / float(ATLAS.column("modulus_wale_n_per_mm")[index])
         ),
     ]
-    found = find_fabric([ATLAS], targets)
+    found = find_fabric([ATLAS], targets, count=len(ATLAS))
     assert found.reached
-    assert found.candidates[0].misfit == pytest.approx(0, abs=1e-3)
-    assert found.candidates[0].deviations[Quantity.MODULUS_COURSE] == pytest.approx(0, abs=1e-3)
+    own = next(c for c in found.candidates if c.repeat == ATLAS.keys[index])
+    assert own.reached
+    assert own.misfit == pytest.approx(0, abs=1e-3)
+    assert own.deviations[Quantity.MODULUS_COURSE] == pytest.approx(0, abs=1e-3)
 
 
 def test_candidates_are_ranked() -> None:
     found = find_fabric([ATLAS], [Target(Quantity.ANISOTROPY, 1.0)], count=5)
-    misfits = [candidate.misfit for candidate in found.candidates]
-    assert misfits == sorted(misfits)
+    ranks = [(-round(candidate.chance, 2), candidate.misfit) for candidate in found.candidates]
+    assert ranks == sorted(ranks)
     for candidate in found.candidates:
         interval = candidate.intervals[Quantity.ANISOTROPY]
         assert interval.low < candidate.values[Quantity.ANISOTROPY] < interval.high
+
+
+def test_the_surer_of_two_equal_predictions_comes_first() -> None:
+    """Of a value on the target: 2Φ(z) − 1, where the tolerance is z standard deviations."""
+    target = Target(Quantity.MODULUS_COURSE, 0.1, tolerance=0.2)
+    factors = np.array([1.1, 1.5, 1.001])
+    chance = target.chance(np.full(3, 0.1), 0.1 / factors, 0.1 * factors)
+    deviations = np.log(1.2) / (np.log(factors) / NormalDist().inv_cdf(0.95))
+    np.testing.assert_allclose(chance, [2 * NormalDist().cdf(z) - 1 for z in deviations])
+    missed = target.chance(np.array([0.13]), np.array([0.125]), np.array([0.135]))
+    assert missed < 0.02
+    assert target.chance(*np.full((3, 1), np.nan)) == 0
 
 
 def test_unreachable_targets_are_reported_with_the_nearest_repeat() -> None:
