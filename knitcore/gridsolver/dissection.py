@@ -83,8 +83,9 @@ class GridFactor:
 
     Examples
     --------
+    >>> from knitcore.gridsolver.factor import lower_triangle
     >>> solver = GridFactor(2, 1, np.zeros(12, dtype=bool))
-    >>> solver.factorise(np.tile(np.eye(8), (2, 1, 1)))
+    >>> solver.factorise(np.tile(lower_triangle(np.eye(8)), (2, 1)))
     >>> solver.solve(np.ones(12)).round(2).tolist()[:4]
     [1.0, 1.0, 0.5, 0.5]
     """
@@ -107,7 +108,7 @@ class GridFactor:
         return self._size
 
     def factorise(self, cell_matrices: Array) -> None:
-        """Factorise the sum of (cells, 8, 8) symmetric cell matrices.
+        """Factorise the sum of symmetric cell matrices, given as for :class:`Factor`.
 
         Raises
         ------

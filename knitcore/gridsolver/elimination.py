@@ -86,7 +86,7 @@ def eliminate(
         place in ``work``, starts in ``eliminated`` and ``border``.
     shapes : (shapes, 9) see :func:`knitcore.gridsolver.dissection.GridFactor`.
     table : index lists of the shapes, one after the other.
-    matrices : (cells, 8, 8) cell matrices.
+    matrices : (cells, 36) lower triangles of cell matrices, by rows.
     fixed : prescribed unknowns.
     eliminated, border : unknowns by box.
     factor, work : the factor, and room for the Schur complements that wait.
@@ -183,16 +183,13 @@ def _add_cells(
 ) -> None:
     """Add the lower triangles of cell matrices to a leaf: its columns in the factor, its border."""
     for n in range(cells.size):
-        k = 0
-        for i in range(8):
-            for j in range(i + 1):
-                place = places[n, k]
-                value = matrices[first + cells[n], i, j]
-                if place >= 0:
-                    front[place] += value
-                else:
-                    schur[-place - 1] += value
-                k += 1
+        matrix = matrices[first + cells[n]]
+        for k in range(36):
+            place = places[n, k]
+            if place >= 0:
+                front[place] += matrix[k]
+            else:
+                schur[-place - 1] += matrix[k]
 
 
 @njit(cache=True, nogil=True)

@@ -22,7 +22,7 @@ class Factor(Protocol):
     """Factors of symmetric matrices on one grid, two unknowns a corner, some of them prescribed."""
 
     def factorise(self, cell_matrices: Array) -> None:
-        """Factorise the sum of (cells, 8, 8) symmetric cell matrices.
+        """Factorise the sum of symmetric cell matrices, (cells, 36) lower triangles by rows.
 
         Raises
         ------
@@ -34,6 +34,12 @@ class Factor(Protocol):
     def solve(self, right_hand_side: Array) -> Array:
         """Solution (2 * corners,); 0 at the prescribed unknowns."""
         ...
+
+
+def lower_triangle(cell_matrices: Array) -> Array:
+    """Lower triangles, by rows, of (..., 8, 8) matrices: (..., 36)."""
+    i, j = np.tril_indices(8)
+    return cell_matrices[..., i, j]
 
 
 def positive_definite_factor(matrix: Any) -> Callable[[Array], Array]:
@@ -72,9 +78,12 @@ class SciPyFactor:
 
     def factorise(self, cell_matrices: Array) -> None:
         """See :class:`Factor`."""
+        full = np.empty((len(cell_matrices), 8, 8))
+        i, j = np.tril_indices(8)
+        full[:, i, j] = full[:, j, i] = cell_matrices
         row, column = np.repeat(self._places, 8, axis=1), np.tile(self._places, (1, 8))
         n = len(self._free)
-        whole = csc_matrix((cell_matrices.ravel(), (row.ravel(), column.ravel())), shape=(n, n))
+        whole = csc_matrix((full.ravel(), (row.ravel(), column.ravel())), shape=(n, n))
         self._solve = positive_definite_factor(whole[self._free][:, self._free])
 
     def solve(self, right_hand_side: Array) -> Array:

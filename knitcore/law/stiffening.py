@@ -43,11 +43,11 @@ Values = TypeVar("Values", float, NDArray[np.float64])
 def full(s: Values) -> tuple[Values, Values, Values]:
     """``w``, ``w'`` and ``w''`` of the full form, at a number or an array."""
     inside = np.minimum(np.maximum(s, 0.0), EXTENSION_START)
-    gap = 1.0 - inside
-    slope = inside * inside * (3.0 - 2.0 * inside) / (gap * gap)
-    curvature = 2.0 / (gap * gap * gap) - 2.0
+    square, over_gap = inside * inside, 1.0 / (1.0 - inside)
+    slope = square * (3.0 - 2.0 * inside) * over_gap * over_gap
+    curvature = 2.0 * over_gap * over_gap * over_gap - 2.0
     beyond = np.maximum(s - EXTENSION_START, 0.0)
-    energy = inside**3 / gap + slope * beyond + 0.5 * curvature * beyond * beyond
+    energy = square * inside * over_gap + slope * beyond + 0.5 * curvature * beyond * beyond
     return energy, slope + curvature * beyond, curvature
 
 

@@ -29,17 +29,25 @@ from knitcore.law import stiffening
 WRINKLED_SHARE = 0.05
 """Share of the compressive energy that a wrinkled sheet keeps, so that its tangent has a bound."""
 
-# The edge of each triangle (its two corners), whether the edge runs course-wise, and the sign of
-# the direction from edge to centre.
-_FIRST = (0, 1, 3, 0)
-_SECOND = (1, 2, 2, 3)
+# The edge of each triangle (its two corners, the lower number first), whether the edge runs
+# course-wise, the sign of its direction, and that of the direction from edge to centre.
+_FIRST = (0, 1, 2, 0)
+_SECOND = (1, 2, 3, 3)
 _COURSEWISE = (True, False, True, False)
+_ALONG = (1.0, 1.0, -1.0, 1.0)
 _INWARD = (1.0, -1.0, -1.0, 1.0)
 
 Stiffening = tuple[float, float, float]
 """w, w', w'' in one direction."""
 Response = tuple[float, float, float, float, float, float]
 """Energy density, stresses xx and yy, stiffnesses xx, yy and xy."""
+Pair = tuple[float, float]
+Symmetric = tuple[float, float, float]
+"""Entries 00, 01 and 11 of a symmetric matrix."""
+Block = tuple[float, float, float, float]
+"""Entries 00, 01, 10 and 11 of a matrix."""
+Point = tuple[float, Pair, Pair, Symmetric, Block, Symmetric]
+"""Energy density W(a, b), its derivatives by a and b, second derivatives aa, ab and bb."""
 
 _compiled: Any = njit(cache=True)
 _corners_of: Callable[[int, int], tuple[int, int, int, int]] = _compiled(corners_of)
@@ -90,7 +98,7 @@ class Tangent(NamedTuple):
 
     Attributes
     ----------
-    matrix : (cells, 8, 8), N/mm.
+    matrix : (cells, 36), N/mm, lower triangles by rows.
     centre_rows : (cells, 2, 8), N/mm, from the corners to the centre's force.
     centre_inverse : (cells, 3), mm/N: xx, xy, yy of the inverse of the centre's own block.
     """
@@ -175,69 +183,65 @@ def _free(law: Law, along: float, axis: int) -> float:
 
 
 @njit(cache=True)
-def _published_point(
-    law: Law, a0: float, a1: float, b0: float, b1: float, force: Array, stiffness: Array
-) -> float:
-    """Energy density at (a, b); writes dW/d(a0, a1, b0, b1) and the (4, 4) second derivative."""
-    shear = a1 + b0
+def _published_point(law: Law, a0: float, a1: float, b0: float, b1: float) -> Point:
+    """The published model at (a, b)."""
+    shear, g = a1 + b0, law.shear_modulus
     ex, ey = a0 - 1.0, b1 - 1.0
     x, y = _published(law.alpha_xx * ex), _published(law.alpha_yy * ey)
-    energy, force[0], force[3], kxx, kyy, kxy = _stiffened(law, (0.0, 0.0), x, y, ex, ey)
-    force[1] = force[2] = law.shear_modulus * shear
-    stiffness[:] = 0.0
-    stiffness[0, 0], stiffness[3, 3] = kxx, kyy
-    stiffness[0, 3] = stiffness[3, 0] = kxy
-    stiffness[1, 1] = stiffness[2, 2] = stiffness[1, 2] = stiffness[2, 1] = law.shear_modulus
-    return float(energy + 0.5 * law.shear_modulus * shear**2)
+    energy, sx, sy, kxx, kyy, kxy = _stiffened(law, (0.0, 0.0), x, y, ex, ey)
+    return (
+        energy + 0.5 * g * shear * shear,
+        (sx, g * shear),
+        (g * shear, sy),
+        (kxx, 0.0, g),
+        (0.0, kxy, g, 0.0),
+        (g, 0.0, kyy),
+    )
 
 
 @njit(cache=True)
-def _full_point(
-    law: Law,
-    tension_field: bool,
-    a0: float,
-    a1: float,
-    b0: float,
-    b1: float,
-    force: Array,
-    stiffness: Array,
-) -> float:
-    """As :func:`_published_point`, of the full model."""
+def _full_point(law: Law, tension_field: bool, a0: float, a1: float, b0: float, b1: float) -> Point:
+    """The full model at (a, b); the energy is infinite where a fibre has collapsed."""
     la, lb = math.sqrt(a0 * a0 + a1 * a1), math.sqrt(b0 * b0 + b1 * b1)
     if la < 1e-9 or lb < 1e-9:
-        return np.inf
+        none = (0.0, 0.0, 0.0)
+        return np.inf, (0.0, 0.0), (0.0, 0.0), none, (0.0, 0.0, 0.0, 0.0), none
     if tension_field:
         energy, wa, wb, waa, wbb, wab = _wrinkled(law, la - 1.0, lb - 1.0)
     else:
         energy, wa, wb, waa, wbb, wab = _axial(law, la - 1.0, lb - 1.0)
     gamma = math.atan2(a0 * b0 + a1 * b1, a0 * b1 - a1 * b0)
-    energy += 0.5 * law.shear_modulus * gamma * gamma
     wg, wgg = law.shear_modulus * gamma, law.shear_modulus
     # Unit vectors along each fibre (t) and a quarter turn ahead of it (n). Turning the course
     # fibre by d theta changes gamma by d theta, turning the wale fibre by -d theta.
-    at0, at1, bt0, bt1 = a0 / la, a1 / la, b0 / lb, b1 / lb
+    over_la, over_lb = 1.0 / la, 1.0 / lb
+    at0, at1, bt0, bt1 = a0 * over_la, a1 * over_la, b0 * over_lb, b1 * over_lb
     an0, an1, bn0, bn1 = -at1, at0, -bt1, bt0
-    ga, gb = wg / la, -wg / lb
-    force[0], force[1] = wa * at0 + ga * an0, wa * at1 + ga * an1
-    force[2], force[3] = wb * bt0 + gb * bn0, wb * bt1 + gb * bn1
+    ga, gb = wg * over_la, -wg * over_lb
     # Second derivatives in the (t, n) bases, then turned to (x, y).
-    haa, hbb = wa / la + wgg / (la * la), wb / lb + wgg / (lb * lb)
-    hta, htb = -wg / (la * la), wg / (lb * lb)
-    hab = -wgg / (la * lb)
-    stiffness[0, 0] = waa * at0 * at0 + 2.0 * hta * at0 * an0 + haa * an0 * an0
-    stiffness[0, 1] = waa * at0 * at1 + hta * (at0 * an1 + an0 * at1) + haa * an0 * an1
-    stiffness[1, 1] = waa * at1 * at1 + 2.0 * hta * at1 * an1 + haa * an1 * an1
-    stiffness[2, 2] = wbb * bt0 * bt0 + 2.0 * htb * bt0 * bn0 + hbb * bn0 * bn0
-    stiffness[2, 3] = wbb * bt0 * bt1 + htb * (bt0 * bn1 + bn0 * bt1) + hbb * bn0 * bn1
-    stiffness[3, 3] = wbb * bt1 * bt1 + 2.0 * htb * bt1 * bn1 + hbb * bn1 * bn1
-    stiffness[0, 2] = wab * at0 * bt0 + hab * an0 * bn0
-    stiffness[0, 3] = wab * at0 * bt1 + hab * an0 * bn1
-    stiffness[1, 2] = wab * at1 * bt0 + hab * an1 * bn0
-    stiffness[1, 3] = wab * at1 * bt1 + hab * an1 * bn1
-    stiffness[1, 0], stiffness[3, 2] = stiffness[0, 1], stiffness[2, 3]
-    stiffness[2, 0], stiffness[3, 0] = stiffness[0, 2], stiffness[0, 3]
-    stiffness[2, 1], stiffness[3, 1] = stiffness[1, 2], stiffness[1, 3]
-    return float(energy)
+    haa, hbb = (wa + wgg * over_la) * over_la, (wb + wgg * over_lb) * over_lb
+    hta, htb, hab = -ga * over_la, -gb * over_lb, -wgg * over_la * over_lb
+    return (
+        energy + 0.5 * wg * gamma,
+        (wa * at0 + ga * an0, wa * at1 + ga * an1),
+        (wb * bt0 + gb * bn0, wb * bt1 + gb * bn1),
+        (
+            waa * at0 * at0 + 2.0 * hta * at0 * an0 + haa * an0 * an0,
+            waa * at0 * at1 + hta * (at0 * an1 + an0 * at1) + haa * an0 * an1,
+            waa * at1 * at1 + 2.0 * hta * at1 * an1 + haa * an1 * an1,
+        ),
+        (
+            wab * at0 * bt0 + hab * an0 * bn0,
+            wab * at0 * bt1 + hab * an0 * bn1,
+            wab * at1 * bt0 + hab * an1 * bn0,
+            wab * at1 * bt1 + hab * an1 * bn1,
+        ),
+        (
+            wbb * bt0 * bt0 + 2.0 * htb * bt0 * bn0 + hbb * bn0 * bn0,
+            wbb * bt0 * bt1 + htb * (bt0 * bn1 + bn0 * bt1) + hbb * bn0 * bn1,
+            wbb * bt1 * bt1 + 2.0 * htb * bt1 * bn1 + hbb * bn1 * bn1,
+        ),
+    )
 
 
 @njit(cache=True)
@@ -260,11 +264,15 @@ def respond(
     for point in range(len(law_of_point)):
         law = laws[law_of_point[point]]
         a0, a1, b0, b1 = fibres[point]
-        f, h = force[point], stiffness[point]
         if published:
-            energy[point] = _published_point(law, a0, a1, b0, b1, f, h)
+            energy[point], fa, fb, haa, hab, hbb = _published_point(law, a0, a1, b0, b1)
         else:
-            energy[point] = _full_point(law, tension_field, a0, a1, b0, b1, f, h)
+            energy[point], fa, fb, haa, hab, hbb = _full_point(law, tension_field, a0, a1, b0, b1)
+        force[point] = (fa[0], fa[1], fb[0], fb[1])
+        stiffness[point, 0] = (haa[0], haa[1], hab[0], hab[1])
+        stiffness[point, 1] = (haa[1], haa[2], hab[2], hab[3])
+        stiffness[point, 2] = (hab[0], hab[2], hbb[0], hbb[1])
+        stiffness[point, 3] = (hab[1], hab[3], hbb[1], hbb[2])
     return energy
 
 
@@ -273,6 +281,13 @@ def _gather(vectors: Array, nodes: tuple[int, int, int, int], out: Array) -> Non
     """Write a cell's corners' share (4, 2) of vectors (corners, 2)."""
     for i in range(4):
         out[i, 0], out[i, 1] = vectors[nodes[i], 0], vectors[nodes[i], 1]
+
+
+@njit(cache=True)
+def _zero(matrix: Array) -> None:
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            matrix[i, j] = 0.0
 
 
 @njit(cache=True)
@@ -293,8 +308,15 @@ def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
         for t in range(4):
             i, j = _FIRST[t], _SECOND[t]
             along = 0 if _COURSEWISE[t] else 1  # of the edge; the inward derivative is across
+            sign = _ALONG[t]
             for axis, f0, f1, s0, s1 in (
-                (along, x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], d[j, 0] - d[i, 0], d[j, 1] - d[i, 1]),
+                (
+                    along,
+                    sign * (x[j, 0] - x[i, 0]),
+                    sign * (x[j, 1] - x[i, 1]),
+                    sign * (d[j, 0] - d[i, 0]),
+                    sign * (d[j, 1] - d[i, 1]),
+                ),
                 (
                     1 - along,
                     _INWARD[t] * (2.0 * centre[0] - x[i, 0] - x[j, 0]),
@@ -312,49 +334,88 @@ def strain_change(cells: Cells, state: Nodes, step: Nodes) -> Array:
 
 
 @njit(cache=True)
+def _triangle(
+    law: Law,
+    published: bool,
+    tension_field: bool,
+    coursewise: bool,
+    edge: Pair,
+    inner: Pair,
+    he: float,
+    hc: float,
+) -> Point:
+    """Energy density of a triangle, and its derivatives by the differences of positions along its
+    edge and inward, of rest lengths he and hc.
+    """
+    e0, e1, c0, c1 = edge[0] / he, edge[1] / he, inner[0] / hc, inner[1] / hc
+    a0, a1, b0, b1 = (e0, e1, c0, c1) if coursewise else (c0, c1, e0, e1)
+    if published:
+        w, wa, wb, aa, ab, bb = _published_point(law, a0, a1, b0, b1)
+    else:
+        w, wa, wb, aa, ab, bb = _full_point(law, tension_field, a0, a1, b0, b1)
+    if not coursewise:
+        wa, wb, aa, ab, bb = wb, wa, bb, (ab[0], ab[2], ab[1], ab[3]), aa
+    ee, ec, cc = 1.0 / (he * he), 1.0 / (he * hc), 1.0 / (hc * hc)
+    return (
+        w,
+        (wa[0] / he, wa[1] / he),
+        (wb[0] / hc, wb[1] / hc),
+        (ee * aa[0], ee * aa[1], ee * aa[2]),
+        (ec * ab[0], ec * ab[1], ec * ab[2], ec * ab[3]),
+        (cc * bb[0], cc * bb[1], cc * bb[2]),
+    )
+
+
+@njit(cache=True)
 def _add_triangle(
     i: int,
     j: int,
-    e: int,
-    c: int,
-    se: float,
-    sc: float,
     area: float,
-    h: Array,
+    ee: Symmetric,
+    ec: Block,
+    cc: Symmetric,
     k: Array,
     kc: Array,
     kcc: Array,
 ) -> None:
-    """Add a triangle's tangent: corners i and j, e and c the offsets in h of its edge-wise and
-    inward derivatives, se and sc their scales.
+    """Add a triangle's tangent: corners i < j; ee, ec and cc are the second derivatives of its
+    energy density by the differences along its edge and inward. Of k and kcc the lower triangles.
     """
     for m in range(2):
         for n in range(2):
-            ee = area * se * se * h[e + m, e + n]
-            cc = area * sc * sc * h[c + m, c + n]
-            ec = area * se * sc * h[e + m, c + n]
-            ce = area * se * sc * h[c + m, e + n]
-            k[2 * i + m, 2 * i + n] += ee + ec + ce + cc
-            k[2 * j + m, 2 * j + n] += ee - ec - ce + cc
-            k[2 * i + m, 2 * j + n] += -ee + ec - ce + cc
-            k[2 * j + m, 2 * i + n] += -ee - ec + ce + cc
-            kc[m, 2 * i + n] += -2.0 * (ce + cc)
-            kc[m, 2 * j + n] += 2.0 * (ce - cc)
-            kcc[m, n] += 4.0 * cc
+            e, c = area * ee[m + n], area * cc[m + n]
+            mixed, turned = area * ec[2 * m + n], area * ec[2 * n + m]
+            if n <= m:
+                k[2 * i + m, 2 * i + n] += e + mixed + turned + c
+                k[2 * j + m, 2 * j + n] += e - mixed - turned + c
+                kcc[m, n] += 4.0 * c
+            k[2 * j + m, 2 * i + n] += -e - mixed + turned + c
+            kc[m, 2 * i + n] += -2.0 * (turned + c)
+            kc[m, 2 * j + n] += 2.0 * (turned - c)
 
 
 @njit(cache=True)
 def _eliminate_centre(k: Array, kc: Array, kcc: Array, tangent: Tangent, cell: int) -> None:
     """Write a cell's tangent without its centre, and what recovers the centre."""
-    det = kcc[0, 0] * kcc[1, 1] - kcc[0, 1] * kcc[0, 1]
-    i00, i01, i11 = kcc[1, 1] / det, -kcc[0, 1] / det, kcc[0, 0] / det
+    det = kcc[0, 0] * kcc[1, 1] - kcc[1, 0] * kcc[1, 0]
+    i00, i01, i11 = kcc[1, 1] / det, -kcc[1, 0] / det, kcc[0, 0] / det
+    matrix, rows, inverse = tangent.matrix, tangent.centre_rows, tangent.centre_inverse
+    place = 0
     for r in range(8):
         g0, g1 = i00 * kc[0, r] + i01 * kc[1, r], i01 * kc[0, r] + i11 * kc[1, r]
-        for s in range(8):
-            tangent.matrix[cell, r, s] = k[r, s] - g0 * kc[0, s] - g1 * kc[1, s]
-    tangent.centre_rows[cell] = kc
-    inverse = tangent.centre_inverse[cell]
-    inverse[0], inverse[1], inverse[2] = i00, i01, i11
+        for s in range(r + 1):
+            matrix[cell, place] = k[r, s] - g0 * kc[0, s] - g1 * kc[1, s]
+            place += 1
+        rows[cell, 0, r], rows[cell, 1, r] = kc[0, r], kc[1, r]
+    inverse[cell, 0], inverse[cell, 1], inverse[cell, 2] = i00, i01, i11
+
+
+@njit(cache=True)
+def _clear(tangent: Tangent, cell: int) -> None:
+    """Write the tangent of a cell without cloth."""
+    tangent.matrix[cell] = 0.0
+    tangent.centre_rows[cell] = 0.0
+    tangent.centre_inverse[cell] = 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -382,53 +443,50 @@ def assemble(
     force, tangent : to be written.
     first, last : the cells, the last excluded.
     """
-    force.centres[first:last] = 0.0
+    # Fields and rows are taken out of the loop: each costs an atomic count of references.
+    law_of_cell, cloth, width, height = cells.law, cells.cloth, cells.width, cells.height
+    corners, centres = state.corners, state.centres
+    corner_force, centre_force = force.corners, force.centres
+    centre_force[first:last] = 0.0
     total = 0.0
-    f, h = np.empty(4), np.empty((4, 4))
     x = np.empty((4, 2))
     k, kc, kcc = np.empty((8, 8)), np.empty((2, 8)), np.empty((2, 2))
     for cell in range(first, last):
-        law = laws[cells.law[cell]]
-        if not cells.cloth[cell] or law.stiffness_xxxx == 0.0:
+        law = laws[law_of_cell[cell]]
+        if not cloth[cell] or law.stiffness_xxxx == 0.0:
             if tangent is not None:
-                tangent.matrix[cell] = 0.0
-                tangent.centre_rows[cell] = 0.0
-                tangent.centre_inverse[cell] = 0.0
+                _clear(tangent, cell)
             continue
         node = _corners_of(cell, cells.columns)
-        _gather(state.corners, node, x)
-        centre = state.centres[cell]
-        hx, hy = cells.width[cell], cells.height[cell]
+        _gather(corners, node, x)
+        centre0, centre1 = centres[cell, 0], centres[cell, 1]
+        hx, hy = width[cell], height[cell]
         area = 0.25 * hx * hy
-        k[:] = 0.0
-        kc[:] = 0.0
-        kcc[:] = 0.0
+        if tangent is not None:
+            _zero(k)
+            _zero(kc)
+            _zero(kcc)
         for t in range(4):
             i, j = _FIRST[t], _SECOND[t]
-            inward = _INWARD[t]
-            e0, e1 = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
-            c0 = inward * (2.0 * centre[0] - x[i, 0] - x[j, 0])
-            c1 = inward * (2.0 * centre[1] - x[i, 1] - x[j, 1])
-            # e, c: offsets of the edge-wise and the inward derivative in (a0, a1, b0, b1)
-            if _COURSEWISE[t]:
-                e, c = 0, 2
-                se, sc = 1.0 / hx, inward / hy
-                a0, a1, b0, b1 = e0 / hx, e1 / hx, c0 / hy, c1 / hy
-            else:
-                e, c = 2, 0
-                se, sc = 1.0 / hy, inward / hx
-                a0, a1, b0, b1 = c0 / hx, c1 / hx, e0 / hy, e1 / hy
-            if cells.published:
-                total += area * _published_point(law, a0, a1, b0, b1, f, h)
-            else:
-                total += area * _full_point(law, cells.tension_field, a0, a1, b0, b1, f, h)
+            he, hc = (hx, hy) if _COURSEWISE[t] else (hy, hx)
+            w, we, wc, ee, ec, cc = _triangle(
+                law,
+                cells.published,
+                cells.tension_field,
+                _COURSEWISE[t],
+                (x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]),
+                (2.0 * centre0 - x[i, 0] - x[j, 0], 2.0 * centre1 - x[i, 1] - x[j, 1]),
+                _ALONG[t] * he,
+                _INWARD[t] * hc,
+            )
+            total += area * w
             for m in range(2):
-                fe, fc = area * se * f[e + m], area * sc * f[c + m]
-                force.corners[node[i], m] += -fe - fc
-                force.corners[node[j], m] += fe - fc
-                force.centres[cell, m] += 2.0 * fc
+                fe, fc = area * we[m], area * wc[m]
+                corner_force[node[i], m] += -fe - fc
+                corner_force[node[j], m] += fe - fc
+                centre_force[cell, m] += 2.0 * fc
             if tangent is not None:
-                _add_triangle(i, j, e, c, se, sc, area, h, k, kc, kcc)
+                _add_triangle(i, j, area, ee, ec, cc, k, kc, kcc)
         if total == np.inf:
             return total
         if tangent is not None:
@@ -469,16 +527,20 @@ def centre_step(columns: int, step: Array, force: Nodes, tangent: Tangent) -> Ar
 @njit(cache=True)
 def apply(columns: int, tangent: Tangent, step: Array) -> Array:
     """Condensed tangent times a step of the corners, (corners, 2)."""
-    out, v = np.zeros_like(step), np.empty(8)
+    out, v, w = np.zeros_like(step), np.empty(8), np.empty(8)
     for cell in range(len(tangent.matrix)):
-        nodes = _corners_of(cell, columns)
+        nodes, matrix = _corners_of(cell, columns), tangent.matrix[cell]
         for i in range(4):
             v[2 * i], v[2 * i + 1] = step[nodes[i], 0], step[nodes[i], 1]
+        place = 0
+        for r in range(8):
+            total = 0.0
+            for s in range(r):
+                total += matrix[place + s] * v[s]
+                w[s] += matrix[place + s] * v[r]
+            w[r] = total + matrix[place + r] * v[r]
+            place += r + 1
         for i in range(4):
-            s0 = s1 = 0.0
-            for j in range(8):
-                s0 += tangent.matrix[cell, 2 * i, j] * v[j]
-                s1 += tangent.matrix[cell, 2 * i + 1, j] * v[j]
-            out[nodes[i], 0] += s0
-            out[nodes[i], 1] += s1
+            out[nodes[i], 0] += w[2 * i]
+            out[nodes[i], 1] += w[2 * i + 1]
     return out

@@ -154,7 +154,7 @@ class Sheet:
             cells = len(state.centres)
             force, tangent = (
                 _empty_like(state),
-                Tangent(np.empty((cells, 8, 8)), np.empty((cells, 2, 8)), np.empty((cells, 3))),
+                Tangent(np.empty((cells, 36)), np.empty((cells, 2, 8)), np.empty((cells, 3))),
             )
         else:
             force, tangent = reuse.force, reuse.tangent

@@ -30,6 +30,8 @@ PATIENCE = 3
 """Conjugate gradient steps before the tangent is factorised anew."""
 CLOSE = 0.05
 """Unbalanced force over the force at the clamps up to which an extrapolation is trusted."""
+FAR = 0.01
+"""The same share beyond which a predicted state's tangent is factorised before the first step."""
 HISTORY = 4
 """Equilibria used by the extrapolation."""
 
@@ -102,7 +104,7 @@ class PathSolver:
         self.factorisations = 0
         self._has_factor = False
         self._factor_is_current = False
-        self._refresh_early = False
+        self._accepted: Linearisation | None = None  # of the last balanced state
         self._history: list[tuple[float, State]] = []
         self._spare: Linearisation | None = None
 
@@ -121,7 +123,7 @@ class PathSolver:
         """
         state = start
         origin = start.corners
-        self._history = []
+        self._history, self._accepted = [], None
         for number, target in enumerate(targets):
             done, share, iterations, halvings = 0.0, 1.0, 0, 0
             while done < 1.0:
@@ -152,7 +154,7 @@ class PathSolver:
         guess = self._extrapolated(level, prescribed)
         lin = None if guess is None else self._linearise(guess)
         if guess is None or lin is None or not self._is_close(lin):
-            # one tangent at a time: those of large sheets take half a gigabyte
+            # two tangents at a time, no more: each of a large sheet takes a third of a gigabyte
             residual, self._spare = np.inf if lin is None else self._residual(lin)[0], lin
             other = self._along_tangent(state, prescribed)
             lin = self._linearise(other)
@@ -164,21 +166,17 @@ class PathSolver:
                 lin = self._linearise(guess)
         if not np.isfinite(lin.energy):
             raise StepError("A predicted fibre collapsed to a point.")
-        state = guess
-        first = True
-        for _ in range(MAX_NEWTON_STEPS):
+        state, self._accepted = guess, None
+        for count in range(MAX_NEWTON_STEPS):
             residual, limit = self._residual(lin)
             if residual <= limit:
                 return self._accept(state, lin, level, iterations)
             force = lin.condensed_force() * self.free
-            if not self._has_factor or (first and self._refresh_early):
+            far = residual * self.tolerance.relative > FAR * limit
+            if not self._has_factor or (count == 0 and far):
                 self._try_factorise(lin)
-            before = self.factorisations
             step = self._solve(lin, -force, max(0.3 * limit / residual, FORCING))
             iterations += 1
-            if first:  # if the last step's tangent was useful, the next one's probably is
-                self._refresh_early |= self.factorisations > before
-                first = False
             state, lin = self._line_search(state, lin, step)
         raise StepError(
             f"Newton's method did not balance the forces in {MAX_NEWTON_STEPS} steps "
@@ -194,6 +192,7 @@ class PathSolver:
             raise StepError(
                 "The balanced state is unstable (its tangent is not positive definite)."
             ) from None
+        self._accepted = lin
         self._history = [*self._history[1 - HISTORY :], (level, state)]
         return Equilibrium(
             state, lin.energy, np.where(self.fixed, lin.force.corners, 0), iterations
@@ -206,7 +205,7 @@ class PathSolver:
 
     def _along_tangent(self, state: State, prescribed: Array) -> State:
         """Prediction along the tangent of a balanced state, whose factor is available."""
-        lin = self._linearise(state)
+        lin = self._accepted or self._linearise(state)
         move = np.where(self.fixed, prescribed - state.corners, 0.0)
         force = lin.condensed_force() + lin.apply(move)
         if not self._has_factor:
@@ -214,7 +213,7 @@ class PathSolver:
         step = move + self._solve(lin, -force * self.free, 1e-3)
         guess = state.moved(lin.newton_step(step))
         guess.corners[self.fixed] = prescribed[self.fixed]
-        self._spare = lin
+        self._spare, self._accepted = lin, None
         return guess
 
     def _extrapolated(self, level: float, prescribed: Array) -> State | None:
