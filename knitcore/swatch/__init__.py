@@ -1,16 +1,15 @@
 """The finite swatch: a chart of any stitches as a nonlinear sheet, pulled, sheared or relaxed."""
 
 from knitcore.swatch.fields import Fields
+from knitcore.swatch.force_control import pull_with_force
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.misfit import Misfit, misfit, relaxed_shape
 from knitcore.swatch.models import Coupling, EnergyModel, SheetModel
-from knitcore.swatch.other_tests import biaxial_test, pull_with_force, trellis_test
-from knitcore.swatch.results import BiaxialTest, LockUp, StripTest, SwatchTest, TrellisTest
+from knitcore.swatch.results import LockUp, StripTest, SwatchTest
 from knitcore.swatch.sheet import Sheet, State
 from knitcore.swatch.strip import Clamps, chart_sheet, homogeneous_sheet, pull, strip_test
 
 __all__ = [
-    "BiaxialTest",
     "Clamps",
     "Coupling",
     "EnergyModel",
@@ -23,8 +22,6 @@ __all__ = [
     "State",
     "StripTest",
     "SwatchTest",
-    "TrellisTest",
-    "biaxial_test",
     "chart_sheet",
     "homogeneous_sheet",
     "misfit",
@@ -32,5 +29,4 @@ __all__ = [
     "pull_with_force",
     "relaxed_shape",
     "strip_test",
-    "trellis_test",
 ]

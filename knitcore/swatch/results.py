@@ -201,38 +201,3 @@ class StripTest(SwatchTest):
             told = f"{told}; {end}, waist {self.waist_strain[-1]:+.3f}"
         net = self._net_html()
         return showing.figure(showing.beside(curve, net), told, self.problem or "")
-
-
-@dataclass(frozen=True, eq=False)
-class BiaxialTest(SwatchTest):
-    """A biaxial test: all four edges pulled outwards, free to slide along themselves.
-
-    Attributes
-    ----------
-    strain_course, strain_wale : strains per step.
-    force_course_n, force_wale_n : forces on the edges.
-    stress_course_n_per_mm, stress_wale_n_per_mm : forces per initial length of the edge.
-    """
-
-    strain_course: Array
-    strain_wale: Array
-    force_course_n: Array
-    force_wale_n: Array
-    stress_course_n_per_mm: Array
-    stress_wale_n_per_mm: Array
-
-
-@dataclass(frozen=True, eq=False)
-class TrellisTest(SwatchTest):
-    """A picture frame: rigid hinged bars along the edges change the angle of courses and wales.
-
-    Attributes
-    ----------
-    shear_angle : rad, change of the angle per step.
-    moment_n_mm : work per shear angle, dE/d gamma.
-    shear_stress_n_per_mm : the moment over the rest area.
-    """
-
-    shear_angle: Array
-    moment_n_mm: Array
-    shear_stress_n_per_mm: Array

@@ -11,11 +11,9 @@ from knitcore import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import material
+from knitcore.piece import CutPiece, cloth_under
 from knitcore.piece.standard import bias_test, biaxial_test, trellis_test
-from knitcore.swatch import biaxial_test as grid_biaxial_test
 from knitcore.swatch import strip_test
-from knitcore.swatch import trellis_test as grid_trellis_test
-from knitcore.swatch.strip import homogeneous_sheet
 from knitcore.swatch.uncertainty import StripSpread
 
 ACRYLIC = material("acrylic")
@@ -34,20 +32,24 @@ def test_a_strip_along_the_columns_is_the_strip_test() -> None:
     assert test.force_log_sd == pytest.approx(spread, rel=0.02)
 
 
-def test_biaxial_and_trellis_are_the_grids() -> None:
+def test_biaxial_stresses_are_those_of_the_law() -> None:
     test = biaxial_test(
-        KNIT, ACRYLIC, 0.2, 0.1, width_mm=50.0, length_mm=60.0, steps=2, mesh_mm=20.0
+        KNIT, ACRYLIC, 0.3, 0.1, width_mm=50.0, length_mm=60.0, steps=2, mesh_mm=20.0
     )
-    grid = grid_biaxial_test(
-        homogeneous_sheet(LAW, 50.0, 60.0, columns=2, rows=2), 0.2, 0.1, steps=2
+    course, wale = (
+        cloth_under(CutPiece.rectangle(50.0, 60.0), KNIT, ACRYLIC)
+        .sheet.laws[0]
+        .stress(test.strain_x, test.strain_y)
     )
-    assert test.force_x_n == pytest.approx(grid.force_course_n, rel=1e-6)
-    assert test.force_y_n == pytest.approx(grid.force_wale_n, rel=1e-6)
+    assert test.stress_x_n_per_mm == pytest.approx(course, rel=1e-6)
+    assert test.stress_y_n_per_mm == pytest.approx(wale, rel=1e-6)
+
+
+def test_a_frame_along_the_rows_shears_without_stretching_yarn() -> None:
     frame = trellis_test(KNIT, ACRYLIC, 0.5, side_mm=60.0, steps=2, mesh_mm=20.0)
-    sheet = homogeneous_sheet(LAW, 60.0, 60.0, columns=2, rows=2)
-    assert frame.moment_n_mm == pytest.approx(
-        grid_trellis_test(sheet, 0.5, steps=2).moment_n_mm, rel=1e-6
-    )
+    shear = LAW.shear_modulus * frame.shear_angle
+    assert frame.shear_stress_n_per_mm == pytest.approx(shear, rel=1e-6)
+    assert np.abs(frame.test.fields().strain_course).max() < 1e-8
 
 
 def test_a_frame_measures_the_shear_modulus() -> None:

@@ -18,12 +18,10 @@ from knitcore.swatch import (
     QuarterGrid,
     Sheet,
     SheetModel,
-    biaxial_test,
     homogeneous_sheet,
     pull,
     pull_with_force,
     solver,
-    trellis_test,
 )
 from knitcore.swatch.run import run_path
 from knitcore.swatch.strip import load_levels
@@ -102,21 +100,6 @@ def test_sliding_clamps_give_the_uniaxial_response() -> None:
     assert test.converged
     assert test.stress_n_per_mm == pytest.approx(exact.stress, rel=1e-6)
     assert test.waist_strain == pytest.approx(exact.transverse_strain, abs=1e-6)
-
-
-def test_biaxial_stresses_are_those_of_the_law() -> None:
-    sheet = homogeneous_sheet(GARTER, 60, 40, columns=6, rows=4)
-    test = biaxial_test(sheet, 0.3, 0.4, steps=4)
-    course, wale = sheet.laws[0].stress(0.3, 0.4)
-    assert test.stress_course_n_per_mm[-1] == pytest.approx(float(course), rel=1e-6)
-    assert test.stress_wale_n_per_mm[-1] == pytest.approx(float(wale), rel=1e-6)
-
-
-def test_a_trellis_shears_without_stretching_yarn() -> None:
-    sheet = homogeneous_sheet(GARTER, 60, 40, columns=6, rows=4)
-    test = trellis_test(sheet, 0.8, steps=4)
-    assert test.shear_stress_n_per_mm == pytest.approx(0.01 * test.shear_angle, rel=1e-6)
-    assert np.abs(test.fields().strain_xx).max() < 1e-8
 
 
 def test_force_control_finds_the_strains_of_strain_control() -> None:

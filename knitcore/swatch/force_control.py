@@ -1,4 +1,4 @@
-"""Other tests of a swatch: a strip under given forces, biaxial stretch and trellis shear."""
+"""A strip test in which the clamps are pulled with given forces."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from knitcore.arrays import Array
 from knitcore.errors import ConvergenceError, InputError
 from knitcore.fabric import Direction
-from knitcore.swatch.results import BiaxialTest, StripTest, TrellisTest
+from knitcore.swatch.results import StripTest
 from knitcore.swatch.run import Path, Progress, run_path
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.solver import Equilibrium
@@ -18,7 +17,6 @@ from knitcore.swatch.strip import (
     LOCK_UP_SHARE,
     MAX_STRAIN,
     Clamps,
-    check_lock_up,
     clamp_edges,
     clamp_mask,
     lock_up_strain,
@@ -28,8 +26,6 @@ from knitcore.swatch.strip import (
 
 FORCE_TOLERANCE = 1e-6
 MAX_CORRECTIONS = 25
-MAX_SHEAR_ANGLE = 1.2
-"""rad; beyond it courses and wales touch in any knit."""
 
 
 def pull_with_force(
@@ -115,109 +111,3 @@ def pull_with_force(
         problem = f"Force {len(found) + 1} of {len(levels)} was not reached. {error}"
     path = Path(tuple(found), problem, time.perf_counter() - begin)
     return strip_result(sheet, direction, np.array(strains), path)
-
-
-def biaxial_test(
-    sheet: Sheet,
-    strain_course: float,
-    strain_wale: float,
-    *,
-    steps: int = 10,
-    progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
-) -> BiaxialTest:
-    """Pull all four edges outwards; each edge stays straight and slides along itself.
-
-    Raises
-    ------
-    InputError
-        If a strain is negative, both are 0, or one is beyond the lock-up.
-    """
-    last = {Direction.COURSE: strain_course, Direction.WALE: strain_wale}
-    for direction, strain in last.items():
-        if not (np.isfinite(strain) and strain >= 0):
-            raise InputError(
-                f"strain_{direction}", f"{strain} is not a stretch.", "Give 0 or more."
-            )
-        check_lock_up(sheet, direction, strain)
-    if max(last.values()) == 0:
-        raise InputError("strain_course", "both strains are 0.", "Give one above 0.")
-    grid = sheet.grid
-    share = np.arange(1, steps + 1) / steps
-    fixed = np.zeros((len(grid.corners), 2), dtype=bool)
-    for direction in Direction:
-        for name in clamp_edges(direction):
-            fixed[grid.edge(name), direction.axis] = True
-    targets = [grid.corners * (1 + s * np.array([strain_course, strain_wale])) for s in share]
-    path = run_path(sheet, fixed, targets, progress=progress, cancelled=cancelled)
-    done = share[: len(path.found)]
-    course, wale = path.forces(grid.edge("right"), 0), path.forces(grid.edge("top"), 1)
-    return BiaxialTest.of(
-        sheet,
-        path,
-        strain_course=done * strain_course,
-        strain_wale=done * strain_wale,
-        force_course_n=course,
-        force_wale_n=wale,
-        stress_course_n_per_mm=course / grid.length_mm,
-        stress_wale_n_per_mm=wale / grid.width_mm,
-    )
-
-
-def trellis_test(
-    sheet: Sheet,
-    shear_angle: float,
-    *,
-    steps: int = 10,
-    progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
-) -> TrellisTest:
-    """Shear a swatch in a hinged frame by an angle (rad) between courses and wales.
-
-    Raises
-    ------
-    InputError
-        If the angle is not between 0 and 1.2 rad.
-    """
-    if not 0 < shear_angle <= MAX_SHEAR_ANGLE:
-        raise InputError(
-            "shear_angle", f"{shear_angle} rad is out of range.", f"Use 0 to {MAX_SHEAR_ANGLE}."
-        )
-    grid = sheet.grid
-    angles = shear_angle * np.arange(1, steps + 1) / steps
-    fixed = np.zeros((len(grid.corners), 2), dtype=bool)
-    for name in ("left", "right", "bottom", "top"):
-        fixed[grid.edge(name)] = True
-    path = run_path(
-        sheet,
-        fixed,
-        [grid.corners @ _frame(angle) for angle in angles],
-        progress=progress,
-        cancelled=cancelled,
-    )
-    angles = angles[: len(path.found)]
-    # the work of the frame: reactions times the velocity of its bars per angle
-    moment = np.array(
-        [
-            np.sum(e.reaction * (grid.corners @ _frame_rate(angle)))
-            for e, angle in zip(path.found, angles, strict=True)
-        ]
-    )
-    return TrellisTest.of(
-        sheet,
-        path,
-        shear_angle=angles,
-        moment_n_mm=moment,
-        shear_stress_n_per_mm=moment / (grid.width_mm * grid.length_mm),
-    )
-
-
-def _frame(angle: float) -> Array:
-    """Rows: images of the unit vectors along course and wale."""
-    c, s = np.cos(angle / 2), np.sin(angle / 2)
-    return np.array([[c, s], [s, c]])
-
-
-def _frame_rate(angle: float) -> Array:
-    c, s = np.cos(angle / 2) / 2, np.sin(angle / 2) / 2
-    return np.array([[-s, c], [c, -s]])
