@@ -205,7 +205,14 @@ def test_a_piece_of_patches_keeps_to_a_gauge():
     assert patches.together().relaxed_course_mm == pytest.approx(100 / 35, rel=0.01)
     bottom, top = patches.answers[0][0], patches.answers[-1][0]
     assert bottom.relaxed_course_mm < 0.9 * top.relaxed_course_mm
-    assert top.provenance == "measured"
+    assert (bottom.provenance, top.provenance) == ("learned with known size", "measured")
+
+
+def test_a_gauge_leaves_the_moduli_of_a_measured_fabric():
+    cotton, chart = material("cotton:published"), StitchChart.parse("K")
+    plain, given = predict(chart, cotton), predict(chart, cotton, RelaxedSize.from_gauge(25, 40))
+    for direction in Direction:
+        assert given.modulus_n_per_mm(direction) == plain.modulus_n_per_mm(direction)
 
 
 def test_a_large_chart_of_noise_is_answered():
