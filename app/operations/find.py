@@ -267,7 +267,7 @@ def _lines(r: FindResult) -> list[str]:
 def _line(c: CandidateResult) -> str:
     values = "  ".join(_value(c, label) for label in c.values)
     return (
-        f"{c.repeat:20} {c.material}: {values}; "
+        f"{c.repeat:20} {c.chance:4.0%} sure  {c.material}: {values}; "
         f"{c.transfers_per_stitch:.2f} transfers and {c.crossings_per_stitch:.2f} crossings a "
         f"stitch, curl {c.curl:+.2f}; {c.provenance}"
     )
@@ -295,7 +295,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Rank the repeats of atlases (or of materials, up to 3x3) by how near they come.",
+        help="Rank the repeats of atlases (or of materials, up to 3x3) by how surely they fit.",
         names=dict.fromkeys(("laws", "materials", "targets", "repeats", "elsewhere"))
         | {
             "transfers_per_stitch": "--most-transfers",
