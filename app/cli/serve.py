@@ -49,7 +49,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
                     if as_json
                     else f"Knitcore is at {address}  (Ctrl+C stops it)"
                 )
-                _serve(settings, listener)
+                serve_on(settings, listener)
     except ServiceError as error:
         remedy = f" {error.remedy}" if error.remedy else ""
         raise click.ClickException(f"{error.detail}{remedy}") from error
@@ -76,7 +76,8 @@ def _prepared(settings: Settings, address: str) -> Iterator[None]:
         database.close()
 
 
-def _serve(settings: Settings, listener: socket.socket) -> None:
+def serve_on(settings: Settings, listener: socket.socket) -> None:
+    """Serve on an open socket until a signal ends the service."""
     import uvicorn
 
     from app.compute import memory

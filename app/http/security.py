@@ -95,7 +95,7 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        scope["headers"] = _with_own_cookie_only(scope["headers"])
+        scope["headers"] = with_own_cookie_only(scope["headers"])
         limits: dict[str, str] = {}
         if self.settings.asks_for_login:
             current_user.set(NOBODY)  # until the request's token or session is known
@@ -377,7 +377,7 @@ def _cookie(headers: Headers) -> str:
     return ""
 
 
-def _with_own_cookie_only(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+def with_own_cookie_only(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
     """Without cookies of other programs: Python takes seconds to read 30 kB of backslashes."""
     kept = [(name, value) for name, value in headers if name != b"cookie"]
     if len(kept) < len(headers):

@@ -42,7 +42,7 @@ def atlas_of(name: str, extent: Extent, context: Context, file: Path | None = No
         return load_atlas(file)
     material = context.material(name)
     key = f"{material.identifier}-{extent}-{material_fingerprint(material)}"
-    built = _built()
+    built = built_here()
     if key not in built:
         cached = context.data_dir / FOLDER / f"{key}-{code_version(*DECIDING)[:8]}.npz"
         repeats = repeats_of(extent)
@@ -57,7 +57,7 @@ def atlas_of(name: str, extent: Extent, context: Context, file: Path | None = No
 
 
 @lru_cache(maxsize=1)
-def _built() -> dict[str, Atlas]:
+def built_here() -> dict[str, Atlas]:
     """Atlases that this process has built; at most two of each material."""
     return {}
 

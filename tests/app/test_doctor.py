@@ -165,7 +165,7 @@ def broken(
 
 def _serve(monkeypatch: pytest.MonkeyPatch) -> Result:
     """Start the service as far as it serves."""
-    monkeypatch.setattr(serve_module, "_serve", lambda *_: None)
+    monkeypatch.setattr(serve_module, "serve_on", lambda *_: None)
     monkeypatch.setattr(serve_module.os, "umask", lambda _: 0)
     monkeypatch.setattr(observing, "configure_logging", lambda _: None)
     port = [] if "KNITCORE_PORT" in os.environ else ["--port", "0"]

@@ -21,7 +21,7 @@ from websockets.typing import Subprotocol
 from app.cli.main import main
 from app.http.bodies import MAX_VALUES
 from app.http.rate import RateLimit
-from app.http.security import LOGIN_FAILURES, PAGE_POLICY, _with_own_cookie_only
+from app.http.security import LOGIN_FAILURES, PAGE_POLICY, with_own_cookie_only
 from app.http.tokens import Tokens
 from app.main import create_app
 from app.settings import Settings
@@ -400,7 +400,7 @@ def test_an_unexpected_error_carries_the_headers_and_no_secret_to_the_log(
 def test_only_the_own_cookie_is_read() -> None:
     """Python's reader takes time that grows with the square of a quoted cookie's length."""
     own, other = b"knitcore_session=abc", b'theme="\\\\\\\\"'
-    kept = _with_own_cookie_only([(b"host", b"h"), (b"cookie", other + b"; " + own)])
+    kept = with_own_cookie_only([(b"host", b"h"), (b"cookie", other + b"; " + own)])
     assert kept == [(b"host", b"h"), (b"cookie", own)]
     for unread in (other, b'knitcore_session="\\\\"'):
-        assert _with_own_cookie_only([(b"cookie", unread)]) == []
+        assert with_own_cookie_only([(b"cookie", unread)]) == []

@@ -22,7 +22,7 @@ def context(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Context:
 
 def forget(monkeypatch: pytest.MonkeyPatch) -> None:
     """As in a new process."""
-    monkeypatch.setattr(atlases, "_built", dict)
+    monkeypatch.setattr(atlases, "built_here", dict)
 
 
 def files(context: Context) -> list[str]:

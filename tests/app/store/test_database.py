@@ -73,23 +73,17 @@ def test_waiting_changes_share_a_commit_and_fail_alone(database: Database) -> No
         go_on.wait(10)
         _insert(0)(connection)
 
-    def later(number: int) -> bool:
-        try:
-            database.write(_insert(number % 10))
-        except IntegrityError:
-            return False
-        return True
-
-    with ThreadPoolExecutor(16) as threads:
-        opening = threads.submit(database.write, first)
-        assert begun.wait(10)
-        rest = [threads.submit(later, n) for n in range(1, 15)]
-        while database._waiting.qsize() < 14:
-            pass
+    async def scenario() -> list[Any]:
+        opening = asyncio.create_task(database.written(first))
+        assert await asyncio.to_thread(begun.wait, 10)
+        rest = [asyncio.create_task(database.written(_insert(n % 10))) for n in range(1, 15)]
+        await asyncio.sleep(0)  # all of them have handed their change in
         go_on.set()
-        opening.result(10)
-        kept = [r.result(10) for r in rest]
-    assert kept.count(False) == 5  # 10 to 14 repeat 0 to 4
+        await opening
+        return await asyncio.gather(*rest, return_exceptions=True)
+
+    refused = [isinstance(outcome, IntegrityError) for outcome in asyncio.run(scenario())]
+    assert refused == [False] * 9 + [True] * 5  # 10 to 14 repeat 0 to 4
     assert _values(database) == list(range(10))
     assert len(commits) == 2
 
