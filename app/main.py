@@ -7,9 +7,11 @@ import contextlib
 import logging
 import os
 from collections.abc import AsyncIterator, Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import TYPE_CHECKING
 
+from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 
 from app.api import routers
@@ -49,6 +51,9 @@ log = logging.getLogger("knitcore.app")
 
 JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
+THREADS = 8
+"""Of the service, beside the event loop. Python runs one at a time: with FastAPI's 40 the loop
+would wait for 40 others each time it comes back from reading or sending."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -65,6 +70,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             os.environ.setdefault(name, "1")  # workers share the cores; see docs/swatch.md
+        asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(THREADS, "service"))
+        current_default_thread_limiter().total_tokens = THREADS  # FastAPI's
         app.state.database = await asyncio.to_thread(_open_database, chosen)
         app.state.login = await asyncio.to_thread(_login, app.state.database, chosen)
         app.state.cluster = _cluster(chosen)

@@ -1,9 +1,11 @@
 """Attacks by one ordinary user on a service on loopback, and their effect on other users.
 
 A probe, a process of its own, requests ``/healthz`` throughout. For each attack its waits are
-printed, the CPU time that the service's event loop took, and how far the memory of the service
-process rose above what it was before. All is bounded in count and time. Names of attacks choose
-some of them.
+printed, and the CPU time that the service itself took during the longest: on a machine that other
+programs keep busy, only that says what the attack did. ``busy`` marks an attack with long waits of
+which the service itself took no more than the limit. Further the CPU time of the event loop, and
+how far the memory of the service process rose above what it was before. All is bounded in count and
+time. Names of attacks choose some of them.
 
     python benchmarks/attacks.py
     python benchmarks/attacks.py frames large_file
@@ -40,26 +42,29 @@ SIDE = 1000
 AT_ONCE = 40
 
 
-def ask(address: str, over: Any, waits: Any) -> None:
-    """In the probe: one small request after the other; at the end, how long each took."""
-    found: list[float] = []
+def ask(address: str, pid: int, over: Any, waits: Any) -> None:
+    """In the probe: one small request after the other; at the end, how long each took, and how much
+    CPU time the service spent meanwhile."""
+    found: list[tuple[float, float]] = []
+    clock = (~pid << 3) | 2  # Linux: CPU time of another process
     connection = http.client.HTTPConnection(address, timeout=60.0)
     connection.connect()
     waits.send("ready")
     while not found or not over.wait(PROBE_S):
-        start = time.perf_counter()
+        start, spent = time.perf_counter(), time.clock_gettime(clock)
         connection.request("GET", "/healthz")
         connection.getresponse().read()
-        found.append(time.perf_counter() - start)
+        found.append((time.perf_counter() - start, time.clock_gettime(clock) - spent))
     waits.send(found)
 
 
 @contextlib.contextmanager
-def probe(url: str, waits: list[float]) -> Iterator[None]:
+def probe(service: Service, waits: list[tuple[float, float]]) -> Iterator[None]:
     """Probe while the block runs; not in this process, whose own work would delay it."""
     spawn = multiprocessing.get_context("spawn")
     over, (theirs, ours) = spawn.Event(), spawn.Pipe(duplex=False)
-    process = spawn.Process(target=ask, args=(url.removeprefix("http://"), over, ours))
+    address = service.url.removeprefix("http://")
+    process = spawn.Process(target=ask, args=(address, service.pid, over, ours))
     process.start()
     theirs.recv()
     try:
@@ -283,18 +288,22 @@ def main(names: list[str]) -> int:
             for attack in ATTACKS:
                 if names and attack.__name__ not in names:
                     continue
-                waits: list[float] = []
+                found: list[tuple[float, float]] = []
                 cpu, rss = _loop_s(service.pid), _memory(service.pid, "VmRSS")
                 _forget_peak(service.pid)
-                with probe(service.url, waits):
+                with probe(service, found):
                     came = attack(client)
                 cpu, rise = _loop_s(service.pid) - cpu, _memory(service.pid, "VmHWM") - rss
-                good = max(waits) <= MAX_WAIT_S and rise <= MAX_RISE_BYTES
-                missed += not good
+                waits, spent = np.array(found).T
+                own = np.minimum(waits, spent)
+                mark = _mark(float(waits.max()), float(own.max()), rise)
+                missed += mark == "FAIL"
                 p50, p99 = np.percentile(waits, [50, 99])
                 print(
-                    f"{'pass' if good else 'FAIL'}  {attack.__name__:17} wait p50 {1e3 * p50:4.1f} "
-                    f"p99 {1e3 * p99:4.0f} longest {1e3 * max(waits):4.0f} ms  "
+                    f"{mark}  {attack.__name__:17} wait p50 {1e3 * p50:4.1f} "
+                    f"p99 {1e3 * p99:4.0f} longest {1e3 * waits.max():4.0f} ms, of CPU p99 "
+                    f"{1e3 * np.percentile(own, 99):4.0f} longest "
+                    f"{1e3 * own.max():4.0f} ms  "
                     f"event loop {1e3 * cpu:5.0f} ms of CPU  "
                     f"memory {rss / 1e6:4.0f} + {rise / 1e6:3.0f} MB  "
                     f"load {os.getloadavg()[0]:.1f}  ({came})",
@@ -304,6 +313,12 @@ def main(names: list[str]) -> int:
             client.close()
             service.kill()
     return 1 if missed else 0
+
+
+def _mark(wait_s: float, spent_s: float, rise: int) -> str:
+    if spent_s > MAX_WAIT_S or rise > MAX_RISE_BYTES:
+        return "FAIL"
+    return "pass" if wait_s <= MAX_WAIT_S else "busy"
 
 
 def _memory(pid: int, what: str) -> int:

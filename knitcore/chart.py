@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -18,8 +17,11 @@ MAX_STITCHES_PER_SIDE = 1000
 
 KNIT_SYMBOLS = frozenset("Kk|")
 PURL_SYMBOLS = frozenset("Pp•–-")
-_SEPARATORS = re.compile(r"[ \t,]+")
-_UNKNOWN = re.compile(f"[^{re.escape(''.join(sorted(KNIT_SYMBOLS | PURL_SYMBOLS)))}]")
+_CANONICAL = str.maketrans(
+    dict.fromkeys(KNIT_SYMBOLS, "K")
+    | dict.fromkeys(PURL_SYMBOLS, "P")
+    | dict.fromkeys(" \t,", None)
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +75,7 @@ class StitchChart:
         InputError
             Unknown symbols and ragged rows are named with their line and column.
         """
-        rows: list[list[bool]] = []
+        rows: list[str] = []
         first_line = 0
         lines = (
             (number, part)
@@ -82,17 +84,16 @@ class StitchChart:
             for part in line.split("/")
         )
         for number, line in lines:
-            stitches = _SEPARATORS.sub("", line.strip())
-            if not stitches:
+            row = line.strip().translate(_CANONICAL)
+            if not row:
                 continue
-            if unknown := _UNKNOWN.search(stitches):
-                column, symbol = unknown.start() + 1, unknown.group()
+            if row.count("K") + row.count("P") < len(row):
+                column, symbol = next((i, s) for i, s in enumerate(row, start=1) if s not in "KP")
                 raise InputError(
                     "chart",
                     f"line {number}, stitch {column} is {symbol!r}, which is neither K nor P.",
                     "Write every stitch as K or P.",
                 )
-            row = [symbol in PURL_SYMBOLS for symbol in stitches]
             if not rows:
                 first_line = number
             elif len(row) != len(rows[0]):
@@ -105,7 +106,8 @@ class StitchChart:
             check_size(len(rows), len(row))
         if not rows:
             raise InputError("chart", "the chart has no stitches.", "Give at least one row of K/P.")
-        return cls(np.array(rows[::-1], dtype=bool))
+        symbols = np.frombuffer("".join(rows).encode("ascii"), dtype=np.uint8)
+        return cls(symbols.reshape(len(rows), -1)[::-1] == ord("P"))
 
     @classmethod
     def of_fabric(cls, fabric: Fabric | str, rows: int = 2, columns: int = 2) -> StitchChart:
@@ -132,8 +134,9 @@ class StitchChart:
     @property
     def text(self) -> str:
         """The chart as K/P lines, top row first; :meth:`parse` reads it back."""
-        symbols = np.where(self.purl[::-1], "P", "K").tolist()
-        return "\n".join("".join(row) for row in symbols)
+        symbols = np.full((self.rows, self.columns + 1), ord("\n"), dtype=np.uint8)
+        symbols[:, :-1] = np.frombuffer(b"KP", dtype=np.uint8).take(self.purl[::-1])
+        return symbols.tobytes()[:-1].decode("ascii")
 
     @property
     def key(self) -> str:

@@ -23,6 +23,9 @@ from knitcore.errors import InputError
 log = logging.getLogger("knitcore.app")
 
 MAX_HANDLES = 65_536
+SWITCH_S = 0.0005
+"""How long threads keep the interpreter from the event loop, which asks for it several times in
+each request; Python's own 5 ms would add up."""
 SPARE_HANDLES = 400
 """For databases, workers, views and files."""
 
@@ -85,6 +88,7 @@ def serve_on(settings: Settings, listener: socket.socket) -> None:
     from app.main import create_app
     from app.viewer.incoming import MAX_PICTURE_BYTES
 
+    sys.setswitchinterval(SWITCH_S)
     memory.keep_no_large_blocks()
     app = create_app(settings)
     door = Door(

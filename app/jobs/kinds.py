@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import threading
 from collections.abc import Callable
 from functools import reduce
 from operator import or_
@@ -18,6 +19,8 @@ from knitcore.yarnlibrary import fingerprint
 KINDS: dict[str, Operation[Any, Any]] = {
     name: operation for name, operation in operations().items() if operation.job
 }
+_reading = threading.Lock()
+"""Held while the program's sources are read, which many jobs at once would all do."""
 
 
 class JobOf(RequestModel):
@@ -53,10 +56,11 @@ def job_key(kind: str, request: str) -> str:
 
     The first one takes half a second.
     """
-    packages = [extension.package for extension in extensions(Group.MATERIALS)]
     digest = hashlib.sha256(request.encode()).hexdigest()  # a file's megabytes are hashed once
-    content = {"kind": kind, "request": digest, "packages": packages}
-    return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
+    with _reading:
+        packages = [extension.package for extension in extensions(Group.MATERIALS)]
+        content = {"kind": kind, "request": digest, "packages": packages}
+        return fingerprint.content_key(content, (KINDS[kind].run.__module__,))
 
 
 def read_job(content: bytes, *, cancelled: Callable[[], bool]) -> tuple[str, str]:

@@ -94,8 +94,9 @@ class SceneWriter:
             self._place_camera(everybody=True)
 
     def close(self) -> None:
-        """Build nothing any more."""
+        """Build nothing any more, and forget what was drawn."""
         with self._lock:
+            self._drawing = None
             if self._timer is not None:
                 self._timer.cancel()
                 self._timer = None

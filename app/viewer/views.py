@@ -52,8 +52,12 @@ class View:
         return self.writer.write(drawing)
 
     def stop(self) -> None:
-        """Close its server."""
+        """Close its server.
+
+        The scene is freed at once; Python may keep the rest, objects that refer to each other.
+        """
         self.writer.close()
+        self.server.scene.reset()
         self.server.stop()
 
 

@@ -93,9 +93,10 @@ class KernelModel:
     @classmethod
     def fit(cls, settings: KernelSettings, samples: Samples, targets: Array) -> KernelModel:
         """Fit to targets (n, outputs)."""
-        from scipy.linalg import cho_solve, cholesky
+        from scipy.linalg import cho_solve
 
-        factor = cholesky(noisy_covariance(settings, samples), lower=True)
+        # NumPy's lets other threads go on meanwhile, SciPy's does not
+        factor = np.asarray(np.linalg.cholesky(noisy_covariance(settings, samples)), dtype=float)
         return cls(settings, samples, factor, cho_solve((factor, True), targets))
 
     def __call__(self, wanted: Samples) -> tuple[Array, Array]:
