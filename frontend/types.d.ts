@@ -702,6 +702,43 @@ export interface DeviationDocument {
 /** A material direction: course = along rows (x), wale = along columns (y). */
 export type Direction = "course" | "wale";
 
+/** A fabric, and the sizes of the test. */
+export interface DrapeRequest {
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
+  linear_density_g_per_m: number;
+  chart: string | PureFabricChart;
+  /** Diameter of the round piece. */
+  piece_mm?: number;
+  /** Diameter of the disc. */
+  disc_mm?: number;
+  /** Rectangles of the sheet across the piece. */
+  across?: number;
+  /** Also return the corners of the sheet. */
+  corners?: boolean;
+}
+
+/** The draped piece in the state of least energy of those found. */
+export interface DrapeResult {
+  kind: "drape";
+  /** Share of the ring outside the disc that its shadow covers: 1 for a board. */
+  coefficient: number;
+  /** Smallest and largest of the states found: draped cloth has several. */
+  coefficient_of_states: [number, number];
+  /** Around the rim. */
+  folds: number;
+  /** From the disc to the lowest point. */
+  fall_mm: number;
+  bending_length_course_mm: number;
+  bending_length_wale_mm: number;
+  weight_g_per_m2: number;
+  converged: boolean;
+  /** Corners of the sheet line by line, mm; null outside the piece. */
+  corners_mm: (([number, number, number] | null)[])[] | null;
+  notes: string[];
+}
+
 /** Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps). */
 export type Edges = "measured" | "rigid";
 
@@ -1157,6 +1194,40 @@ export interface Glove {
 /** Groups of entry points, and what their functions return lists of. */
 export type Group = "knitcore.patterns" | "knitcore.materials" | "knitcore.exporters" | "knitcore.measures";
 
+/** A whole piece and what holds it. */
+export interface HangRequest {
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
+  linear_density_g_per_m: number;
+  chart: string | PureFabricChart;
+  /** The whole top edge, or its two corners. */
+  by?: HungBy;
+  /** Also return the corners of the sheet. */
+  corners?: boolean;
+  /** CPU time after which the current shape is returned, not converged. */
+  time_limit_s?: number;
+}
+
+/** The piece as it hangs. */
+export interface HangResult {
+  kind: "hang";
+  /** Name of the shape, for 3D views. */
+  id: string;
+  weight_g: number;
+  /** From the highest point to the lowest. */
+  drop_mm: number;
+  width_mm: number;
+  depth_mm: number;
+  /** Strain of the middle column. */
+  lengthening: number;
+  /** If false, the shape is only a preview. */
+  converged: boolean;
+  /** Corners of the sheet line by line, mm; null outside the piece. */
+  corners_mm: (([number, number, number] | null)[])[] | null;
+  notes: string[];
+}
+
 /** An edge that is gripped, or sewn to something stiff, and moved as a whole. */
 export interface HeldInput {
   kind: "held";
@@ -1166,6 +1237,9 @@ export interface HeldInput {
   /** Moved so far; null lets it slide along y. */
   y_mm?: number | null;
 }
+
+/** What holds a hanging piece. */
+export type HungBy = "edge" | "corners";
 
 /** A file of any kind that holds a chart. */
 export interface ImportRequest {
@@ -1449,6 +1523,44 @@ export interface NoRequest {
 
 /** Where the constants of a law come from. */
 export type Origin = "measured" | "simulated" | "fitted" | "estimated";
+
+/** A fabric, and how far a strip of it hangs over the edge of a table. */
+export interface OverhangRequest {
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
+  linear_density_g_per_m: number;
+  chart: string | PureFabricChart;
+  /** Along the strip. */
+  direction?: Direction;
+  /** Beyond the edge; that which falls by 41.5° if left out. */
+  overhang_mm?: number | null;
+  /** Also return the corners of the sheet. */
+  corners?: boolean;
+}
+
+/** A strip at rest. */
+export interface OverhangResult {
+  kind: "overhang";
+  overhang_mm: number;
+  /** From the edge to the tip, below the horizontal. */
+  angle_deg: number;
+  /** How far out the tip is. */
+  reach_mm: number;
+  /** How far down the tip is. */
+  fall_mm: number;
+  /** By Peirce's formula from overhang and angle. */
+  bending_length_mm: number;
+  /** Weight per area times the bending length cubed. */
+  rigidity_n_mm: number;
+  /** That with which the strip was bent. */
+  yarn_level_rigidity_n_mm: number;
+  weight_g_per_m2: number;
+  converged: boolean;
+  /** Corners of the sheet line by line, mm; null outside the piece. */
+  corners_mm: (([number, number, number] | null)[])[] | null;
+  notes: string[];
+}
 
 /** The design's state after strokes were kept. */
 export interface Painted {

@@ -61,6 +61,8 @@ Fabric = Literal["stockinette", "garter", "rib", "seed"]
 
 Finish = Literal["waste", "bind-off"]
 
+HungBy = Literal["edge", "corners"]
+
 Laws = Literal["refitted", "published"]
 
 Quantity = Literal[
@@ -350,6 +352,24 @@ class DesignRepeat(BaseModel):
     placements: list[Placement] = []
 
 
+class DrapeRequest(TypedDict):
+    """A fabric, and the sizes of the test."""
+
+    material: str
+    """Identifier of a material of the library."""
+    linear_density_g_per_m: float
+    """Of the yarn, g/m: weigh some metres; tex divided by 1000."""
+    chart: str | PureFabricChart
+    piece_mm: NotRequired[float]
+    """Diameter of the round piece."""
+    disc_mm: NotRequired[float]
+    """Diameter of the disc."""
+    across: NotRequired[int]
+    """Rectangles of the sheet across the piece."""
+    corners: NotRequired[bool]
+    """Also return the corners of the sheet."""
+
+
 class EstimateRequest(TypedDict):
     """What is known of the yarn and the product."""
 
@@ -537,6 +557,22 @@ class Glove(TypedDict):
     fingers: NotRequired[list[FingerSize] | None]
 
 
+class HangRequest(TypedDict):
+    """A whole piece and what holds it."""
+
+    material: str
+    """Identifier of a material of the library."""
+    linear_density_g_per_m: float
+    """Of the yarn, g/m: weigh some metres; tex divided by 1000."""
+    chart: str | PureFabricChart
+    by: NotRequired[HungBy]
+    """The whole top edge, or its two corners."""
+    corners: NotRequired[bool]
+    """Also return the corners of the sheet."""
+    time_limit_s: NotRequired[float]
+    """CPU time after which the current shape is returned, not converged."""
+
+
 class HeldInput(TypedDict):
     """An edge that is gripped, or sewn to something stiff, and moved as a whole."""
 
@@ -605,6 +641,22 @@ class MaterialRequest(TypedDict):
 
 class NoRequest(TypedDict):
     """The request of an operation without inputs."""
+
+
+class OverhangRequest(TypedDict):
+    """A fabric, and how far a strip of it hangs over the edge of a table."""
+
+    material: str
+    """Identifier of a material of the library."""
+    linear_density_g_per_m: float
+    """Of the yarn, g/m: weigh some metres; tex divided by 1000."""
+    chart: str | PureFabricChart
+    direction: NotRequired[Direction]
+    """Along the strip."""
+    overhang_mm: NotRequired[float | None]
+    """Beyond the edge; that which falls by 41.5° if left out."""
+    corners: NotRequired[bool]
+    """Also return the corners of the sheet."""
 
 
 class Palette(TypedDict):
@@ -1530,6 +1582,27 @@ class DeviationDocument(BaseModel):
     source: str = ""
 
 
+class DrapeResult(BaseModel):
+    """The draped piece in the state of least energy of those found."""
+
+    kind: Literal["drape"] = "drape"
+    coefficient: float
+    """Share of the ring outside the disc that its shadow covers: 1 for a board."""
+    coefficient_of_states: tuple[float, float]
+    """Smallest and largest of the states found: draped cloth has several."""
+    folds: int
+    """Around the rim."""
+    fall_mm: float
+    """From the disc to the lowest point."""
+    bending_length_course_mm: float
+    bending_length_wale_mm: float
+    weight_g_per_m2: float
+    converged: bool
+    corners_mm: list[list[tuple[float, float, float] | None]] | None = None
+    """Corners of the sheet line by line, mm; null outside the piece."""
+    notes: list[str]
+
+
 class EstimateResult(BaseModel):
     """All four fabrics of the yarn."""
 
@@ -1812,6 +1885,26 @@ class GaugeResult(BaseModel):
     source: str
 
 
+class HangResult(BaseModel):
+    """The piece as it hangs."""
+
+    kind: Literal["hang"] = "hang"
+    id: str
+    """Name of the shape, for 3D views."""
+    weight_g: float
+    drop_mm: float
+    """From the highest point to the lowest."""
+    width_mm: float
+    depth_mm: float
+    lengthening: float
+    """Strain of the middle column."""
+    converged: bool
+    """If false, the shape is only a preview."""
+    corners_mm: list[list[tuple[float, float, float] | None]] | None = None
+    """Corners of the sheet line by line, mm; null outside the piece."""
+    notes: list[str]
+
+
 class ImportResult(BaseModel):
     """The content of a file."""
 
@@ -2048,6 +2141,30 @@ class NewShare(BaseModel):
     created_at: AwareDatetime
     token: str
     """The design is at /api/v1/shared/{token} for who has this."""
+
+
+class OverhangResult(BaseModel):
+    """A strip at rest."""
+
+    kind: Literal["overhang"] = "overhang"
+    overhang_mm: float
+    angle_deg: float
+    """From the edge to the tip, below the horizontal."""
+    reach_mm: float
+    """How far out the tip is."""
+    fall_mm: float
+    """How far down the tip is."""
+    bending_length_mm: float
+    """By Peirce's formula from overhang and angle."""
+    rigidity_n_mm: float
+    """Weight per area times the bending length cubed."""
+    yarn_level_rigidity_n_mm: float
+    """That with which the strip was bent."""
+    weight_g_per_m2: float
+    converged: bool
+    corners_mm: list[list[tuple[float, float, float] | None]] | None = None
+    """Corners of the sheet line by line, mm; null outside the piece."""
+    notes: list[str]
 
 
 class Painted(BaseModel):
@@ -2662,9 +2779,12 @@ JobResult = (
     | CompressionResult
     | CurlResult
     | CurveResult
+    | DrapeResult
     | FillResult
     | FindResult
     | FitResult
+    | HangResult
+    | OverhangResult
     | PieceResult
     | RelaxResult
     | ShapeResult

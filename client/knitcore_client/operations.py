@@ -30,6 +30,8 @@ from knitcore_client.models import (
     CurveRequest,
     CurveResult,
     DesignSchema,
+    DrapeRequest,
+    DrapeResult,
     EstimateRequest,
     EstimateResult,
     ExportRequest,
@@ -43,6 +45,8 @@ from knitcore_client.models import (
     FitResult,
     GarmentRequest,
     GarmentResult,
+    HangRequest,
+    HangResult,
     ImportRequest,
     ImportResult,
     JobResult,
@@ -51,6 +55,8 @@ from knitcore_client.models import (
     MaterialRequest,
     Materials,
     ModelReport,
+    OverhangRequest,
+    OverhangResult,
     ParsedChart,
     ParseRequest,
     Patterns,
@@ -134,6 +140,10 @@ class AsyncOperations:
         """JSON schema of the project file."""
         return await self._ask(DesignSchema, "GET", "/schemas/design", {})
 
+    async def drape(self, **request: Unpack[DrapeRequest]) -> DrapeResult:
+        """Drape coefficient: a round piece over a disc."""
+        return await self._ask(DrapeResult, "POST", "/drape", request)
+
     async def estimate(self, **request: Unpack[EstimateRequest]) -> EstimateResult:
         """The four fabrics of a yarn that is not in the library."""
         return await self._ask(EstimateResult, "POST", "/estimate", request)
@@ -166,6 +176,10 @@ class AsyncOperations:
         """A garment from measurements."""
         return await self._ask(GarmentResult, "POST", "/garment", request)
 
+    async def hang(self, **request: Unpack[HangRequest]) -> HangResult:
+        """How a piece hangs under its own weight."""
+        return await self._ask(HangResult, "POST", "/hang", request)
+
     async def import_(self, **request: Unpack[ImportRequest]) -> ImportResult:
         """The chart in a file."""
         return await self._ask(ImportResult, "POST", "/import", request)
@@ -177,6 +191,10 @@ class AsyncOperations:
     async def materials(self) -> Materials:
         """The library of materials."""
         return await self._ask(Materials, "GET", "/materials", {})
+
+    async def overhang(self, **request: Unpack[OverhangRequest]) -> OverhangResult:
+        """Peirce's bending length: a strip over the edge of a table."""
+        return await self._ask(OverhangResult, "POST", "/overhang", request)
 
     async def parse(self, **request: Unpack[ParseRequest]) -> ParsedChart:
         """Read a chart text and find its repeat."""
@@ -265,11 +283,21 @@ class AsyncOperations:
         self, kind: Literal["curve"], **request: Unpack[CurveRequest]
     ) -> JobStatus: ...
     @overload
+    async def submit(
+        self, kind: Literal["drape"], **request: Unpack[DrapeRequest]
+    ) -> JobStatus: ...
+    @overload
     async def submit(self, kind: Literal["fill"], **request: Unpack[FillRequest]) -> JobStatus: ...
     @overload
     async def submit(self, kind: Literal["find"], **request: Unpack[FindRequest]) -> JobStatus: ...
     @overload
     async def submit(self, kind: Literal["fit"], **request: Unpack[FitRequest]) -> JobStatus: ...
+    @overload
+    async def submit(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> JobStatus: ...
+    @overload
+    async def submit(
+        self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
+    ) -> JobStatus: ...
     @overload
     async def submit(
         self, kind: Literal["piece"], **request: Unpack[PieceRequest]
@@ -334,11 +362,19 @@ class AsyncOperations:
     @overload
     async def run(self, kind: Literal["curve"], **request: Unpack[CurveRequest]) -> CurveResult: ...
     @overload
+    async def run(self, kind: Literal["drape"], **request: Unpack[DrapeRequest]) -> DrapeResult: ...
+    @overload
     async def run(self, kind: Literal["fill"], **request: Unpack[FillRequest]) -> FillResult: ...
     @overload
     async def run(self, kind: Literal["find"], **request: Unpack[FindRequest]) -> FindResult: ...
     @overload
     async def run(self, kind: Literal["fit"], **request: Unpack[FitRequest]) -> FitResult: ...
+    @overload
+    async def run(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> HangResult: ...
+    @overload
+    async def run(
+        self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
+    ) -> OverhangResult: ...
     @overload
     async def run(self, kind: Literal["piece"], **request: Unpack[PieceRequest]) -> PieceResult: ...
     @overload
@@ -417,6 +453,10 @@ class Operations:
         """JSON schema of the project file."""
         return self._ask(DesignSchema, "GET", "/schemas/design", {})
 
+    def drape(self, **request: Unpack[DrapeRequest]) -> DrapeResult:
+        """Drape coefficient: a round piece over a disc."""
+        return self._ask(DrapeResult, "POST", "/drape", request)
+
     def estimate(self, **request: Unpack[EstimateRequest]) -> EstimateResult:
         """The four fabrics of a yarn that is not in the library."""
         return self._ask(EstimateResult, "POST", "/estimate", request)
@@ -449,6 +489,10 @@ class Operations:
         """A garment from measurements."""
         return self._ask(GarmentResult, "POST", "/garment", request)
 
+    def hang(self, **request: Unpack[HangRequest]) -> HangResult:
+        """How a piece hangs under its own weight."""
+        return self._ask(HangResult, "POST", "/hang", request)
+
     def import_(self, **request: Unpack[ImportRequest]) -> ImportResult:
         """The chart in a file."""
         return self._ask(ImportResult, "POST", "/import", request)
@@ -460,6 +504,10 @@ class Operations:
     def materials(self) -> Materials:
         """The library of materials."""
         return self._ask(Materials, "GET", "/materials", {})
+
+    def overhang(self, **request: Unpack[OverhangRequest]) -> OverhangResult:
+        """Peirce's bending length: a strip over the edge of a table."""
+        return self._ask(OverhangResult, "POST", "/overhang", request)
 
     def parse(self, **request: Unpack[ParseRequest]) -> ParsedChart:
         """Read a chart text and find its repeat."""
@@ -538,11 +586,19 @@ class Operations:
     @overload
     def submit(self, kind: Literal["curve"], **request: Unpack[CurveRequest]) -> JobStatus: ...
     @overload
+    def submit(self, kind: Literal["drape"], **request: Unpack[DrapeRequest]) -> JobStatus: ...
+    @overload
     def submit(self, kind: Literal["fill"], **request: Unpack[FillRequest]) -> JobStatus: ...
     @overload
     def submit(self, kind: Literal["find"], **request: Unpack[FindRequest]) -> JobStatus: ...
     @overload
     def submit(self, kind: Literal["fit"], **request: Unpack[FitRequest]) -> JobStatus: ...
+    @overload
+    def submit(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> JobStatus: ...
+    @overload
+    def submit(
+        self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
+    ) -> JobStatus: ...
     @overload
     def submit(self, kind: Literal["piece"], **request: Unpack[PieceRequest]) -> JobStatus: ...
     @overload
@@ -589,11 +645,19 @@ class Operations:
     @overload
     def run(self, kind: Literal["curve"], **request: Unpack[CurveRequest]) -> CurveResult: ...
     @overload
+    def run(self, kind: Literal["drape"], **request: Unpack[DrapeRequest]) -> DrapeResult: ...
+    @overload
     def run(self, kind: Literal["fill"], **request: Unpack[FillRequest]) -> FillResult: ...
     @overload
     def run(self, kind: Literal["find"], **request: Unpack[FindRequest]) -> FindResult: ...
     @overload
     def run(self, kind: Literal["fit"], **request: Unpack[FitRequest]) -> FitResult: ...
+    @overload
+    def run(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> HangResult: ...
+    @overload
+    def run(
+        self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
+    ) -> OverhangResult: ...
     @overload
     def run(self, kind: Literal["piece"], **request: Unpack[PieceRequest]) -> PieceResult: ...
     @overload

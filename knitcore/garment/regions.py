@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.fabric import PHASES
 from knitcore.garment.gauge import Gauge
 from knitcore.garment.shaped import ShapedChart
 from knitcore.materials import Interval, Material
+from knitcore.materials.loops import loop_lengths_mm
 from knitcore.materials.uncertainty import log_interval
 from knitcore.mechanics.local import local_moduli
 from knitcore.phases import quarter_phases
@@ -211,18 +211,8 @@ def yarn_use(
         shaped.chart.rows, 2, shaped.chart.columns, 2
     )
     counted = shaped.stitch if cells is None else shaped.stitch & cells
-    quarters = phases.transpose(0, 2, 1, 3)[counted].ravel()
-    lengths = np.zeros(len(PHASES))
-    for phase in np.unique(quarters):
-        length = material.record(PHASES[phase]).loop_length_mm
-        if length is None:
-            raise InputError(
-                "material",
-                f"{material.identifier} has no loop length for {PHASES[phase]}.",
-                "Unravel ten stitches of a swatch, measure the yarn, and add loop_length_mm.",
-            )
-        lengths[phase] = length
-    metres = float(lengths[quarters].sum()) / 4 / 1000
+    quarters = phases.transpose(0, 2, 1, 3).reshape(*shaped.stitch.shape, 4)[counted]
+    metres = float(loop_lengths_mm(quarters, material).sum()) / 1000
     if linear_density_tex is None:
         return YarnUse(metres, None)
     if not 0 < linear_density_tex < 1e5:

@@ -101,12 +101,7 @@ def curl(
     CancelledError
         If ``cancel`` says so.
     """
-    if chart.rows * chart.columns > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"it has {chart.rows * chart.columns} stitches.",
-            f"Give a piece of at most {MAX_STITCHES} stitches.",
-        )
+    check_size(chart)
     sheet = sheet_of(chart, material)
     clock = time.process_time()
     begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancel=cancel)
@@ -132,6 +127,16 @@ def curl(
         residual=found.residual,
         seconds=time.process_time() - clock,
     )
+
+
+def check_size(chart: StitchChart) -> None:
+    """InputError if a piece is larger than what is calculated."""
+    if chart.rows * chart.columns > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"it has {chart.rows * chart.columns} stitches.",
+            f"Give a piece of at most {MAX_STITCHES} stitches.",
+        )
 
 
 def aligned(x: Array, sheet: Sheet) -> Array:

@@ -65,6 +65,7 @@ def settle(
     *,
     held: NDArray[np.bool_] | None = None,
     load_n: Array | None = None,
+    floor_mm: float | None = None,
     time_limit_s: float = 60.0,
     cancel: Callable[[], bool] | None = None,
 ) -> Shape:
@@ -75,6 +76,7 @@ def settle(
     x : (corners, 3) to begin with, mm.
     held : (corners, 3) coordinates that do not change, or (corners,) corners that do not move.
     load_n : (corners, 3) forces that act on the corners, such as their weight.
+    floor_mm : height z of a smooth table, below which corners are pushed up.
     time_limit_s : CPU time after which it ends, not converged.
     cancel : called before every step; True stops with CancelledError.
 
@@ -84,7 +86,7 @@ def settle(
         If ``cancel`` says so.
     """
     clock = time.process_time()
-    descent = _Descent(sheet, x.copy(), held, load_n)
+    descent = _Descent(sheet, x.copy(), held, load_n, floor_mm)
     while descent.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
         if cancel is not None and cancel():
             raise CancelledError("The calculation was cancelled.")
@@ -98,12 +100,18 @@ def settle(
 
 class _Descent:
     def __init__(
-        self, sheet: Sheet, x: Array, held: NDArray[np.bool_] | None, load_n: Array | None
+        self,
+        sheet: Sheet,
+        x: Array,
+        held: NDArray[np.bool_] | None,
+        load_n: Array | None,
+        floor_mm: float | None,
     ) -> None:
         self._sheet = sheet
         self.x = x
         self._load = load_n
-        self._free = np.ones(x.shape, bool)
+        self._floor = -np.inf if floor_mm is None else floor_mm
+        self._free = np.repeat(sheet.used[:, None], 3, axis=1)
         if held is not None:
             self._free[held] = False
         self._tangent = Tangent(sheet)
@@ -156,9 +164,9 @@ class _Descent:
         return True
 
     def _renew(self) -> None:
-        matrix = self._tangent.matrix(
-            self.x, self._pairs, self._free, convex=True, shift=self._shift
-        )
+        shift = np.full(self.x.shape, self._shift)
+        shift[:, 2] += self._sheet.touch_n_per_mm * (self.x[:, 2] < self._floor)
+        matrix = self._tangent.matrix(self.x, self._pairs, self._free, convex=True, shift=shift)
         self._factor = splu(
             matrix.astype(np.float32), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
@@ -186,6 +194,9 @@ class _Descent:
         if self._load is not None:
             energy -= float((self._load * x).sum())
             gradient -= self._load
+        below = np.minimum(x[:, 2] - self._floor, 0.0)
+        energy += 0.5 * self._sheet.touch_n_per_mm * float(below @ below)
+        gradient[:, 2] += self._sheet.touch_n_per_mm * below
         gradient[~self._free] = 0.0
         return energy, gradient
 

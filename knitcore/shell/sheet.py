@@ -15,7 +15,7 @@ l its inner surface is closed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -83,10 +83,58 @@ class Sheet:
         return self.rigidity_n_mm / float(self.membrane[:, :2].mean())
 
     @cached_property
+    def used(self) -> NDArray[np.bool_]:
+        """(corners,) whether a stitch has this corner."""
+        found = np.zeros(len(self.flat_mm), dtype=bool)
+        found[self.quads] = True
+        return found
+
+    @cached_property
     def points(self) -> Ints:
         """(k, 4) corners of the points that may touch: corners, and middles of stitches."""
-        corners = np.repeat(np.arange(len(self.flat_mm))[:, None], 4, axis=1)
+        corners = np.repeat(np.flatnonzero(self.used)[:, None], 4, axis=1)
         return np.concatenate([corners, self.quads])
+
+    def cut(self, stitches: NDArray[np.bool_]) -> Sheet:
+        """The sheet without some of its stitches; its corners keep their numbers.
+
+        Parameters
+        ----------
+        stitches : (rows, columns) those that stay.
+        """
+        kept = stitches.ravel()
+        along, up = stitches[:, 1:] & stitches[:, :-1], stitches[1:] & stitches[:-1]
+        lines = np.concatenate([along.ravel(), up.T.ravel()])
+        return replace(
+            self, quarters=self.quarters[kept.repeat(4)], membrane=self.membrane[kept.repeat(4)],
+            hinges=self.hinges[lines], turning=self.turning[lines], quads=self.quads[kept],
+            twisting=self.twisting[kept],
+        )  # fmt: skip
+
+    def clamped(self, held: NDArray[np.bool_]) -> Sheet:
+        """The sheet with lines at the edge of a clamp twice as stiff: only their outer half bends.
+
+        Parameters
+        ----------
+        held : (corners,) in the clamp.
+        """
+        at_edge = held[self.hinges[:, :2]].all(axis=1) & ~held[self.hinges].all(axis=1)
+        turning = self.turning.copy()
+        turning[at_edge, 0] *= 2.0
+        turning[at_edge, 1] *= 0.5
+        return replace(self, turning=turning)
+
+    def shared(self, of_stitches: Array) -> Array:
+        """What stitches have, such as their weight, in equal parts at their corners, (corners,).
+
+        Parameters
+        ----------
+        of_stitches : (stitches,) in the order of ``quads``.
+        """
+        parts = 0.25 * of_stitches.repeat(4)
+        return np.asarray(
+            np.bincount(self.quads.ravel(), parts, minlength=len(self.flat_mm)), dtype=float
+        )
 
     @cached_property
     def home_mm(self) -> Array:

@@ -36,7 +36,13 @@ class Tangent:
         ]
 
     def matrix(
-        self, x: Array, pairs: Ints, free: NDArray[np.bool_], *, convex: bool, shift: float = 0.0
+        self,
+        x: Array,
+        pairs: Ints,
+        free: NDArray[np.bool_],
+        *,
+        convex: bool,
+        shift: Array | float = 0.0,
     ) -> csc_matrix:
         """Hessian at a shape; rows of coordinates that are not free are those of the unit matrix.
 
@@ -45,7 +51,7 @@ class Tangent:
         free : (corners, 3)
         convex : leave out the terms that may make it indefinite: the curvature of angles and of
             distances under compression.
-        shift : added to the diagonal, N/mm.
+        shift : added to the diagonal, N/mm, for all or for each coordinate (corners, 3).
         """
         sheet = self._sheet
         data = np.zeros((len(self._blocks), 3, 3))
@@ -65,7 +71,7 @@ class Tangent:
         row, column = np.divmod(blocks, self._count)
         data *= free[row][:, :, None] & free[column][:, None, :]
         own = row == column
-        data[own] += np.where(free[row[own]], shift, 1.0)[:, :, None] * np.eye(3)
+        data[own] += np.where(free, shift, 1.0)[:, :, None] * np.eye(3)
         start = np.searchsorted(row, np.arange(self._count + 1))
         size = 3 * self._count
         return bsr_matrix((data, column, start), shape=(size, size)).tocsc()

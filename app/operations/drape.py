@@ -1,0 +1,126 @@
+"""The drape coefficient of a fabric, simulated."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from app.models.base import Ends, ResultModel
+from app.models.charts import RepeatInput, to_repeat
+from app.models.weighed import CURLS, FRICTIONLESS, Corners, WantsCorners, WeighedRequest
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.shell.cloth import cloth_of
+from knitcore.shell.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
+from knitcore.shell.drape import Drape as Draped
+from knitcore.shell.drape import drape as drape_cloth
+
+
+class DrapeRequest(WeighedRequest):
+    """A fabric, and the sizes of the test."""
+
+    chart: RepeatInput
+    piece_mm: float = Field(
+        PIECE_MM, ge=20, le=2000, allow_inf_nan=False, description="Diameter of the round piece."
+    )
+    disc_mm: float = Field(
+        DISC_MM, ge=10, le=1900, allow_inf_nan=False, description="Diameter of the disc."
+    )
+    across: int = Field(
+        ACROSS, ge=10, le=MAX_ACROSS, description="Rectangles of the sheet across the piece."
+    )
+    corners: WantsCorners = False
+
+
+class DrapeResult(ResultModel):
+    """The draped piece in the state of least energy of those found."""
+
+    kind: Literal["drape"] = "drape"
+    coefficient: float = Field(
+        description="Share of the ring outside the disc that its shadow covers: 1 for a board."
+    )
+    coefficient_of_states: Ends = Field(
+        description="Smallest and largest of the states found: draped cloth has several."
+    )
+    folds: int = Field(description="Around the rim.")
+    fall_mm: float = Field(description="From the disc to the lowest point.")
+    bending_length_course_mm: float
+    bending_length_wale_mm: float
+    weight_g_per_m2: float
+    converged: bool
+    corners_mm: Corners = None
+    notes: list[str]
+
+
+def drape(request: DrapeRequest, context: Context) -> DrapeResult:
+    """A round piece drapes over a disc by its weight; its shadow gives the drape coefficient.
+
+    Raises
+    ------
+    InputError, ConvergenceError, CancelledError
+    """
+    cloth = cloth_of(
+        to_repeat(request.chart),
+        context.material(request.material),
+        linear_density_g_per_m=request.linear_density_g_per_m,
+    )
+    found = drape_cloth(
+        cloth,
+        piece_mm=request.piece_mm,
+        disc_mm=request.disc_mm,
+        across=request.across,
+        cancel=context.cancelled,
+    )
+    return DrapeResult.of(
+        found,
+        coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
+        bending_length_course_mm=cloth.bending_length_mm(0),
+        bending_length_wale_mm=cloth.bending_length_mm(1),
+        weight_g_per_m2=cloth.weight_g_per_m2,
+        corners_mm=_corners(found) if request.corners else None,
+        notes=[FRICTIONLESS, *([CURLS] if cloth.curls else [])],
+    )
+
+
+def _corners(found: Draped) -> Corners:
+    inside = np.isfinite(found.corners_mm[..., 0])
+    lines = found.corners_mm.round(3).tolist()
+    return [
+        [tuple(at) if there else None for at, there in zip(*line, strict=True)]
+        for line in zip(lines, inside, strict=True)
+    ]
+
+
+def _lines(r: DrapeResult) -> list[str]:
+    low, high = r.coefficient_of_states
+    return [
+        f"drape coefficient  {r.coefficient:.0%} ({low:.0%} to {high:.0%} in the states found)"
+        + ("" if r.converged else "  NOT converged"),
+        f"folds              {r.folds}",
+        f"fall               {r.fall_mm:.0f} mm",
+        f"bending length     {r.bending_length_course_mm:.1f} mm along rows, "
+        f"{r.bending_length_wale_mm:.1f} mm along columns",
+        f"weight             {r.weight_g_per_m2:.0f} g/m²",
+    ]
+
+
+OPERATION = Operation(
+    drape,
+    tag="mechanics",
+    summary="Drape coefficient: a round piece over a disc",
+    example={
+        "chart": "K/P",
+        "material": "acrylic",
+        "linear_density_g_per_m": 0.5,
+        "across": 10,
+    },
+    heavy=True,
+    job=True,
+    command=Command(
+        _lines,
+        help="Drape a round piece of CHART over a disc (Cusick's drape coefficient).",
+        names={"corners": None},
+    ),
+)

@@ -1,0 +1,106 @@
+"""A piece that hangs under its own weight."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
+
+from app.models.base import ResultModel
+from app.models.charts import ChartInput, to_chart
+from app.models.weighed import FRICTIONLESS, Corners, WantsCorners, WeighedRequest
+from app.operations.context import Context
+from app.operations.curl import CurlView
+from app.operations.perform import Viewed
+from app.operations.registry import Command, Operation
+from knitcore.shell.curl import TIME_LIMIT_S
+from knitcore.shell.hang import HungBy
+from knitcore.shell.hang import hang as hang_piece
+
+
+class HangRequest(WeighedRequest):
+    """A whole piece and what holds it."""
+
+    chart: ChartInput
+    by: HungBy = Field(HungBy.EDGE, description="The whole top edge, or its two corners.")
+    corners: WantsCorners = False
+    time_limit_s: float = Field(
+        TIME_LIMIT_S,
+        gt=0,
+        le=600,
+        allow_inf_nan=False,
+        description="CPU time after which the current shape is returned, not converged.",
+    )
+
+
+class HangResult(ResultModel):
+    """The piece as it hangs."""
+
+    kind: Literal["hang"] = "hang"
+    id: str = Field(description="Name of the shape, for 3D views.")
+    weight_g: float
+    drop_mm: float = Field(description="From the highest point to the lowest.")
+    width_mm: float
+    depth_mm: float
+    lengthening: float = Field(description="Strain of the middle column.")
+    converged: bool = Field(description="If false, the shape is only a preview.")
+    corners_mm: Corners = None
+    notes: list[str]
+
+
+def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
+    """Shape of a piece that hangs from its top edge, or from its two top corners, by its weight.
+
+    Edges curl against the weight. Pieces may have up to 10,000 stitches.
+    """
+    found = hang_piece(
+        to_chart(request.chart),
+        context.material(request.material),
+        linear_density_g_per_m=request.linear_density_g_per_m,
+        by=request.by,
+        time_limit_s=request.time_limit_s,
+        cancel=context.cancelled,
+    )
+    result = HangResult.of(
+        found,
+        id=OPERATION.key(request),
+        weight_g=1000.0 * found.weight_n / STANDARD_GRAVITY,
+        corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
+        notes=[FRICTIONLESS],
+    )
+    return Viewed(result, CurlView(found.corners_mm.astype(np.float32)))
+
+
+def _hung(request: HangRequest, context: Context) -> HangResult:
+    return hang(request, context).result
+
+
+def _lines(r: HangResult) -> list[str]:
+    return [
+        f"weight       {r.weight_g:.1f} g",
+        f"drop         {r.drop_mm:.0f} mm" + ("" if r.converged else "  NOT converged"),
+        f"width        {r.width_mm:.0f} mm, depth {r.depth_mm:.0f} mm",
+        f"lengthening  {r.lengthening:.1%} of the middle column",
+    ]
+
+
+OPERATION = Operation(
+    hang,
+    tag="mechanics",
+    summary="How a piece hangs under its own weight",
+    example={
+        "chart": {"fabric": "garter", "columns": 6, "rows": 8},
+        "material": "acrylic",
+        "linear_density_g_per_m": 0.5,
+    },
+    heavy=True,
+    job=True,
+    command=Command(
+        _lines,
+        help="How the whole piece CHART hangs under its weight.",
+        names={"corners": None},
+        run=_hung,
+    ),
+)

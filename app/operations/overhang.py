@@ -1,0 +1,97 @@
+"""Peirce's bending length of a fabric, simulated."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import Field
+
+from app.models.base import ResultModel
+from app.models.charts import RepeatInput, to_repeat
+from app.models.weighed import CURLS, FRICTIONLESS, Corners, WantsCorners, WeighedRequest
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.fabric import Direction
+from knitcore.shell.cloth import cloth_of
+from knitcore.shell.overhang import overhang as hang_over
+
+
+class OverhangRequest(WeighedRequest):
+    """A fabric, and how far a strip of it hangs over the edge of a table."""
+
+    chart: RepeatInput
+    direction: Direction = Field(Direction.COURSE, description="Along the strip.")
+    overhang_mm: float | None = Field(
+        None,
+        gt=0,
+        le=2000,
+        allow_inf_nan=False,
+        description="Beyond the edge; that which falls by 41.5° if left out.",
+    )
+    corners: WantsCorners = False
+
+
+class OverhangResult(ResultModel):
+    """A strip at rest."""
+
+    kind: Literal["overhang"] = "overhang"
+    overhang_mm: float
+    angle_deg: float = Field(description="From the edge to the tip, below the horizontal.")
+    reach_mm: float = Field(description="How far out the tip is.")
+    fall_mm: float = Field(description="How far down the tip is.")
+    bending_length_mm: float = Field(description="By Peirce's formula from overhang and angle.")
+    rigidity_n_mm: float = Field(description="Weight per area times the bending length cubed.")
+    yarn_level_rigidity_n_mm: float = Field(description="That with which the strip was bent.")
+    weight_g_per_m2: float
+    converged: bool
+    corners_mm: Corners = None
+    notes: list[str]
+
+
+def overhang(request: OverhangRequest, context: Context) -> OverhangResult:
+    """A strip 25 mm wide bends over the edge of a table by its weight, as in Peirce's test.
+
+    Raises
+    ------
+    InputError, ConvergenceError, CancelledError
+    """
+    cloth = cloth_of(
+        to_repeat(request.chart),
+        context.material(request.material),
+        linear_density_g_per_m=request.linear_density_g_per_m,
+    )
+    axis = 0 if request.direction is Direction.COURSE else 1
+    found = hang_over(cloth, axis, request.overhang_mm, cancel=context.cancelled)
+    return OverhangResult.of(
+        found,
+        angle_deg=math.degrees(found.angle_rad),
+        yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
+        weight_g_per_m2=cloth.weight_g_per_m2,
+        corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
+        notes=[FRICTIONLESS, *([CURLS] if cloth.curls else [])],
+    )
+
+
+def _lines(r: OverhangResult) -> list[str]:
+    return [
+        f"overhang        {r.overhang_mm:.0f} mm falls by {r.angle_deg:.1f}°",
+        f"bending length  {r.bending_length_mm:.1f} mm",
+        f"rigidity        {r.rigidity_n_mm:.4f} N·mm (yarn level {r.yarn_level_rigidity_n_mm:.4f})",
+        f"weight          {r.weight_g_per_m2:.0f} g/m²",
+    ]
+
+
+OPERATION = Operation(
+    overhang,
+    tag="mechanics",
+    summary="Peirce's bending length: a strip over the edge of a table",
+    example={"chart": "K/P", "material": "acrylic", "linear_density_g_per_m": 0.5},
+    heavy=True,
+    job=True,
+    command=Command(
+        _lines,
+        help="Bend a strip of CHART over the edge of a table (Peirce's bending length).",
+        names={"corners": None},
+    ),
+)

@@ -1,0 +1,212 @@
+"""Even cloth: what a repeat does as a whole, and sheets made of it.
+
+A sheet of stitches (:mod:`knitcore.shell.sheet`) is for pieces whose stitches differ. Tests of a
+fabric are made on hundreds of like repeats; here a rectangle of the sheet stands for several
+stitches. Its size and stiffness are those of the answer, its bending that of the yarn level.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
+
+from knitcore.answer.choose import choose
+from knitcore.arrays import Array
+from knitcore.chart import StitchChart
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.materials import Material
+from knitcore.materials.loops import loop_lengths_mm
+from knitcore.phases import pure_fabric, quarter_phases
+from knitcore.shell.bends import bends_of
+from knitcore.shell.sheet import TWIST, Net, Sheet
+from knitcore.yarnlevel.bending import ROLLS_FROM, bending, bending_length_mm
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlibrary.yarns import yarn_for
+
+DENSITY_RANGE_G_PER_M = (0.005, 20.0)
+_LARGEST_POISSON = 0.95
+"""Of the root of the product of both ratios, beyond which an answer has no flat energy."""
+
+
+@dataclass(frozen=True)
+class Cloth:
+    """Even cloth; pairs are along the rows and along the columns.
+
+    Parameters
+    ----------
+    stitch_mm : size of the mean stitch at rest.
+    membrane_n_per_mm : C₁₁, C₂₂, C₁₂ and G.
+    rigidity_n_mm : of bending, with the other size free.
+    twist_n_mm : D₆₆, so that twisting by κ_xy has the energy 2 D₆₆ κ_xy² per area.
+    curvature_per_mm : at rest, positive with the face outside.
+    thickness_mm : of the fabric.
+    weight_n_per_mm2 : of the relaxed fabric.
+    """
+
+    stitch_mm: tuple[float, float]
+    membrane_n_per_mm: tuple[float, float, float, float]
+    rigidity_n_mm: tuple[float, float]
+    twist_n_mm: float
+    curvature_per_mm: tuple[float, float]
+    thickness_mm: float
+    weight_n_per_mm2: float
+
+    @property
+    def moment_n(self) -> tuple[float, float]:
+        """Moment per width that holds it flat, (2,): magnitudes, along the rows and columns."""
+        course, wale = (
+            d * abs(c) for d, c in zip(self.rigidity_n_mm, self.curvature_per_mm, strict=True)
+        )
+        return course, wale
+
+    def bending_length_mm(self, axis: int) -> float:
+        """Peirce's, of a strip along the rows (0) or the columns (1)."""
+        return bending_length_mm(self.rigidity_n_mm[axis], self.weight_n_per_mm2)
+
+    @property
+    def weight_g_per_m2(self) -> float:
+        """Mass per area."""
+        return 1e9 * self.weight_n_per_mm2 / STANDARD_GRAVITY
+
+    @property
+    def curls(self) -> bool:
+        """Whether free edges roll up (:data:`knitcore.yarnlevel.bending.ROLLS_FROM`)."""
+        return 0.5 * self.thickness_mm * max(map(abs, self.curvature_per_mm)) >= ROLLS_FROM
+
+    def flat(self) -> Cloth:
+        """The same without its curvature at rest."""
+        return replace(self, curvature_per_mm=(0.0, 0.0))
+
+    def turned(self) -> Cloth:
+        """Columns for rows."""
+        c11, c22, c12, shear = self.membrane_n_per_mm
+        return replace(
+            self,
+            stitch_mm=self.stitch_mm[::-1],
+            membrane_n_per_mm=(c22, c11, c12, shear),
+            rigidity_n_mm=self.rigidity_n_mm[::-1],
+            curvature_per_mm=self.curvature_per_mm[::-1],
+        )
+
+    def sheet(self, rows: int, columns: int, size_mm: tuple[float, float]) -> Sheet:
+        """A flat sheet of rectangles.
+
+        Parameters
+        ----------
+        size_mm : of a rectangle, along the rows and along the columns.
+        """
+        net, count = Net.of(rows, columns), rows * columns
+        area = size_mm[0] * size_mm[1]
+        stiff = 0.25 * area * np.array(self.membrane_n_per_mm)
+        lines = []
+        for axis, number in ((0, rows * (columns - 1)), (1, columns * (rows - 1))):
+            length, width = size_mm[axis], size_mm[1 - axis]
+            closed = 2.0 * math.atan(length / self.thickness_mm)
+            rest = float(np.clip(length * self.curvature_per_mm[axis], -closed, closed))
+            stiffness = self.rigidity_n_mm[axis] * width / length
+            lines.append(np.tile([stiffness, rest, closed, 0.25 * length**2], (number, 1)))
+        flat = np.zeros(((rows + 1) * (columns + 1), 3))
+        flat[:, 0] = np.tile(size_mm[0] * (np.arange(columns + 1) - 0.5 * columns), rows + 1)
+        flat[:, 1] = np.repeat(size_mm[1] * (np.arange(rows + 1) - 0.5 * rows), columns + 1)
+        mean = sum(self.membrane_n_per_mm[:2]) / 2.0
+        return Sheet(
+            rows=rows,
+            columns=columns,
+            flat_mm=flat,
+            quarters=net.quarters,
+            membrane=np.tile([*size_mm, *stiff], (4 * count, 1)),
+            hinges=net.hinges,
+            turning=np.concatenate(lines),
+            quads=net.quads,
+            twisting=np.full(count, 4.0 * self.twist_n_mm / area),
+            thickness_mm=self.thickness_mm,
+            touch_n_per_mm=mean * area / self.thickness_mm**2,
+        )
+
+
+def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: float) -> Cloth:
+    """The cloth of a repeat.
+
+    Parameters
+    ----------
+    linear_density_g_per_m : of the yarn.
+
+    Raises
+    ------
+    InputError
+        If the repeat is too large for the yarn level, the yarn's weight is impossible, or the
+        material lacks a fabric or its loop length.
+    ConvergenceError
+        If it does not relax at the yarn level, or folds by itself.
+    """
+    repeat = chart.repeat()
+    found = choose(repeat, material)
+    course, wale = found.along(Direction.COURSE), found.along(Direction.WALE)
+    poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_LARGEST_POISSON)
+    stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]
+    coupling = float(poisson) * math.sqrt(stiff[0] * stiff[1])
+    stitch = course.relaxed_mm, wale.relaxed_mm
+    rigidity, curvature, thickness = _bent(repeat, material)
+    weight = float(stitch_weights_n(repeat, material, linear_density_g_per_m, periodic=True).mean())
+    return Cloth(
+        stitch_mm=stitch,
+        membrane_n_per_mm=(*stiff, coupling, found.shear_modulus_n_per_mm),
+        rigidity_n_mm=rigidity,
+        twist_n_mm=TWIST * math.sqrt(rigidity[0] * rigidity[1]),
+        curvature_per_mm=curvature,
+        thickness_mm=thickness,
+        weight_n_per_mm2=weight / (stitch[0] * stitch[1]),
+    )
+
+
+def stitch_weights_n(
+    chart: StitchChart,
+    material: Material,
+    linear_density_g_per_m: float,
+    *,
+    periodic: bool = False,
+) -> Array:
+    """Weight of every stitch, (rows, columns), N.
+
+    Raises
+    ------
+    InputError
+        If the yarn's weight is impossible, or the material lacks a loop length.
+    """
+    low, high = DENSITY_RANGE_G_PER_M
+    if not low <= linear_density_g_per_m <= high:
+        raise InputError(
+            "linear_density_g_per_m",
+            f"{linear_density_g_per_m:g} g/m is out of range for a yarn.",
+            f"Give {low:g} to {high:g} g/m; tex divided by 1000 is g/m.",
+        )
+    quarters = quarter_phases(chart, periodic=periodic)
+    by_stitch = quarters.reshape(chart.rows, 2, chart.columns, 2).transpose(0, 2, 1, 3)
+    loops = loop_lengths_mm(by_stitch.reshape(chart.rows, chart.columns, 4), material)
+    return np.asarray(1e-6 * STANDARD_GRAVITY * linear_density_g_per_m * loops)
+
+
+def _bent(
+    repeat: StitchChart, material: Material
+) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """Rigidities, free curvatures and thickness of a repeat."""
+    fabric = pure_fabric(repeat.tile(2, 2))
+    if fabric is not None:
+        bend = bends_of(material)[fabric]
+        sign = -1.0 if repeat.purl.all() else 1.0
+        return (
+            (bend.rigidity_course_n_mm, bend.rigidity_wale_n_mm),
+            (sign * bend.curvature_course_per_mm, sign * bend.curvature_wale_per_mm),
+            bend.thickness_mm,
+        )
+    used = yarn_for(material, repeat)
+    found = bending(relax(repeat, used.yarn, used.loop_length_mm))
+    return (
+        (found.course.rigidity_n_mm, found.wale.rigidity_n_mm),
+        (found.course.curvature_per_mm, found.wale.curvature_per_mm),
+        found.thickness_mm,
+    )

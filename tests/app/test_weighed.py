@@ -1,0 +1,54 @@
+"""``hang``, ``overhang`` and ``drape`` on the command line and over REST."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from fastapi.testclient import TestClient
+
+from app.cli.main import main
+
+YARN = {"material": "acrylic", "linear_density_g_per_m": 0.5}
+PIECE = {"fabric": "garter", "columns": 5, "rows": 6}
+
+
+@pytest.mark.parametrize(
+    ("address", "body", "lines"),
+    [
+        ("hang", {"chart": PIECE, **YARN}, (7, 6)),
+        ("overhang", {"chart": "K/P", **YARN}, (43, 3)),
+        ("drape", {"chart": "K/P", "across": 10, **YARN}, (11, 11)),
+    ],
+)
+def test_simulated_tests_over_rest(
+    client: TestClient, address: str, body: dict[str, Any], lines: tuple[int, int]
+) -> None:
+    answer = client.post(f"/api/v1/{address}", json={**body, "corners": True})
+    assert answer.status_code == 200, answer.text
+    told = answer.json()
+    assert told["converged"]
+    assert np.array([[at is None for at in line] for line in told["corners_mm"]]).shape == lines
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["hang", "garter", "--size", "5x6"], "lengthening"),
+        (["overhang", "seed", "--direction", "wale"], "bending length"),
+        (["drape", "garter", "--across", "10"], "drape coefficient"),
+    ],
+)
+def test_simulated_tests_as_commands(arguments: list[str], words: str) -> None:
+    yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
+    result = CliRunner().invoke(main, [*arguments, *yarn])
+    assert result.exit_code == 0, result.output
+    assert words in result.stdout
+
+
+def test_fabric_that_curls_is_said_to() -> None:
+    yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
+    result = CliRunner().invoke(main, ["overhang", "stockinette", *yarn])
+    assert "curls" in result.stderr
