@@ -61,7 +61,7 @@ def test_curl_prints_words() -> None:
     arguments = ["curl", "stockinette", "--size", "4x16", "--material", "acrylic"]
     result = CliRunner().invoke(main, arguments)
     assert "to the back" in result.stdout
-    assert "Without friction" in result.stdout
+    assert "Without friction" in result.stderr
 
 
 def test_unknown_kinds_of_files_are_refused(tmp_path: Path) -> None:
