@@ -28,6 +28,7 @@ from app.http import health
 from app.http.kinds import serve_kinds
 from app.http.observing import Metrics, Observer, configure_logging
 from app.http.page import serve_page
+from app.http.passes import Passes
 from app.http.problems import PROBLEM_RESPONSES, install_problem_handlers
 from app.http.reference import serve_reference
 from app.http.schema import install_schema
@@ -119,6 +120,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = chosen
     app.state.stopping = False
     app.state.in_use = InUse()
+    app.state.passes = Passes()
     app.state.metrics = Metrics(_gauges(app))
     install_problem_handlers(app)
     install_schema(app)

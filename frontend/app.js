@@ -15,6 +15,7 @@ import { byId, firstPaint, isTyping } from "./dom.js";
 import { openAddressed } from "./keeping/address.js";
 import { Keeper } from "./keeping/keeper.js";
 import { sharedBanner } from "./panels/sharedbanner.js";
+import { fabricview } from "./panels/fabricview.js";
 import { panelOpener } from "./panels/registry.js";
 import { chartstrip } from "./panels/chartstrip.js";
 import { messages } from "./widgets/messages.js";
@@ -97,18 +98,14 @@ listenToKeys(context, isTyping);
 listenToImports(context, isTyping);
 
 const predictAgain = startPredictor(studio);
-/** The 3D view and the plots are heavy: the chart is there to be painted on before they come. */
-let showAgain = () => {};
+// The 3D view starts in a process of its own, while the page is painted.
+const showAgain = fabricview(byId("fabric"), studio, view);
+/** The plots are heavy: the chart is there to be painted on before they come. */
 void firstPaint().then(async () => {
   performance.mark("studio");
   void keeper.catchUp();
-  const [{ inspector }, { fabricview }] = await Promise.all([
-    import("./panels/inspector.js"),
-    import("./panels/fabricview.js"),
-  ]);
+  const { inspector } = await import("./panels/inspector.js");
   themed.push(inspector(byId("inspector"), studio));
-  byId("fabric").replaceChildren();
-  showAgain = fabricview(byId("fabric"), studio, view);
 });
 
 const material = new Latest(0);

@@ -2477,6 +2477,7 @@ export interface ViewResult {
   source: string;
   /** Length of the line below the fabric. */
   scale_mm: number;
+  /** For a browser; after the # the pass to watch this view. */
   url: string;
 }
 

@@ -18,7 +18,9 @@ from app.compute.compute import Compute
 from app.compute.turns import Gate
 from app.http.bodies import BoundedRoute
 from app.http.identity import current_user
+from app.http.passes import Passes
 from app.http.problems import NotFoundError, Problem
+from app.http.security import OPENED_BY
 from app.http.waiting import abandoned
 from app.models.base import RequestModel
 from app.operations.curl import CurlView
@@ -87,6 +89,8 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
     state = request.app.state
     found, name = _found(body, request), private_name(design)
     context = state.answers.context()
+    passes: Passes = state.passes
+    code = passes.give(f"/view/{design}", request.scope.get(OPENED_BY))
     large: Drawing | None = None
     if found is None and is_large(body):
         large = await _by_worker(request, build_drawing, body, context.data_dir)
@@ -97,7 +101,7 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
             stitches=state.views.open(name, drawing.weight).show(drawing),
             source=drawing.part.shapes.source,
             scale_mm=round_length_mm(float(drawing.ground.extent_mm[0])),
-            url=f"/view/{design}/",
+            url=f"/view/{design}/#{code}",
         )
 
     gate: Gate = state.drawing

@@ -33,7 +33,7 @@ ONE_DAY = "public, max-age=86400"
 
 def serve_page(app: FastAPI) -> None:
     """Add the page, its files and plotly to a service."""
-    folder = IN_WHEEL if IN_WHEEL.is_dir() else page_folder(SOURCES)
+    folder = page_files()
     built = folder != SOURCES
 
     @app.get("/", include_in_schema=False)
@@ -49,6 +49,11 @@ def serve_page(app: FastAPI) -> None:
         return Response(content, media_type="text/javascript", headers=headers)
 
     app.mount("/static", PageFiles(folder, FOR_EVER if built else CHECK_AGAIN), name="static")
+
+
+def page_files() -> Path:
+    """The folder of the page's files."""
+    return IN_WHEEL if IN_WHEEL.is_dir() else page_folder(SOURCES)
 
 
 def page_folder(sources: Path) -> Path:

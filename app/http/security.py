@@ -22,6 +22,7 @@ from app.budgets import InUse, OverBudgetError
 from app.http.bodies import limited
 from app.http.identity import NOBODY, current_session, current_user
 from app.http.kinds import PAGES
+from app.http.passes import Opener, Passes
 from app.http.problems import Problem, StoppingError, problem_response, unexpected
 from app.http.rate import RateLimit
 from app.http.sessions import SESSION_S
@@ -58,6 +59,7 @@ PAGE_POLICY = "; ".join(
 )
 VIEW_POLICY = "; ".join(
     [
+        "sandbox allow-scripts",  # also where it is opened by itself: nothing of our origin
         "default-src 'self' data: blob:",
         # viser's client is one file with inline script and WebAssembly workers
         "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' data: blob:",
@@ -99,8 +101,12 @@ class Guard:
         limits: dict[str, str] = {}
         if self.settings.asks_for_login:
             current_user.set(NOBODY)  # until the request's token or session is known
-        refusal = self._refusal(scope)
-        if refusal is None and self.settings.asks_for_login and _is_sign_in(scope):
+        passes: Passes = scope["app"].state.passes
+        opener = passes.holder(scope)
+        refusal = self._refusal(scope, has_pass=opener is not None)
+        if refusal is None and opener is not None:
+            refusal = await self._by_pass(scope, opener, limits)
+        elif refusal is None and self.settings.asks_for_login and _is_sign_in(scope):
             refusal = await self._signed_in(scope, receive)
         elif refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
             refusal = await self._login(scope, limits)
@@ -172,7 +178,7 @@ class Guard:
                 raise
             await unexpected(error)(scope, receive, send_with_headers)
 
-    def _refusal(self, scope: Scope) -> Response | None:
+    def _refusal(self, scope: Scope, *, has_pass: bool) -> Response | None:
         headers = Headers(scope=scope)
         hosts = headers.getlist("host")
         host = hosts[0] if len(hosts) == 1 else ""
@@ -180,7 +186,8 @@ class Guard:
             return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
-        if changes and origin is not None and _place_of(origin) != host.lower():
+        own = has_pass or origin is None or _place_of(origin) == host.lower()
+        if changes and not own:
             return _refused("origin", "The request comes from a page of another site.", "", 403)
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > self.settings.max_body_bytes:
@@ -198,6 +205,22 @@ class Guard:
         except ValueError:
             return False
         return name is not None and (name in self.hosts or f"[{name}]" in self.hosts)
+
+    async def _by_pass(
+        self, scope: Scope, opener: Opener, limits: dict[str, str]
+    ) -> Response | None:
+        """Let in who was given a pass, as long as the token or session that asked for it lasts."""
+        if opener.opened_by is not None:
+            login: Login = scope["app"].state.login
+            try:
+                if not await asyncio.to_thread(login.is_open, *opener.opened_by):
+                    return _refused("pass", "This pass has ended.", "Show the view again.", 403)
+            except StoreError as error:
+                return problem_response(error.problem)
+            scope[OPENED_BY] = opener.opened_by
+        current_user.set(opener.user)
+        current_session.set(opener.session)
+        return self._over_budget(scope, opener.user, limits) if opener.opened_by else None
 
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
         """Let a known user in, within their rate, and note who it is."""

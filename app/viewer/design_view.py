@@ -105,7 +105,7 @@ class ViewResult(BaseModel):
     stitches: int = Field(description="Stitches drawn as yarn.")
     source: str = Field(description="Where the shapes of the stitches come from.")
     scale_mm: float = Field(description="Length of the line below the fabric.")
-    url: str
+    url: str = Field(description="For a browser; after the # the pass to watch this view.")
 
 
 def is_large(request: ViewRequest) -> bool:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import hashlib
 import logging
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import viser
 import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
-from fastapi.responses import HTMLResponse, RedirectResponse
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from app.budgets import InUse, OverBudgetError
 from app.http.identity import current_user
+from app.http.page import page_files
 from app.http.rate import RateLimit
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on
@@ -36,29 +39,6 @@ VIEW_STYLE = """<style>
   /* Where viser draws rectangles to select with: one more layer that every frame would blend. */
   canvas[width="0"] { display: none !important; }
 </style>"""
-VIEW_SCRIPT = """<script>
-  // Notices of viser's client that users cannot act on: its sorter of point clouds, unused here,
-  // builds functions from text, which our policy forbids; and three.js renames a class.
-  for (const name of ["error", "unhandledrejection"]) {
-    addEventListener(name, (event) => {
-      if (/unsafe-eval/.test(event.message ?? event.reason?.message)) event.preventDefault();
-    });
-  }
-  // viser's client connects again only while its window has the focus, which a frame rarely has:
-  // a first connection that took too long, or one that was lost, would leave the view empty.
-  document.hasFocus = () => true;
-  // The page around lets the client draw when the service has sent something.
-  window.Worker = class extends Worker {
-    constructor(...given) {
-      super(...given);
-      this.addEventListener("message", ({ data }) => {
-        if (data.type === "message_batch") dispatchEvent(new Event("news"));
-      });
-    }
-  };
-  const warn = console.warn;
-  console.warn = (...words) => String(words[0]).startsWith("THREE.Clock") || warn(...words);
-</script>"""
 
 
 @router.get("/view/{design}")
@@ -68,10 +48,13 @@ async def with_slash(design: DesignId) -> RedirectResponse:
 
 
 @router.get("/view/{design}/")
-async def client_page(design: DesignId, request: Request) -> HTMLResponse:
+async def client_page(design: DesignId, request: Request) -> Response:
     """viser's client, one self-contained file, without its control panel."""
-    page: str = request.app.state.viewer_page
-    return HTMLResponse(page, headers={"Cache-Control": "private, max-age=3600"})
+    page: ViewerPage = request.app.state.viewer_page
+    headers = {"Cache-Control": "private, no-cache", "ETag": page.tag}
+    if page.tag in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    return HTMLResponse(page.content, headers=headers)
 
 
 @router.websocket("/view/{design}")
@@ -159,7 +142,17 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
         await socket.close(code)
 
 
-def viewer_page() -> str:
-    """viser's client page with the style that hides its panel, and without its notices."""
+@dataclass(frozen=True)
+class ViewerPage:
+    """viser's client page, with our script for its frame and the style that hides its panel."""
+
+    content: bytes
+    tag: str
+
+
+def viewer_page() -> ViewerPage:
+    """Put it together."""
     page = CLIENT_PAGE.read_text(encoding="utf-8")
-    return page.replace("<head>", f"<head>{VIEW_SCRIPT}{VIEW_STYLE}", 1)
+    script = (page_files() / "frame.js").read_text(encoding="utf-8")
+    content = page.replace("<head>", f"<head><script>{script}</script>{VIEW_STYLE}", 1).encode()
+    return ViewerPage(content, f'"{hashlib.sha256(content).hexdigest()[:16]}"')

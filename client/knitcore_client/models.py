@@ -2727,6 +2727,7 @@ class ViewResult(BaseModel):
     scale_mm: float
     """Length of the line below the fabric."""
     url: str
+    """For a browser; after the # the pass to watch this view."""
 
 
 class WornResult(BaseModel):

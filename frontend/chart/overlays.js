@@ -75,6 +75,10 @@ const fabrics = {
       { label: "garter", colour: css(palette.fabrics[1]) },
       { label: "rib", colour: css(palette.fabrics[2]) },
       { label: "seed", colour: css(palette.fabrics[3]) },
+      {
+        label: "in 3D also the mix of two",
+        colour: `linear-gradient(90deg, ${css(palette.fabrics[0])}, ${css(palette.fabrics[2])})`,
+      },
       { label: "purl", colour: "transparent", dot: true },
     ],
   }),

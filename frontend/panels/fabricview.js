@@ -13,7 +13,6 @@ import { along } from "../core/directions.js";
 import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
-import { FrameGovernor } from "./fabric/framegovernor.js";
 import { ViewLink } from "./fabric/link.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
@@ -39,12 +38,22 @@ const MAX_DRAWN = 40_000;
  */
 export function fabricview(host, studio, view) {
   const frame = h("iframe", { title: "Fabric in 3D", class: "fabric-frame", tabIndex: 0 });
+  // Without our origin it may have a process of its own; then its frames do not keep the page waiting.
+  frame.setAttribute("sandbox", "allow-scripts");
   const status = h("div", { class: "fabric-status", role: "status" });
   const caption = h("div", { class: "fabric-caption" });
-  const governor = new FrameGovernor();
+  const drawing = { slow: false, held: false };
+  /** @param {{pass: string} | {hold: boolean}} message */
+  const tellFrame = (message) => frame.contentWindow?.postMessage(message, "*");
+  /** Let its frames wait, or go on. @param {boolean} held */
+  const hold = (held) => {
+    if (drawing.held === held) return;
+    drawing.held = held;
+    tellFrame({ hold: held });
+  };
   const link = new ViewLink(studio, view, {
     lost: () => now(),
-    slow: () => governor.slow,
+    slow: () => drawing.slow,
   });
 
   /** @param {CameraSide} side */
@@ -61,50 +70,53 @@ export function fabricview(host, studio, view) {
   let reloading;
   let patience = RELOAD_MS;
   const reloadUnseen = () => {
-    if (sending || problem || governor.held) {
-      reloading = setTimeout(reloadUnseen, RELOAD_MS);
+    if (sending || problem || drawing.held) {
+      reloadAfter(RELOAD_MS);
       return;
     }
     patience *= 2;
-    frame.contentWindow?.location.reload();
+    frame.src = shown;
   };
-  frame.addEventListener("load", () => {
-    if (!frame.contentWindow || !shown) return;
-    /** @param {number} ms */
-    const reloadAfter = (ms) => {
-      clearTimeout(reloading);
-      reloading = setTimeout(reloadUnseen, ms);
-    };
-    governor.govern(
-      frame.contentWindow,
-      () => knitted(),
-      () => reloadAfter(patience),
-    );
-    reloadAfter(STARTING * patience);
+  /** @param {number} ms */
+  const reloadAfter = (ms) => {
+    clearTimeout(reloading);
+    reloading = setTimeout(reloadUnseen, ms);
+  };
+  addEventListener("message", ({ source, data }) => {
+    if (source !== frame.contentWindow) return;
+    if (data.view === "loaded") {
+      tellFrame({ hold: drawing.held });
+      if (pass) tellFrame({ pass });
+      reloadAfter(STARTING * patience);
+    }
+    if (data.view === "started") reloadAfter(patience);
+    if (data.view === "seen") knitted();
+    if (typeof data.slow === "boolean") drawing.slow = data.slow;
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let holding;
   studio.document.onChange(() => {
-    governor.hold(true);
+    hold(true);
     clearTimeout(holding);
     const release = () => {
       if (studio.document.painting) holding = setTimeout(release, BETWEEN_STROKES_MS);
-      else governor.hold(false);
+      else hold(false);
     };
     holding = setTimeout(release, BETWEEN_STROKES_MS);
   });
 
   let sending = false;
   let again = false;
-  /** Address of the view in the frame. */
+  /** Address of the view in the frame, and what lets the frame watch it. */
   let shown = "";
+  let pass = "";
   let source = "";
   let scale = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
   const wish = () => wanted(studio, view);
-  host.append(
+  host.replaceChildren(
     frame,
     caption,
     toolbar(studio, (side) => void look(side), wish),
@@ -121,6 +133,7 @@ export function fabricview(host, studio, view) {
   const open = (url) => {
     if (shown === url) return;
     shown = url;
+    pass = "";
     patience = RELOAD_MS;
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     frame.src = url;
@@ -138,12 +151,12 @@ export function fabricview(host, studio, view) {
       const answer = await api.view(studio.designId, wish());
       if (problem) status.replaceChildren();
       problem = false;
-      studio.seeing.forgotten.value = null;
       source = answer.source;
       scale = answer.scale_mm < 10 ? `${answer.scale_mm} mm` : `${answer.scale_mm / 10} cm`;
       describe();
       studio.online.value = true;
-      open(answer.url);
+      pass = answer.url.slice(answer.url.indexOf("#") + 1);
+      tellFrame({ pass });
       link.connect();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -155,7 +168,7 @@ export function fabricview(host, studio, view) {
         return;
       }
       const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
-      if (id !== null && id !== studio.seeing.forgotten.value) {
+      if (id !== null) {
         status.replaceChildren(h("span", { class: "spinner" }), "Pulling the cloth once more …");
         studio.seeing.forgotten.value = id; // it is run again, and then sent again
         return;
@@ -228,7 +241,7 @@ export function fabricview(host, studio, view) {
 function wanted(studio, view) {
   const { document: chart, seeing } = studio;
   const stretch = pulled(studio);
-  const overlay = seeing.lying.value ? atRest(shownOverlay(studio)) : shownOverlay(studio);
+  const overlay = stretch ? shownOverlay(studio) : atRest(shownOverlay(studio));
   const colour = seeing.yarnColours.value === "chart" ? overlay.view : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;
@@ -251,9 +264,11 @@ function wanted(studio, view) {
   };
 }
 
-/** The stretch test that is shown: none while the fabric is shown as it lies. @param {Studio} studio */
+/** The test that is shown: none while the fabric is shown as it lies, or the test is run again. @param {Studio} studio */
 function pulled(studio) {
-  return studio.seeing.lying.value ? null : studio.currentStretch();
+  const { lying, forgotten } = studio.seeing;
+  const test = lying.value ? null : studio.currentStretch();
+  return test?.id === forgotten.value ? null : test;
 }
 
 /** How the fabric that nobody pulls is shown. @param {Studio} studio */

@@ -102,7 +102,7 @@ export function overlaybar(host, studio, view) {
         ? scale(content)
         : content.items.map(({ label, colour, dot }) => {
             const key = h("span", { class: dot ? "key dot" : "key" });
-            key.style.backgroundColor = colour;
+            key.style.background = colour;
             return h("span", { class: "legend-item" }, key, label);
           })),
     );

@@ -181,8 +181,11 @@ export class Stretcher {
     try {
       await api.stretch(this.#request);
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the next request for the view tells what is wrong
+      if (!(error instanceof ApiError)) throw error;
+      studio.tellProblem(error.problem);
+      return; // the view stays at rest
     }
+    studio.seeing.forgotten.value = null;
     const { stretch } = studio;
     if (stretch.value.value?.id === id) stretch.value = { ...stretch.value };
   }

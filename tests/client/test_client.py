@@ -89,7 +89,8 @@ def test_every_operation_is_a_method(knit: Client, tmp_path: Path) -> None:
 
 def test_a_view_from_a_script(knit: Client) -> None:
     shown = knit.show("of-a-script", chart="KP\nPK", material="acrylic", colour="phase")
-    assert (shown.stitches, shown.url) == (4, "/view/of-a-script/")
+    assert shown.stitches == 4
+    assert shown.url.startswith("/view/of-a-script/#")
     knit.mark("of-a-script", {"row0": 0, "column0": 0, "row1": 1, "column1": 2})
     knit.mark("of-a-script")
     knit.look("of-a-script", "back")

@@ -106,36 +106,39 @@ export function create(studio) {
     return /** @type {const} */ ([up, across]);
   };
 
+  /** What only a chart with something in it needs. */
+  const forContent = [
+    h(
+      "fieldset",
+      { class: "anchors" },
+      h("legend", {}, "The chart stays at"),
+      h("div", { class: "anchor-grid" }, ...anchors),
+    ),
+    h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
+    h(
+      "button",
+      { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) },
+      "New, all knit",
+    ),
+    h(
+      "button",
+      { class: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) },
+      "Repeat to this size",
+    ),
+  ];
+  const [anchoring, note, anew, repeating] = forContent;
   const element = dialog(
     "resize-dialog",
     "Size of the chart",
-    h(
-      "div",
-      { class: "resize-fields" },
-      h("div", { class: "fields" }, columns.row, rows.row),
-      h(
-        "fieldset",
-        { class: "anchors" },
-        h("legend", {}, "The chart stays at"),
-        h("div", { class: "anchor-grid" }, ...anchors),
-      ),
-    ),
+    h("div", { class: "resize-fields" }, h("div", { class: "fields" }, columns.row, rows.row), anchoring),
     problem,
     advice,
-    h("p", { class: "muted" }, "Regions, outline and linked repeats move along. All three can be undone."),
+    note,
     h(
       "div",
       { class: "dialog-buttons" },
-      h(
-        "button",
-        { class: "button", onclick: () => apply((r, c) => document.replace(new Grid(r, c), "New chart")) },
-        "New, all knit",
-      ),
-      h(
-        "button",
-        { class: "button", onclick: () => apply((r, c) => document.replace(document.grid.tiled(r, c), "Repeat")) },
-        "Repeat to this size",
-      ),
+      anew,
+      repeating,
       h(
         "button",
         {
@@ -147,11 +150,14 @@ export function create(studio) {
               if (!same) document.reshape("Resize", resized(document.grid, r, c, anchor()));
             }),
         },
-        "Resize",
+        "Set the size",
       ),
     ),
   );
   return () => {
+    const { grid, regions, repeats, shaped } = document;
+    const empty = !grid.purl.some(Boolean) && !regions.length && !repeats.length && !shaped;
+    for (const part of forContent) part.hidden = empty;
     columns.input.value = String(document.grid.columns);
     rows.input.value = String(document.grid.rows);
     if (!anchors.some(({ checked }) => checked)) anchors[6].checked = true; // bottom left

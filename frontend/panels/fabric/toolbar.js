@@ -20,10 +20,10 @@ const SIDES = [
 /** @type {[import("../../chart/seeing.js").YarnColours, string][]} */
 const COLOURS = [
   ["chart", "Colours of the chart"],
-  ["yarn", "Yarn"],
-  ["region", "Regions"],
-  ["fabric", "Fabrics, mixed"],
-  ["phase", "Strongest fabric"],
+  ["yarn", "The yarn's own colour"],
+  ["region", "Colours of the regions"],
+  ["fabric", "The four fabrics, mixed within a stitch"],
+  ["phase", "The strongest fabric of each stitch"],
 ];
 
 /**
@@ -51,11 +51,11 @@ export function toolbar(studio, look, wish) {
   const { root, setItems, button } = menu({
     id: "fabric-colours",
     label: "Colours of the yarn",
-    content: [icon("yarn"), h("span", { class: "label" }, "Yarn"), icon("down")],
+    content: [icon("yarn"), h("span", { class: "label" }, "Colours"), icon("down")],
     class: "button",
   });
   button.title = "Colours of the yarn";
-  button.ariaLabel = "Yarn: its colours";
+  button.ariaLabel = "Colours of the yarn";
   studio.seeing.yarnColours.watch((chosen) =>
     setItems(
       COLOURS.map(([id, content]) => ({

@@ -370,6 +370,7 @@ def test_every_response_carries_the_headers(client: TestClient) -> None:
         assert headers["x-content-type-options"] == "nosniff"
     view = client.get("/view/abcdefgh/").headers["content-security-policy"]
     assert "connect-src 'self' data: blob:" in view  # ?websocket=ws://elsewhere is not obeyed
+    assert "allow-same-origin" not in next(p for p in view.split("; ") if p.startswith("sandbox"))
 
 
 def test_no_text_becomes_a_script_in_a_view(client: TestClient) -> None:

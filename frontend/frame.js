@@ -1,0 +1,214 @@
+/**
+ * Runs before viser's client in the frame of the 3D view, which is sandboxed: it has no origin, no
+ * cookies, and in most browsers a process of its own. It talks to the page around by messages:
+ *
+ *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
+ *   frame to page    {view: "loaded" | "started" | "seen"}, {slow} whether drawing takes long
+ *
+ * A plain script without imports: the service puts it into viser's page.
+ */
+
+(() => {
+  /** Frames that take longer mean a slow machine. */
+  const SHORT_MS = 30;
+  /** After an idle frame others wait so many times as long as it took, at most so long. */
+  const IDLE = 8;
+  const MAX_PAUSE_MS = 4000;
+  /** Frames in which a first scene is taken in; viser shows its own axes until then. */
+  const FIRST_FRAMES = 3;
+  /** Over viser's speed of turning. */
+  const TURNING = 0.5;
+  /** How long something new takes to be drawn. */
+  const NEWS_MS = 1500;
+  /** Side of the small picture that tells whether something is drawn. */
+  const SAMPLE = 24;
+  /** Drawn without a GPU: smoothing edges would take three times as long as all the rest. */
+  const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
+
+  /** @param {Record<string, unknown>} message */
+  const tell = (message) => parent !== window && parent.postMessage(message, "*");
+
+  // --- notices of viser's client that users cannot act on: its sorter of point clouds, unused here,
+  // builds functions from text, which our policy forbids; and three.js renames a class ------------
+  for (const name of ["error", "unhandledrejection"]) {
+    addEventListener(name, (event) => {
+      const { message, reason } = /** @type {ErrorEvent & PromiseRejectionEvent} */ (event);
+      if (/unsafe-eval/.test(message ?? reason?.message)) event.preventDefault();
+    });
+  }
+  /* eslint-disable no-console -- it is viser's console that is kept clean */
+  const warn = console.warn;
+  console.warn = (...words) => String(words[0]).startsWith("THREE.Clock") || warn(...words);
+  /* eslint-enable no-console */
+
+  // --- connection ---------------------------------------------------------------------------------
+  // viser's client connects again only while its window has the focus, which a frame rarely has: a
+  // first connection that took too long, or one that was lost, would leave the view empty.
+  document.hasFocus = () => true;
+
+  /** @type {(pass: string) => void} */
+  let givePass = () => {};
+  /** @type {Promise<string>} */
+  const pass = new Promise((give) => (givePass = give));
+  if (location.hash) givePass(location.hash.slice(1));
+
+  /** A worker's module as a plain script: Chromium starts no module in a frame without origin. @param {string | URL} url */
+  const plain = (url) => {
+    const reading = new XMLHttpRequest();
+    reading.open("GET", url, false); // of a blob in memory
+    reading.send();
+    return URL.createObjectURL(new Blob([reading.responseText.replaceAll("import.meta.url", "''")]));
+  };
+
+  const Threads = Worker;
+  window.Worker = class extends Threads {
+    /** @param {string | URL} url @param {WorkerOptions} [options] */
+    constructor(url, options) {
+      super(plain(url), { ...options, type: "classic" });
+      this.addEventListener("message", ({ data }) => {
+        if (data.type === "message_batch") wake(true);
+      });
+    }
+
+    /** @param {any} message @param {any} [rest] @override */
+    postMessage(message, rest) {
+      if (message.type !== "set_server") super.postMessage(message, rest);
+      // The service lets in who has a pass; the page brings it when there is something to see.
+      else void pass.then((code) => super.postMessage({ ...message, server: `${message.server}?pass=${code}` }));
+    }
+  };
+
+  // --- frames -------------------------------------------------------------------------------------
+  /** Callbacks that wait. @type {Map<number, FrameRequestCallback>} */
+  const waiting = new Map();
+  const request = window.requestAnimationFrame.bind(window);
+  const cancel = window.cancelAnimationFrame.bind(window);
+  let next = 1;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let pause;
+  let newsUntil = 0;
+  let lastEnd = 0;
+  let held = false;
+  let started = false;
+  let seen = false;
+  let slow = false;
+  /** Frames since the first scene came; below 0 there is none. */
+  let fed = -1;
+  /** How long a frame takes, in ms. */
+  let cost = 0;
+
+  window.requestAnimationFrame = (callback) => {
+    if (!held && rest() === 0) return request((time) => frame(callback, time));
+    // Our own numbers are far from the browser's, so the two never meet.
+    const id = -next++;
+    waiting.set(id, callback);
+    release();
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => {
+    if (!waiting.delete(id)) cancel(id);
+  };
+
+  /** Time until the next frame may be drawn, in ms: on a slow machine viser's idle frames wait. */
+  function rest() {
+    const now = performance.now();
+    if (!slow || !seen || now < newsUntil) return 0;
+    return Math.max(0, lastEnd + Math.min(IDLE * cost, MAX_PAUSE_MS) - now);
+  }
+
+  function release() {
+    clearTimeout(pause);
+    if (held) return;
+    const left = rest();
+    if (left > 0) {
+      pause = setTimeout(release, left);
+      return;
+    }
+    const callbacks = [...waiting.values()];
+    waiting.clear();
+    for (const callback of callbacks) request((time) => frame(callback, time));
+  }
+
+  /** @param {FrameRequestCallback} callback @param {number} time */
+  function frame(callback, time) {
+    const start = performance.now();
+    callback(time);
+    steer();
+    if (!started) tell({ view: "started" });
+    started = true;
+    if (fed >= 0) fed++;
+    if (!seen && fed >= FIRST_FRAMES && hasPicture()) {
+      seen = true;
+      tell({ view: "seen" });
+    }
+    // What the browser itself does for the frame counts, too.
+    setTimeout(() => {
+      lastEnd = performance.now();
+      cost = (cost + lastEnd - start) / 2;
+      if (slow !== cost > SHORT_MS) {
+        slow = !slow;
+        tell({ slow });
+      }
+    });
+  }
+
+  /** Zoom to the pointer, not to the middle, and turn half as fast as viser does. */
+  function steer() {
+    /** @type {{__viserMutable?: {cameraControl?: {dollyToCursor: boolean, azimuthRotateSpeed: number,
+     *   polarRotateSpeed: number}}}} */
+    const { __viserMutable: viser } = /** @type {any} */ (window);
+    const control = viser?.cameraControl;
+    if (!control || control.dollyToCursor) return;
+    Object.assign(control, { dollyToCursor: true, azimuthRotateSpeed: TURNING, polarRotateSpeed: TURNING });
+  }
+
+  /** Something new is to be drawn. @param {boolean} scene sent by the service */
+  function wake(scene) {
+    if (scene && fed < 0) fed = 0;
+    newsUntil = performance.now() + NEWS_MS;
+    release();
+  }
+  for (const name of ["pointerdown", "pointermove", "wheel", "keydown", "resize"]) {
+    addEventListener(name, () => wake(false), { passive: true });
+  }
+
+  /** Whether anything is drawn; only to be asked within a frame. */
+  function hasPicture() {
+    const drawn = [...document.querySelectorAll("canvas")].find(({ width, height }) => width && height);
+    if (!drawn) return false;
+    const small = new OffscreenCanvas(SAMPLE, SAMPLE);
+    const context = /** @type {OffscreenCanvasRenderingContext2D} */ (small.getContext("2d"));
+    context.drawImage(drawn, 0, 0, SAMPLE, SAMPLE);
+    return context.getImageData(0, 0, SAMPLE, SAMPLE).data.some((value, i) => i % 4 === 3 && value > 0);
+  }
+
+  // --- without a GPU ------------------------------------------------------------------------------
+  /** @type {boolean | null} */
+  let software = null;
+  const context = HTMLCanvasElement.prototype.getContext;
+  /** @param {WebGL2RenderingContext | null} gl */
+  const drawnBySoftware = (gl) => {
+    const info = gl?.getExtension("WEBGL_debug_renderer_info");
+    const found = info && SOFTWARE.test(gl?.getParameter(info.UNMASKED_RENDERER_WEBGL));
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return Boolean(found);
+  };
+  /** @param {string} kind @param {any} [options] @returns {any} */
+  HTMLCanvasElement.prototype.getContext = function (kind, options) {
+    if (!options?.antialias || !kind.startsWith("webgl")) return context.call(this, kind, options);
+    const probe = document.createElement("canvas");
+    software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
+    return context.call(this, kind, { ...options, antialias: !software });
+  };
+
+  // --- the page around ----------------------------------------------------------------------------
+  addEventListener("message", ({ source, data }) => {
+    if (source !== parent) return;
+    if (typeof data.pass === "string") givePass(data.pass);
+    if (typeof data.hold === "boolean") {
+      held = data.hold;
+      release();
+    }
+  });
+  tell({ view: "loaded" });
+})();
