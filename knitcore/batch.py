@@ -134,7 +134,9 @@ def _check(tasks: Mapping[str, Any], scheduler: str | None, workers: int | None)
                 "Use up to 120 letters, digits and the signs . _ + -.",
             )
     if workers is not None and workers < 1:
-        raise InputError("workers", f"{workers} cannot work.", "Give at least 1.")
+        raise InputError(
+            "workers", f"{workers} is not a number of worker processes.", "Give at least 1."
+        )
     if scheduler is not None and not re.fullmatch(r"(tcp|tls)://[^\s/]+:\d+", scheduler):
         raise InputError(
             "scheduler", f"{scheduler!r} is not an address.", "Give one like tcp://127.0.0.1:8786."

@@ -26,7 +26,7 @@ class InputError(KnitcoreError, ValueError):
 
     Attributes
     ----------
-    others : what else is wrong with the same request, where a caller has looked for it.
+    others : further faults of the same request, where the caller looked for them.
     """
 
     others: tuple[InputError, ...] = ()

@@ -1,4 +1,4 @@
-"""Requests that a client may send twice because it did not hear the answer."""
+"""Requests that a client may send twice because the answer was lost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parameters of requests about what is kept: who asks, pages of a list, repeated requests."""
+"""Parameters of requests about designs: the user, pages of a list, idempotency keys."""
 
 from __future__ import annotations
 

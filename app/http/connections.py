@@ -1,4 +1,4 @@
-"""Connections to the service: their number, and what a request may be before anybody reads it.
+"""Connections to the service: how many, and limits on a request before it is read.
 
 uvicorn limits time only after an answer, and neither heads nor frames of websockets. A client that
 sends nothing, or a head or a body byte by byte, would keep its connection, and a file handle of the

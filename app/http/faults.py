@@ -1,4 +1,4 @@
-"""What else is wrong with a request whose fields are not all of their kinds."""
+"""Further faults of a request that already fails validation."""
 
 from __future__ import annotations
 

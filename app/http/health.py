@@ -51,7 +51,7 @@ async def healthz() -> Health:
 async def readyz(request: Request) -> Readiness:
     """The checks of `knitcore doctor` by name: while this fails, send requests elsewhere.
 
-    It fails without database, disk or cluster; what else is wrong, `knitcore doctor` tells.
+    It fails without database, disk or cluster; `knitcore doctor` reports the rest.
     """
     state = request.app.state
     try:

@@ -1,4 +1,4 @@
-"""What the pages for readers of the API share: their looks, and text with `names` in it."""
+"""What the pages about the API share: their style, and text with `names` in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an operation needs from its surroundings, wherever it runs."""
+"""What an operation needs besides its request, wherever it runs."""
 
 from __future__ import annotations
 

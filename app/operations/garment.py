@@ -345,7 +345,7 @@ def _asked(
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
-            raise InputError("set", f"{setting!r} sets nothing.", "Write NAME=VALUE.")
+            raise InputError("set", f"{setting!r} is not a setting.", "Write NAME=VALUE.")
         try:
             values[name] = json.loads(value)
         except json.JSONDecodeError:

@@ -1,4 +1,4 @@
-"""Results kept by what decides them, in files of the data folder, for commands and for the service.
+"""Results in files of the data folder, named by everything that determines them.
 
 A name is the digest of all inputs and of the code (:mod:`knitcore.yarnlibrary.fingerprint`), so a
 result is never found for other inputs, nor after the solver or the operation has changed. Files

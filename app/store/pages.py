@@ -40,7 +40,7 @@ def one_page(
             chosen = chosen.where(tuple_(at, identifier) < tuple_(float(before), last))
         except ValueError:
             raise InputError(
-                "cursor", "is not one of ours.", "Send next_cursor of the page before."
+                "cursor", "is not a cursor of this service.", "Send next_cursor of the page before."
             ) from None
     with database.read() as connection:
         ordered = chosen.order_by(at.desc(), identifier.desc()).limit(limit + 1)

@@ -162,7 +162,7 @@ def _field(chart: StitchChart, field: FieldColours | None) -> Colours:
         )
     values = np.array(field.values).reshape(chart.rows, chart.columns)
     if field.log and (min(field.low, field.high) <= 0 or values.min() <= 0):
-        raise InputError("field", "has values that no logarithm has.", "Send positive ones.")
+        raise InputError("field", "has values without a logarithm.", "Send positive ones.")
     if field.map == "vik":
         return diverging(values, max(abs(field.low), abs(field.high)))
     return sequential(values, field.low, field.high, log=field.log)

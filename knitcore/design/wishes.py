@@ -70,7 +70,7 @@ def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:
             )
         cells[row, column : column + length] = True
     if not cells.any():
-        raise InputError("wishes", f"“{wish.name}” has no stitch.", "Draw it, or leave it out.")
+        raise InputError("wishes", f"“{wish.name}” covers no stitch.", "Draw it, or leave it out.")
     values = (wish.course_n_per_mm, wish.wale_n_per_mm)
     if any(v is not None and not (math.isfinite(v) and v > 0) for v in values):
         raise InputError(

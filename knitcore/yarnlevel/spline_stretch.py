@@ -97,7 +97,7 @@ def with_slides_held(cell: RelaxedRepeat) -> RelaxedRepeat:
     if cell.cell.stitches > MAX_STITCHES_RULED:
         raise InputError(
             "slide_quenching",
-            f"cannot be had in a cell of {cell.cell.stitches} stitches.",
+            f"is not available for a cell of {cell.cell.stitches} stitches.",
             f"Use a repeat of at most {MAX_STITCHES_RULED} stitches.",
         )
     energy = replace(cell.energy, slides=())

@@ -43,7 +43,7 @@ def test_contradictions_are_named_with_both_parts_and_where() -> None:
         (box("far", range(6, 9), range(3), 0.1, None), "reaches row 9"),
         (box("thin", range(2), range(8), 0.1, None), "has 2 rows: no patch of 3"),
         (box("narrow", range(8), range(1), 0.1, None), "has 1 columns"),
-        (Wish("empty", (), 0.1, None), "has no stitch"),
+        (Wish("empty", (), 0.1, None), "covers no stitch"),
         (box("odd", range(4), range(4), -0.1, None), "not positive"),
     ],
 )
