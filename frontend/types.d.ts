@@ -1238,8 +1238,57 @@ export interface HeldInput {
   y_mm?: number | null;
 }
 
+/** What happened to the fabric before it was laid down. */
+export type History = "agitated" | "as-knitted" | "stretched-course" | "stretched-wale";
+
 /** What holds a hanging piece. */
 export type HungBy = "edge" | "corners";
+
+/** A repeat, its yarn and the pull. */
+export interface HysteresisRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  chart: string | PureFabricChart;
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Along rows, or along columns. */
+  direction?: Direction;
+  /** Largest strain: 0.5 is 50 %. */
+  max_strain?: number;
+  /** Coefficient of friction between yarns; that of the fibre by default. */
+  friction?: number | null;
+  /** Yarn per stitch; the material's by default. */
+  loop_length_mm?: number | null;
+  /** Strains on the way there. */
+  points?: number;
+  cycles?: number;
+  /** Also find the rest size after every history. */
+  rest_sizes?: boolean;
+}
+
+/** Cycles of pulling and letting go, and what is left of them. */
+export interface HysteresisResult {
+  kind: "hysteresis";
+  direction: Direction;
+  /** Coefficient of friction that was used. */
+  friction: number;
+  /** Of the fibre; null where the coefficient was given. */
+  friction_interval: [number, number] | null;
+  friction_source: string;
+  /** Ways there and back in turn. */
+  legs: LoopLeg[];
+  /** Energy that the last cycle loses per area of fabric, N·mm/mm². */
+  lost_per_cycle_n_per_mm: number;
+  /** The same as a share of the work of the pull. */
+  lost_share: number;
+  /** Strain that is left after letting go. */
+  left_strain: number;
+  /** Change of the greatest stress from the first cycle to the last. */
+  closes_within: number;
+  rest_sizes: RestSizeResult[];
+  yarn: YarnResult;
+  notes: string[];
+}
 
 /** A file of any kind that holds a chart. */
 export interface ImportRequest {
@@ -1421,6 +1470,15 @@ export interface LoadedEdge {
   force_y_interval_n: [number[], number[]];
   moved_x_interval_mm: [number[], number[]];
   moved_y_interval_mm: [number[], number[]];
+}
+
+/** One way of a cycle. */
+export interface LoopLeg {
+  loading: boolean;
+  /** From the rest size without friction. */
+  strain: number[];
+  transverse_strain: number[];
+  stress_n_per_mm: number[];
 }
 
 /** What to outline. */
@@ -1962,6 +2020,13 @@ export interface ResidualPoints {
   strain_across: number[];
   stress_n_per_mm: number[];
   fitted_n_per_mm: number[];
+}
+
+/** Size of a stitch free of force after a history. */
+export interface RestSizeResult {
+  history: History;
+  course_mm: number;
+  wale_mm: number;
 }
 
 /** Adjacent stitches of one kind in a row. */

@@ -93,6 +93,8 @@ Group = Literal[
     "knitcore.patterns", "knitcore.materials", "knitcore.exporters", "knitcore.measures"
 ]
 
+History = Literal["agitated", "as-knitted", "stretched-course", "stretched-wale"]
+
 JobState = Literal["waiting", "running", "done", "failed", "cancelled", "interrupted"]
 
 Origin = Literal["measured", "simulated", "fitted", "estimated"]
@@ -582,6 +584,29 @@ class HeldInput(TypedDict):
     """Moved so far; null lets it slide along x."""
     y_mm: NotRequired[float | None]
     """Moved so far; null lets it slide along y."""
+
+
+class HysteresisRequest(TypedDict):
+    """A repeat, its yarn and the pull."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Identifier of a material of the library."""
+    direction: NotRequired[Direction]
+    """Along rows, or along columns."""
+    max_strain: NotRequired[float]
+    """Largest strain: 0.5 is 50 %."""
+    friction: NotRequired[float | None]
+    """Coefficient of friction between yarns; that of the fibre by default."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's by default."""
+    points: NotRequired[int]
+    """Strains on the way there."""
+    cycles: NotRequired[int]
+    rest_sizes: NotRequired[bool]
+    """Also find the rest size after every history."""
 
 
 class ImportRequest(TypedDict):
@@ -1905,6 +1930,31 @@ class HangResult(BaseModel):
     notes: list[str]
 
 
+class HysteresisResult(BaseModel):
+    """Cycles of pulling and letting go, and what is left of them."""
+
+    kind: Literal["hysteresis"] = "hysteresis"
+    direction: Direction
+    friction: float
+    """Coefficient of friction that was used."""
+    friction_interval: tuple[float, float] | None
+    """Of the fibre; null where the coefficient was given."""
+    friction_source: str
+    legs: list[LoopLeg]
+    """Ways there and back in turn."""
+    lost_per_cycle_n_per_mm: float
+    """Energy that the last cycle loses per area of fabric, N·mm/mm²."""
+    lost_share: float
+    """The same as a share of the work of the pull."""
+    left_strain: float
+    """Strain that is left after letting go."""
+    closes_within: float
+    """Change of the greatest stress from the first cycle to the last."""
+    rest_sizes: list[RestSizeResult]
+    yarn: YarnResult
+    notes: list[str]
+
+
 class ImportResult(BaseModel):
     """The content of a file."""
 
@@ -2051,6 +2101,16 @@ class LoadedEdge(BaseModel):
     force_y_interval_n: tuple[list[float], list[float]]
     moved_x_interval_mm: tuple[list[float], list[float]]
     moved_y_interval_mm: tuple[list[float], list[float]]
+
+
+class LoopLeg(BaseModel):
+    """One way of a cycle."""
+
+    loading: bool
+    strain: list[float]
+    """From the rest size without friction."""
+    transverse_strain: list[float]
+    stress_n_per_mm: list[float]
 
 
 class MaterialDetail(BaseModel):
@@ -2437,6 +2497,14 @@ class ResidualPoints(BaseModel):
     fitted_n_per_mm: list[float]
 
 
+class RestSizeResult(BaseModel):
+    """Size of a stitch free of force after a history."""
+
+    history: History
+    course_mm: float
+    wale_mm: float
+
+
 class SegmentCountsResult(BaseModel):
     """Segments of one direction by their symmetry."""
 
@@ -2785,6 +2853,7 @@ JobResult = (
     | FindResult
     | FitResult
     | HangResult
+    | HysteresisResult
     | OverhangResult
     | PieceResult
     | RelaxResult

@@ -47,6 +47,8 @@ from knitcore_client.models import (
     GarmentResult,
     HangRequest,
     HangResult,
+    HysteresisRequest,
+    HysteresisResult,
     ImportRequest,
     ImportResult,
     JobResult,
@@ -180,6 +182,10 @@ class AsyncOperations:
         """How a piece hangs under its own weight."""
         return await self._ask(HangResult, "POST", "/hang", request)
 
+    async def hysteresis(self, **request: Unpack[HysteresisRequest]) -> HysteresisResult:
+        """Loading, unloading and rest sizes of a repeat with friction."""
+        return await self._ask(HysteresisResult, "POST", "/hysteresis", request)
+
     async def import_(self, **request: Unpack[ImportRequest]) -> ImportResult:
         """The chart in a file."""
         return await self._ask(ImportResult, "POST", "/import", request)
@@ -296,6 +302,10 @@ class AsyncOperations:
     async def submit(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> JobStatus: ...
     @overload
     async def submit(
+        self, kind: Literal["hysteresis"], **request: Unpack[HysteresisRequest]
+    ) -> JobStatus: ...
+    @overload
+    async def submit(
         self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
     ) -> JobStatus: ...
     @overload
@@ -371,6 +381,10 @@ class AsyncOperations:
     async def run(self, kind: Literal["fit"], **request: Unpack[FitRequest]) -> FitResult: ...
     @overload
     async def run(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> HangResult: ...
+    @overload
+    async def run(
+        self, kind: Literal["hysteresis"], **request: Unpack[HysteresisRequest]
+    ) -> HysteresisResult: ...
     @overload
     async def run(
         self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
@@ -493,6 +507,10 @@ class Operations:
         """How a piece hangs under its own weight."""
         return self._ask(HangResult, "POST", "/hang", request)
 
+    def hysteresis(self, **request: Unpack[HysteresisRequest]) -> HysteresisResult:
+        """Loading, unloading and rest sizes of a repeat with friction."""
+        return self._ask(HysteresisResult, "POST", "/hysteresis", request)
+
     def import_(self, **request: Unpack[ImportRequest]) -> ImportResult:
         """The chart in a file."""
         return self._ask(ImportResult, "POST", "/import", request)
@@ -597,6 +615,10 @@ class Operations:
     def submit(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> JobStatus: ...
     @overload
     def submit(
+        self, kind: Literal["hysteresis"], **request: Unpack[HysteresisRequest]
+    ) -> JobStatus: ...
+    @overload
+    def submit(
         self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]
     ) -> JobStatus: ...
     @overload
@@ -654,6 +676,10 @@ class Operations:
     def run(self, kind: Literal["fit"], **request: Unpack[FitRequest]) -> FitResult: ...
     @overload
     def run(self, kind: Literal["hang"], **request: Unpack[HangRequest]) -> HangResult: ...
+    @overload
+    def run(
+        self, kind: Literal["hysteresis"], **request: Unpack[HysteresisRequest]
+    ) -> HysteresisResult: ...
     @overload
     def run(
         self, kind: Literal["overhang"], **request: Unpack[OverhangRequest]

@@ -42,6 +42,8 @@ class Terms:
     gauge: float
     excess_mm: Array
     """Excess of the lengths, and of other constrained quantities, over their prescribed values."""
+    friction: float = 0.0
+    """Potential of the friction in this step."""
 
     @property
     def energy(self) -> float:
@@ -105,6 +107,7 @@ class CellEnergy:
     flat : the middles of all stitches are held in one plane.
     slides : where the yarn may not slide.
     gauge_per_bending : stiffness of the gauge penalty in units of B / L.
+    sliding : pairs of samples that rub in this step; None without friction.
     """
 
     cell: YarnCell
@@ -114,6 +117,7 @@ class CellEnergy:
     flat: bool = False
     slides: tuple[SlideConstraint, ...] = ()
     gauge_per_bending: float = GAUGE_PER_BENDING
+    sliding: kernels.Sliding | None = None
 
     @cached_property
     def mean_loop_mm(self) -> float:
@@ -216,7 +220,7 @@ class CellEnergy:
         return pairs, start
 
     @cached_property
-    def _speeds(self) -> Array:
+    def speeds(self) -> Array:
         """Target of |d1| at each sample: the length of its stitch."""
         return np.repeat(
             self.loop_length_mm.ravel(), len(self.stretch_of) // self.loop_length_mm.size
@@ -234,14 +238,23 @@ class CellEnergy:
         contact = kernels.contact_energy(
             curve, state[-2], state[-1], pairs, self.cell.layout, self.contact_law
         )
-        rod, gauge = kernels.rod_energy(curve, self.rod_law, self._speeds)
-        return Terms(rod, contact, gauge, self.excess(state, curve))
+        rod, gauge = kernels.rod_energy(curve, self.rod_law, self.speeds)
+        friction = 0.0
+        if self.sliding is not None:
+            friction = kernels.friction_energy(
+                curve, state[-2], state[-1], self.sliding, self.cell.layout, self.speeds
+            )
+        return Terms(rod, contact, gauge, self.excess(state, curve), friction)
 
     def merit(self, terms: Terms, tension: Array) -> float:
         """Augmented Lagrangian, N·mm, with the given tensions (multipliers of constraints), N."""
         excess = terms.excess_mm
         return float(
-            terms.energy + terms.gauge + tension @ excess + 0.5 * self.penalty * excess @ excess
+            terms.energy
+            + terms.gauge
+            + terms.friction
+            + tension @ excess
+            + 0.5 * self.penalty * excess @ excess
         )
 
     def derivatives(
@@ -250,15 +263,20 @@ class CellEnergy:
     ) -> Slope:  # fmt: skip
         """Gradient and Hessian of the Lagrangian, ``merit`` without its penalty.
 
-        A sparse Hessian leaves out slides, whose Hessians are dense.
+        A sparse Hessian leaves out slides and friction, whose Hessians are dense.
         """
         layout, law = self.cell.layout, self.contact_law
         force, by_speed = kernels.contact_slopes(curve, state[-2], state[-1], pairs, layout, law)
-        along = curve, self.rod_law, self._speeds, tension[self.stretch_of], by_speed
+        along = curve, self.rod_law, self.speeds, tension[self.stretch_of], by_speed
         if hessian:
             slopes, local = kernels.rod_hessian(*along)
         else:
             slopes = kernels.rod_slopes(*along)
+        if self.sliding is not None:
+            rubbing = curve, state[-2], state[-1], self.sliding, layout, self.speeds
+            rubbed, by_d1 = kernels.friction_slopes(*rubbing)
+            force += rubbed
+            slopes[:, 0] += by_d1
         gradient = kernels.scatter_gradient(force, slopes, layout)
         gradient[-2:] += force[-1, :2]
         slides = np.array([slide.gradient(state) for slide in self.slides])
@@ -293,6 +311,8 @@ class CellEnergy:
         whole[:, -2:] = sizes.T
         for pull, slide in zip(tension[beside + len(self.held) :], self.slides, strict=True):
             whole += pull * slide.hessian()
+        if self.sliding is not None:
+            kernels.friction_hessian(*rubbing, whole)
         return Slope(gradient, lengths, whole)
 
     @property
@@ -307,7 +327,7 @@ class CellEnergy:
 
         The slopes include the tensions and ``by_speed``, the slope of the contact by |d1|.
         """
-        along = curve, self.rod_law, self._speeds
+        along = curve, self.rod_law, self.speeds
         rod, gauge = kernels.rod_energy(*along)
         return rod, gauge, kernels.rod_slopes(*along, tension[self.stretch_of], by_speed)
 

@@ -169,7 +169,8 @@ class _Descent:
         self.held, self.goal = held, goal
         self.first_damping = _DAMPING * energy.unit / energy.mean_loop_mm**2
         self.damping = self.first_damping
-        self.sparse = energy.cell.stitches >= _SPARSE_FROM and not energy.slides
+        dense_only = energy.slides or energy.sliding is not None
+        self.sparse = energy.cell.stitches >= _SPARSE_FROM and not dense_only
         self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
         self.fronts: tuple[NDArray[np.bool_], tuple[Front, ...]] | None = None
         self.lowest = 0.0

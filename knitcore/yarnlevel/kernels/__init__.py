@@ -3,6 +3,14 @@
 from knitcore.yarnlevel.kernels.bent import bent_contact
 from knitcore.yarnlevel.kernels.contact import contact_energy, contact_hessian, contact_slopes
 from knitcore.yarnlevel.kernels.curve import control_of, laid_out, sample_curve
+from knitcore.yarnlevel.kernels.friction import (
+    Sliding,
+    friction_energy,
+    friction_hessian,
+    friction_slopes,
+    normal_forces,
+    slides,
+)
 from knitcore.yarnlevel.kernels.rod import rod_energy, rod_hessian, rod_sample, rod_slopes
 from knitcore.yarnlevel.kernels.scatter import scatter_gradient, scatter_local
 from knitcore.yarnlevel.kernels.structures import ContactLaw, Layout, RodLaw
@@ -18,6 +26,7 @@ __all__ = [
     "ContactLaw",
     "Layout",
     "RodLaw",
+    "Sliding",
     "TiledMatrix",
     "bent_contact",
     "contact_energy",
@@ -25,7 +34,11 @@ __all__ = [
     "contact_slopes",
     "control_of",
     "empty_tiles",
+    "friction_energy",
+    "friction_hessian",
+    "friction_slopes",
     "laid_out",
+    "normal_forces",
     "one_tile",
     "rod_energy",
     "rod_hessian",
@@ -34,6 +47,7 @@ __all__ = [
     "sample_curve",
     "scatter_gradient",
     "scatter_local",
+    "slides",
     "tiled_product",
     "touching_blocks",
 ]

@@ -12,7 +12,7 @@ from knitcore.yarnlevel.potential import potential, potential_and_derivatives
 
 
 @numba.njit(cache=True)
-def _apart(
+def apart(
     at: Array, pairs: Pairs, q: int, layout: Layout, course_mm: float, wale_mm: float
 ) -> tuple[float, float, float]:
     """Vector from the first sample of a pair to the image of the second, mm."""
@@ -33,7 +33,7 @@ def contact_energy(
     at = laid_out(curve, layout.place, course_mm, wale_mm)
     total = 0.0
     for q in range(pairs.shape[0]):
-        dx, dy, dz = _apart(at, pairs, q, layout, course_mm, wale_mm)
+        dx, dy, dz = apart(at, pairs, q, layout, course_mm, wale_mm)
         square = dx * dx + dy * dy + dz * dz
         if square < reach:
             value = potential(np.sqrt(square), law.stiffness, law.exponent, law.radius, law.core)
@@ -54,7 +54,7 @@ def contact_slopes(
     force, by_speed = np.zeros((n + 1, 3)), np.zeros(n)
     at = laid_out(curve, layout.place, course_mm, wale_mm)
     for q in range(pairs.shape[0]):
-        dx, dy, dz = _apart(at, pairs, q, layout, course_mm, wale_mm)
+        dx, dy, dz = apart(at, pairs, q, layout, course_mm, wale_mm)
         square = dx * dx + dy * dy + dz * dz
         if square >= reach:
             continue
@@ -149,7 +149,7 @@ def contact_hessian(  # noqa: PLR0912, PLR0915 - one pair at a time, in one swee
                     j = pairs[q, 1]
                     flip = float(pairs[q, 4])
                     right, above = wales * pairs[q, 2], rows * pairs[q, 3]
-                    dx, dy, dz = _apart(at, pairs, q, layout, course_mm, wale_mm)
+                    dx, dy, dz = apart(at, pairs, q, layout, course_mm, wale_mm)
                     square = dx * dx + dy * dy + dz * dz
                     if square >= reach:
                         continue

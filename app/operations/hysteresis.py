@@ -1,0 +1,194 @@
+"""Loading, unloading and rest sizes of a repeat with friction between its yarns."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from app.models.base import Floats, ResultModel
+from app.models.charts import MaterialName, RepeatInput, to_repeat
+from app.models.laws import LawsRequest
+from app.models.yarn_level import YarnResult
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.yarnlevel import hysteresis as loops
+from knitcore.yarnlevel.friction import MAX_COEFFICIENT, MAX_STITCHES
+from knitcore.yarnlevel.hysteresis import (
+    DEFAULT_POINTS,
+    MAX_CYCLES,
+    TAKE_DOWN_N_PER_MM,
+    WORN_N_PER_MM,
+    History,
+)
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.splines import COARSE
+from knitcore.yarnlibrary.yarn_friction import yarn_friction
+from knitcore.yarnlibrary.yarns import yarn_for
+
+
+class HysteresisRequest(LawsRequest):
+    """A repeat, its yarn and the pull."""
+
+    chart: RepeatInput
+    material: MaterialName
+    direction: Direction = Field(Direction.COURSE, description="Along rows, or along columns.")
+    max_strain: float = Field(
+        0.3, gt=0, le=5, allow_inf_nan=False, description="Largest strain: 0.5 is 50 %."
+    )
+    friction: float | None = Field(
+        None,
+        ge=0,
+        le=MAX_COEFFICIENT,
+        allow_inf_nan=False,
+        description="Coefficient of friction between yarns; that of the fibre by default.",
+    )
+    loop_length_mm: float | None = Field(
+        None,
+        gt=0,
+        le=1000,
+        allow_inf_nan=False,
+        description="Yarn per stitch; the material's by default.",
+    )
+    points: int = Field(DEFAULT_POINTS, ge=2, le=200, description="Strains on the way there.")
+    cycles: int = Field(2, ge=1, le=MAX_CYCLES)
+    rest_sizes: bool = Field(True, description="Also find the rest size after every history.")
+
+
+class LoopLeg(ResultModel):
+    """One way of a cycle."""
+
+    loading: bool
+    strain: Floats = Field(description="From the rest size without friction.")
+    transverse_strain: Floats
+    stress_n_per_mm: Floats
+
+
+class RestSizeResult(ResultModel):
+    """Size of a stitch free of force after a history."""
+
+    history: History
+    course_mm: float
+    wale_mm: float
+
+
+class HysteresisResult(ResultModel):
+    """Cycles of pulling and letting go, and what is left of them."""
+
+    kind: Literal["hysteresis"] = "hysteresis"
+    direction: Direction
+    friction: float = Field(description="Coefficient of friction that was used.")
+    friction_interval: tuple[float, float] | None = Field(
+        description="Of the fibre; null where the coefficient was given."
+    )
+    friction_source: str
+    legs: list[LoopLeg] = Field(description="Ways there and back in turn.")
+    lost_per_cycle_n_per_mm: float = Field(
+        description="Energy that the last cycle loses per area of fabric, N·mm/mm²."
+    )
+    lost_share: float = Field(description="The same as a share of the work of the pull.")
+    left_strain: float = Field(description="Strain that is left after letting go.")
+    closes_within: float = Field(
+        description="Change of the greatest stress from the first cycle to the last."
+    )
+    rest_sizes: list[RestSizeResult]
+    yarn: YarnResult
+    notes: list[str]
+
+
+def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult:
+    """Stress of the repeat on the way there and back with dry friction between its yarns, the
+    energy that a cycle loses, and the range of sizes at which it may rest.
+
+    Raises
+    ------
+    InputError
+        If the repeat is too large.
+    ConvergenceError, UnravelledError
+        If the yarn locks or unravels on the way.
+    """
+    repeat = to_repeat(request.chart).repeat()
+    if repeat.rows * repeat.columns > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"its repeat has {repeat.rows * repeat.columns} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+        )
+    material = context.material(request.material)
+    used = yarn_for(material, repeat, request.loop_length_mm)
+    known = yarn_friction(material)
+    given = request.friction
+    coefficient = known.coefficient if given is None else given
+    relaxed = relax(
+        repeat, used.yarn, request.loop_length_mm or used.loop_length_mm, grid=COARSE,
+        cancel=context.cancelled,
+    )  # fmt: skip
+    found = loops.hysteresis(
+        relaxed, request.direction, request.max_strain, coefficient,
+        points=request.points, cycles=request.cycles, cancel=context.cancelled,
+    )  # fmt: skip
+    rests = (
+        loops.rest_sizes(relaxed, coefficient, cancel=context.cancelled)
+        if request.rest_sizes
+        else ()
+    )
+    return HysteresisResult.of(
+        found,
+        friction=coefficient,
+        friction_interval=(known.low, known.high) if given is None else None,
+        friction_source=known.source if given is None else "given",
+        legs=[LoopLeg.of(leg) for leg in found.legs],
+        rest_sizes=[RestSizeResult.of(rest) for rest in rests],
+        yarn=YarnResult.of(used, used.yarn),
+        notes=[
+            "As-knitted: pulled along the columns by "
+            f"{TAKE_DOWN_N_PER_MM:g} N/mm, then let go; stretched: by {WORN_N_PER_MM:g} N/mm. "
+            "Agitated: shaken until friction holds nothing."
+        ],
+    )
+
+
+def _text(r: HysteresisResult) -> list[str]:
+    low_high = (
+        "" if r.friction_interval is None else " [{:.2f}, {:.2f}]".format(*r.friction_interval)
+    )
+    lines = [
+        f"friction            {r.friction:.2f}{low_high} ({r.friction_source})",
+        f"{'':20}there         back",
+    ]
+    there, back = r.legs[-2], r.legs[-1]
+    for strain, stress in zip(there.strain, there.stress_n_per_mm, strict=True):
+        held = [
+            s
+            for e, s in zip(back.strain, back.stress_n_per_mm, strict=True)
+            if abs(e - strain) < 1e-6
+        ]
+        again = f"{held[0]:10.4f}" if held else " " * 9 + "-"
+        lines.append(f"strain {strain:8.3f}   {stress:10.4f}   {again} N/mm")
+    lines += [
+        f"lost in a cycle     {r.lost_per_cycle_n_per_mm:.4g} N·mm/mm², "
+        f"{r.lost_share:.0%} of the work",
+        f"strain left         {r.left_strain:.3f}",
+    ]
+    for rest in r.rest_sizes:
+        lines.append(
+            f"rest, {rest.history:18}{rest.course_mm:6.3f} × {rest.wale_mm:.3f} mm a stitch"
+        )
+    return [*lines, *(f"note: {note}" for note in r.notes)]
+
+
+OPERATION = Operation(
+    hysteresis,
+    tag="yarn level",
+    summary="Loading, unloading and rest sizes of a repeat with friction",
+    example={"chart": "K", "material": "acrylic", "points": 4, "rest_sizes": False},
+    heavy=True,
+    job=True,
+    command=Command(
+        _text,
+        help="Pull the repeat CHART and let go, with friction between its yarns: loop, lost energy "
+        "and rest sizes.",
+    ),
+)

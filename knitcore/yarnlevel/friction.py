@@ -1,0 +1,187 @@
+"""Dry friction between yarns, step by step along a history of loading.
+
+Every pair of samples that press on each other holds a friction force of two components, along
+either strand. A step adds the slide of the pair over its slip length to this force, which never
+exceeds the coefficient of friction times the normal force (an elastic-plastic return mapping, as
+for Coulomb friction with a small elastic slip: Wriggers, Computational Contact Mechanics, 2nd ed.,
+section 5.2). The normal forces are those at the beginning of the step, so the equilibrium of a step
+is the minimum of a potential. Rates do not enter. Rolling of one strand over the other is free.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.arrays import Array
+from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.yarnlevel import kernels
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.kernels.structures import Pairs
+from knitcore.yarnlevel.limits import Cancel
+from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarnlevel.solver import Options, minimise
+from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
+
+MAX_COEFFICIENT = 2.0
+MAX_STITCHES = 36
+"""Largest cell; the unknowns fill a dense matrix."""
+SLIP_RADII = 0.02
+"""Elastic slip of a contact, in radii of the yarn."""
+_IMAGES = 64
+"""More images of a sample than can touch, on either side."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rubbing:
+    """The friction forces that a state of yarn holds.
+
+    Attributes
+    ----------
+    key : (n,) which pair of samples, sorted.
+    force_n : (n, 2) friction force of each, N, along its two strands.
+    """
+
+    key: NDArray[np.int64]
+    force_n: Array
+
+
+@dataclass(frozen=True, eq=False)
+class RubbedCell:
+    """A state of yarn with friction, and how it came about.
+
+    Attributes
+    ----------
+    cell : the state in equilibrium; its energy is without friction, its forces with it.
+    rubbing : the friction forces that it holds.
+    lost_n_mm : energy of one stitch that friction has taken since the history began, N·mm.
+    """
+
+    cell: RelaxedRepeat
+    rubbing: Rubbing
+    lost_n_mm: float
+
+
+def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
+    """The state without any friction force: where shaking and washing take the fabric.
+
+    Raises
+    ------
+    InputError
+        If the cell is too large, is held flat, or its slides are held.
+    """
+    if relaxed.cell.stitches > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"its cell has {relaxed.cell.stitches} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+        )
+    if relaxed.flat or relaxed.slides:
+        raise InputError(
+            "flat", "friction needs yarn that nothing else holds.", "Relax it without `flat`."
+        )
+    return RubbedCell(relaxed, Rubbing(np.zeros(0, np.int64), np.zeros((0, 2))), 0.0)
+
+
+def rubbed(
+    last: RubbedCell,
+    coefficient: float,
+    *,
+    fixed: tuple[int, ...] = (),
+    target: Array | None = None,
+    cancel: Cancel | None = None,
+) -> RubbedCell:
+    """The equilibrium after one small step of the history.
+
+    Parameters
+    ----------
+    last : the state before.
+    coefficient : of friction between yarns.
+    fixed : cell sizes that are prescribed (``COURSE``, ``WALE`` of the solver); the others are
+        free of force.
+    target : (2,) sizes of a stitch to move the fixed ones to, mm.
+
+    Raises
+    ------
+    InputError
+        If the coefficient is out of range.
+    ConvergenceError, UnravelledError
+        If the yarn locks or unravels on the way.
+    """
+    if not 0.0 <= coefficient <= MAX_COEFFICIENT:
+        raise InputError(
+            "friction",
+            f"{coefficient:g} is not a coefficient of friction.",
+            f"Give a number from 0 to {MAX_COEFFICIENT:g}.",
+        )
+    cell = last.cell
+    energy = cell.energy
+    sliding, rest = _sliding(energy, cell.state, last.rubbing, coefficient)
+    rubbing = replace(energy, sliding=sliding)
+    small = cell.cell.stitches <= 4
+    found = minimise(
+        rubbing, cell.state, tension=cell.tension_n, fixed=fixed, target=target,
+        options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancel=cancel,
+    )  # fmt: skip
+    became = outcome(energy, found)
+    if became == "unravelled":
+        raise UnravelledError("the stitches come undone.")
+    if became not in (RELAXED, UNSETTLED, "pulled straight"):
+        raise ConvergenceError(f"the yarn locks before it gets there ({became}).")
+    held, lost = _held(rubbing, sliding, found.state)
+    shown = relaxed_repeat(
+        cell.chart, energy, cell.branch, found, seconds=0.0, evaluations=found.evaluations
+    )
+    return RubbedCell(
+        shown, Rubbing(rest, held), last.lost_n_mm + lost / cell.cell.stitches
+    )  # fmt: skip
+
+
+def _sliding(
+    energy: CellEnergy, state: Array, before: Rubbing, coefficient: float
+) -> tuple[kernels.Sliding, NDArray[np.int64]]:
+    """The pairs that touch, with the forces that they hold, and their keys."""
+    curve, layout = energy.curve(state), energy.cell.layout
+    pairs, _ = energy.pairs(curve, state, 2.0 * energy.yarn.radius_mm)
+    key = _keys(pairs, len(curve))
+    order = np.argsort(key)
+    pairs, key = pairs[order], key[order]
+    size = float(state[-2]), float(state[-1])
+    limit = coefficient * kernels.normal_forces(curve, *size, pairs, layout, energy.contact_law)
+    slide, cosine = kernels.slides(curve, *size, pairs, layout, energy.speeds)
+    force = np.zeros((len(key), 2))
+    if len(before.key):
+        place = np.minimum(np.searchsorted(before.key, key), len(before.key) - 1)
+        known = before.key[place] == key
+        force[known] = before.force_n[place[known]]
+    # where the pressure has fallen, the pair has let go
+    size_of = np.maximum(np.hypot(*force.T), 1e-300)
+    force *= np.minimum(1.0, limit / size_of)[:, None]
+    slip = SLIP_RADII * energy.yarn.radius_mm
+    scale = 1.0 / np.sqrt(1.0 + cosine**2)
+    elastic = slip * force / np.maximum(limit, 1e-300)[:, None]
+    return kernels.Sliding(pairs, limit, slide - elastic / scale[:, None], scale, slip), key
+
+
+def _held(energy: CellEnergy, sliding: kernels.Sliding, state: Array) -> tuple[Array, float]:
+    """(n, 2) friction forces after a step, N, and the energy that slipping took in it, N·mm."""
+    slide, _ = kernels.slides(
+        energy.curve(state), float(state[-2]), float(state[-1]), sliding.pairs,
+        energy.cell.layout, energy.speeds,
+    )  # fmt: skip
+    elastic = sliding.scale[:, None] * (slide - sliding.rest)
+    size = np.hypot(*elastic.T)
+    lost = float(sliding.limit @ np.maximum(size - sliding.slip, 0.0))
+    pull = sliding.limit / np.maximum(size, sliding.slip)
+    return elastic * pull[:, None], lost
+
+
+def _keys(pairs: Pairs, samples: int) -> NDArray[np.int64]:
+    """A number for every pair of samples and image."""
+    wide = pairs.astype(np.int64)
+    key = wide[:, 0] * samples + wide[:, 1]
+    for image in (wide[:, 2], wide[:, 3]):
+        key = key * 2 * _IMAGES + image + _IMAGES
+    return np.asarray(key)

@@ -1,0 +1,76 @@
+"""Loops of loading and unloading, and rest sizes that remember."""
+
+import numpy as np
+import pytest
+
+from knitcore.errors import InputError
+from knitcore.fabric import Direction
+from knitcore.yarnlevel.hysteresis import History, at_rest, hysteresis, rest_sizes
+
+from .test_friction import forces, stockinette, walk
+
+__all__ = ["stockinette"]
+
+
+@pytest.fixture(scope="module")
+def loop(stockinette):
+    return hysteresis(stockinette, "course", 0.2, 0.25, points=11)
+
+
+def test_the_loop_closes_after_the_first_cycle(loop):
+    first, _, again, last = loop.legs
+    assert [leg.loading for leg in loop.legs] == [True, False, True, False]
+    assert loop.closes_within < 0.02
+    # the second cycle begins where the first ended, stretched
+    assert again.strain[0] == first.strain[0] + loop.legs[1].strain[-1] > 0.005
+    assert last.strain[-1] == pytest.approx(again.strain[0], abs=2e-3)
+
+
+def test_unloading_takes_less_force(loop):
+    there, back = loop.legs[2], loop.legs[3]
+    known = np.interp(there.strain[2:-1], back.strain[::-1], back.stress_n_per_mm[::-1])
+    assert np.all(known < 0.9 * there.stress_n_per_mm[2:-1])
+
+
+def test_the_area_of_the_loop_is_the_energy_that_slipping_takes(loop):
+    area = loop.zero.cell_course_mm * loop.zero.cell_wale_mm
+    assert loop.lost_per_cycle_n_per_mm * area == pytest.approx(loop.lost_n_mm[2:].sum(), rel=0.2)
+    assert 0.05 < loop.lost_share < 0.5
+
+
+def test_without_friction_nothing_is_lost(stockinette):
+    free = hysteresis(stockinette, "course", 0.2, 0.0, points=6, cycles=1)
+    assert np.all(free.lost_n_mm == 0.0)
+    assert abs(free.lost_share) < 1e-4
+    assert free.left_strain == pytest.approx(0.0, abs=1e-4)
+
+
+def test_the_curve_returns_to_the_point_where_it_turned(stockinette):
+    there = np.linspace(0, 0.2, 11)[1:]
+    states = walk(stockinette, [*there, *there[-2:4:-1], *there[5:]], 0.25)
+    stress = forces(states)
+    assert stress[-1] == pytest.approx(stress[len(there) - 1], rel=0.02)
+    # the inner loop is a true one: it went down by much more than it misses
+    assert stress[len(there) + 4] < 0.7 * stress[-1]
+
+
+def test_the_fabric_rests_where_its_history_left_it(stockinette):
+    wide = at_rest(stockinette, History.STRETCHED_COURSE, 0.25).cell
+    assert wide.cell_course_mm > 1.005 * stockinette.cell_course_mm
+    assert wide.cell_wale_mm < stockinette.cell_wale_mm
+    assert np.abs(wide.force_n).max() < 1e-5
+    assert at_rest(stockinette, "agitated", 0.25).cell is stockinette
+
+
+@pytest.mark.slow
+def test_every_history_has_its_rest_size(stockinette):
+    sizes = {s.history: s for s in rest_sizes(stockinette, 0.25)}
+    assert set(sizes) == set(History)
+    tall = sizes[History.STRETCHED_WALE]
+    assert tall.wale_mm > sizes[History.KNITTED].wale_mm > sizes[History.AGITATED].wale_mm
+    assert tall.course_mm < sizes[History.AGITATED].course_mm
+
+
+def test_a_cycle_count_out_of_range_is_refused(stockinette):
+    with pytest.raises(InputError, match="cycles"):
+        hysteresis(stockinette, Direction.COURSE, 0.1, 0.2, cycles=0)
