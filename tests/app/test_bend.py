@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from app.operations.bend import BendRequest, bend
 from app.operations.context import Context
+from tests.app.command_line import run
 
 
 def test_bend_says_what_the_edges_do(client: TestClient) -> None:
@@ -44,8 +42,6 @@ def test_a_repeat_too_large_to_bend_is_refused(client: TestClient) -> None:
 
 
 def test_bend_on_the_command_line() -> None:
-    result = CliRunner().invoke(main, ["bend", "garter", "--material", "acrylic", "--json"])
-    assert result.exit_code == 0, result.stderr
-    bent = json.loads(result.stdout)
+    bent = run("bend", "garter", "--material", "acrylic")
     assert bent["curl"] == "lies flat"
     assert bent["bending_course_n_mm"] == pytest.approx(0.0055, rel=0.03)

@@ -14,12 +14,12 @@ from knitcore.errors import CancelledError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.uniaxial import strain_at_stress
 from knitcore.materials import material
+from tests.app.command_line import run
 
 
 def test_a_pure_fabric_has_its_law(client: TestClient) -> None:
     arguments = ["garter", "--size", "6x6", "--material", "acrylic", "--direction", "wale"]
-    result = CliRunner().invoke(main, ["curve", *arguments, "--points", "4", "--json"])
-    told = json.loads(result.stdout)
+    told = run("curve", *arguments, "--points", "4")
     law = material("acrylic").law(Fabric.GARTER)
     expected = [strain_at_stress(law, Direction.WALE, s) for s in told["stress_n_per_mm"]]
     assert told["strain"] == pytest.approx(expected)

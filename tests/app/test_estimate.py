@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 from dataclasses import asdict
 from pathlib import Path
 
@@ -14,15 +13,8 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import load_material_file, material
+from tests.app.command_line import run
 from tests.knitcore.measure.synthetic import write_csv
-
-
-def run(*arguments: str | Path) -> dict[str, object]:
-    result = CliRunner().invoke(main, [*map(str, arguments), "--json"])
-    assert result.exit_code == 0, result.output
-    answer = json.loads(result.stdout)
-    assert isinstance(answer, dict)
-    return answer
 
 
 def test_an_estimate_from_one_swatch(client: TestClient) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import json
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from knitcore.materials import material
 from knitcore.swatch import SheetModel
+from tests.app.command_line import run
 from tests.knitcore.swatch.synthetic import camera_arrays
 
 FABRIC = ["--material", "acrylic", "--fabric", "garter", "--direction", "wale"]
@@ -25,13 +25,6 @@ def field(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("field") / "field.npz"
     np.savez_compressed(path, displacement=displacement.astype(np.float32), frame=frame)
     return path
-
-
-def run(*arguments: str | Path) -> dict[str, object]:
-    result = CliRunner().invoke(main, [str(a) for a in (*arguments, "--json")])
-    assert result.exit_code == 0, result.output
-    parsed: dict[str, object] = json.loads(result.stdout)
-    return parsed
 
 
 def test_compare_gives_the_fields_of_the_contract(field: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -14,16 +13,9 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from app.operations.export import MAX_STITCHES
 from knitcore.formats.export import FORMATS, ExportKind
+from tests.app.command_line import run
 
 CHART = "KPKK\nPPKP\nKKPP"
-
-
-def run(*arguments: str) -> dict[str, Any]:
-    result = CliRunner().invoke(main, [*arguments, "--json"])
-    assert result.exit_code == 0, result.output
-    answer = json.loads(result.stdout)
-    assert isinstance(answer, dict)
-    return answer
 
 
 @pytest.mark.parametrize("kind", list(ExportKind))

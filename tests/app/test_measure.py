@@ -13,6 +13,7 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from knitcore.fabric import Direction
 from knitcore.formats.law_files import load_law
+from tests.app.command_line import run
 from tests.knitcore.measure.synthetic import LAW, hanging_yarn, save_photo, write_csv, write_h5
 from tests.knitcore.measure.test_compression import WORKBOOK, squeeze, write
 
@@ -26,15 +27,6 @@ CONSTANTS = {
     "beta_xx_n_per_mm",
     "beta_yy_n_per_mm",
 }
-
-
-def run(*arguments: str | Path) -> dict[str, object]:
-    result = CliRunner().invoke(main, [*map(str, arguments), "--json"])
-    assert result.exit_code == 0, result.output
-    assert result.stderr == ""
-    answer = json.loads(result.stdout)
-    assert isinstance(answer, dict)
-    return answer
 
 
 def upload(path: Path) -> dict[str, str]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
-from app.cli.main import main
 from app.operations.context import Context
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
@@ -24,6 +21,7 @@ from knitcore.formats.chart_key import ChartStyle
 from knitcore.formats.drawing import Label, Page
 from knitcore.materials import material
 from knitcore.yarnlibrary.store import stored_charts
+from tests.app.command_line import run
 
 LOADS = [0.01, 0.05, 0.2]
 
@@ -94,7 +92,7 @@ def test_command_line_rest_and_report_give_the_same(
     file = tmp_path / "chart.txt"
     file.write_text(chart.text)
     body = {"chart": chart.text, "material": yarn}
-    assert _run("predict", str(file), "--material", yarn) == told
+    assert run("predict", str(file), "--material", yarn) == told
     assert client.post("/api/v1/predict", json=body).json() == told
     for direction in Direction:
         own = curve(chart, used, direction, LOADS)
@@ -105,7 +103,7 @@ def test_command_line_rest_and_report_give_the_same(
         assert served["strain_interval"] == ends
         ends = [own.stress_low.tolist(), own.stress_high.tolist()]
         assert served["stress_interval_n_per_mm"] == ends
-        shown = _run(
+        shown = run(
             "curve", str(file), "--material", yarn, "--direction", str(direction),
             "--max-stress", "0.2", "--points", "2",
         )  # fmt: skip
@@ -146,7 +144,7 @@ def test_a_target_pressure_agrees_with_the_pressure_command(
     """The laws of every day, a tube a quarter wider on the limb; within 1 %."""
     chart = StitchChart.of_fabric(fabric, 2, 2)
     atlas = build_atlas(material("acrylic"), [chart.canonical()])
-    told = _run(
+    told = run(
         "pressure", "--material", "acrylic", "--fabric", str(fabric),
         "--direction", str(direction), "--rest-mm", "200", "--worn-mm", "250",
     )  # fmt: skip
@@ -159,12 +157,6 @@ def test_a_target_pressure_agrees_with_the_pressure_command(
 def _operation(chart: StitchChart, yarn: str) -> Any:
     request = PredictRequest.model_validate({"chart": chart.text, "material": yarn})
     return predict_operation(request, Context(Path())).model_dump(mode="json")
-
-
-def _run(*arguments: str) -> Any:
-    result = CliRunner().invoke(main, [*arguments, "--json"])
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
 
 
 def _report(chart: StitchChart, yarn: str, monkeypatch: pytest.MonkeyPatch) -> set[str]:

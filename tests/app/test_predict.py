@@ -12,6 +12,7 @@ from fastapi.testclient import TestClient
 from app.cli.main import main
 from knitcore import Fabric
 from knitcore.materials import load_library
+from tests.app.command_line import run
 
 FIELDS = {
     "rows",
@@ -31,14 +32,6 @@ FIELDS = {
     "modulus_course_interval_n_per_mm",
     "modulus_wale_interval_n_per_mm",
 }
-
-
-def run(*arguments: str) -> dict[str, object]:
-    result = CliRunner().invoke(main, [*arguments, "--json"])
-    assert result.exit_code == 0, result.output
-    answer = json.loads(result.stdout)
-    assert isinstance(answer, dict)
-    return answer
 
 
 def test_garter_is_the_papers(client: TestClient) -> None:

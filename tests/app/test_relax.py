@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import pytest
@@ -10,6 +9,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from tests.app.command_line import run
 
 FIELDS = {
     "cell_course_mm", "cell_wale_mm", "energy_n_mm", "bending_share", "contact_share",
@@ -17,15 +17,8 @@ FIELDS = {
 }  # fmt: skip
 
 
-def _json(*arguments: str) -> dict[str, Any]:
-    result = CliRunner().invoke(main, [*arguments, "--json"])
-    assert result.exit_code == 0, result.stderr
-    told: dict[str, Any] = json.loads(result.stdout)
-    return told
-
-
 def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
-    told = _json("relax", "stockinette", "--size", "4x4", "--material", "cotton")
+    told = run("relax", "stockinette", "--size", "4x4", "--material", "cotton")
     assert set(told) >= FIELDS
     assert told["converged"]
     assert told["energy_n_mm"] == pytest.approx(0.387, rel=5e-3)
@@ -37,7 +30,7 @@ def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> No
 
 
 def test_relax_in_the_published_branch() -> None:
-    told = _json(
+    told = run(
         "relax", "stockinette", "--size", "2x2", "--material", "cotton", "--branch", "published"
     )
     assert told["branch"] == "published"
@@ -60,7 +53,7 @@ def test_a_loop_that_is_too_short_is_refused_with_a_bound() -> None:
 
 
 def test_loop_lengths_give_the_same_on_the_command_line_and_over_rest(client: TestClient) -> None:
-    told = _json(
+    told = run(
         "relax", "stockinette", "--size", "1x2", "--material", "cotton",
         "--loop-lengths-mm", "14.5/15.5",
     )  # fmt: skip
@@ -101,7 +94,7 @@ def test_an_impossible_held_size_is_refused(
 
 
 def test_sweep_on_the_command_line_and_over_rest_agree(client: TestClient) -> None:
-    told = _json(
+    told = run(
         "sweep", "stockinette", "--size", "2x2", "--material", "cotton", "--direction", "course",
         "--max-strain", "0.2", "--points", "5",
     )  # fmt: skip

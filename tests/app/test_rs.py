@@ -1,19 +1,17 @@
 from __future__ import annotations
 
-import json
-
 import pytest
 from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from tests.app.command_line import run
 
 
 @pytest.mark.parametrize("material", ["acrylic", "cotton"])
 def test_even_values_are_the_papers(client: TestClient, material: str) -> None:
     """Tables 17 and 18 print three digits: within 0.6 %."""
-    result = CliRunner().invoke(main, ["rs", "--material", material, "--json"])
-    told = json.loads(result.stdout)
+    told = run("rs", "--material", material)
     assert told == client.get(f"/api/v1/rs/{material}").json()
     even = [
         segment
