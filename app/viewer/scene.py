@@ -97,9 +97,12 @@ class SceneWriter:
         """Build nothing any more, and forget what was drawn."""
         with self._lock:
             self._drawing = None
-            if self._timer is not None:
-                self._timer.cancel()
-                self._timer = None
+            self._stop_timer()
+
+    def _stop_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
 
     def _place_camera(self, *, everybody: bool) -> None:
         if self._drawing is None:
@@ -128,7 +131,7 @@ class SceneWriter:
         name = f"/fabric/{self._made}"
         cloth = Cloth(self._server, name, scene, middle, level, visible=not unseen)
         self._cloths.append(cloth)
-        self.close()
+        self._stop_timer()
         if unseen:
             self._timer = threading.Timer(BUILD_S, self._take_turns, [cloth])
             self._timer.daemon = True

@@ -69,6 +69,7 @@ class Mixer:
     def __init__(self, atlas: Atlas, material: Material) -> None:
         self._atlas, self._material = atlas, material
         self._partners = _partners(atlas)
+        self._charts: dict[tuple[Direction, bytes, bytes], StitchChart] = {}
         self._estimates: list[_Estimates] = []
         if len(self._partners) > 1:
             self._estimates = [self._estimate(direction) for direction in Direction]
@@ -145,7 +146,7 @@ class Mixer:
         """The stripes with the nearest estimates that have not been tried."""
         ranked: list[tuple[float, StitchChart, Array]] = []
         for table in tables:
-            off = np.nan_to_num(np.abs(table.log_moduli - wish)).max(axis=1)
+            off = np.maximum(*np.nan_to_num(np.abs(table.log_moduli - wish)).T)
             count = min(len(tried) + 1, len(off))
             for k in np.argpartition(off, count - 1)[:count].tolist() if count else []:
                 chart = self._chart(table, k)
@@ -157,6 +158,14 @@ class Mixer:
         return chart, estimated
 
     def _chart(self, table: _Estimates, index: int) -> StitchChart:
+        """The stripes of an estimate; a search asks for the nearest ones again and again."""
+        partners, widths = table.partners[index], table.widths[index]
+        key = table.direction, partners.tobytes(), widths.tobytes()
+        if key not in self._charts:
+            self._charts[key] = self._striped(table, index)
+        return self._charts[key]
+
+    def _striped(self, table: _Estimates, index: int) -> StitchChart:
         first, second = (self._atlas.chart(int(k)) for k in table.partners[index])
         a, b = (int(width) for width in table.widths[index])
         if table.direction is Direction.COURSE:

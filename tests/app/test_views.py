@@ -44,9 +44,10 @@ def test_a_design_is_drawn_and_reaches_the_browser(client: TestClient) -> None:
         "source": "relaxed curves of the four fabrics in acrylic",
         "scale_mm": 5.0,
     }
-    seen = _messages(client, DESIGN, b"/rectangles")
+    seen = _messages(client, DESIGN, b"SetCameraPositionMessage")
     assert b"/fabric/" in seen
     assert b"/rectangles" in seen
+    assert b"SetCameraLookAtMessage" in seen
 
 
 def test_two_designs_are_two_scenes(client: TestClient) -> None:
