@@ -220,6 +220,26 @@ export interface BiaxialResult {
   stress_y_n_per_mm: number[];
 }
 
+/** A piece and the fabric of its border. */
+export interface BorderRequest {
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
+  linear_density_g_per_m: number;
+  chart: string | PureFabricChart;
+  /** Fabric of the border. */
+  border?: Fabric;
+}
+
+/** Borders of a piece that lies on a table. */
+export interface BorderResult {
+  kind: "border";
+  sides: EdgesResult;
+  /** Top and bottom. */
+  ends: EdgesResult;
+  notes: string[];
+}
+
 /** Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise. */
 export interface BoxInput {
   row0: number;
@@ -741,6 +761,22 @@ export interface DrapeResult {
 
 /** Motion imposed at the clamped edges: the measured one, or its mean (rigid clamps). */
 export type Edges = "measured" | "rigid";
+
+/** A border along two opposite edges. */
+export interface EdgesResult {
+  /** Per width, with which the piece curls there, N. */
+  moment_n: number;
+  /** Of a border that its own weight just keeps from being tipped over. */
+  width_mm: number;
+  /** That width in stitches, or rows, of the border. */
+  stitches: number;
+  /** Share of the moment that the weight of a border by the knitters' rule holds. */
+  rule_share: number;
+  /** Whether a border 1.2 times as wide keeps a strip on a smooth table from rolling up. */
+  holds: boolean;
+  /** How high this strip rises beside its borders. */
+  ridge_mm: number;
+}
 
 /** The energy of a sheet. */
 export type EnergyModel = "published" | "full";

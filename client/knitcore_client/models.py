@@ -189,6 +189,18 @@ class BiaxialRequest(TypedDict):
     """Angle from the x axis to the rows."""
 
 
+class BorderRequest(TypedDict):
+    """A piece and the fabric of its border."""
+
+    material: str
+    """Identifier of a material of the library."""
+    linear_density_g_per_m: float
+    """Of the yarn, g/m: weigh some metres; tex divided by 1000."""
+    chart: str | PureFabricChart
+    border: NotRequired[Fabric]
+    """Fabric of the border."""
+
+
 class BoxInput(TypedDict):
     """Some stitches: rows ``row0`` (the bottom row is 0) to ``row1 - 1``, columns likewise."""
 
@@ -1280,6 +1292,16 @@ class BiaxialResult(BaseModel):
     stress_y_n_per_mm: list[float]
 
 
+class BorderResult(BaseModel):
+    """Borders of a piece that lies on a table."""
+
+    kind: Literal["border"] = "border"
+    sides: EdgesResult
+    ends: EdgesResult
+    """Top and bottom."""
+    notes: list[str]
+
+
 class CalibrateResult(BaseModel):
     """The calibrated law; its shear modulus is calibrated, too."""
 
@@ -1626,6 +1648,23 @@ class DrapeResult(BaseModel):
     corners_mm: list[list[tuple[float, float, float] | None]] | None = None
     """Corners of the sheet line by line, mm; null outside the piece."""
     notes: list[str]
+
+
+class EdgesResult(BaseModel):
+    """A border along two opposite edges."""
+
+    moment_n: float
+    """Per width, with which the piece curls there, N."""
+    width_mm: float
+    """Of a border that its own weight just keeps from being tipped over."""
+    stitches: int
+    """That width in stitches, or rows, of the border."""
+    rule_share: float
+    """Share of the moment that the weight of a border by the knitters' rule holds."""
+    holds: bool
+    """Whether a border 1.2 times as wide keeps a strip on a smooth table from rolling up."""
+    ridge_mm: float
+    """How high this strip rises beside its borders."""
 
 
 class EstimateResult(BaseModel):
@@ -2842,6 +2881,7 @@ JobResult = (
     | BendingResult
     | BiasResult
     | BiaxialResult
+    | BorderResult
     | CalibrateResult
     | CharacteriseResult
     | CompareResult

@@ -17,6 +17,8 @@ from knitcore_client.models import (
     BiasResult,
     BiaxialRequest,
     BiaxialResult,
+    BorderRequest,
+    BorderResult,
     CalibrateRequest,
     CalibrateResult,
     CharacteriseRequest,
@@ -117,6 +119,10 @@ class AsyncOperations:
     async def biaxial(self, **request: Unpack[BiaxialRequest]) -> BiaxialResult:
         """Pull a rectangle in both directions."""
         return await self._ask(BiaxialResult, "POST", "/biaxial", request)
+
+    async def border(self, **request: Unpack[BorderRequest]) -> BorderResult:
+        """How wide a border keeps a piece flat."""
+        return await self._ask(BorderResult, "POST", "/border", request)
 
     async def calibrate(self, **request: Unpack[CalibrateRequest]) -> CalibrateResult:
         """Shear modulus and couplings from a displacement field."""
@@ -268,6 +274,10 @@ class AsyncOperations:
     ) -> JobStatus: ...
     @overload
     async def submit(
+        self, kind: Literal["border"], **request: Unpack[BorderRequest]
+    ) -> JobStatus: ...
+    @overload
+    async def submit(
         self, kind: Literal["calibrate"], **request: Unpack[CalibrateRequest]
     ) -> JobStatus: ...
     @overload
@@ -351,6 +361,10 @@ class AsyncOperations:
     async def run(
         self, kind: Literal["biaxial"], **request: Unpack[BiaxialRequest]
     ) -> BiaxialResult: ...
+    @overload
+    async def run(
+        self, kind: Literal["border"], **request: Unpack[BorderRequest]
+    ) -> BorderResult: ...
     @overload
     async def run(
         self, kind: Literal["calibrate"], **request: Unpack[CalibrateRequest]
@@ -442,6 +456,10 @@ class Operations:
     def biaxial(self, **request: Unpack[BiaxialRequest]) -> BiaxialResult:
         """Pull a rectangle in both directions."""
         return self._ask(BiaxialResult, "POST", "/biaxial", request)
+
+    def border(self, **request: Unpack[BorderRequest]) -> BorderResult:
+        """How wide a border keeps a piece flat."""
+        return self._ask(BorderResult, "POST", "/border", request)
 
     def calibrate(self, **request: Unpack[CalibrateRequest]) -> CalibrateResult:
         """Shear modulus and couplings from a displacement field."""
@@ -586,6 +604,8 @@ class Operations:
     @overload
     def submit(self, kind: Literal["biaxial"], **request: Unpack[BiaxialRequest]) -> JobStatus: ...
     @overload
+    def submit(self, kind: Literal["border"], **request: Unpack[BorderRequest]) -> JobStatus: ...
+    @overload
     def submit(
         self, kind: Literal["calibrate"], **request: Unpack[CalibrateRequest]
     ) -> JobStatus: ...
@@ -648,6 +668,8 @@ class Operations:
     def run(self, kind: Literal["bias"], **request: Unpack[BiasRequest]) -> BiasResult: ...
     @overload
     def run(self, kind: Literal["biaxial"], **request: Unpack[BiaxialRequest]) -> BiaxialResult: ...
+    @overload
+    def run(self, kind: Literal["border"], **request: Unpack[BorderRequest]) -> BorderResult: ...
     @overload
     def run(
         self, kind: Literal["calibrate"], **request: Unpack[CalibrateRequest]

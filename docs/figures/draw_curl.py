@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 
 from knitcore.chart import StitchChart
 from knitcore.materials import material
-from knitcore.shell.curl import CurledPiece, curl
+from knitcore.shell.curl import curl
 
 Array = NDArray[np.float64]
 
@@ -36,16 +36,19 @@ PIECES = {
 }
 
 
-def drawn(piece: CurledPiece) -> Image.Image:
-    """The piece as quadrilaterals, the far ones first: blue the face, orange the back."""
+def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
+    """A sheet as quadrilaterals, the far ones first: blue the face, orange the back.
+
+    Corners (rows + 1, columns + 1, 3) may be NaN where there is nothing; ``purl`` (rows, columns).
+    """
     ahead = TOWARDS / np.linalg.norm(TOWARDS)
     right = np.cross([0.0, 0.0, 1.0], ahead)
     right /= np.linalg.norm(right)
     axes = np.stack([right, np.cross(ahead, right), ahead], axis=1)
-    seen = piece.corners_mm @ axes
+    seen = corners_mm @ axes
     flat = seen.reshape(-1, 3)
-    scale = 2 * 0.9 * SIDE / np.ptp(flat[:, :2], axis=0).max()
-    middle = 0.5 * (flat[:, :2].max(axis=0) + flat[:, :2].min(axis=0))
+    scale = 2 * 0.9 * SIDE / (np.nanmax(flat[:, :2], axis=0) - np.nanmin(flat[:, :2], axis=0)).max()
+    middle = 0.5 * (np.nanmax(flat[:, :2], axis=0) + np.nanmin(flat[:, :2], axis=0))
     place = SIDE + (seen[..., :2] - middle) * scale * (1, -1)
     quads = np.stack([seen[:-1, :-1], seen[:-1, 1:], seen[1:, 1:], seen[1:, :-1]], axis=2).reshape(
         -1, 4, 3
@@ -55,10 +58,12 @@ def drawn(piece: CurledPiece) -> Image.Image:
     ).reshape(-1, 4, 2)
     normal = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    purl = piece.chart.purl.ravel()
+    purl = purl.ravel()
     picture = Image.new("RGB", (2 * SIDE, 2 * SIDE), "white")
     pen = ImageDraw.Draw(picture)
     for k in np.argsort(quads[:, :, 2].mean(axis=1)):
+        if np.isnan(quads[k]).any():
+            continue
         light = 0.5 + 0.5 * abs(normal[k] @ np.array([-0.3, 0.5, 0.81]))
         colour = (FACE if normal[k, 2] > 0 else BACK) * light * (0.82 if purl[k] else 1.0)
         tone = tuple(int(value) for value in colour)
@@ -75,7 +80,7 @@ def main() -> None:
         size = f"{piece.width_mm:.0f} x {piece.height_mm:.0f} x {piece.depth_mm:.0f} mm"
         print(name, size, "" if piece.converged else "NOT converged", f"{piece.seconds:.1f} s")
         at = (place % 3) * SIDE, (place // 3) * (SIDE + 22)
-        sheet.paste(drawn(piece), at)
+        sheet.paste(drawn(piece.corners_mm, chart.purl), at)
         pen.text((at[0] + 12, at[1] + SIDE), f"{name}: {size}", fill=(40, 40, 40))
     colours = sheet.quantize(128)
     colours.save(Path(__file__).parents[1] / "images" / "curl.png", optimize=True)

@@ -1,4 +1,4 @@
-"""``hang``, ``overhang`` and ``drape`` on the command line and over REST."""
+"""``hang``, ``overhang``, ``drape`` and ``border`` on the command line and over REST."""
 
 from __future__ import annotations
 
@@ -52,3 +52,19 @@ def test_fabric_that_curls_is_said_to() -> None:
     yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
     result = CliRunner().invoke(main, ["overhang", "stockinette", *yarn])
     assert "curls" in result.stderr
+
+
+def test_border_over_rest(client: TestClient) -> None:
+    body = {"chart": "K/P", "border": "seed", **YARN}
+    answer = client.post("/api/v1/border", json=body)
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["sides"]["stitches"] == 0
+
+
+@pytest.mark.slow
+def test_border_as_a_command() -> None:
+    yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
+    result = CliRunner().invoke(main, ["border", "stockinette", "--border", "rib", *yarn])
+    assert result.exit_code == 0, result.output
+    assert "top and bottom" in result.stdout
+    assert "Knitters' rule" in result.stderr

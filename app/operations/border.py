@@ -1,0 +1,107 @@
+"""How wide a border keeps a curling piece flat."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from app.models.base import ResultModel
+from app.models.charts import RepeatInput, to_repeat
+from app.models.weighed import WeighedRequest
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.chart import StitchChart
+from knitcore.fabric import Fabric
+from knitcore.shell.border import RULE_ROWS, RULE_STITCHES, advice
+from knitcore.shell.cloth import cloth_of
+
+_RULE = (
+    f"Knitters' rule, {RULE_STITCHES[0]} to {RULE_STITCHES[1]} stitches and {RULE_ROWS} rows, "
+    "rests on friction between the yarns and on blocking, which are not modelled here."
+)
+_ROLLS = (
+    "Where a border does not hold by its weight, a wider one does no better: it bends up beside the "
+    "piece."
+)
+
+
+class BorderRequest(WeighedRequest):
+    """A piece and the fabric of its border."""
+
+    chart: RepeatInput
+    border: Fabric = Field(Fabric.GARTER, description="Fabric of the border.")
+
+
+class EdgesResult(ResultModel):
+    """A border along two opposite edges."""
+
+    moment_n: float = Field(description="Per width, with which the piece curls there, N.")
+    width_mm: float = Field(
+        description="Of a border that its own weight just keeps from being tipped over."
+    )
+    stitches: int = Field(description="That width in stitches, or rows, of the border.")
+    rule_share: float = Field(
+        description="Share of the moment that the weight of a border by the knitters' rule holds."
+    )
+    holds: bool = Field(
+        description="Whether a border 1.2 times as wide keeps a strip on a smooth table from "
+        "rolling up."
+    )
+    ridge_mm: float = Field(description="How high this strip rises beside its borders.")
+
+
+class BorderResult(ResultModel):
+    """Borders of a piece that lies on a table."""
+
+    kind: Literal["border"] = "border"
+    sides: EdgesResult
+    ends: EdgesResult = Field(description="Top and bottom.")
+    notes: list[str]
+
+
+def border(request: BorderRequest, context: Context) -> BorderResult:
+    """How wide a border must be to keep a piece flat on a table: its weight against the moment
+    with which the piece curls, and a strip of both to see whether that is enough.
+
+    Raises
+    ------
+    InputError, ConvergenceError, CancelledError
+    """
+    material, density = context.material(request.material), request.linear_density_g_per_m
+    inner = cloth_of(to_repeat(request.chart), material, linear_density_g_per_m=density)
+    edge = StitchChart.of_fabric(request.border, rows=2, columns=2)
+    around = cloth_of(edge, material, linear_density_g_per_m=density)
+    sides, ends = (advice(inner, around, axis, cancel=context.cancelled) for axis in (0, 1))
+    notes = [_RULE] if max(sides.moment_n, ends.moment_n) > 0.0 else []
+    if not (sides.holds and ends.holds):
+        notes.append(_ROLLS)
+    return BorderResult(sides=EdgesResult.of(sides), ends=EdgesResult.of(ends), notes=notes)
+
+
+def _lines(r: BorderResult) -> list[str]:
+    return [
+        f"sides           {_told(r.sides, 'stitches')}",
+        f"top and bottom  {_told(r.ends, 'rows')}",
+    ]
+
+
+def _told(edges: EdgesResult, unit: str) -> str:
+    if edges.moment_n == 0.0:
+        return "do not curl: no border needed"
+    state = "holds" if edges.holds else "rolls up all the same"
+    return (
+        f"{edges.moment_n:.4f} N: {edges.width_mm:.0f} mm, {edges.stitches} {unit}; {state}, ridge "
+        f"{edges.ridge_mm:.0f} mm; a border by the knitters' rule holds {edges.rule_share:.0%}"
+    )
+
+
+OPERATION = Operation(
+    border,
+    tag="mechanics",
+    summary="How wide a border keeps a piece flat",
+    example={"chart": "K", "material": "acrylic", "linear_density_g_per_m": 0.5, "border": "rib"},
+    heavy=True,
+    job=True,
+    command=Command(_lines, help="How wide a border keeps a piece of CHART flat on a table."),
+)
