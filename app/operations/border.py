@@ -21,8 +21,8 @@ _RULE = (
     "rests on friction between the yarns and on blocking, which are not modelled here."
 )
 _ROLLS = (
-    "Where a border does not hold by its weight, a wider one does no better: it bends up beside the "
-    "piece."
+    "Where a border does not hold by its weight, a wider one does no better: it bends up beside "
+    "the piece."
 )
 
 
