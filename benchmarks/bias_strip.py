@@ -8,8 +8,9 @@ each pulled along and across, and the same cloth cut at 45°. The uniform cloth 
 halves pulled across give the laws; the shear modulus is the one at which the bias strip has its
 measured force at 10 %. On the bias both directions stretch at once, which straight pulls do not
 show; how each then stiffens the other (kappa) is that of the library's acrylic stockinette, found
-in its own tests. The files tell neither width nor length: 50 mm, and 50 to 200 mm, are assumed. Nor
-do they tell Poisson's ratios.
+in its own tests. Shear that stiffens (``SHEAR_STIFFENING``) was chosen on this strip. The files
+tell neither width nor length: 50 mm, and 50 to 200 mm, are assumed. Nor do they tell Poisson's
+ratios.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from knitcore.materials import material
 from knitcore.piece import Cloth, CutPiece, Held, solve
 from knitcore.swatch import QuarterGrid, Sheet, SheetModel, pull
 from knitcore.swatch.strip import Clamps
-from knitcore.swatch.strip_fit import ALPHA_SHARE
+from knitcore.swatch.strip_fit import ALPHA_SHARE, SHEAR_STIFFENING
 
 Array = NDArray[np.float64]
 Ends = tuple[str, ...]
@@ -46,6 +47,12 @@ MATCHED = 0.1
 """Strain at which the shear modulus is fitted."""
 FITTED = np.linspace(0.02, 0.3, 15)
 """Strains at which laws are fitted to the straight pulls."""
+LAWS: dict[str, tuple[bool, float]] = {
+    "κ = 0": (False, 0.0),
+    "with κ": (True, 0.0),
+    "with κ, shear stiffens": (True, SHEAR_STIFFENING),
+}
+"""By name: whether directions are coupled, and the growth of the shear stiffness, 1/rad²."""
 BOTH: Ends = ("low", "high")
 FAR_MM = 1000.0
 CELLS = 20
@@ -112,7 +119,14 @@ def band(folder: Path, name: str, strain: Array, ends: Ends = BOTH) -> Array:
     return np.asarray(np.exp(np.mean(logs, axis=0)))
 
 
-def graded(folder: Path, poisson: float, *, coupled: bool = True, ends: Ends = BOTH) -> Graded:
+def graded(
+    folder: Path,
+    poisson: float,
+    *,
+    coupled: bool = True,
+    shear_stiffening: float = 0.0,
+    ends: Ends = BOTH,
+) -> Graded:
     """Laws from the straight tests.
 
     Parameters
@@ -120,6 +134,7 @@ def graded(folder: Path, poisson: float, *, coupled: bool = True, ends: Ends = B
     folder : of the force bands.
     poisson : geometric mean of both ratios.
     coupled : whether each direction stiffens the other, as in acrylic stockinette.
+    shear_stiffening : growth of the shear stiffness, 1/rad².
     ends : of the measured bands.
     """
     wale = [band(folder, f"const{loop}_ww", FITTED, ends) / WIDTH_MM for loop in (4.5, 6.5)]
@@ -135,6 +150,7 @@ def graded(folder: Path, poisson: float, *, coupled: bool = True, ends: Ends = B
             _coupled(law, x, poisson, stress)
             for law, x, stress in zip(laws, course, wale, strict=True)
         ]
+    laws = [replace(law, shear_stiffening=shear_stiffening) for law in laws]
     return Graded((laws[0], laws[1]), band(folder, "45deg", STRAINS, ends))
 
 
@@ -181,14 +197,14 @@ def _coupled(
 def main() -> None:
     folder = Path(sys.argv[1])
     print("force at", ", ".join(f"{strain:.0%}" for strain in STRAINS), "over the measured one")
-    for coupled, poisson in product((False, True), POISSON):
-        test = graded(folder, poisson, coupled=coupled)
+    for (name, (coupled, growth)), poisson in product(LAWS.items(), POISSON):
+        test = graded(folder, poisson, coupled=coupled, shear_stiffening=growth)
         for length in LENGTHS_MM:
             ratio = test.matching_ratio(length)
             forces = np.array(test.bias_force(ratio, length, STRAINS)) / test.force_n
             moduli = ", ".join(f"{law.shear_modulus:.3f}" for law in test.sheared(ratio))
             print(
-                f"{'with' if coupled else 'without'} kappa, nu {poisson}, {length:3.0f} mm long: "
+                f"{name}, nu {poisson}, {length:3.0f} mm long: "
                 f"shear modulus {ratio:.2f} of sqrt(Yx Yy) ({moduli} N/mm); "
                 f"{', '.join(f'{f:.2f}' for f in forces)}"
             )

@@ -281,6 +281,8 @@ export interface CalibrateResult {
   /** Share of the strain across in the stiffening. */
   kappa_xx: number;
   kappa_yy: number;
+  /** Growth of the shear stiffness with the angle squared, 1/rad². */
+  shear_stiffening: number;
   kind: "calibrate";
   parameters: Record<string, number>;
   standard_errors: Record<string, number>;
@@ -1091,6 +1093,8 @@ export interface FitResult {
   /** Share of the strain across in the stiffening. */
   kappa_xx: number;
   kappa_yy: number;
+  /** Growth of the shear stiffness with the angle squared, 1/rad². */
+  shear_stiffening: number;
   modulus_course_n_per_mm: number;
   modulus_wale_n_per_mm: number;
   /** Contraction wale-wise when pulled course-wise. */
@@ -1401,6 +1405,7 @@ export interface LawDocument {
   shear_modulus: number;
   kappa_xx: number;
   kappa_yy: number;
+  shear_stiffening: number;
 }
 
 /** Standard errors of a law's constants. */
@@ -1440,6 +1445,8 @@ export interface LawResult {
   /** Share of the strain across in the stiffening. */
   kappa_xx: number;
   kappa_yy: number;
+  /** Growth of the shear stiffness with the angle squared, 1/rad². */
+  shear_stiffening: number;
 }
 
 /** Which laws of the paper's yarns: refitted clamp to clamp, or as published. */

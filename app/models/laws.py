@@ -86,3 +86,6 @@ class LawResult(LawConstants):
     )
     kappa_xx: float = Field(description="Share of the strain across in the stiffening.")
     kappa_yy: float
+    shear_stiffening: float = Field(
+        0.0, description="Growth of the shear stiffness with the angle squared, 1/rad²."
+    )

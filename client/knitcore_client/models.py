@@ -1318,6 +1318,8 @@ class CalibrateResult(BaseModel):
     kappa_xx: float
     """Share of the strain across in the stiffening."""
     kappa_yy: float
+    shear_stiffening: float = 0.0
+    """Growth of the shear stiffness with the angle squared, 1/rad²."""
     kind: Literal["calibrate"] = "calibrate"
     parameters: dict[str, float]
     standard_errors: dict[str, float]
@@ -1868,6 +1870,8 @@ class FitResult(BaseModel):
     kappa_xx: float
     """Share of the strain across in the stiffening."""
     kappa_yy: float
+    shear_stiffening: float = 0.0
+    """Growth of the shear stiffness with the angle squared, 1/rad²."""
     modulus_course_n_per_mm: float
     modulus_wale_n_per_mm: float
     poisson_yx: float
@@ -2065,6 +2069,7 @@ class LawDocument(BaseModel):
     """N/mm"""
     kappa_xx: float = 0.0
     kappa_yy: float = 0.0
+    shear_stiffening: float = 0.0
 
 
 class LawErrors(BaseModel):
@@ -2106,6 +2111,8 @@ class LawResult(BaseModel):
     kappa_xx: float
     """Share of the strain across in the stiffening."""
     kappa_yy: float
+    shear_stiffening: float = 0.0
+    """Growth of the shear stiffness with the angle squared, 1/rad²."""
 
 
 class LeftOutResult(BaseModel):

@@ -176,6 +176,7 @@ def _fitted_laws(
 ) -> list[ConstitutiveLaw]:
     records = _records(cells, material)
     shear = np.array([r.law.shear_modulus for r in records])
+    growth = np.array([r.law.shear_stiffening for r in records])
     fits = []
     for direction in Direction:
         strains = answer.along(direction).strain(STRESSES)
@@ -192,9 +193,10 @@ def _fitted_laws(
     most_yx, most_xy = (max(answer.along(d).poisson, 0.0) for d in Direction)
     if even:
         shear[:] = np.exp(_shares(cells) @ np.log(shear))
+        growth[:] = _shares(cells) @ growth
     found = []
-    for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), shear_modulus in zip(
-        *fits, shear.tolist(), strict=True
+    for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), shear_modulus, grown in zip(
+        *fits, shear.tolist(), growth.tolist(), strict=True
     ):
         # One coupling for both, as an energy needs; neither contraction is more than the answer's.
         nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
@@ -211,6 +213,7 @@ def _fitted_laws(
                 beta_xx=beta_x,
                 beta_yy=beta_y,
                 shear_modulus=shear_modulus,
+                shear_stiffening=grown,
             )
         )
     return found

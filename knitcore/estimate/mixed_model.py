@@ -122,4 +122,13 @@ def interval_factor(values: Array, measured: Mask, coverage: float) -> float:
     """
     predictions, deviations = leave_one_out(values, measured)
     errors = np.abs(values - predictions) / deviations
-    return float(np.quantile(errors[:, ~measured], coverage))
+    return covering(errors[:, ~measured], coverage)
+
+
+def covering(errors: Array, coverage: float) -> float:
+    """Size of error that a new one exceeds no more often than this share allows.
+
+    With n errors known, the new one is as likely to fall into each of the n + 1 gaps, so the
+    quantile is that of ``coverage (n + 1) / n`` (split conformal prediction).
+    """
+    return float(np.quantile(errors, min(1.0, coverage * (1 + 1 / errors.size))))

@@ -16,7 +16,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import InputError
-from knitcore.estimate.mixed_model import Mask, MixedModel, interval_factor
+from knitcore.estimate.mixed_model import Mask, MixedModel, covering, interval_factor
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import strain_at_stress
@@ -244,7 +244,7 @@ def _strain_width(table: LibraryTable, mask: Mask) -> float:
         )[~mask]
         for i in range(len(table.strain))
     ]
-    return float(np.quantile(np.abs(errors), COVERAGE))
+    return covering(np.abs(errors), COVERAGE)
 
 
 def _own_row(table: LibraryTable, index: int) -> dict[str, Array]:

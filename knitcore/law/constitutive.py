@@ -9,6 +9,9 @@ A law fitted to simulated tests also couples the stiffening of each direction to
 its argument is ``alpha_xx (e_xx + kappa_xx (e_yy + e_yy**2 / 2))``, so a fabric that narrows frees
 yarn along the pull, and stiffening pulls the width in, the less the narrower it is. The energy
 stays convex for any kappa. The paper's laws have ``kappa = 0``.
+
+In shear the fabric stiffens as its loops jam: at a change gamma of the angle between courses and
+wales the stress is ``C_xyxy gamma (1 + shear_stiffening gamma**2)`` (full form only).
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ from numpy.typing import ArrayLike
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
+from knitcore.law.stiffening import CoupledStiffening, StiffeningForm, shear_response
 
 DEFAULT_SHEAR_MODULUS_N_PER_MM = 0.01
 """C_xyxy assumed by the paper (Note 9), which does not measure it."""
@@ -50,7 +53,7 @@ class Transverse(StrEnum):
 
 @dataclass(frozen=True)
 class ConstitutiveLaw:
-    """Eight measured constants, two couplings of the stiffening and a shear modulus.
+    """Eight measured constants, two couplings of the stiffening, and two constants of shear.
 
     Parameters
     ----------
@@ -65,6 +68,9 @@ class ConstitutiveLaw:
     kappa_xx, kappa_yy : dimensionless
         Share of half the squared stretch across that counts in the stiffening course-wise and
         wale-wise (full form only).
+    shear_stiffening : 1/rad²
+        Growth of the shear stiffness with the angle (full form only); at 4 the secant modulus has
+        doubled at half a radian.
 
     Raises
     ------
@@ -84,6 +90,7 @@ class ConstitutiveLaw:
     shear_modulus: float = DEFAULT_SHEAR_MODULUS_N_PER_MM
     kappa_xx: float = 0.0
     kappa_yy: float = 0.0
+    shear_stiffening: float = 0.0
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -93,7 +100,15 @@ class ConstitutiveLaw:
         for name in ("stiffness_xxxx", "stiffness_yyyy", "shear_modulus"):
             if getattr(self, name) <= 0:
                 raise InputError(name, "must be above 0 N/mm.", "Give a positive stiffness.")
-        for name in ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy"):
+        for name in (
+            "alpha_xx",
+            "alpha_yy",
+            "beta_xx",
+            "beta_yy",
+            "kappa_xx",
+            "kappa_yy",
+            "shear_stiffening",
+        ):
             if getattr(self, name) < 0:
                 raise InputError(name, "must not be negative.", "Give 0 or a positive number.")
         if (self.stiffness_xxyy < 0) != (self.stiffness_yyxx < 0):
@@ -239,11 +254,15 @@ class ConstitutiveLaw:
                 "Call symmetrised() first.",
             )
         ex, ey, exy = (np.asarray(e, dtype=float) for e in (strain_xx, strain_yy, strain_xy))
+        full = form is StiffeningForm.FULL
+        shear, _, _ = shear_response(
+            2.0 * exy, self.shear_modulus, self.shear_stiffening if full else 0.0
+        )
         total: Array = (
             0.5 * self.stiffness_xxxx * ex**2
             + 0.5 * self.stiffness_yyyy * ey**2
             + self.stiffness_xxyy * ex * ey
-            + 2.0 * self.shear_modulus * exy**2
+            + shear
             + self.stiffening.response(ex, ey, form).energy
         )
         return total

@@ -56,6 +56,18 @@ def published(s: Values) -> tuple[Values, Values, Values]:
     return s**3 * (1.0 + s), s * s * (3.0 + 4.0 * s), s * (6.0 + 12.0 * s)
 
 
+def shear_response(
+    angle: Values, modulus: Values | float, growth: Values | float
+) -> tuple[Values, Values, Values]:
+    """Energy density, stress and stiffness (N/mm) in shear by an angle (rad), of a shear modulus
+    (N/mm) and its growth (1/rad²): stress ``modulus angle (1 + growth angle**2)``.
+    """
+    grown = growth * angle * angle
+    stress = modulus * angle * (1.0 + grown)
+    energy = 0.5 * modulus * angle * angle * (1.0 + 0.5 * grown)
+    return energy, stress, modulus * (1.0 + 3.0 * grown)
+
+
 def stiffening(
     s: ArrayLike, form: StiffeningForm = StiffeningForm.FULL
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

@@ -51,6 +51,7 @@ class LawDocument(_Model):
     shear_modulus: Modulus = DEFAULT_SHEAR_MODULUS_N_PER_MM
     kappa_xx: Annotated[float, Field(ge=0, le=5)] = 0.0
     kappa_yy: Annotated[float, Field(ge=0, le=5)] = 0.0
+    shear_stiffening: Annotated[float, Field(ge=0, le=100)] = 0.0
 
     @model_validator(mode="after")
     def _complete(self) -> Self:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.law.stiffening import CoupledStiffening, StiffeningForm
+from knitcore.law.stiffening import CoupledStiffening, StiffeningForm, shear_response
 from knitcore.swatch.grid import QuarterGrid, sums_at_corners
 from knitcore.swatch.models import EnergyModel
 from knitcore.swatch.sheet import Sheet, State
@@ -144,14 +144,17 @@ def response(
     """
     stiff = stiffening_of(sheet, codes).response(xx, yy, StiffeningForm(sheet.model.energy.value))
     laws = sheet.parameters[codes]
-    coupling, shear = laws["stiffness_xxyy"], laws["shear_modulus"]
+    coupling = laws["stiffness_xxyy"]
+    full = sheet.model.energy is EnergyModel.FULL
+    growth = laws["shear_stiffening"] if full else 0.0
+    sheared, stress_xy, _ = shear_response(2 * xy, laws["shear_modulus"], growth)
     linear_x = laws["stiffness_xxxx"] * xx + coupling * yy
     linear_y = laws["stiffness_yyyy"] * yy + coupling * xx
     return {
         "stress_xx": linear_x + stiff.stress_xx,
         "stress_yy": linear_y + stiff.stress_yy,
-        "stress_xy": 2 * shear * xy,
-        "energy_density": (xx * linear_x + yy * linear_y) / 2 + 2 * shear * xy**2 + stiff.energy,
+        "stress_xy": stress_xy,
+        "energy_density": (xx * linear_x + yy * linear_y) / 2 + sheared + stiff.energy,
     }
 
 

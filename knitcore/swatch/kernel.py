@@ -53,6 +53,7 @@ _compiled: Any = njit(cache=True)
 _corners_of: Callable[[int, int], tuple[int, int, int, int]] = _compiled(corners_of)
 _full: Callable[[float], Stiffening] = _compiled(stiffening.full)
 _published: Callable[[float], Stiffening] = _compiled(stiffening.published)
+_shear: Callable[[float, float, float], Stiffening] = _compiled(stiffening.shear_response)
 
 Law = Any
 """A law, as a record of :data:`knitcore.swatch.models.LAW`."""
@@ -211,7 +212,7 @@ def _full_point(law: Law, tension_field: bool, a0: float, a1: float, b0: float, 
     else:
         energy, wa, wb, waa, wbb, wab = _axial(law, la - 1.0, lb - 1.0)
     gamma = math.atan2(a0 * b0 + a1 * b1, a0 * b1 - a1 * b0)
-    wg, wgg = law.shear_modulus * gamma, law.shear_modulus
+    shear, wg, wgg = _shear(gamma, law.shear_modulus, law.shear_stiffening)
     # Unit vectors along each fibre (t) and a quarter turn ahead of it (n). Turning the course
     # fibre by d theta changes gamma by d theta, turning the wale fibre by -d theta.
     over_la, over_lb = 1.0 / la, 1.0 / lb
@@ -222,7 +223,7 @@ def _full_point(law: Law, tension_field: bool, a0: float, a1: float, b0: float, 
     haa, hbb = (wa + wgg * over_la) * over_la, (wb + wgg * over_lb) * over_lb
     hta, htb, hab = -ga * over_la, -gb * over_lb, -wgg * over_la * over_lb
     return (
-        energy + 0.5 * wg * gamma,
+        energy + shear,
         (wa * at0 + ga * an0, wa * at1 + ga * an1),
         (wb * bt0 + gb * bn0, wb * bt1 + gb * bn1),
         (

@@ -37,6 +37,7 @@ LAW = np.dtype(
             "beta_yy",
             "kappa_xx",
             "kappa_yy",
+            "shear_stiffening",
         )
     ]
 )

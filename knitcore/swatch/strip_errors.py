@@ -30,10 +30,10 @@ LOG_WIDTH_READING = 0.03
 TYPICAL_LOG_ERROR = 0.046
 """Error of the force of a pull predicted from the others: rms over acrylic's eight tests
 (``benchmarks/true_to_tests.py --left-out`` prints it)."""
-LOG_SHEAR_DOUBT = 1.0
-"""Standard deviation of ln C_xyxy beside what the fit says. Tests along course and wale hardly see
-it: for acrylic the yarn level has 1.9 (stockinette) and 0.35 times (garter) the fitted one, and
-jersey measured on the bias several times more (``benchmarks/bias_strip.py``)."""
+LOG_SHEAR_DOUBT = 0.7
+"""Standard deviation of ln C_xyxy beside what the fit says: tests along course and wale hardly see
+it, and what is known of it differs by as much (:data:`knitcore.swatch.strip_fit.LOG_SHEAR_PRIOR`).
+"""
 NEIGHBOURS = 3.5
 """Errors of neighbouring points are correlated; this many count as one."""
 
@@ -52,7 +52,8 @@ class LinearFit:
     residuals : of force and waist of each test in turn, then of the priors.
     jacobian : (residuals, n).
     law_of : the law of unknowns.
-    log_lock_up, log_shear : places of ln alpha (course, wale) and ln C_xyxy among the unknowns.
+    log_lock_up, log_shear : places of ln alpha (course, wale) and ln C_xyxy / sqrt(Y_x Y_y) among
+        the unknowns.
     """
 
     strips: Sequence[MeasuredStrip]

@@ -49,6 +49,8 @@ from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask, waist_strain
 
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, for stitches of mixed quarters and of one fabric."""
+LOG_SHEAR_STIFFENING = 0.7
+"""Standard deviation of the logarithm of the growth of the shear stiffness, found on one jersey."""
 STEP = 1e-3
 """Step of a parameter, for differences of forces."""
 
@@ -239,6 +241,8 @@ def law_parameters(
         found.append(LawParameter(*_varied(sheet, [code], _coupled), sd, 0.0))
         if sheet.model.shear_modulus is None and spread.log_shear is not None:
             found.append(LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
+            growth = _varied(sheet, [code], _stiffer_in_shear)
+            found.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
     assumed = [
         code
         for code in codes
@@ -294,6 +298,11 @@ def _coupled(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
 def _sheared(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
     """By the logarithm of the shear modulus."""
     return replace(law, shear_modulus=law.shear_modulus * math.exp(step))
+
+
+def _stiffer_in_shear(law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
+    """By the logarithm of the growth of the shear stiffness."""
+    return replace(law, shear_stiffening=law.shear_stiffening * math.exp(step))
 
 
 def _coupling_sd(measured: ConstitutiveLaw, rule: Coupling, spread: LawUncertainty) -> float:

@@ -53,7 +53,7 @@ def test_a_piece_is_loaded(context: Context) -> None:
     hem, top, hole = told.edges
     assert (hem.force_x_n[-1], hem.force_y_n[-1]) == pytest.approx((-0.1, -1.0))
     assert (top.force_y_n[-1], top.force_y_interval_n) == (1.0, ([0.5, 1.0], [0.5, 1.0]))
-    assert top.moved_y_mm[-1] > 3 * hole.moved_y_mm[-1] > 0
+    assert top.moved_y_mm[-1] > 2.5 * hole.moved_y_mm[-1] > 0
     low, high = np.array(top.moved_y_interval_mm)
     assert np.all(low < top.moved_y_mm)
     assert np.all((low > 0) & (top.moved_y_mm < high))
@@ -98,7 +98,7 @@ def test_a_bias_strip_has_an_interval(context: Context) -> None:
     (low, high), force = np.array(told.force_interval_n), np.array(told.force_n)
     assert np.all(low < force)
     assert np.all(force < high)
-    assert told.waist_strain[-1] < -0.2
+    assert told.waist_strain[-1] < -0.15
 
 
 def test_equal_pulls_of_seed_stitch_in_both_directions(context: Context) -> None:
@@ -113,9 +113,10 @@ def test_equal_pulls_of_seed_stitch_in_both_directions(context: Context) -> None
 def test_a_frame_measures_the_shear_modulus(context: Context) -> None:
     request = TrellisRequest.model_validate(ASKED | {"angle_deg": 2, "mesh_mm": 50})
     told = trellis(request, context)
-    modulus = material("acrylic").law(Fabric.STOCKINETTE).shear_modulus
+    law, angle = material("acrylic").law(Fabric.STOCKINETTE), math.radians(2)
+    modulus = law.shear_modulus * (1 + law.shear_stiffening * angle**2)
     assert told.angle_deg == pytest.approx([1.0, 2.0])
-    assert told.shear_stress_n_per_mm[-1] / math.radians(2) == pytest.approx(modulus, rel=1e-6)
+    assert told.shear_stress_n_per_mm[-1] / angle == pytest.approx(modulus, rel=1e-6)
 
 
 def test_cloth_past_its_lock_up_is_reported(context: Context) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -40,17 +41,21 @@ def test_left_out_yarns_are_predicted_as_well_as_the_notes_say() -> None:
     assert one.strain_rms_factor == pytest.approx(1.27, abs=0.02)
 
 
-@pytest.mark.parametrize("measured", [(), *((f,) for f in Fabric), (*STOCKINETTE, Fabric.RIB)])
-def test_ninety_percent_intervals_cover_84_to_95(measured: tuple[Fabric, ...]) -> None:
-    """Calibrated without the yarn that they should cover."""
-    found = left_out(measured)
-    assert 0.84 <= found.modulus_coverage <= 0.95
-    assert 0.84 <= found.strain_coverage <= 0.95
+def test_ninety_percent_intervals_cover_85_to_95() -> None:
+    """Calibrated without the yarn that they should cover; of the values of all swatches that a user
+    may have knitted, up to two. Of a single choice there are only 32 to 64 values.
+    """
+    choices = [c for n in range(3) for c in combinations(Fabric, n)]
+    found = [left_out(measured) for measured in choices]
+    for coverage in ("modulus_coverage", "strain_coverage"):
+        shares = [getattr(each, coverage) for each in found]
+        assert 0.85 <= np.average(shares, weights=[each.values for each in found]) <= 0.95
+        assert min(shares) >= 0.84
 
 
 def test_the_refitted_constants_are_those_of_the_notes() -> None:
     constant = np.exp(library_table().modulus.mean(axis=0))
-    expected = [[3249, 16792], [2806, 2654], [817, 8914], [3459, 4339]]
+    expected = [[3244, 16736], [2806, 2656], [817, 8920], [3460, 4340]]
     assert constant == pytest.approx(np.array(expected), rel=0.003)
 
 

@@ -10,7 +10,12 @@ from hypothesis import strategies as st
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation, Transverse
-from knitcore.law.stiffening import EXTENSION_START, StiffeningForm, stiffening
+from knitcore.law.stiffening import (
+    EXTENSION_START,
+    StiffeningForm,
+    shear_response,
+    stiffening,
+)
 from knitcore.law.uniaxial import (
     held_strains_at_stress,
     strain_at_stress,
@@ -104,6 +109,29 @@ def test_tangent_is_the_derivative_of_the_stress(law, form, s_x, s_y):
     np.testing.assert_array_equal(tangent[2], [0, 0, law.shear_modulus])
 
 
+@given(st.floats(-1.5, 1.5), st.floats(0, 30))
+def test_shear_stiffens_as_its_energy_says(angle, growth):
+    """Stress and stiffness are derivatives, the energy is even and convex."""
+    energy, stress, stiffness = shear_response(angle, 0.02, growth)
+    step = 1e-5
+    ahead, behind = (shear_response(angle + d, 0.02, growth) for d in (step, -step))
+    assert stress == pytest.approx((ahead[0] - behind[0]) / (2 * step), abs=1e-7)
+    assert stiffness == pytest.approx((ahead[1] - behind[1]) / (2 * step), rel=1e-6)
+    assert energy == shear_response(-angle, 0.02, growth)[0]
+    assert stiffness >= 0.02
+
+
+@given(st.floats(0, 30), st.floats(-1, 1))
+def test_shear_that_stiffens_keeps_compressed_fibres_as_stable(growth, share):
+    """Up to the angle at which the secant modulus has doubled. In the tangent of a fibre, shear
+    takes stress²/stiffness from what keeps it straight, and that is no more than of constant shear.
+    """
+    angle = share / max(growth, 1.0) ** 0.5
+    _, stress, stiffness = shear_response(angle, 1.0, growth)
+    assert stress**2 / stiffness <= angle**2 * (1 + 1e-12)
+    assert stiffness >= 1.0
+
+
 @given(coupled, st.floats(-1, 3), st.floats(-1, 3))
 def test_the_full_symmetric_law_is_convex(law, s_x, s_y):
     law = law.symmetrised()
@@ -150,12 +178,13 @@ def test_an_asymmetric_law_has_no_energy():
         material("acrylic:published").law(Fabric.RIB).energy_density(0.1, 0.0)
 
 
-def test_a_sheet_at_rest_has_no_energy_and_shear_costs_twice_g_times_its_square():
+def test_a_sheet_at_rest_has_no_energy_and_shear_costs_as_its_modulus_and_growth_say():
     law = material("acrylic").law(Fabric.GARTER).symmetrised()
     assert law.energy_density(0.0, 0.0) == 0
     sheared = law.energy_density(0.1, 0.2, [0.0, 0.05, -0.05])
     assert sheared[1] == sheared[2]
-    assert sheared[1] - sheared[0] == pytest.approx(2 * law.shear_modulus * 0.05**2)
+    grown = 1 + law.shear_stiffening * 0.1**2 / 2
+    assert sheared[1] - sheared[0] == pytest.approx(2 * law.shear_modulus * 0.05**2 * grown)
 
 
 @given(laws, st.sampled_from(Direction))
@@ -242,7 +271,15 @@ def test_a_law_without_stiffening_never_locks():
         ),
         *(
             ({name: bad}, name)
-            for name in ("alpha_xx", "alpha_yy", "beta_xx", "beta_yy", "kappa_xx", "kappa_yy")
+            for name in (
+                "alpha_xx",
+                "alpha_yy",
+                "beta_xx",
+                "beta_yy",
+                "kappa_xx",
+                "kappa_yy",
+                "shear_stiffening",
+            )
             for bad in (-0.1, float("inf"))
         ),
         ({"stiffness_xxyy": -0.1}, "stiffness_yyxx"),

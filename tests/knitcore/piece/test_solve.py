@@ -42,7 +42,7 @@ from knitcore.swatch.solver import Tolerance
 from knitcore.swatch.strip import chart_sheet, clamp_mask, stretched
 
 ACRYLIC = material("acrylic")
-LAW = ACRYLIC.law(Fabric.STOCKINETTE).symmetrised()
+LAW = replace(ACRYLIC.law(Fabric.STOCKINETTE).symmetrised(), shear_stiffening=4.0)
 KITE = CutPiece(
     [(0, 0), (50, 10), (60, 70), (10, 60)],
     holes=[[(20, 25), (35, 30), (28, 45)]],

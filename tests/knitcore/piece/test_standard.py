@@ -47,7 +47,8 @@ def test_biaxial_stresses_are_those_of_the_law() -> None:
 
 def test_a_frame_along_the_rows_shears_without_stretching_yarn() -> None:
     frame = trellis_test(KNIT, ACRYLIC, 0.5, side_mm=60.0, steps=2, mesh_mm=20.0)
-    shear = LAW.shear_modulus * frame.shear_angle
+    grown = 1 + LAW.shear_stiffening * frame.shear_angle**2
+    shear = LAW.shear_modulus * frame.shear_angle * grown
     assert frame.shear_stress_n_per_mm == pytest.approx(shear, rel=1e-6)
     assert np.abs(frame.test.fields().strain_course).max() < 1e-8
 
@@ -55,7 +56,8 @@ def test_a_frame_along_the_rows_shears_without_stretching_yarn() -> None:
 def test_a_frame_measures_the_shear_modulus() -> None:
     frame = trellis_test(KNIT, ACRYLIC, 0.01, side_mm=60.0, steps=1, mesh_mm=20.0)
     stress = frame.shear_stress_n_per_mm[-1]
-    assert stress / 0.01 == pytest.approx(LAW.shear_modulus, rel=1e-4)
+    assert LAW.shear_stiffening == 4.0
+    assert stress / 0.01 == pytest.approx(LAW.shear_modulus * (1 + 4.0 * 0.01**2), rel=1e-4)
     # pulled at the corners of a square frame, force = shear stress * side * sqrt(2)
     assert frame.force_n[-1] == pytest.approx(math.sqrt(2) * 60.0 * stress, rel=1e-2)
     double = trellis_test(

@@ -16,7 +16,9 @@ from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, State
 from knitcore.swatch.kernel import Nodes
 
 LAWS = (
-    ConstitutiveLaw(0.241, 0.060, 0.036, 0.029, 1.17, 0.802, 0.022, 0.022, 0.01),
+    ConstitutiveLaw(
+        0.241, 0.060, 0.036, 0.029, 1.17, 0.802, 0.022, 0.022, 0.01, shear_stiffening=6.0
+    ),
     ConstitutiveLaw(0.204, 0.930, 0.088, 0.413, 1.111, 2.537, 0.046, 0.010, 0.03),
 )
 
@@ -99,13 +101,15 @@ def skfem_assembly(sheet: Sheet, state: State) -> tuple[float, np.ndarray, np.nd
     wx, wx1, wx2 = stiffening(law["alpha_xx"] * ex, form)
     wy, wy1, wy2 = stiffening(law["alpha_yy"] * ey, form)
     cxx, cyy, cxy = law["stiffness_xxxx"], law["stiffness_yyyy"], law["stiffness_xxyy"]
-    g = law["shear_modulus"]
+    g, grown = law["shear_modulus"], np.zeros_like(gamma)
+    if not published:
+        grown = law["shear_stiffening"] * gamma**2
     density = (
-        cxx * ex**2 / 2 + cyy * ey**2 / 2 + cxy * ex * ey + g * gamma**2 / 2
+        cxx * ex**2 / 2 + cyy * ey**2 / 2 + cxy * ex * ey + g * gamma**2 / 2 * (1 + grown / 2)
         + law["beta_xx"] / law["alpha_xx"] * wx + law["beta_yy"] / law["alpha_yy"] * wy
     )  # fmt: skip
     s = [cxx * ex + cxy * ey + law["beta_xx"] * wx1, cyy * ey + cxy * ex + law["beta_yy"] * wy1]
-    s.append(g * gamma)
+    s.append(g * gamma * (1 + grown))
     kxx = cxx + law["alpha_xx"] * law["beta_xx"] * wx2
     kyy = cyy + law["alpha_yy"] * law["beta_yy"] * wy2
     p = s[0] * d_ex + s[1] * d_ey + s[2] * d_gamma
@@ -113,8 +117,9 @@ def skfem_assembly(sheet: Sheet, state: State) -> tuple[float, np.ndarray, np.nd
     def outer(m: np.ndarray, n: np.ndarray) -> np.ndarray:
         return m[:, None] * n[None]
 
+    kxy = g * (1 + 3 * grown)
     h = (
-        kxx * outer(d_ex, d_ex) + kyy * outer(d_ey, d_ey) + g * outer(d_gamma, d_gamma)
+        kxx * outer(d_ex, d_ex) + kyy * outer(d_ey, d_ey) + kxy * outer(d_gamma, d_gamma)
         + cxy * (outer(d_ex, d_ey) + outer(d_ey, d_ex))
         + s[0] * dd[0] + s[1] * dd[1] + s[2] * dd[2]
     )  # fmt: skip

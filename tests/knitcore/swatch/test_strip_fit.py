@@ -17,7 +17,18 @@ from knitcore.swatch.strip_fit import fit_strips, fit_tests
 from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
 
 TRUTH = ConstitutiveLaw(
-    0.15, 0.09, 0.042, 0.042, 1.25, 1.0, 0.015, 0.015, 0.02, kappa_xx=0.1, kappa_yy=0.3
+    0.15,
+    0.09,
+    0.042,
+    0.042,
+    1.25,
+    1.0,
+    0.015,
+    0.015,
+    0.02,
+    kappa_xx=0.1,
+    kappa_yy=0.3,
+    shear_stiffening=4.0,
 )
 CLAMPED = {Direction.COURSE: (60.0, 92.0), Direction.WALE: (120.0, 40.0)}
 EVEN = {Direction.COURSE: (60.0, None), Direction.WALE: (120.0, None)}
