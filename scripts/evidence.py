@@ -318,7 +318,7 @@ def gradings(folder: Path) -> list[str]:
         lines.append(f"| {strain:.0%} | {told} |")
     lines += [
         "",
-        "*Not shown*: the number and the width of the samples, which the files do not tell, loops",
+        "*Not shown*: the number and the width of the samples, which the files do not state, loops",
         "of other lengths, and the same strip pulled course-wise, which gives the course modulus",
         "here.",
         "",
@@ -419,7 +419,7 @@ def shear(folder: Path) -> list[str]:
         f"{min(matched[name]):.2f} to {max(matched[name]):.2f}, the library's acrylic, from its",
         f"tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of three",
         "to five either way. *Not shown*: width (50 mm is",
-        "assumed), length and Poisson's ratios of the specimens, which the files do not tell;",
+        "assumed), length and Poisson's ratios of the specimens, which the files do not state;",
         "other yarns and fabrics; unloading.",
         "",
     ]
