@@ -74,8 +74,8 @@ def run_batch(
     scheduler: str | None = None,
     workers: int | None = None,
     keep: Path | None = None,
-    on_progress: Callable[[BatchProgress], None] | None = None,
-    should_stop: Callable[[], bool] | None = None,
+    progress: Callable[[BatchProgress], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
 ) -> BatchResult:
     """Call a function for every task.
 
@@ -87,8 +87,8 @@ def run_batch(
     scheduler : address of a Dask cluster (``"tcp://host:port"``); processes here if left out.
     workers : processes here, all cores if left out; 1 works in this process.
     keep : folder of finished results. Tasks that failed are tried again by the next run.
-    on_progress : called after every task.
-    should_stop : called about twice a second, or between tasks if they run in this process.
+    progress : called after every task.
+    cancelled : called about twice a second, or between tasks if they run in this process.
 
     Raises
     ------
@@ -103,12 +103,12 @@ def run_batch(
     failures: dict[str, str] = {}
 
     def tell(key: str) -> None:
-        if on_progress is not None:
+        if progress is not None:
             done = len(results) + len(failures)
-            on_progress(BatchProgress(done, len(tasks), len(failures), key))
+            progress(BatchProgress(done, len(tasks), len(failures), key))
 
     def stop_if_asked() -> None:
-        if should_stop is not None and should_stop():
+        if cancelled is not None and cancelled():
             raise CancelledError(f"stopped after {len(results)} of {len(tasks)} tasks")
 
     tell("")

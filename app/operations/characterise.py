@@ -184,8 +184,8 @@ def characterise(request: CharacteriseRequest, context: Context) -> Characterise
     (table,) = characterise_yarns(
         [_plan(yarn, request)],
         workers=1,
-        on_progress=lambda at: context.progress(at.done, at.total),
-        should_stop=context.cancelled,
+        progress=lambda at: context.progress(at.done, at.total),
+        cancelled=context.cancelled,
     )
     return _result(table)
 
@@ -275,7 +275,7 @@ def _command(
     if fresh:
         shutil.rmtree(out / FINISHED, ignore_errors=True)
     tables = characterise_yarns(
-        plans, scheduler=scheduler, workers=workers, keep=out / FINISHED, on_progress=_show
+        plans, scheduler=scheduler, workers=workers, keep=out / FINISHED, progress=_show
     )
     results = [_result(table) for table in tables]
     for result in results:

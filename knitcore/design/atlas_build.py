@@ -89,8 +89,8 @@ def build_atlas(
         workers=workers,
         scheduler=scheduler,
         keep=None if file is None or not tasks else parts_folder(file),
-        on_progress=tell,
-        should_stop=cancelled,
+        progress=tell,
+        cancelled=cancelled,
     )
     if found.failures:
         raise KnitcoreError(next(iter(found.failures.values())))

@@ -79,8 +79,8 @@ def improve_atlas(
             workers=workers,
             scheduler=scheduler,
             keep=keep,
-            on_progress=tell,
-            should_stop=cancelled,
+            progress=tell,
+            cancelled=cancelled,
         )
     finally:
         _merge(material, file, _kept(keep, tasks))

@@ -28,7 +28,7 @@ from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
 DENSITY_RANGE_G_PER_M = (0.005, 20.0)
-_LARGEST_POISSON = 0.95
+_MAX_POISSON = 0.95
 """Of the root of the product of both ratios, beyond which an answer has no flat energy."""
 
 
@@ -146,7 +146,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     repeat = chart.repeat()
     found = choose(repeat, material)
     course, wale = found.along(Direction.COURSE), found.along(Direction.WALE)
-    poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_LARGEST_POISSON)
+    poisson = np.sqrt(max(course.poisson * wale.poisson, 0.0)).clip(max=_MAX_POISSON)
     stiff = [along.modulus_n_per_mm / (1.0 - poisson**2) for along in (course, wale)]
     coupling = float(poisson) * math.sqrt(stiff[0] * stiff[1])
     stitch = course.relaxed_mm, wale.relaxed_mm

@@ -61,7 +61,7 @@ def build(
     named = {f"{name}.{task.key}": task for name, task in tasks.items()}
     found = run_batch(
         characterise_repeat, named, scheduler=scheduler, workers=workers, keep=keep,
-        on_progress=_tell,
+        progress=_tell,
     )  # fmt: skip
     entries: dict[str, Any] = {}
     controls: dict[str, NDArray[np.float32]] = {}

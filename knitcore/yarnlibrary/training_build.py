@@ -210,7 +210,7 @@ def main() -> None:
         return
     run_batch(
         characterise, tasks(packed), scheduler=arguments.scheduler, workers=arguments.workers,
-        keep=arguments.keep, on_progress=_tell,
+        keep=arguments.keep, progress=_tell,
     )  # fmt: skip
 
 

@@ -276,14 +276,14 @@ def characterise_yarns(
     scheduler: str | None = None,
     workers: int | None = None,
     keep: Path | None = None,
-    on_progress: Callable[[BatchProgress], None] | None = None,
-    should_stop: Callable[[], bool] | None = None,
+    progress: Callable[[BatchProgress], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
 ) -> tuple[YarnTable, ...]:
     """The tables of one yarn or several, as one batch.
 
     Parameters
     ----------
-    scheduler, workers, keep, on_progress, should_stop : as in :func:`knitcore.batch.run_batch`.
+    scheduler, workers, keep, progress, cancelled : as in :func:`knitcore.batch.run_batch`.
 
     Raises
     ------
@@ -302,7 +302,7 @@ def characterise_yarns(
     tasks = {key: task for plan in plans for key, _, _, task in plan.tasks()}
     found = run_batch(
         characterise_repeat, tasks, scheduler=scheduler, workers=workers, keep=keep,
-        on_progress=on_progress, should_stop=should_stop,
+        progress=progress, cancelled=cancelled,
     )  # fmt: skip
     lost = {key: {"failure": reason} for key, reason in found.failures.items()}
     documents = {**found.results, **lost}

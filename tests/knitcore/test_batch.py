@@ -43,7 +43,7 @@ def always_die(_: int) -> dict[str, bool]:
 @pytest.mark.parametrize("workers", [1, 2])
 def test_every_task_has_its_result_in_order(workers: int) -> None:
     seen: list[BatchProgress] = []
-    found = run_batch(square, TASKS, workers=workers, on_progress=seen.append)
+    found = run_batch(square, TASKS, workers=workers, progress=seen.append)
     assert list(found.results) == list(TASKS)
     assert [document["square"] for document in found.results.values()] == [0, 1, 4, 9, 16, 25]
     assert (os.getpid() in {d["process"] for d in found.results.values()}) == (workers == 1)
@@ -70,8 +70,8 @@ def test_a_stopped_batch_resumes(tmp_path: Path) -> None:
             TASKS,
             workers=1,
             keep=tmp_path,
-            on_progress=count,
-            should_stop=lambda: done == 3,
+            progress=count,
+            cancelled=lambda: done == 3,
         )
     assert len(list(tmp_path.iterdir())) == 3
     (tmp_path / "number-0.json").write_text(json.dumps({"square": "kept"}))
@@ -157,6 +157,6 @@ def test_a_cluster_gives_the_same_though_a_worker_is_killed(
         if progress.done == 1:
             workers[0].kill()
 
-    found = run_batch(slow_square, TASKS, scheduler=address, on_progress=kill_one)
+    found = run_batch(slow_square, TASKS, scheduler=address, progress=kill_one)
     assert [document["square"] for document in found.results.values()] == [0, 1, 4, 9, 16, 25]
     assert not found.failures
