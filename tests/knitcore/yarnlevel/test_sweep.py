@@ -11,7 +11,7 @@ from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.sweep import sweep
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.lawfit import fit_law
+from knitcore.yarnlibrary.lawfit import fit_sweeps
 from knitcore.yarnlibrary.store import stored_stitch
 
 
@@ -48,7 +48,7 @@ def test_the_law_of_a_sample_is_near_the_published_simulation(zero):
     up to 20 % softer."""
     course = sweep(zero, "course", 0.9, points=30, max_stress_n_per_mm=0.35, back=False)
     wale = sweep(zero, "wale", 0.5, points=30, max_stress_n_per_mm=0.35, back=False)
-    law = fit_law(course, wale).law
+    law = fit_sweeps(course, wale).law
     assert law.modulus_course == pytest.approx(0.298, rel=0.2)
     assert law.modulus_wale == pytest.approx(0.536, rel=0.2)
 

@@ -5,7 +5,7 @@ import pytest
 
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.yarnlibrary.lawfit import fit_law
+from knitcore.yarnlibrary.lawfit import fit_sweeps
 from tests.knitcore.yarnlevel.synthetic import sweep
 
 NU_YX, NU_XY = 0.45, 0.2
@@ -28,7 +28,7 @@ def stretches(top_x=0.5, top_y=0.25, points=30):
 
 def test_constants_come_back():
     course, wale = stretches()
-    found = fit_law(course, wale)
+    found = fit_sweeps(course, wale)
     law = found.law
     assert law.stiffness_xxxx == pytest.approx(C_X, rel=1e-3)
     assert law.stiffness_yyyy == pytest.approx(C_Y, rel=1e-3)
@@ -40,7 +40,7 @@ def test_constants_come_back():
 
 def test_only_the_range_of_stress_is_fitted():
     course, wale = stretches()
-    found = fit_law(course, wale, max_stress_n_per_mm=0.05)
+    found = fit_sweeps(course, wale, max_stress_n_per_mm=0.05)
     last = course.strain[course.stress_n_per_mm <= 0.05][-1]
     assert found.largest_strain_course == pytest.approx(last)
 
@@ -50,16 +50,16 @@ def test_points_behind_the_first_excess_are_left_out():
     stress = course.stress_n_per_mm.copy()
     stress[20:] = 0.01
     stress[19] = 0.5
-    found = fit_law(replace(course, stress_n_per_mm=stress), wale)
+    found = fit_sweeps(replace(course, stress_n_per_mm=stress), wale)
     assert found.largest_strain_course == pytest.approx(course.strain[18])
 
 
 def test_swapped_or_short_stretches_are_refused():
     course, wale = stretches()
     with pytest.raises(InputError, match="Swap"):
-        fit_law(wale, course)
+        fit_sweeps(wale, course)
     with pytest.raises(InputError, match="points"):
-        fit_law(course, wale, max_stress_n_per_mm=1e-4)
+        fit_sweeps(course, wale, max_stress_n_per_mm=1e-4)
 
 
 def test_a_stretch_that_leaves_no_initial_stiffness_has_no_law():
@@ -69,11 +69,11 @@ def test_a_stretch_that_leaves_no_initial_stiffness_has_no_law():
     stress = 0.01 * strain + 0.25 * (strain / 1.4) ** 12
     unfolding = sweep(Direction.WALE, strain, -NU_XY * strain, stress)
     with pytest.raises(InputError, match="wale stretch stiffens faster"):
-        fit_law(course, unfolding)
+        fit_sweeps(course, unfolding)
 
 
 def test_the_range_ends_where_the_stretches_do():
     course, wale = stretches()
     least = min(course.stress_n_per_mm[-1], wale.stress_n_per_mm[-1])
-    assert fit_law(course, wale, max_stress_n_per_mm=90.0).max_stress_n_per_mm == least
-    assert fit_law(course, wale, max_stress_n_per_mm=0.05).max_stress_n_per_mm == 0.05
+    assert fit_sweeps(course, wale, max_stress_n_per_mm=90.0).max_stress_n_per_mm == least
+    assert fit_sweeps(course, wale, max_stress_n_per_mm=0.05).max_stress_n_per_mm == 0.05
