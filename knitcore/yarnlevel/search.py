@@ -76,20 +76,27 @@ class Search:
             self.run(start.name, partial(self._grow, self.energy, start))
 
     def continue_from(
-        self, smaller: CellEnergy, starts: Sequence[Start], seeds: Sequence[int]
+        self, smaller: CellEnergy, starts: Sequence[Start], seeds: Sequence[int], *, follow: bool
     ) -> None:
-        """Continue from the lowest state of a more symmetric cell, randomly perturbed."""
+        """Continue from the lowest state of a more symmetric cell, randomly perturbed.
+
+        ``follow`` also leaves it as it is: the solver descends from a saddle along the direction
+        of lowest curvature.
+        """
         mirrored: list[Minimum] = []
 
-        def run(seed: int) -> Minimum:
+        def run(seed: int | None) -> Minimum:
             if not mirrored:
                 mirrored.append(self._lowest(smaller, starts))
                 per_stitch = mirrored[0].terms.energy / smaller.cell.stitches
                 self._other = per_stitch, mirrored[0].state[-2:]
             state = tiled_state(smaller.cell, mirrored[0].state, self.energy.cell)
-            state = _shaken_safely(self.energy, state, seed)
+            if seed is not None:
+                state = _shaken_safely(self.energy, state, seed)
             return minimise(self.energy, state, options=self.options, cancel=self.cancel)
 
+        if follow:
+            self.run("mirrored, followed", partial(run, None))
         for seed in seeds:
             name = "mirrored, shaken" + (f" again ({seed})" if seed != seeds[0] else "")
             self.run(name, partial(run, seed))

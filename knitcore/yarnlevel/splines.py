@@ -38,7 +38,7 @@ MAX_STITCHES_RULED = 100
 """The same where each stitch has a rule of its own (its length, or a plane)."""
 FINE = SplineGrid(controls=20, per_span=4)
 COARSE = SplineGrid(controls=16, per_span=3)
-ROUGH = SplineGrid(controls=10, per_span=5)
+ROUGH = SplineGrid(controls=12, per_span=4)
 """Large cells find their shape on this grid (energy within 2e-3) before they are refined."""
 ROUGH_FROM = 12
 _EXPLORED = 1e-5
@@ -152,7 +152,10 @@ def relax_splines(
     if shakes:
         small = mirrored_cell(repeat, explored)
         smaller = replace(energy, cell=small, loop_length_mm=np.resize(lengths, small.rows))
-        search.continue_from(smaller, _starts(Branch.MIRRORED, small, None), shakes)
+        search.continue_from(
+            smaller, _starts(Branch.MIRRORED, small, None), shakes,
+            follow=draft.stitches <= SEVERAL_UP_TO,
+        )  # fmt: skip
     search.try_starts(chosen)
     best = search.best()
     if explored != grid:

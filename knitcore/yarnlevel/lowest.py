@@ -1,0 +1,81 @@
+"""Whether a mirrored state is a minimum without its mirrors, and where it goes if it is not.
+
+The state is laid out over the free cell (at least two stitches each way). Where the Hessian there
+has a negative curvature, the solver leaves along its lowest eigenvector and descends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from knitcore.chart import StitchChart
+from knitcore.errors import ConvergenceError, InputError
+from knitcore.yarnlevel.cell import free_cell
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.limits import Cancel
+from knitcore.yarnlevel.results import Branch
+from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
+from knitcore.yarnlevel.solver import Options, minimise
+from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.tiling import tiled_state
+
+MAX_STITCHES = 100
+"""Largest free cell."""
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A mirrored state without its mirrors.
+
+    Attributes
+    ----------
+    minimum : whether it is still a minimum (samples that find a slightly better place along the
+        yarn may lower its energy by less than ``SAME_ENERGY``).
+    state : that minimum, or the one that its instability leads to, in the free branch.
+    lower : by which part of the energy that one is lower.
+    """
+
+    minimum: bool
+    state: RelaxedRepeat
+    lower: float
+
+
+def without_mirrors(relaxed: RelaxedRepeat, *, cancel: Cancel | None = None) -> Followed:
+    """Drop the symmetries of a relaxed repeat, and follow its instability if there is one.
+
+    Raises
+    ------
+    InputError
+        If the repeat was held, has a length for every stitch, or is too large.
+    ConvergenceError, UnravelledError
+        If the descent from it finds no state of the fabric.
+    """
+    cell = free_cell(relaxed.chart, relaxed.cell.grid)
+    if relaxed.flat or relaxed.slides or relaxed.loop_lengths_mm.ndim != 1:
+        raise InputError("relaxed", "is held beside its symmetries.", "Relax it without rules.")
+    if cell.stitches > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"its cell has {cell.stitches} stitches.",
+            f"Use a repeat of at most {MAX_STITCHES} stitches.",
+        )
+    lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
+    energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
+    found = minimise(
+        energy, tiled_state(relaxed.cell, relaxed.state, cell),
+        tension=np.resize(relaxed.tension_n, cell.rows),
+        options=Options(tolerance=1e-8 if cell.stitches <= 4 else 1e-6), cancel=cancel,
+    )  # fmt: skip
+    became = outcome(energy, found)
+    if became not in (RELAXED, UNSETTLED):
+        raise ConvergenceError(f"Without its symmetries the repeat does not settle: {became}.")
+    shown = relaxed_repeat(
+        StitchChart(cell.purl), energy, Branch.FREE, found, seconds=0.0,
+        evaluations=found.evaluations,
+    )  # fmt: skip
+    lower = 1.0 - shown.energy_n_mm / relaxed.energy_n_mm
+    return Followed(
+        lower < SAME_ENERGY and found.stable, replace(shown, notes=relaxed.notes), lower
+    )
