@@ -1213,6 +1213,16 @@ export interface GaugeResult {
   source: string;
 }
 
+/** Circumferences at one place. */
+export interface Girth {
+  /** Along the limb, from where the tube begins. */
+  at_mm: number;
+  /** Around the limb. */
+  girth_mm: number;
+  /** Around the unworn tube. */
+  rest_mm: number;
+}
+
 /** The therapeutic glove; measurements default to an adult's hand. */
 export interface Glove {
   ease?: number;
@@ -1487,6 +1497,49 @@ export interface LimbInput {
   rest_mm: number;
   /** Circumference of the limb. */
   worn_mm: number;
+}
+
+/** Fit at one place along the limb. */
+export interface LimbPlaceResult {
+  at_mm: number;
+  /** Around the unworn tube. */
+  rest_mm: number;
+  /** Around the limb. */
+  girth_mm: number;
+  /** Tube over limb, minus one; negative where it is stretched. */
+  ease: number;
+  /** Mean pressure, from axially free to axially fixed; null where there is none. */
+  mmhg: [number, number] | null;
+  /** The same, widened by the 90 % interval of the chart's stress. */
+  mmhg_with_spread: [number, number] | null;
+  /** Strain around the limb over that at which the chart is locked. */
+  lock_up_share: number;
+  /** Why there is no pressure, such as a loose fit. */
+  problem: string;
+}
+
+/** A tube of a chart, and a limb by its girths. */
+export interface LimbRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  chart: string | PureFabricChart;
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Around the limb. */
+  direction?: Direction;
+  /** From one end to the other; between them sizes change evenly. */
+  girths: Girth[];
+}
+
+/** Fit along the limb; no medical class. */
+export interface LimbResult {
+  kind: "limb";
+  places: LimbPlaceResult[];
+  /** Where the tube is nearest to its lock-up. */
+  tightest_mm: number;
+  /** Length along the limb on which the tube is loose. */
+  loose_mm: number;
+  notes: string[];
 }
 
 /** Limits on the effort of knitting; null for no limit. */

@@ -552,6 +552,17 @@ class GaugeInput(TypedDict):
     """Counted on your own relaxed swatch; give stitches and rows, or neither."""
 
 
+class Girth(TypedDict):
+    """Circumferences at one place."""
+
+    at_mm: float
+    """Along the limb, from where the tube begins."""
+    girth_mm: float
+    """Around the limb."""
+    rest_mm: float
+    """Around the unworn tube."""
+
+
 class Glove(TypedDict):
     """The therapeutic glove; measurements default to an adult's hand."""
 
@@ -650,6 +661,20 @@ class LimbInput(TypedDict):
     """Circumference of the unworn tube."""
     worn_mm: float
     """Circumference of the limb."""
+
+
+class LimbRequest(TypedDict):
+    """A tube of a chart, and a limb by its girths."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    chart: str | PureFabricChart
+    material: str
+    """Identifier of a material of the library."""
+    direction: NotRequired[Direction]
+    """Around the limb."""
+    girths: list[Girth]
+    """From one end to the other; between them sizes change evenly."""
 
 
 class LimitsInput(TypedDict):
@@ -2130,6 +2155,38 @@ class LeftOutResult(BaseModel):
     modulus_coverage: float
     """Of the 90 % intervals."""
     strain_coverage: float
+
+
+class LimbPlaceResult(BaseModel):
+    """Fit at one place along the limb."""
+
+    at_mm: float
+    rest_mm: float
+    """Around the unworn tube."""
+    girth_mm: float
+    """Around the limb."""
+    ease: float
+    """Tube over limb, minus one; negative where it is stretched."""
+    mmhg: tuple[float, float] | None
+    """Mean pressure, from axially free to axially fixed; null where there is none."""
+    mmhg_with_spread: tuple[float, float] | None
+    """The same, widened by the 90 % interval of the chart's stress."""
+    lock_up_share: float
+    """Strain around the limb over that at which the chart is locked."""
+    problem: str
+    """Why there is no pressure, such as a loose fit."""
+
+
+class LimbResult(BaseModel):
+    """Fit along the limb; no medical class."""
+
+    kind: Literal["limb"] = "limb"
+    places: list[LimbPlaceResult]
+    tightest_mm: float
+    """Where the tube is nearest to its lock-up."""
+    loose_mm: float
+    """Length along the limb on which the tube is loose."""
+    notes: list[str]
 
 
 class LoadedEdge(BaseModel):

@@ -55,6 +55,8 @@ from knitcore_client.models import (
     ImportResult,
     JobResult,
     JobStatus,
+    LimbRequest,
+    LimbResult,
     MaterialDetail,
     MaterialRequest,
     Materials,
@@ -195,6 +197,10 @@ class AsyncOperations:
     async def import_(self, **request: Unpack[ImportRequest]) -> ImportResult:
         """The chart in a file."""
         return await self._ask(ImportResult, "POST", "/import", request)
+
+    async def limb(self, **request: Unpack[LimbRequest]) -> LimbResult:
+        """Fit and pressure of a knitted tube along a limb."""
+        return await self._ask(LimbResult, "POST", "/limb", request)
 
     async def material(self, **request: Unpack[MaterialRequest]) -> MaterialDetail:
         """Everything known about a material."""
@@ -532,6 +538,10 @@ class Operations:
     def import_(self, **request: Unpack[ImportRequest]) -> ImportResult:
         """The chart in a file."""
         return self._ask(ImportResult, "POST", "/import", request)
+
+    def limb(self, **request: Unpack[LimbRequest]) -> LimbResult:
+        """Fit and pressure of a knitted tube along a limb."""
+        return self._ask(LimbResult, "POST", "/limb", request)
 
     def material(self, **request: Unpack[MaterialRequest]) -> MaterialDetail:
         """Everything known about a material."""
