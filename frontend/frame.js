@@ -3,7 +3,8 @@
  * cookies, and in most browsers a process of its own. It talks to the page around by messages:
  *
  *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
- *   frame to page    {view: "loaded" | "started" | "seen"}, {slow} whether drawing takes long
+ *   frame to page    {view: "loaded" | "started" | "seen" | "none" where the browser draws nothing in
+ *                    3D}, {slow} whether drawing takes long
  *
  * A plain script without imports: the service puts it into viser's page.
  */
@@ -195,7 +196,11 @@
   };
   /** @param {string} kind @param {any} [options] @returns {any} */
   HTMLCanvasElement.prototype.getContext = function (kind, options) {
-    if (!options?.antialias || !kind.startsWith("webgl")) return context.call(this, kind, options);
+    if (!options?.antialias || !kind.startsWith("webgl")) {
+      const made = context.call(this, kind, options);
+      if (!made && kind === "webgl2") tell({ view: "none" });
+      return made;
+    }
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
     return context.call(this, kind, { ...options, antialias: !software });

@@ -30,6 +30,14 @@ const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
 const MAX_DRAWN = 40_000;
 
+const BLIND = {
+  type: "browser",
+  status: 0,
+  title: "The fabric cannot be drawn here",
+  detail: "This browser draws nothing in 3D: it has no WebGL 2.",
+  remedy: "Allow it graphics acceleration, or use another one. Chart, numbers and stretch test work all the same.",
+};
+
 /**
  * @param {HTMLElement} host
  * @param {Studio} studio
@@ -69,6 +77,8 @@ export function fabricview(host, studio, view) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let reloading;
   let patience = RELOAD_MS;
+  /** The browser draws nothing in 3D. */
+  let blind = false;
   const reloadUnseen = () => {
     if (sending || problem || drawing.held) {
       reloadAfter(RELOAD_MS);
@@ -85,12 +95,18 @@ export function fabricview(host, studio, view) {
   addEventListener("message", ({ source, data }) => {
     if (source !== frame.contentWindow) return;
     if (data.view === "loaded") {
+      blind = false;
       tellFrame({ hold: drawing.held });
       if (pass) tellFrame({ pass });
       reloadAfter(STARTING * patience);
     }
-    if (data.view === "started") reloadAfter(patience);
+    if (data.view === "started" && !blind) reloadAfter(patience);
     if (data.view === "seen") knitted();
+    if (data.view === "none") {
+      blind = true;
+      clearTimeout(reloading);
+      status.replaceChildren(icon("warning"), problemText(BLIND));
+    }
     if (typeof data.slow === "boolean") drawing.slow = data.slow;
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
