@@ -83,6 +83,7 @@ class JobStore:
             "process": self.process,
             "kind": kind,
             "request": request,
+            "size_bytes": len(request),
             "key": key,
             "state": state.value,
             "created_at": at,
@@ -272,7 +273,7 @@ class JobStore:
 
 
 def _kept_bytes(connection: Connection, owner: str) -> int:
-    size = select(func.coalesce(func.sum(func.length(jobs.c.request)), 0))
+    size = select(func.coalesce(func.sum(jobs.c.size_bytes), 0))
     return int(connection.execute(size.where(jobs.c.owner == owner)).scalar_one())
 
 
@@ -287,7 +288,7 @@ def _make_room(connection: Connection, owner: str, more: int) -> None:
     if _kept_bytes(connection, owner) + more <= BUDGETS.job_bytes:
         return
     ended = jobs.c.finished_at.is_not(None)
-    so_far = func.sum(func.length(jobs.c.request)).over(
+    so_far = func.sum(jobs.c.size_bytes).over(
         order_by=(ended, jobs.c.finished_at.desc(), jobs.c.id)
     )
     sizes = select(jobs.c.id, so_far.label("so_far")).where(jobs.c.owner == owner).subquery()

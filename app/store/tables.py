@@ -102,7 +102,9 @@ jobs = Table(
     Column("finished_at", Float),
     Column("progress", Float, nullable=False, server_default="0"),
     Column("seen_at", Float, nullable=False, server_default="0"),  # when its process lived
+    Column("size_bytes", Integer, nullable=False, server_default="0"),  # of the request
     Index(None, "owner", "created_at", "id"),
+    Index(None, "owner", "size_bytes"),
     Index(None, "process", "state"),
 )
 

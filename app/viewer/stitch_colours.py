@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.models.base import RequestModel
+from app.models.charts import MAX_FIELD
 from app.operations.stretch import StretchView
 from app.viewer.colours import (
     FABRIC_COLOURS,
@@ -66,7 +67,7 @@ class FieldColours(RequestModel):
     """Any value of each stitch on a colour map."""
 
     values: list[Value] = Field(
-        max_length=160_000, description="Row by row from the bottom, each from the left."
+        max_length=MAX_FIELD, description="Row by row from the bottom, each from the left."
     )
     low: Value
     high: Value

@@ -15,6 +15,7 @@ from app.budgets import BUDGETS, Budgets, InUse
 from app.http.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
 from app.http.identity import LOCAL_USER
 from app.models.base import RequestModel
+from app.models.charts import MAX_FIELD
 
 PADDING = " " * SMALL_BYTES
 WISH = {"chart": "KP\nPK", "material": "acrylic"}
@@ -118,6 +119,16 @@ def test_no_design_is_larger_than_the_service_decodes(client: TestClient) -> Non
     for sent in (content, parts()):
         refused = client.post("/api/v1/designs", content=sent, headers=headers)
         assert (refused.status_code, refused.json()["field"]) == (413, "body")
+
+
+def test_a_field_of_as_many_values_as_a_view_takes_is_read(client: TestClient) -> None:
+    field = {"values": [0.5] * MAX_FIELD, "low": 0.0, "high": 1.0}
+    body = {**WISH, "colour": "field", "field": field}
+    found = client.put("/api/v1/views/a-field-too-large", json=body)
+    assert (found.status_code, found.json()["field"]) == (
+        422,
+        "field",
+    )  # of another size than KP/PK
 
 
 def test_lists_in_lists_are_counted_as_values(client: TestClient) -> None:
