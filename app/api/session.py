@@ -8,6 +8,7 @@ from fastapi import APIRouter, Path, Request, Response
 
 from app.budgets import BUDGETS, InUse, Use
 from app.designs.parameters import Owner
+from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
 from app.http.identity import current_session
 from app.http.problems import NotFoundError, Problem
@@ -32,14 +33,18 @@ def _use(owner: str, state: Any) -> dict[str, Use]:
     in_use: InUse = state.in_use
     used = {
         name: float(in_use.held(name, owner))
-        for name in ("connections", "watchers", "streams", "body_bytes")
+        for name in ("connections", "watchers", "streams", "pictures", "body_bytes")
     }
     used |= {
+        "memory_bytes": state.compute.turns.held(owner) * state.settings.worker_memory_bytes,
         "views": state.views.count(owner),
+        "view_stitches": state.views.stitches(owner),
         "jobs": state.compute.turns.waiting_of(owner),
         "cpu_s": round(state.compute.spent.used_s(owner), 1),
         "designs": designs,
         "kept_bytes": kept_bytes,
+        "versions": DesignStore(state.database).most_versions(owner),
+        "links": Sharing(state.database).most_given(owner),
         "job_bytes": state.jobs.store.kept_bytes(owner),
     }
     return {name: Use(used=value, most=getattr(BUDGETS, name)) for name, value in used.items()}

@@ -109,6 +109,10 @@ class Turns(Generic[Place]):
         """Number of places in use."""
         return self._count - len(self._free)
 
+    def held(self, owner: str) -> int:
+        """Number of places that a user holds."""
+        return self._held[owner]
+
     def waiting(self, *, background: bool) -> int:
         """Number of requests that wait."""
         return sum(len(tickets) for tickets in self._lanes[background].values())

@@ -75,6 +75,19 @@ class Sharing:
             ).all()
         return Shares(shares=[Share.model_validate(row, from_attributes=True) for row in rows])
 
+    def most_given(self, owner: str) -> int:
+        """Number of open links to that of an owner's designs which has the most."""
+        each = (
+            select(func.count())
+            .select_from(shares.join(designs))
+            .where(designs.c.owner == owner, shares.c.revoked_at.is_(None))
+            .group_by(shares.c.design_id)
+            .order_by(func.count().desc())
+            .limit(1)
+        )
+        with self._database.read() as connection:
+            return connection.execute(each).scalar() or 0
+
     def revoke(self, owner: str, design: str, share: str) -> None:
         """Close a link for good."""
 

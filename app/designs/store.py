@@ -213,6 +213,19 @@ class DesignStore:
         with self._database.read() as connection:
             return _count(connection, owner), _kept_bytes(connection, owner)
 
+    def most_versions(self, owner: str) -> int:
+        """Number of versions of that of an owner's designs which has the most."""
+        each = (
+            select(func.count())
+            .select_from(design_versions.join(designs))
+            .where(designs.c.owner == owner)
+            .group_by(design_versions.c.design_id)
+            .order_by(func.count().desc())
+            .limit(1)
+        )
+        with self._database.read() as connection:
+            return connection.execute(each).scalar() or 0
+
     def forget_deleted(self) -> int:
         """Remove designs that were deleted 30 days ago for good; returns their number."""
 

@@ -140,6 +140,11 @@ class Views:
         """Number of open views of a user."""
         return len(self._of(owner))
 
+    def stitches(self, owner: str) -> int:
+        """Stitches of a user's views together, a rectangle counted as 20."""
+        views = (self.get(design) for design in self._of(owner))
+        return sum(view.stitches for view in views if view is not None)
+
     def _of(self, owner: str) -> list[str]:
         return [design for design in list(self._views) if design.rpartition("/")[0] == owner]
 

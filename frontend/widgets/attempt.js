@@ -7,15 +7,16 @@ import { problemBox } from "./dialog.js";
  * @template T
  * @param {HTMLElement} status where a problem is told; emptied first
  * @param {() => Promise<T>} work
+ * @param {() => unknown} [again] what "Try again" does, where more than the work depends on it
  * @returns {Promise<T | null>} null if it failed
  */
-export async function attempt(status, work) {
+export async function attempt(status, work, again = () => void attempt(status, work)) {
   status.replaceChildren();
   try {
     return await work();
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    status.replaceChildren(problemBox(error.problem, () => void attempt(status, work)));
+    status.replaceChildren(problemBox(error.problem, () => void again()));
     return null;
   }
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Callable, Iterator
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -96,10 +97,9 @@ def test_a_user_has_so_many_connections(tmp_path: Path, monkeypatch: pytest.Monk
             "/api/v1/views/a-view", json={"chart": "K", "material": "cotton"}, headers=headers
         )
         told = client.get("/api/v1/session", headers=headers).json()["use"]
-        assert (told["connections"], told["views"]) == (
-            {"used": 1, "most": BUDGETS.connections},
-            {"used": 1, "most": BUDGETS.views},
-        )
+        assert set(told) == {limit.name for limit in fields(Budgets)}
+        for name in ("connections", "views", "view_stitches"):
+            assert told[name] == {"used": 1, "most": getattr(BUDGETS, name)}
         with state.in_use.hold("connections", "ada"), state.in_use.hold("connections", "ada"):
             refused = client.get("/api/v1/session", headers=headers)
             assert (refused.status_code, refused.json()["field"]) == (429, "connections")
@@ -136,6 +136,7 @@ def test_bytes_kept_are_counted_with_versions(
     monkeypatch.setattr(store_module, "BUDGETS", Budgets(kept_bytes=3 * SIZE))
     first = store.create("ada", RIB)
     store.keep_version("ada", first.id, "one")
+    assert (store.most_versions("ada"), store.most_versions("bob")) == (1, 0)
     second = store.duplicate("ada", first.id)
     larger = RIB.model_copy(update={"note": "n"})
     for refused in (
@@ -159,7 +160,9 @@ def test_links_to_a_design_are_bounded(database: Database, monkeypatch: pytest.M
     links.give("ada", design, ShareMode.COPY)
     with pytest.raises(ConflictError, match="2 open links"):
         links.give("ada", design, ShareMode.READ)
+    assert links.most_given("ada") == 2
     links.revoke("ada", design, first.id)
+    assert (links.most_given("ada"), links.most_given("bob")) == (1, 0)
     assert links.give("ada", design, ShareMode.READ).token
 
 

@@ -11,8 +11,12 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
+from app.budgets import OverBudgetError
+from app.http.problems import problem_of
 from tests.app.service import Service
 from tests.browser.axe import THEMES, violations
+
+TOO_MANY: dict[str, str] = problem_of(OverBudgetError.of("connections", 128, 128)).model_dump()
 
 
 @pytest.fixture
@@ -44,7 +48,14 @@ def test_the_user_is_named_and_signs_out(visitor: Page, lab: tuple[str, str]) ->
         expect(page.get_by_role("row", name="Designs, with")).to_contain_text("5,000")
         found += [f"{theme}: {wrong}" for wrong in violations(page, "#account-dialog")]
         page.keyboard.press("Escape")
+    page.route("**/api/v1/session", lambda route: route.fulfill(status=429, json=TOO_MANY))
     account.click()
+    told = page.locator("#account-dialog .dialog-status")
+    expect(told).to_contain_text(TOO_MANY["detail"])
+    expect(told).to_contain_text(TOO_MANY["remedy"])
+    page.unroute("**/api/v1/session")
+    told.get_by_role("button", name="Try again").click()
+    expect(page.locator("#sessions")).to_contain_text("This browser")
     page.locator("#sign-out").click()
     expect(page.get_by_label("Token")).to_be_visible()
     assert page.evaluate("localStorage['knitcore.design']") is None

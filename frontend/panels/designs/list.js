@@ -105,7 +105,7 @@ export function create(studio, context) {
     await load();
   };
   const load = async () => {
-    const page = await attempt(status, () => designs.list({ cursor, deleted }));
+    const page = await attempt(status, () => designs.list({ cursor, deleted }), load);
     if (cursor === null) list.replaceChildren();
     more.hidden = !page?.next_cursor;
     if (!page) return;

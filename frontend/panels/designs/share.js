@@ -101,7 +101,7 @@ export function create(_studio, { keeper }) {
   const remote = () => keptName(keeper, status, ", so it cannot be shared now.");
   const load = async () => {
     const id = keeper.remoteId;
-    const found = id ? await attempt(status, () => designs.shares(id)) : { shares: [] };
+    const found = id ? await attempt(status, () => designs.shares(id), load) : { shares: [] };
     list.replaceChildren(...(found?.shares ?? []).map(row));
   };
   /** @param {Share} share */

@@ -65,7 +65,7 @@ export function create(studio, { keeper, open }) {
   const remote = () => keptName(keeper, status, "; versions are kept there.");
   const load = async () => {
     const id = keeper.remoteId;
-    const found = id ? await attempt(status, () => designs.versions(id)) : { versions: [] };
+    const found = id ? await attempt(status, () => designs.versions(id), load) : { versions: [] };
     if (!found) return;
     const { versions } = found;
     list.replaceChildren(...versions.reverse().map(row));

@@ -15,14 +15,22 @@ import { dialog } from "../../widgets/dialog.js";
 
 /** @param {number} n */
 const count = (n) => n.toLocaleString("en");
+/** @param {number} unit @returns {(n: number) => string} */
+const decimal = (unit) => (n) => (n / unit).toFixed(1);
 /** Limits that are told, in words, and how their numbers are written. */
 const LIMITS = /** @type {const} */ ([
   ["designs", "Designs, with those deleted in the last 30 days", count],
-  ["kept_bytes", "Designs and their versions, MB", (/** @type {number} */ n) => (n / 1e6).toFixed(1)],
-  ["job_bytes", "Requests of jobs, MB", (/** @type {number} */ n) => (n / 1e6).toFixed(1)],
-  ["cpu_s", "Computing time of a day, hours", (/** @type {number} */ n) => (n / 3600).toFixed(1)],
+  ["kept_bytes", "Designs and their versions, MB", decimal(1e6)],
+  ["versions", "Versions of one design, at most", count],
+  ["links", "Links to one design, at most", count],
+  ["job_bytes", "Requests of jobs, MB", decimal(1e6)],
+  ["cpu_s", "Computing time of a day, hours", decimal(3600)],
+  ["memory_bytes", "Memory of computations at work, GB", decimal(1e9)],
   ["jobs", "Jobs that wait", count],
   ["views", "3D views", count],
+  ["view_stitches", "Stitches in 3D views", count],
+  ["streams", "Jobs and views that are followed", count],
+  ["connections", "Requests at once, with this one", count],
 ]);
 
 /**
@@ -56,7 +64,7 @@ export function create(_studio, { keeper }) {
   );
 
   const load = async () => {
-    const found = await attempt(status, api.session);
+    const found = await attempt(status, api.session, load);
     if (found) show(found);
   };
 

@@ -139,7 +139,7 @@ export function create(studio) {
   );
 
   async function addExtensions() {
-    const found = await attempt(status, () => /** @type {Promise<Extensions>} */ (call("/extensions")));
+    const found = await attempt(status, () => /** @type {Promise<Extensions>} */ (call("/extensions")), addExtensions);
     if (!found) return;
     asked = true;
     const added = ofExtensions(found.extensions).map(entry);
