@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import socket
 import subprocess
 from pathlib import Path
@@ -189,3 +190,33 @@ def test_the_script_checks_the_files_where_no_engine_answers(tmp_path: Path) -> 
     )
     assert "No container engine answers" in told.stdout
     assert "tests/test_deployment.py" in told.stdout
+
+
+def test_images_are_pinned_by_digest_and_not_published_without(tmp_path: Path) -> None:
+    """With an engine that knows one digest, and cannot build."""
+    digest = "sha256:" + "0a" * 32
+    engine = tmp_path / "engine"
+    engine.write_text(
+        f"#!/bin/sh\ncase $1 in image) echo registry/name@{digest};; build) exit 9;; esac\n"
+    )
+    (tmp_path / "scripts").mkdir()
+    for name in ("scripts/image", "Dockerfile", "compose.yaml"):
+        shutil.copy(ROOT / name, tmp_path / name)
+    engine.chmod(0o755)
+
+    def image(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [tmp_path / "scripts/image", *words]
+        environment = os.environ | {"ENGINE": str(engine)}
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+
+    (base,) = _all("ARG")
+    base = base.removeprefix("BASE=").partition("@")[0]
+    refused = image("publish", "somewhere/knitcore")
+    if f"ARG BASE={base}\n" in DOCKERFILE:  # where no registry can be reached
+        assert refused.returncode == 1
+        assert f"Dockerfile: {base}" in refused.stdout
+    for _ in range(2):  # a second time replaces the digests
+        assert image("pin").returncode == 0
+        assert f"ARG BASE={base}@{digest}\n" in (tmp_path / "Dockerfile").read_text()
+        assert (tmp_path / "compose.yaml").read_text().count(digest) == 1
+    assert image("publish", "somewhere/knitcore").returncode == 9
