@@ -13,6 +13,7 @@ from types import SimpleNamespace
 
 import httpx2 as httpx
 import pytest
+from anyio.to_thread import current_default_thread_limiter
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from starlette.websockets import WebSocketDisconnect
@@ -20,7 +21,7 @@ from starlette.websockets import WebSocketDisconnect
 from app import doctor
 from app.http.observing import JsonLines, TextLines, configure_logging
 from app.http.tokens import Tokens
-from app.main import create_app
+from app.main import THREADS, create_app
 from app.settings import Settings
 from app.version import VERSION
 from knitcore.errors import InputError
@@ -223,3 +224,13 @@ def test_a_stop_keeps_jobs_and_ends_streams(tmp_path: Path) -> None:
     log = [json.loads(line) for line in service.log.read_text().splitlines()]
     assert {"request", "job waits"} <= {line["message"] for line in log}
     assert not [line for line in log if line["level"] == "error"]
+
+
+def test_the_service_has_few_threads(client: TestClient) -> None:
+    """The event loop waits for each of them that computes."""
+
+    async def threads() -> float:
+        return current_default_thread_limiter().total_tokens
+
+    assert client.portal is not None
+    assert client.portal.call(threads) == THREADS
