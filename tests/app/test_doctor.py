@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import sqlite3
@@ -267,8 +268,10 @@ def test_damage_found_at_run_time_is_reported(tmp_path: Path) -> None:
         assert client.get("/readyz").status_code == 200
         database = app.state.database
         assert client.get("/api/v1/designs").status_code == 200
-        database.engine.dispose()  # writes the log into the file
         file = tmp_path / "knitcore.sqlite3"
+        with contextlib.closing(sqlite3.connect(file, timeout=30)) as own:  # log into the file
+            assert own.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0] == 0
+        database.engine.dispose()  # and nothing in memory
         with file.open("r+b") as stream:
             stream.seek(4096)
             stream.write(b"\xa5" * (file.stat().st_size - 4096))
