@@ -7,28 +7,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from typing import Literal
 
 from knitcore import StitchChart, curve, material, relax, strip_test
 from knitcore.shell.curl import curl
+from knitcore.yarnlevel.hysteresis import hysteresis
+from knitcore.yarnlevel.relax import RelaxedRepeat
 from knitcore.yarnlibrary.yarns import yarn_for
 
 CHART = StitchChart.parse("K/P")
 ACRYLIC = material("acrylic")
 
 
-def _yarn(branch: str) -> None:
+def _yarn(branch: Literal["free", "mirrored"]) -> RelaxedRepeat:
     used = yarn_for(ACRYLIC, CHART)
-    relax(CHART, used.yarn, used.loop_length_mm, branch=branch)
+    return relax(CHART, used.yarn, used.loop_length_mm, branch=branch)
 
 
 def free() -> None:
-    """The yarn-level solver."""
+    """The yarn-level solver, without and with friction."""
     _yarn("free")
+    hysteresis(_yarn("mirrored"), "course", 0.1, 0.2, points=2, cycles=1)
 
 
 def published() -> None:
     """The yarn-level solver of the paper."""
-    _yarn("published")
+    used = yarn_for(ACRYLIC, CHART)
+    relax(CHART, used.yarn, used.loop_length_mm, branch="published")
 
 
 def cloth() -> None:

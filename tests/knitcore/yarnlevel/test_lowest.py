@@ -38,6 +38,7 @@ def test_an_instability_is_followed_to_a_lower_minimum():
     assert again.state.energy_n_mm == pytest.approx(found.state.energy_n_mm, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_free_branch_is_not_above_what_an_instability_leads_to():
     entry = sample("acrylic", "rib")
     chart = StitchChart.of_fabric(Fabric.RIB, 2, 2)
