@@ -299,7 +299,7 @@ def row(
         "material": material,
         "variant": variant,
         "fabric": fabric,
-        **{name: f"{getattr(law, name):.5g}" for name in CONSTANTS},
+        **{name: f"{round(getattr(law, name), 6):.5g}" for name in CONSTANTS},
         **{name: f"{getattr(uncertainty, name):.3g}" for name in DEVIATIONS},
         **{f"{n}_{d}": f"{getattr(c, n):.3g}" for d, c in curves.items() for n in CURVE},
         "source": source,

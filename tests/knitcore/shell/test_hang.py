@@ -41,9 +41,9 @@ def test_held_by_its_corners_the_top_edge_sags() -> None:
 
 
 def test_the_bottom_of_stockinette_rolls_to_the_front_against_its_weight() -> None:
-    found = hang(StitchChart.parse("K").tile(16, 10), ACRYLIC, linear_density_g_per_m=0.5)
+    found = hang(StitchChart.parse("K").tile(12, 8), ACRYLIC, linear_density_g_per_m=0.5)
     assert found.converged
-    assert found.corners_mm[0, 5, 2] > 1.0
+    assert found.corners_mm[0, 4, 2] > 0.5
 
 
 def test_it_can_be_cancelled() -> None:
