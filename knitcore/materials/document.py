@@ -224,8 +224,10 @@ class FabricDocument(_Model):
             law=LawDocument.from_law(law),
             **{name: getattr(record, name) for name in _SHARED},
             standard_deviation=DeviationDocument(
-                modulus_course=law.modulus_course * _coefficient(spread.log_modulus_course),
-                modulus_wale=law.modulus_wale * _coefficient(spread.log_modulus_wale),
+                modulus_course=_written(
+                    law.modulus_course * _coefficient(spread.log_modulus_course)
+                ),
+                modulus_wale=_written(law.modulus_wale * _coefficient(spread.log_modulus_wale)),
                 poisson_yx=spread.poisson_yx,
                 poisson_xy=spread.poisson_xy,
                 log_shear=spread.log_shear,
@@ -313,6 +315,11 @@ class MaterialDocument(_Model):
             },
             note=material.note,
         )
+
+
+def _written(value: float) -> float:
+    """Twelve digits, which are the same when the file is read and written again."""
+    return float(f"{value:.12g}")
 
 
 def _coefficient(log_standard_deviation: float) -> float:
