@@ -205,7 +205,7 @@ def local_moduli(chart: StitchChart, material: Material, *, periodic: bool = Fal
     >>> from knitcore.materials import material
     >>> chart = StitchChart.parse("KKKPKPKP")
     >>> local_moduli(chart, material("acrylic")).modulus_course_n_per_mm.round(3)
-    array([[0.308, 0.308, 0.028, 0.013, 0.013, 0.013, 0.013, 0.013]])
+    array([[0.304, 0.304, 0.028, 0.013, 0.013, 0.013, 0.013, 0.013]])
     """
     codes = surroundings(chart, periodic=periodic)
     if not material.is_complete:
