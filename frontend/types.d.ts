@@ -1062,7 +1062,7 @@ export type Finish = "waste" | "bind-off";
 
 /** Two stretch tests of one fabric. */
 export interface FitRequest {
-  /** Pulled along the rows; HDF5 or CSV. */
+  /** Pulled along the rows; HDF5, CSV or XLSX. */
   test_course: UploadedFile;
   /** Pulled along the columns. */
   test_wale: UploadedFile;

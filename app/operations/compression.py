@@ -135,7 +135,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         group="measure",
-        help="Constants k and p of the contact law from compression tests (XLS or CSV).",
+        help="Constants k and p of the contact law from compression tests (XLS, XLSX or CSV).",
         run=_command,
     ),
 )

@@ -35,7 +35,7 @@ class FitRequest(RequestModel):
     """Two stretch tests of one fabric."""
 
     test_course: Annotated[UploadedFile, Check(_read)] = Field(
-        description="Pulled along the rows; HDF5 or CSV."
+        description="Pulled along the rows; HDF5, CSV or XLSX."
     )
     test_wale: Annotated[UploadedFile, Check(_read)] = Field(
         description="Pulled along the columns."
@@ -189,7 +189,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Fit a law to a course-wise and a wale-wise stretch test (HDF5 or CSV).",
+        help="Fit a law to a course-wise and a wale-wise stretch test (HDF5, CSV or XLSX).",
         names={"residuals": None},
         run=_command,
     ),

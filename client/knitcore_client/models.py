@@ -492,7 +492,7 @@ class FitRequest(TypedDict):
     """Two stretch tests of one fabric."""
 
     test_course: UploadedFile | Path
-    """Pulled along the rows; HDF5 or CSV."""
+    """Pulled along the rows; HDF5, CSV or XLSX."""
     test_wale: UploadedFile | Path
     """Pulled along the columns."""
     format: NotRequired[Literal["csv", "h5"] | None]

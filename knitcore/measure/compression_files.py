@@ -1,8 +1,8 @@
-"""Read compression tests of yarns: the testing machine's XLS workbook, or a simple CSV.
+"""Read compression tests of yarns: the testing machine's workbook, or a simple CSV.
 
-XLS: one sheet per test, named ``yarn-number``, with a title row, a row of column names (``Standard
-force``, ``Strain``: the probe's depth) and a row of units (mN or N; mm); a sheet ``Yarn Diameters``
-with one column per yarn and one row per sample.
+Workbook (XLS or XLSX): one sheet per test, named ``yarn-number``, with a title row, a row of column
+names (``Standard force``, ``Strain``: the probe's depth) and a row of units (mN or N; mm); a sheet
+``Yarn Diameters`` with one column per yarn and one row per sample.
 
 CSV: a header line with ``depth_mm, force_n`` and, where there are several tests, ``sample``
 (``yarn-number``); the diameter may be a column ``diameter_mm``.
@@ -10,23 +10,18 @@ CSV: a header line with ``depth_mm, force_n`` and, where there are several tests
 
 from __future__ import annotations
 
-import io
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import xlrd
 from numpy.typing import NDArray
 
 from knitcore.errors import InputError
-from knitcore.measure.tables import numbers, read_csv
+from knitcore.measure.tables import numbers, read_table
+from knitcore.measure.workbooks import MAX_BYTES, Cell, Sheet, is_workbook, read_workbook
 
 Array = NDArray[np.float64]
-
-MAX_BYTES = 50 * 2**20
-_XLS_MAGIC = bytes.fromhex("d0cf11e0a1b11ae1")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,17 +53,13 @@ def read_compression(path: Path) -> list[CompressionTest]:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(str(path), "is not a file.", "Give the path of an XLS or CSV file.")
+        raise InputError(str(path), "is not a file.", "Give the path of an XLS, XLSX or CSV file.")
     if path.stat().st_size > MAX_BYTES:
         raise InputError(path.name, "is larger than 50 MB.", "Give the tests only.")
-    with path.open("rb") as file:
-        start = file.read(8)
-    if start == _XLS_MAGIC:
-        return _read_xls(path)
-    if start.startswith(b"PK\x03\x04"):
-        raise InputError(path.name, "is an XLSX workbook.", "Save it as XLS or as CSV.")
-    if path.suffix.lower() == ".xls":
-        raise InputError(path.name, "is not an XLS workbook.", "Give an XLS or CSV file.")
+    if is_workbook(path):
+        return _of_workbook(path.name, read_workbook(path))
+    if path.suffix.lower() in (".xls", ".xlsx"):
+        raise InputError(path.name, "is not a workbook.", "Give an XLS, XLSX or CSV file.")
     return _read_csv(path)
 
 
@@ -76,48 +67,41 @@ def _yarn(name: str) -> str:
     return re.sub(r"[\s_-]*\d+$", "", name).strip().lower() or name
 
 
-# -- XLS -----------------------------------------------------------------------------------------
+# -- workbooks -----------------------------------------------------------------------------------
 
 
-def _read_xls(path: Path) -> list[CompressionTest]:
-    try:
-        book = xlrd.open_workbook(str(path), logfile=io.StringIO())
-        sheets = {sheet.name: sheet for sheet in book.sheets()}
-    except Exception as error:  # on a damaged file xlrd may raise anything
-        raise InputError(
-            path.name, f"cannot be read as XLS ({error}).", "The file may be cut off."
-        ) from None
+def _of_workbook(file_name: str, sheets: dict[str, Sheet]) -> list[CompressionTest]:
     diameters = _diameters(sheets)
     tests = [
-        _xls_test(path.name, sheet, diameters)
+        _of_sheet(file_name, name, sheet, diameters)
         for name, sheet in sheets.items()
-        if "diameter" not in name.lower() and sheet.nrows > 0
+        if "diameter" not in name.lower()
     ]
     if not tests:
-        raise InputError(path.name, "has no sheet with a test.", "Give one sheet per test.")
+        raise InputError(file_name, "has no sheet with a test.", "Give one sheet per test.")
     return tests
 
 
-def _xls_test(
-    file_name: str, sheet: Any, diameters: dict[tuple[str, int], float]
+def _of_sheet(
+    file_name: str, name: str, sheet: Sheet, diameters: dict[tuple[str, int], float]
 ) -> CompressionTest:
-    where = f"{file_name}, sheet {sheet.name!r}"
+    where = f"{file_name}, sheet {name!r}"
     header = next(
         (
             row
-            for row in range(min(sheet.nrows, 10))
-            if any("force" in str(v).lower() for v in sheet.row_values(row))
+            for row, cells in enumerate(sheet[:10])
+            if any("force" in str(v).lower() for v in cells)
         ),
         None,
     )
-    if header is None or header + 2 >= sheet.nrows:
+    if header is None or header + 2 >= len(sheet):
         raise InputError(
             where,
             "has no column whose name contains 'force', or no readings below it.",
             "Give a row of names (force, strain), a row of units, then the readings.",
         )
-    names = [str(v).strip().lower() for v in sheet.row_values(header)]
-    units = [str(v).strip().lower() for v in sheet.row_values(header + 1)]
+    names = [str(v).strip().lower() for v in sheet[header]]
+    units = [str(v).strip().lower() for v in sheet[header + 1]] + [""] * len(names)
     force = next(i for i, name in enumerate(names) if "force" in name)
     depth = next((i for i, n in enumerate(names) if "strain" in n or "depth" in n), None)
     if depth is None:
@@ -129,42 +113,42 @@ def _xls_test(
             where, f"the probe's depth is in {units[depth]!r}.", "Give it in mm, not in percent."
         )
     first = header + 2
-    rows = range(first, sheet.nrows)
-    forces = _cells(where, names[force], [sheet.cell_value(r, force) for r in rows], first)
-    depths = _cells(where, names[depth], [sheet.cell_value(r, depth) for r in rows], first)
-    keep = np.isfinite(forces) & np.isfinite(depths)
-    number = re.search(r"(\d+)\s*$", sheet.name)
-    yarn = _yarn(sheet.name)
+    forces, depths = (
+        numbers(f"{where}, column {names[column]!r}", cells, first + 1)
+        for column, cells in _readings(sheet[first:], force, depth).items()
+    )
+    number = re.search(r"(\d+)\s*$", name)
+    yarn = _yarn(name)
     return CompressionTest(
-        name=sheet.name,
+        name=name,
         yarn=yarn,
-        depth_mm=depths[keep],
-        force_n=forces[keep] * (1e-3 if units[force] == "mn" else 1.0),
+        depth_mm=depths,
+        force_n=forces * (1e-3 if units[force] == "mn" else 1.0),
         diameter_mm=_diameter_of(diameters, yarn, int(number.group(1)) if number else 1),
     )
 
 
-def _cells(where: str, column: str, values: list[Any], first: int) -> Array:
-    """Numbers, without empty cells at the end of the sheet."""
-    while values and str(values[-1]).strip() == "":
-        values = values[:-1]
-    return numbers(f"{where}, column {column!r}", values, first + 1)
+def _readings(rows: Sheet, *columns: int) -> dict[int, list[Cell]]:
+    """The columns, without the rows at the end in which all of them are empty."""
+    found = [[row[c] if c < len(row) else "" for c in columns] for row in rows]
+    while found and not any(map(str, found[-1])):
+        found.pop()
+    return {c: [row[i] for row in found] for i, c in enumerate(columns)}
 
 
-def _diameters(sheets: dict[str, Any]) -> dict[tuple[str, int], float]:
+def _diameters(sheets: dict[str, Sheet]) -> dict[tuple[str, int], float]:
     """Diameters by (column name, sample number)."""
     found: dict[tuple[str, int], float] = {}
     for name, sheet in sheets.items():
         if "diameter" not in name.lower():
             continue
         header: list[str] = []
-        for row in range(sheet.nrows):
-            values = sheet.row_values(row)
+        for values in filter(None, sheet):
             if "sample" in str(values[0]).lower():
                 header = [str(v).strip().lower() for v in values]
-            elif header and isinstance(values[0], float):
+            elif header and isinstance(values[0], int | float):
                 for column, value in zip(header[1:], values[1:], strict=False):
-                    if isinstance(value, float) and value > 0:
+                    if isinstance(value, int | float) and value > 0:
                         found[(column, int(values[0]))] = value
     return found
 
@@ -178,7 +162,7 @@ def _diameter_of(diameters: dict[tuple[str, int], float], yarn: str, number: int
 
 
 def _read_csv(path: Path) -> list[CompressionTest]:
-    table = read_csv(path, "depth_mm, force_n")
+    table = read_table(path, "depth_mm, force_n")
     table.columns = [str(c).strip().lower() for c in table.columns]
     missing = [c for c in ("depth_mm", "force_n") if c not in table.columns]
     if missing or table.empty:

@@ -10,13 +10,14 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import InputError
+from knitcore.measure.workbooks import is_workbook, read_workbook
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def read_csv(path: Path, header: str) -> pd.DataFrame:
-    """A CSV file as texts.
+def read_table(path: Path, header: str) -> pd.DataFrame:
+    """A CSV file, or the first sheet of a workbook, as texts.
 
     Parameters
     ----------
@@ -29,6 +30,11 @@ def read_csv(path: Path, header: str) -> pd.DataFrame:
     """
     import pandas as pd  # half a second, which only those who read a table wait
 
+    if is_workbook(path):
+        names, *rows = next(iter(read_workbook(path).values()), [[]])
+        width = len(names)
+        texts = [[str(cell) for cell in (*row, *[""] * width)][:width] for row in rows]
+        return pd.DataFrame(texts, columns=[str(name) for name in names], dtype=str)
     try:
         return pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
     except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:

@@ -1,4 +1,4 @@
-"""Read stretch tests: the HDF5 layout of the paper's authors, and a simple CSV.
+"""Read stretch tests: the HDF5 layout of the paper's authors, and a simple table.
 
 HDF5: one group ``videoN`` per pull with ``forces`` (n,) in N, ``traj`` (7, 2, n) in pixels (right,
 left, bottom, top, centre, clamp bottom, clamp top; the pull is vertical in the image) and
@@ -7,9 +7,9 @@ the strain along is read between the other two. The datasets ``clampSize`` (px, 
 clamp of 35.5 mm) and ``fabricSize`` (px, the clamped width). ``video1`` conditions the sample and
 is not used.
 
-CSV: a header line with ``strain_along, strain_across, force_n, width_mm`` and, for repeated pulls,
-``run``, and the distance of the clamps at rest, ``length_mm``; one row per point in the order of
-the pull.
+Table (CSV, or the first sheet of an XLSX or XLS workbook): a header line with ``strain_along,
+strain_across, force_n, width_mm`` and, for repeated pulls, ``run``, and the distance of the clamps
+at rest, ``length_mm``; one row per point in the order of the pull.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from knitcore.measure.stretch_test import (
     misread_forces,
     until_unloaded,
 )
-from knitcore.measure.tables import numbers, read_csv
+from knitcore.measure.tables import numbers, read_table
 
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
-MAX_CSV_BYTES = 64 * 2**20
+MAX_TABLE_BYTES = 64 * 2**20
 MAX_PIXEL = 1e6
 MAX_FORCE_N = 1e6
 MAX_FRAMES = 2_000_000
@@ -70,9 +70,9 @@ def read_stretch_test(
 
     Parameters
     ----------
-    path : HDF5 or CSV file.
+    path : HDF5, CSV or workbook.
     gauge : for HDF5, which points give the strain along the pull.
-    file_format : ``"h5"``, ``"csv"`` or None.
+    file_format : ``"h5"``, ``"csv"`` (any table) or None.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def read_stretch_test(
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(str(path), "is not a file.", "Give the path of an HDF5 or CSV file.")
+        raise InputError(str(path), "is not a file.", "Give the path of an HDF5, CSV or XLSX file.")
     actual = "h5" if h5py.is_hdf5(path) else "csv"
     if file_format not in (None, "h5", "csv"):
         raise InputError("format", f"{file_format!r} is unknown.", "Use csv or h5.")
@@ -94,7 +94,7 @@ def read_stretch_test(
         )
     if file_format == "csv" and actual == "h5":
         raise InputError(path.name, "is an HDF5 file, not a CSV.", "Use the format h5.")
-    return _read_hdf5(path, gauge) if actual == "h5" else _read_csv(path)
+    return _read_hdf5(path, gauge) if actual == "h5" else _read_table(path)
 
 
 # -- HDF5 ----------------------------------------------------------------------------------------
@@ -301,13 +301,13 @@ def _text(value: object) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
-# -- CSV -----------------------------------------------------------------------------------------
+# -- tables --------------------------------------------------------------------------------------
 
 
-def _read_csv(path: Path) -> StretchTest:
-    if path.stat().st_size > MAX_CSV_BYTES:
+def _read_table(path: Path) -> StretchTest:
+    if path.stat().st_size > MAX_TABLE_BYTES:
         raise InputError(path.name, "is larger than 64 MB.", "Thin the points out.")
-    table = read_csv(path, ", ".join(CSV_COLUMNS))
+    table = read_table(path, ", ".join(CSV_COLUMNS))
     table.columns = [_column_name(str(c)) for c in table.columns]
     _check_header(path.name, list(table.columns))
     given = [*CSV_COLUMNS, *(["length_mm"] if "length_mm" in table else [])]
@@ -323,14 +323,14 @@ def _read_csv(path: Path) -> StretchTest:
     widths: list[float] = []
     for label in dict.fromkeys(labels.tolist()):
         rows = np.flatnonzero(labels == label)
-        run, width = _csv_run(path.name, label, rows, values)
+        run, width = _run(path.name, label, rows, values)
         runs.append(run)
         widths.append(width)
-    length_mm = _csv_length(path.name, values["length_mm"]) if "length_mm" in values else None
+    length_mm = _length(path.name, values["length_mm"]) if "length_mm" in values else None
     return StretchTest(path.name, "", tuple(runs), tuple(widths), length_mm=length_mm)
 
 
-def _csv_length(name: str, length: Array) -> float:
+def _length(name: str, length: Array) -> float:
     """The distance of the clamps, the same in all rows."""
     if length.min() < 5 or np.ptp(length) > 0.01 * length[0]:
         raise InputError(
@@ -364,7 +364,7 @@ def _check_header(name: str, columns: list[str]) -> None:
         )
 
 
-def _csv_run(
+def _run(
     name: str, label: str, rows: NDArray[np.intp], values: dict[str, Array]
 ) -> tuple[StretchRun, float]:
     title = f"{name}, run {label}" if label else name

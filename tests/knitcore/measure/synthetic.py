@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 
 import h5py
 import numpy as np
+import openpyxl
 from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import gaussian_filter
@@ -60,6 +62,18 @@ def write_csv(
             for a, t, s in zip(along, across, stress, strict=True)
         ]
     path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def save_as_xlsx(csv_file: Path) -> Path:
+    """The table of a CSV file as people save it in a workbook."""
+    book = openpyxl.Workbook()
+    head, *rows = csv.reader(csv_file.read_text().splitlines())
+    book.worksheets[0].append(head)
+    for row in rows:
+        book.worksheets[0].append([float(cell) for cell in row])
+    path = csv_file.with_suffix(".xlsx")
+    book.save(path)
     return path
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import openpyxl
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from knitcore.errors import InputError
 from knitcore.measure.compression import average_compression, fit_compression
 from knitcore.measure.compression_files import CompressionTest, read_compression
+from knitcore.measure.workbooks import read_workbook
 
 Array = NDArray[np.float64]
 WORKBOOK = Path(__file__).with_name("made.xls")
@@ -114,9 +116,23 @@ def test_files_that_are_something_else(tmp_path: Path) -> None:
             read_compression(tmp_path / name)
 
 
-def test_a_workbook_has_a_sheet_for_each_sample() -> None:
+def saved_as_xlsx(folder: Path) -> Path:
+    """The same workbook as people save it today, with a column of remarks that is longer."""
+    book = openpyxl.Workbook()
+    book.remove(book.worksheets[0])
+    for name, rows in read_workbook(WORKBOOK).items():
+        sheet = book.create_sheet(name)
+        for row in rows:
+            sheet.append(row)
+        sheet.cell(len(rows) + 3, 9, "end of the test")
+    book.save(folder / "made.xlsx")
+    return folder / "made.xlsx"
+
+
+@pytest.mark.parametrize("kind", ["xls", "xlsx"])
+def test_a_workbook_has_a_sheet_for_each_sample(kind: str, tmp_path: Path) -> None:
     """Made with 1 mN/mm³ and 2.5, and with 10 mN/mm³ and 3; diameters in a sheet of their own."""
-    tests = read_compression(WORKBOOK)
+    tests = read_compression(WORKBOOK if kind == "xls" else saved_as_xlsx(tmp_path))
     assert [test.diameter_mm for test in tests] == [2.0, 2.2, 2.4, 1.2, 1.3]
     means = {m.yarn: m for m in average_compression([fit_compression(t) for t in tests])}
     assert {yarn: mean.samples for yarn, mean in means.items()} == {"soft": 3, "firm": 2}

@@ -17,7 +17,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.law_fit import fit_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
 from knitcore.measure.uniaxial_files import read_stretch_test
-from tests.knitcore.measure.synthetic import LAW, pull, write_csv, write_h5
+from tests.knitcore.measure.synthetic import LAW, pull, save_as_xlsx, write_csv, write_h5
 
 X, Y = Direction.COURSE, Direction.WALE
 CONSTANTS = (
@@ -46,6 +46,15 @@ def test_a_law_is_recovered_from_csv(tmp_path: Path, reduction: Reduction) -> No
     close_to(fit.law, LAW, 1e-3 if reduction is Reduction.PUBLISHED else 0.02)
     assert fit.runs == {X: 4, Y: 4}
     assert fit.rms_n_per_mm < 1e-3
+
+
+def test_a_workbook_gives_what_its_table_gives_as_csv(tmp_path: Path) -> None:
+    files = [write_csv(tmp_path / f"{d}.csv", d, runs=2) for d in (X, Y)]
+    from_csv = fit_files(files[0], files[1], reduction=Reduction.PUBLISHED)
+    books = [save_as_xlsx(file) for file in files]
+    from_books = fit_files(books[0], books[1], reduction=Reduction.PUBLISHED)
+    assert from_books.law == from_csv.law
+    assert from_books.runs == {X: 2, Y: 2}
 
 
 @pytest.mark.parametrize("reduction", [Reduction.PUBLISHED, Reduction.UNIFORM])

@@ -1,0 +1,116 @@
+"""Workbooks of testing machines and of people, XLS and XLSX, as rows of cells."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from knitcore.errors import InputError
+
+Cell = str | float
+Sheet = list[list[Cell]]
+
+MAX_BYTES = 50 * 2**20
+MAX_UNPACKED_BYTES = 256 * 2**20
+MAX_SHEETS = 200
+MAX_ROWS = 500_000
+MAX_COLUMNS = 200
+MAX_CELLS = 3_000_000
+MAX_EMPTY_ROWS = 1000
+"""A gap of more ends a sheet: a stray cell far below costs nothing then."""
+_XLS = bytes.fromhex("d0cf11e0a1b11ae1")
+_XLSX = b"PK\x03\x04"
+
+
+def is_workbook(path: Path) -> bool:
+    """Whether a file begins as workbooks do, whatever its name."""
+    with path.open("rb") as file:
+        return file.read(8).startswith((_XLS, _XLSX))
+
+
+def read_workbook(path: Path) -> dict[str, Sheet]:
+    """The cells of each sheet that has any, in the order of the sheets.
+
+    A formula counts as the value that was saved with it, an empty cell as ``""``; empty cells at
+    the end of a row and empty rows at the end of a sheet are left out.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, protected by a password, or larger than what is read.
+    """
+    if path.stat().st_size > MAX_BYTES:
+        raise _too_large(path)
+    with path.open("rb") as file:
+        of_kind = _xlsx_sheets if file.read(4) == _XLSX else _xls_sheets
+    found: dict[str, Sheet] = {}
+    room = MAX_CELLS
+    try:
+        for name, rows in of_kind(path):
+            sheet: Sheet = []
+            filled = 0
+            for row in rows:
+                sheet.append(_cells(row))
+                filled = len(sheet) if sheet[-1] else filled
+                if len(sheet) - filled > MAX_EMPTY_ROWS:
+                    break
+                room -= 1 + len(sheet[-1])
+                if room < 0:
+                    raise _too_large(path)
+            if filled:
+                found[name] = sheet[:filled]
+    except InputError:
+        raise
+    except Exception as error:  # on a damaged file both readers may raise anything
+        raise InputError(
+            path.name,
+            f"cannot be read as a workbook ({error}).",
+            "It may be cut off or protected by a password: save it again, without one, or as CSV.",
+        ) from None
+    return found
+
+
+def _xls_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
+    import xlrd
+
+    book = xlrd.open_workbook(str(path), logfile=io.StringIO())
+    for sheet in book.sheets()[:MAX_SHEETS]:
+        yield sheet.name, map(sheet.row_values, range(sheet.nrows))
+
+
+def _xlsx_sheets(path: Path) -> Iterator[tuple[str, Iterable[Sequence[Any]]]]:
+    from openpyxl import load_workbook  # .2 s, which only those who read a workbook wait
+
+    with zipfile.ZipFile(path) as packed:
+        if sum(part.file_size for part in packed.infolist()) > MAX_UNPACKED_BYTES:
+            raise _too_large(path)
+    book = load_workbook(path, read_only=True, data_only=True, keep_links=False)
+    try:
+        for sheet in book.worksheets[:MAX_SHEETS]:
+            yield (
+                sheet.title,
+                sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True),
+            )
+    finally:
+        book.close()
+
+
+def _cells(row: Sequence[Any]) -> list[Cell]:
+    cells: list[Cell] = [
+        "" if value is None else value if isinstance(value, int | float) else str(value)
+        for value in row
+    ]
+    while cells and cells[-1] == "":
+        cells.pop()
+    return cells
+
+
+def _too_large(path: Path) -> InputError:
+    return InputError(
+        path.name,
+        "is larger than what is read of a workbook.",
+        f"Give the tests only: at most {MAX_BYTES // 2**20} MB and {MAX_CELLS:,} cells.",
+    )

@@ -1,0 +1,64 @@
+"""Workbooks are read as rows of cells, as far as a table of measurements goes."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+from knitcore.errors import InputError
+from knitcore.measure import workbooks
+from knitcore.measure.workbooks import is_workbook, read_workbook
+
+
+def saved(path: Path, *rows: list[object]) -> Path:
+    book = openpyxl.Workbook()
+    sheet = book.worksheets[0]
+    for row in rows:
+        sheet.append(row)
+    book.save(path)
+    return path
+
+
+def test_empty_cells_at_the_end_are_left_out(tmp_path: Path) -> None:
+    path = saved(tmp_path / "a.xlsx", ["force", None, "depth"], [], [1, 2.5, None], [None])
+    assert is_workbook(path)
+    assert read_workbook(path) == {"Sheet": [["force", "", "depth"], [], [1, 2.5]]}
+
+
+def test_a_cell_in_the_farthest_corner_costs_nothing(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    sheet = book.worksheets[0]
+    sheet["A1"], sheet["XFD1048576"] = 1, 2
+    book.save(tmp_path / "far.xlsx")
+    assert read_workbook(tmp_path / "far.xlsx") == {"Sheet": [[1]]}
+
+
+def test_a_workbook_with_more_cells_than_are_read_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = saved(tmp_path / "large.xlsx", *([1, 2, 3] for _ in range(10)))
+    monkeypatch.setattr(workbooks, "MAX_CELLS", 30)
+    with pytest.raises(InputError, match=r"large\.xlsx.*is larger than what is read"):
+        read_workbook(path)
+
+
+def test_a_file_that_unpacks_to_hundreds_of_megabytes_is_refused_unread(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.xlsx"
+    with (
+        zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as packed,
+        packed.open("xl/sharedStrings.xml", "w") as part,
+    ):
+        for _ in range(1 + workbooks.MAX_UNPACKED_BYTES // 2**20):
+            part.write(bytes(2**20))
+    with pytest.raises(InputError, match="is larger than what is read"):
+        read_workbook(path)
+
+
+def test_a_damaged_workbook_is_refused_by_name(tmp_path: Path) -> None:
+    whole = saved(tmp_path / "whole.xlsx", [1, 2]).read_bytes()
+    (tmp_path / "cut.xlsx").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(InputError, match=r"cut\.xlsx.*cannot be read as a workbook"):
+        read_workbook(tmp_path / "cut.xlsx")
