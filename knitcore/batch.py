@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from knitcore.errors import CancelledError, InputError
+from knitcore.errors import Cancelled, CancelledError, InputError
 
 log = logging.getLogger("knitcore.batch")
 
@@ -75,7 +75,7 @@ def run_batch(
     workers: int | None = None,
     keep: Path | None = None,
     progress: Callable[[BatchProgress], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> BatchResult:
     """Call a function for every task.
 

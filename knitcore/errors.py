@@ -9,6 +9,11 @@ KnitcoreError
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+Cancelled = Callable[[], bool]
+"""Asked from time to time by a long computation; True stops it with :class:`CancelledError`."""
+
 
 class KnitcoreError(Exception):
     """Base of every error that this package raises on purpose."""
@@ -56,3 +61,9 @@ class UnravelledError(KnitcoreError):
 
 class CancelledError(KnitcoreError):
     """The caller's cancellation callback asked the computation to stop."""
+
+
+def check_cancelled(cancelled: Cancelled | None) -> None:
+    """Raise :class:`CancelledError` if the caller wants to stop."""
+    if cancelled is not None and cancelled():
+        raise CancelledError("The caller stopped the computation.")

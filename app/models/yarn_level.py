@@ -129,7 +129,7 @@ def relaxed_cell(
         cell_course_mm=sizes_mm[0],
         cell_wale_mm=sizes_mm[1],
         flat=request.flat,
-        cancel=context.cancelled,
+        cancelled=context.cancelled,
     )
 
 

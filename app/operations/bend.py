@@ -119,7 +119,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     loop = request.loop_length_mm or used.loop_length_mm
 
     def relaxed(branch: OnSplines) -> RelaxedRepeat:
-        return relax(repeat, used.yarn, loop, branch=branch, cancel=context.cancelled)
+        return relax(repeat, used.yarn, loop, branch=branch, cancelled=context.cancelled)
 
     mirrored = relaxed(Branch.MIRRORED)
     notes = [_FRICTIONLESS]

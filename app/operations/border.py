@@ -72,7 +72,7 @@ def border(request: BorderRequest, context: Context) -> BorderResult:
     inner = cloth_of(to_repeat(request.chart), material, linear_density_g_per_m=density)
     edge = StitchChart.of_fabric(request.border, rows=2, columns=2)
     around = cloth_of(edge, material, linear_density_g_per_m=density)
-    sides, ends = (advice(inner, around, axis, cancel=context.cancelled) for axis in (0, 1))
+    sides, ends = (advice(inner, around, axis, cancelled=context.cancelled) for axis in (0, 1))
     notes = [_RULE] if max(sides.moment_n, ends.moment_n) > 0.0 else []
     if not (sides.holds and ends.holds):
         notes.append(_ROLLS)

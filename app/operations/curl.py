@@ -91,7 +91,9 @@ def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
 
 def _curled(request: CurlRequest, context: Context) -> CurledPiece:
     chart, material = to_chart(request.chart), context.material(request.material)
-    return curl_piece(chart, material, time_limit_s=request.time_limit_s, cancel=context.cancelled)
+    return curl_piece(
+        chart, material, time_limit_s=request.time_limit_s, cancelled=context.cancelled
+    )
 
 
 def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:

@@ -17,7 +17,7 @@ from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.answer.curve import curve as chart_curve
-from knitcore.errors import CancelledError
+from knitcore.errors import check_cancelled
 from knitcore.fabric import Direction
 
 Stress = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
@@ -53,8 +53,7 @@ class CurveResult(ResultModel):
 
 def curve(request: CurveRequest, context: Context) -> CurveResult:
     """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
-    if context.cancelled():
-        raise CancelledError("The caller stopped the curve.")
+    check_cancelled(context.cancelled)
     size = request.gauge.relaxed_size() if request.gauge else None
     chart, material = to_chart(request.chart), context.material(request.material)
     found = chart_curve(chart, material, request.direction, request.stress_n_per_mm, gauge=size)

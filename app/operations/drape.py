@@ -71,7 +71,7 @@ def drape(request: DrapeRequest, context: Context) -> DrapeResult:
         piece_mm=request.piece_mm,
         disc_mm=request.disc_mm,
         across=request.across,
-        cancel=context.cancelled,
+        cancelled=context.cancelled,
     )
     return DrapeResult.of(
         found,

@@ -61,7 +61,7 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
         linear_density_g_per_m=request.linear_density_g_per_m,
         by=request.by,
         time_limit_s=request.time_limit_s,
-        cancel=context.cancelled,
+        cancelled=context.cancelled,
     )
     result = HangResult.of(
         found,

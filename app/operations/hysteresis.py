@@ -123,14 +123,14 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     coefficient = known.coefficient if given is None else given
     relaxed = relax(
         repeat, used.yarn, request.loop_length_mm or used.loop_length_mm, grid=COARSE,
-        cancel=context.cancelled,
+        cancelled=context.cancelled,
     )  # fmt: skip
     found = loops.hysteresis(
         relaxed, request.direction, request.max_strain, coefficient,
-        points=request.points, cycles=request.cycles, cancel=context.cancelled,
+        points=request.points, cycles=request.cycles, cancelled=context.cancelled,
     )  # fmt: skip
     rests = (
-        loops.rest_sizes(relaxed, coefficient, cancel=context.cancelled)
+        loops.rest_sizes(relaxed, coefficient, cancelled=context.cancelled)
         if request.rest_sizes
         else ()
     )

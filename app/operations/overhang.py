@@ -62,7 +62,7 @@ def overhang(request: OverhangRequest, context: Context) -> OverhangResult:
         linear_density_g_per_m=request.linear_density_g_per_m,
     )
     axis = 0 if request.direction is Direction.COURSE else 1
-    found = hang_over(cloth, axis, request.overhang_mm, cancel=context.cancelled)
+    found = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
     return OverhangResult.of(
         found,
         angle_deg=math.degrees(found.angle_rad),

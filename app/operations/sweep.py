@@ -113,7 +113,7 @@ def _result(
             points=points,
             max_stress_n_per_mm=max_stress,
             slide_quenching=request.slide_quenching or None,
-            cancel=context.cancelled,
+            cancelled=context.cancelled,
         )
 
     main = stretch(request.direction, request.max_strain, request.points)

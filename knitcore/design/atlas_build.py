@@ -19,7 +19,7 @@ from knitcore.answer.learned import SweptChart
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
-from knitcore.errors import InputError, KnitcoreError
+from knitcore.errors import Cancelled, InputError, KnitcoreError
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
 
@@ -51,7 +51,7 @@ def build_atlas(
     workers: int | None = 1,
     scheduler: str | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Atlas:
     """Predict every repeat.
 

@@ -24,6 +24,7 @@ from knitcore.design.atlas_build import (
     material_fingerprint,
     predict_repeat,
 )
+from knitcore.errors import Cancelled
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat, law_of
@@ -41,7 +42,7 @@ def improve_atlas(
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Atlas:
     """Give repeats of an atlas file their yarn-level laws and relaxed sizes.
 

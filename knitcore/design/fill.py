@@ -27,7 +27,7 @@ from knitcore.design.patches import connected, smooth, unevenness, wanted_labels
 from knitcore.design.placing import placed
 from knitcore.design.progress import Progress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.materials import Material
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
 from knitcore.swatch.grid import check_cloth
@@ -89,7 +89,7 @@ def fill_field(
     seed: int = 0,
     check: bool = True,
     progress: Callable[[float], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> FilledField:
     """A chart for target moduli.
 

@@ -8,7 +8,7 @@ the swatch is made, they give the factor between the patch and a large cloth of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from knitcore.answer.quarter_laws import flat_laws
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
+from knitcore.errors import Cancelled
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.mechanics.homogenisation import homogenise
@@ -31,7 +32,7 @@ def finite_size(
     repeats: Sequence[StitchChart],
     *,
     stitch: NDArray[np.bool_],
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Array:
     """(patches, 2) moduli of each patch in the swatch over those of its repeat, course and wale.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from knitcore.errors import CancelledError
+from knitcore.errors import Cancelled, CancelledError
 
 
 @dataclass
@@ -13,7 +13,7 @@ class Progress:
     """Progress that never decreases, and a request to stop."""
 
     progress: Callable[[float], None] | None
-    cancelled: Callable[[], bool] | None
+    cancelled: Cancelled | None
     done: float = 0.0
 
     def look(self, done: float) -> None:

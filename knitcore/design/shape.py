@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
-from knitcore.errors import CancelledError, InputError
+from knitcore.errors import Cancelled, CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
 from knitcore.swatch import strip_test
@@ -93,7 +93,7 @@ def fill_shape(
     smallest_band: int = 4,
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> ShapedSwatch:
     """A chart whose outline follows a profile when it is stretched.
 
@@ -149,7 +149,7 @@ class _Run:
         material: Material,
         atlas: Atlas,
         smallest_band: int,
-        cancelled: Callable[[], bool] | None,
+        cancelled: Cancelled | None,
     ) -> None:
         self._wanted, self._across, self._direction = wanted, across, direction
         self._strain, self._material, self._atlas = strain, material, atlas

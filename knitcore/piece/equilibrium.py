@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError
+from knitcore.errors import Cancelled, check_cancelled
 from knitcore.gridsolver.factor import IndefiniteTangentError, positive_definite_factor
 from knitcore.piece.assembly import Assembled, PieceEnergy
 from knitcore.piece.conditions import Constraints
@@ -64,7 +64,7 @@ class Balance:
         self,
         energy: PieceEnergy,
         constraints: Constraints,
-        cancelled: Callable[[], bool] | None = None,
+        cancelled: Cancelled | None = None,
     ) -> None:
         self.energy = energy
         self.constraints = constraints
@@ -79,8 +79,7 @@ class Balance:
         ------
         CancelledError
         """
-        if self.cancelled():
-            raise CancelledError("The caller stopped the test.")
+        check_cancelled(self.cancelled)
         return self.energy.at(displacement, self.constraints.tapes)
 
     def follow(self, shares: Array) -> Iterator[Equilibrium]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.piece.assembly import PieceEnergy
 from knitcore.piece.cloth import Cloth
 from knitcore.piece.conditions import Condition, Constraints
@@ -30,7 +30,7 @@ def solve(
     steps: int = 10,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> PieceTest:
     """Load a piece in equal steps.
 

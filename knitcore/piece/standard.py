@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
 from knitcore.materials.material import Material
 from knitcore.piece.cloth import Cloth, cloth_under
@@ -108,7 +107,7 @@ def bias_test(
     shear_modulus: float | None = None,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> BiasTest:
     """Pull a strip whose rows lie at an angle to the width.
 
@@ -179,7 +178,7 @@ def biaxial_test(
     shear_modulus: float | None = None,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> BiaxialTest:
     """Pull all four edges of a rectangle outwards; each stays straight and slides along itself.
 
@@ -247,7 +246,7 @@ def trellis_test(
     shear_modulus: float | None = None,
     mesh_mm: float | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> TrellisTest:
     """Shear a square in a hinged frame.
 

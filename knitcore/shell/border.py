@@ -11,12 +11,12 @@ lies on a smooth table shows which of both happens.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.errors import Cancelled
 from knitcore.shell.cloth import Cloth
 from knitcore.shell.relax import Shape, settle
 from knitcore.shell.sheet import Sheet
@@ -61,7 +61,7 @@ def advice(
     axis: int,
     *,
     time_limit_s: float = 20.0,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> BorderAdvice:
     """How wide a border must be.
 
@@ -74,7 +74,7 @@ def advice(
     Raises
     ------
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     moment, weight = inner.moment_n[axis], border.weight_n_per_mm2
     size = border.stitch_mm[axis]
@@ -84,7 +84,7 @@ def advice(
         return BorderAdvice(0.0, 0.0, 0, 1.0, True, 0.0, np.zeros((0, 2)))
     sheet, found = on_table(
         inner, border, axis, min(SAFETY * width, MAX_WIDTH_MM), time_limit_s=time_limit_s,
-        cancel=cancel,
+        cancelled=cancelled,
     )  # fmt: skip
     line = found.x.reshape(2, sheet.columns + 1, 3).mean(axis=0)[:, ::2]
     return BorderAdvice(
@@ -105,7 +105,7 @@ def on_table(
     border_mm: float,
     *,
     time_limit_s: float = 20.0,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> tuple[Sheet, Shape]:
     """A strip across the piece with a border at both ends, from the flat state to rest.
 
@@ -132,5 +132,5 @@ def on_table(
     held[:, len(of_border) // 2, 0] = True
     return sheet, settle(
         sheet, sheet.flat_mm, held=held.reshape(-1, 3), load_n=load, floor_mm=0.0,
-        time_limit_s=time_limit_s, cancel=cancel,
+        time_limit_s=time_limit_s, cancelled=cancelled,
     )  # fmt: skip

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from knitcore import showing
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.materials import Material
 from knitcore.shell.relax import settle
 from knitcore.shell.rolled import start
@@ -82,7 +81,7 @@ def curl(
     material: Material,
     *,
     time_limit_s: float = TIME_LIMIT_S,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> CurledPiece:
     """The shape at rest of a piece with free edges.
 
@@ -90,7 +89,7 @@ def curl(
     ----------
     chart : the whole piece, from the face side.
     time_limit_s : CPU time after which the current shape is returned, not converged.
-    cancel : called before every step; True stops with CancelledError.
+    cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
@@ -99,14 +98,14 @@ def curl(
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     check_size(chart)
     sheet = sheet_of(chart, material)
     clock = time.process_time()
-    begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancel=cancel)
+    begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancelled=cancelled)
     left = time_limit_s - (time.process_time() - clock)
-    found = settle(sheet, begin, time_limit_s=left, cancel=cancel)
+    found = settle(sheet, begin, time_limit_s=left, cancelled=cancelled)
     shape = (chart.rows + 1, chart.columns + 1, 3)
     corners = aligned(found.x, sheet).reshape(shape)
     strip = STRIP * sheet.thickness_mm

@@ -7,7 +7,6 @@ T596: the share of the ring outside the disc that its shadow covers, 1 for a sti
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from knitcore.arrays import Array
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.shell.cloth import Cloth
 from knitcore.shell.relax import Shape, settle
 from knitcore.shell.sheet import Sheet
@@ -63,7 +62,7 @@ def drape(
     across: int = ACROSS,
     starts: tuple[int, ...] = STARTS,
     time_limit_s: float = 120.0,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Drape:
     """A round piece held between two discs, its rim free.
 
@@ -80,7 +79,7 @@ def drape(
     InputError
         If the piece is not larger than the disc, or the rectangles are too many or too few.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     if not 0.0 < disc_mm < 0.95 * piece_mm:
         raise InputError("disc_mm", f"{disc_mm:g} mm is too large.", "Give less than the piece.")
@@ -92,7 +91,7 @@ def drape(
     found = [
         settle(
             sheet.clamped(held), _waved(sheet, held, waves), held=held, load_n=load,
-            time_limit_s=time_limit_s / len(starts), cancel=cancel,
+            time_limit_s=time_limit_s / len(starts), cancelled=cancelled,
         )
         for waves in starts
     ]  # fmt: skip

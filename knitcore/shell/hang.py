@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
+from knitcore.errors import Cancelled
 from knitcore.materials import Material
 from knitcore.shell.cloth import stitch_weights_n
 from knitcore.shell.curl import TIME_LIMIT_S, check_size
@@ -56,7 +56,7 @@ def hang(
     linear_density_g_per_m: float,
     by: HungBy = HungBy.EDGE,
     time_limit_s: float = TIME_LIMIT_S,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> HungPiece:
     """A piece held by its top edge, spread to its width, or by its two top corners.
 
@@ -74,7 +74,7 @@ def hang(
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     check_size(chart)
     weights = stitch_weights_n(chart, material, linear_density_g_per_m)
@@ -86,7 +86,7 @@ def hang(
     begin = sheet.flat_mm + _SHAKEN_MM * np.random.default_rng(0).standard_normal(load.shape)
     begin[held.ravel()] = sheet.flat_mm[held.ravel()]
     found = settle(
-        sheet, begin, held=held.ravel(), load_n=load, time_limit_s=time_limit_s, cancel=cancel
+        sheet, begin, held=held.ravel(), load_n=load, time_limit_s=time_limit_s, cancelled=cancelled
     )
     corners = found.x.reshape(*held.shape, 3)
     width, drop, depth = np.ptp(corners, axis=(0, 1))

@@ -8,13 +8,12 @@ the overhang at θ = 41.5°.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.shell.cloth import Cloth
 from knitcore.shell.relax import settle
 
@@ -57,7 +56,7 @@ def overhang(
     axis: int,
     overhang_mm: float | None = None,
     *,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Overhang:
     """A strip 25 mm wide, clamped flat on a table up to its edge.
 
@@ -72,7 +71,7 @@ def overhang(
     InputError
         If the overhang is longer than five bending lengths.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     expected = cloth.bending_length_mm(axis)
     length = 2.0 * expected if overhang_mm is None else overhang_mm
@@ -90,7 +89,7 @@ def overhang(
     weight = np.full(len(sheet.quads), cloth.weight_n_per_mm2 * size[0] * size[1])
     load = np.zeros_like(sheet.flat_mm)
     load[:, 2] = -sheet.shared(weight)
-    found = settle(sheet.clamped(held), sheet.flat_mm, held=held, load_n=load, cancel=cancel)
+    found = settle(sheet.clamped(held), sheet.flat_mm, held=held, load_n=load, cancelled=cancelled)
     corners = found.x.reshape(_ACROSS + 1, columns + 1, 3)
     corners = corners - corners[_ACROSS // 2, _CLAMPED]
     reach, _, height = corners[:, -1].mean(axis=0)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import SuperLU, splu
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError
+from knitcore.errors import Cancelled, check_cancelled
 from knitcore.shell.sheet import Sheet
 from knitcore.shell.tangent import Tangent
 
@@ -67,7 +66,7 @@ def settle(
     load_n: Array | None = None,
     floor_mm: float | None = None,
     time_limit_s: float = 60.0,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Shape:
     """Descend from a shape.
 
@@ -78,18 +77,17 @@ def settle(
     load_n : (corners, 3) forces that act on the corners, such as their weight.
     floor_mm : height z of a smooth table, below which corners are pushed up.
     time_limit_s : CPU time after which it ends, not converged.
-    cancel : called before every step; True stops with CancelledError.
+    cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     clock = time.process_time()
     descent = _Descent(sheet, x.copy(), held, load_n, floor_mm)
     while descent.residual > TOLERANCE and time.process_time() - clock < time_limit_s:
-        if cancel is not None and cancel():
-            raise CancelledError("The calculation was cancelled.")
+        check_cancelled(cancelled)
         if not descent.step():
             break
     return Shape(

@@ -7,12 +7,12 @@ least energy is a good start.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.errors import Cancelled
 from knitcore.shell.relax import settle
 from knitcore.shell.sheet import Net, Sheet
 
@@ -23,22 +23,20 @@ _ALIKE = 0.1
 which is bent the shorter way, so that the long edges roll, and of a bent and the flat one that."""
 
 
-def start(
-    sheet: Sheet, *, time_limit_s: float = 60.0, cancel: Callable[[], bool] | None = None
-) -> Array:
+def start(sheet: Sheet, *, time_limit_s: float = 60.0, cancelled: Cancelled | None = None) -> Array:
     """A shape from which to descend, (corners, 3), mm, slightly perturbed.
 
     Parameters
     ----------
     time_limit_s : CPU time for each of the two strips.
-    cancel : called before every step; True stops with CancelledError.
+    cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
-    bent = [_bent(sheet, axis, time_limit_s, cancel) for axis in _shorter_first(sheet)]
+    bent = [_bent(sheet, axis, time_limit_s, cancelled) for axis in _shorter_first(sheet)]
     energy = [_energy(sheet, shape) for shape in bent]
     best = bent[0] if energy[0] < (1.0 + _ALIKE) * energy[1] else bent[1]
     if min(energy) > (1.0 - _ALIKE) * _energy(sheet, sheet.flat_mm):
@@ -52,11 +50,13 @@ def _shorter_first(sheet: Sheet) -> tuple[int, int]:
     return (0, 1) if height <= width else (1, 0)
 
 
-def _bent(sheet: Sheet, axis: int, time_limit_s: float, cancel: Callable[[], bool] | None) -> Array:
+def _bent(sheet: Sheet, axis: int, time_limit_s: float, cancelled: Cancelled | None) -> Array:
     strip = strip_of(sheet, axis)
     plane = np.zeros(strip.flat_mm.shape, dtype=bool)
     plane[:, axis] = True  # a strip would roll up into a helix
-    found = settle(strip, _shaken(strip), held=plane, time_limit_s=time_limit_s, cancel=cancel)
+    found = settle(
+        strip, _shaken(strip), held=plane, time_limit_s=time_limit_s, cancelled=cancelled
+    )
     return extruded(sheet, axis, found.x)
 
 

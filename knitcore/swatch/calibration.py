@@ -12,14 +12,13 @@ report. The prior's centre was chosen on an acrylic garter swatch; see ``docs/sw
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError, InputError
+from knitcore.errors import Cancelled, InputError, check_cancelled
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.stretch_test import StretchTest
@@ -118,7 +117,7 @@ def calibrate(
     direction: Direction,
     *,
     forces: ForceCurve | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Calibration:
     """Fit shear modulus and couplings to a measured field (and a force curve).
 
@@ -189,7 +188,7 @@ class _Problem:
         direction: Direction,
         forces: ForceCurve | None,
         names: tuple[str, ...],
-        cancelled: Callable[[], bool],
+        cancelled: Cancelled,
     ) -> None:
         self.field, self.law, self.direction = field.thinned(SAMPLED_POINTS), law, direction
         self.names, self.cancelled = names, cancelled
@@ -223,8 +222,7 @@ class _Problem:
 
     def residuals(self, unknowns: Array) -> Array:
         """Weighted differences; large ones where the law is unstable or does not converge."""
-        if self.cancelled():
-            raise CancelledError("The caller stopped the calibration.")
+        check_cancelled(self.cancelled)
         self.evaluations += 1
         values = _to_values(unknowns)
         prior = np.array(

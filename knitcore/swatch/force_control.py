@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from knitcore.errors import ConvergenceError, InputError
+from knitcore.errors import Cancelled, ConvergenceError, InputError
 from knitcore.fabric import Direction
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.run import Path, Progress, run_path
@@ -35,7 +35,7 @@ def pull_with_force(
     *,
     clamps: Clamps = Clamps.CLAMPED,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> StripTest:
     """A strip test in which the clamps are pulled with given forces (N, increasing).
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError
+from knitcore.errors import Cancelled, check_cancelled
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.swatch import Clamps, StripTest
@@ -49,7 +49,7 @@ def stretch_margins(
     clamps: Clamps,
     *,
     progress: Callable[[int], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> StretchMargins:
     """Intervals of a test of a chart; ``progress`` is called with the number of samples done.
 
@@ -62,8 +62,7 @@ def stretch_margins(
     picked = sampled_steps(test.steps)
     samples: list[tuple[Array, Array, Array, Array]] = []
     for step in picked:
-        if cancelled is not None and cancelled():
-            raise CancelledError("The caller stopped the test.")
+        check_cancelled(cancelled)
         at = spread.at(step)
         along = at.strain_xx_sd if test.direction.axis == 0 else at.strain_yy_sd
         samples.append(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.errors import Cancelled
 from knitcore.fabric import PHASES, Fabric
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.results import SwatchTest
@@ -59,7 +59,7 @@ def misfit(grid: QuarterGrid) -> Misfit:
     )
 
 
-def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) -> SwatchTest:
+def relaxed_shape(sheet: Sheet, *, cancelled: Cancelled | None = None) -> SwatchTest:
     """The shape of a free swatch whose fabrics keep their own gauge (flat; it does not curl).
 
     The smooth energy is tried first; where compressed regions make it unstable, the sheet's own
@@ -88,9 +88,7 @@ def relaxed_shape(sheet: Sheet, *, cancelled: Callable[[], bool] | None = None) 
     return SwatchTest.of(sheet, path)
 
 
-def draw_in(
-    sheet: Sheet, fixed: NDArray[np.bool_], *, cancelled: Callable[[], bool] | None = None
-) -> Path:
+def draw_in(sheet: Sheet, fixed: NDArray[np.bool_], *, cancelled: Cancelled | None = None) -> Path:
     """Change the rest sizes from the common grid's to the natural ones, some nodes held.
 
     It goes in a few stages, so that the solver follows the motion.

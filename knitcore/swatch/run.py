@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.errors import Cancelled
 from knitcore.swatch.sheet import Sheet, State
 from knitcore.swatch.solver import Equilibrium, PathSolver, StepError, Tolerance
 from knitcore.threads import one_blas_thread
@@ -54,7 +55,7 @@ def run_path(
     start: State | None = None,
     tolerance: Tolerance | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Path:
     """Follow the targets as far as they converge.
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError
+from knitcore.errors import Cancelled, check_cancelled
 from knitcore.gridsolver.dissection import GridFactor
 from knitcore.gridsolver.factor import Factor, IndefiniteTangentError
 from knitcore.swatch.sheet import Linearisation, Sheet, State
@@ -92,7 +92,7 @@ class PathSolver:
         fixed: NDArray[np.bool_],
         *,
         tolerance: Tolerance | None = None,
-        cancelled: Callable[[], bool] | None = None,
+        cancelled: Cancelled | None = None,
         factor: Callable[[int, int, NDArray[np.bool_]], Factor] = GridFactor,
     ) -> None:
         self.sheet = sheet
@@ -264,8 +264,7 @@ class PathSolver:
     # -- linear algebra ----------------------------------------------------------------------
 
     def _linearise(self, state: State) -> Linearisation:
-        if self.cancelled():
-            raise CancelledError("The caller stopped the test.")
+        check_cancelled(self.cancelled)
         reuse, self._spare = self._spare, None
         self._factor_is_current = False
         lin = self.sheet.linearise(state, reuse)

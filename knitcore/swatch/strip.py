@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from knitcore.answer.quarter_laws import QuarterLaws, quarter_laws
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.material import Material
@@ -54,7 +54,7 @@ def strip_test(
     width_mm: float | None = None,
     length_mm: float | None = None,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> StripTest:
     """Pull a chart of a material.
 
@@ -228,7 +228,7 @@ def pull(
     *,
     clamps: Clamps = Clamps.CLAMPED,
     progress: Progress | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> StripTest:
     """A strip test of any sheet at the given strains.
 

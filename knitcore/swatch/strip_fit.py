@@ -14,7 +14,7 @@ result.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,7 +22,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError
+from knitcore.errors import Cancelled, check_cancelled
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
@@ -102,7 +102,7 @@ def fit_tests(
     file_format: str | None = None,
     width_course_mm: float | None = None,
     width_wale_mm: float | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> LawFit:
     """Fit a law to two files (see :mod:`knitcore.measure.uniaxial_files` for their layout).
 
@@ -133,7 +133,7 @@ def fit_tests(
 
 
 def fit_simulated(
-    course: StretchTest, wale: StretchTest, *, cancelled: Callable[[], bool] | None = None
+    course: StretchTest, wale: StretchTest, *, cancelled: Cancelled | None = None
 ) -> LawFit:
     """Fit a law to two tests by simulating them.
 
@@ -185,7 +185,7 @@ def fit_simulated(
 def fit_strips(
     strips: Sequence[MeasuredStrip],
     *,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> StripFit:
     """Fit a law to a course-wise and a wale-wise strip.
 
@@ -219,7 +219,7 @@ def fit_strips(
 class _Problem:
     """Residuals of a set of unknowns, each about 1 in a good fit."""
 
-    def __init__(self, strips: tuple[MeasuredStrip, ...], cancelled: Callable[[], bool]) -> None:
+    def __init__(self, strips: tuple[MeasuredStrip, ...], cancelled: Cancelled) -> None:
         self.strips, self.cancelled = strips, cancelled
         self.evaluations = 0
 
@@ -266,8 +266,7 @@ class _Problem:
 
     def residuals(self, unknowns: Array, cells: int) -> Array:
         """Residuals of force and waist of all tests, and of the priors."""
-        if self.cancelled():
-            raise CancelledError("The caller stopped the fit.")
+        check_cancelled(self.cancelled)
         self.evaluations += 1
         law = _law(unknowns)
         parts = [np.concatenate(_residual(strip, law, cells)) for strip in self.strips]

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.kernels.structures import Pairs
-from knitcore.yarnlevel.limits import Cancel
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import Options, minimise
 from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
@@ -91,7 +90,7 @@ def rubbed(
     *,
     fixed: tuple[int, ...] = (),
     target: Array | None = None,
-    cancel: Cancel | None = None,
+    cancelled: Cancelled | None = None,
 ) -> RubbedCell:
     """The equilibrium after one small step of the history.
 
@@ -123,7 +122,7 @@ def rubbed(
     small = cell.cell.stitches <= 4
     found = minimise(
         rubbing, cell.state, tension=cell.tension_n, fixed=fixed, target=target,
-        options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancel=cancel,
+        options=Options(tolerance=1e-8 if small else 1e-6, iterations=80), cancelled=cancelled,
     )  # fmt: skip
     became = outcome(energy, found)
     if became == "unravelled":

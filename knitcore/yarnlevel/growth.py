@@ -7,13 +7,12 @@ other apart; the core then grows as far as the distances allow until it is the r
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.errors import ConvergenceError
+from knitcore.errors import Cancelled, ConvergenceError
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, CellEnergy
@@ -62,7 +61,7 @@ def grow(
     options: Options,
     flat: bool = False,
     gauge_per_bending: float = GAUGE_PER_BENDING,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Minimum:
     """Relax a cell from a start.
 
@@ -93,7 +92,7 @@ def grow(
             tension=tension,
             fixed=(COURSE, WALE) if stage == 0 else (),
             options=STAGE,
-            cancel=cancel,
+            cancelled=cancelled,
         )
         state, tension = found.state, found.tension
         steps += found.steps
@@ -110,7 +109,7 @@ def grow(
             f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
             f"only {core:.3g} mm fits. Give a longer loop or a thinner core."
         )
-    found = minimise(energy, state, tension=tension, options=options, cancel=cancel)
+    found = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
     return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)
 
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.choice import Choice
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError, check_cancelled
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.friction import RubbedCell, agitated, rubbed
-from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_stretch
+from knitcore.yarnlevel.limits import check_stretch
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.solver import COURSE, WALE
 from knitcore.yarnlevel.splines import RelaxedRepeat
@@ -124,7 +124,7 @@ def hysteresis(
     *,
     points: int = DEFAULT_POINTS,
     cycles: int = 2,
-    cancel: Cancel | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Hysteresis:
     """Pull in one direction and let go until free of force, the other direction free throughout.
 
@@ -154,9 +154,9 @@ def hysteresis(
     legs, lost = [], []
     for _ in range(cycles):
         ahead = steps[steps > state.cell.cell_mm(along) * (1.0 + 1e-9)]
-        there = [state, *_pulled(state, along, ahead, coefficient, cancel)]
+        there = [state, *_pulled(state, along, ahead, coefficient, cancelled)]
         stride = float(steps[0]) - rest
-        back = [there[-1], *_released(there[-1], along, stride, coefficient, cancel)]
+        back = [there[-1], *_released(there[-1], along, stride, coefficient, cancelled)]
         state = back[-1]
         for leg, loading in ((there, True), (back, False)):
             legs.append(_leg(relaxed, along, [s.cell for s in leg], loading))
@@ -166,7 +166,7 @@ def hysteresis(
 
 def at_rest(
     relaxed: RelaxedRepeat, history: History | str, coefficient: float, *,
-    cancel: Cancel | None = None,
+    cancelled: Cancelled | None = None,
 ) -> RubbedCell:  # fmt: skip
     """The fabric, free of force, after a history.
 
@@ -185,46 +185,50 @@ def at_rest(
     along, pull = _PULLS[what]
     rest, width = relaxed.cell_mm(along), relaxed.cell_mm(along.other)
     sizes = np.asarray(rest * (1.0 + _STRIDE * np.arange(1, MAX_STRIDES + 1)))
-    for reached in _pulled(state, along, sizes, coefficient, cancel):
+    for reached in _pulled(state, along, sizes, coefficient, cancelled):
         state = reached
         if state.cell.force_n[along.axis] >= pull * width:
             break
-    *_, state = _released(state, along, _STRIDE * rest, coefficient, cancel)
+    *_, state = _released(state, along, _STRIDE * rest, coefficient, cancelled)
     return state
 
 
 def rest_sizes(
-    relaxed: RelaxedRepeat, coefficient: float, *, cancel: Cancel | None = None
+    relaxed: RelaxedRepeat, coefficient: float, *, cancelled: Cancelled | None = None
 ) -> tuple[RestSize, ...]:
     """Rest size after every history (see :func:`at_rest`)."""
-    states = {h: at_rest(relaxed, h, coefficient, cancel=cancel).cell for h in History}
+    states = {h: at_rest(relaxed, h, coefficient, cancelled=cancelled).cell for h in History}
     return tuple(RestSize(h, c.cell_course_mm, c.cell_wale_mm) for h, c in states.items())
 
 
 def _pulled(
-    state: RubbedCell, along: Direction, sizes: Array, coefficient: float, cancel: Cancel | None
+    state: RubbedCell,
+    along: Direction,
+    sizes: Array,
+    coefficient: float,
+    cancelled: Cancelled | None,
 ) -> Iterator[RubbedCell]:
     place = (COURSE if along is Direction.COURSE else WALE,)
     for size in sizes:
-        check_cancelled(cancel)
+        check_cancelled(cancelled)
         target = np.array([size, size])
-        state = rubbed(state, coefficient, fixed=place, target=target, cancel=cancel)
+        state = rubbed(state, coefficient, fixed=place, target=target, cancelled=cancelled)
         yield state
 
 
 def _released(
     state: RubbedCell, along: Direction, stride_mm: float, coefficient: float,
-    cancel: Cancel | None,
+    cancelled: Cancelled | None,
 ) -> Iterator[RubbedCell]:  # fmt: skip
     """Back in steps until the pull would turn into a push, then free."""
     sizes = np.asarray(state.cell.cell_mm(along) - stride_mm * np.arange(1, 10 * MAX_STRIDES))
-    ahead = _pulled(state, along, sizes[sizes > 0.0], coefficient, cancel)
+    ahead = _pulled(state, along, sizes[sizes > 0.0], coefficient, cancelled)
     for reached in ahead:
         if reached.cell.force_n[along.axis] <= 0.0:
             break
         state = reached
         yield state
-    yield rubbed(state, coefficient, cancel=cancel)
+    yield rubbed(state, coefficient, cancelled=cancelled)
 
 
 def _leg(

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
-from knitcore.errors import CancelledError, InputError
+from knitcore.errors import InputError
 from knitcore.yarnlevel.yarn import YarnModel
-
-Cancel = Callable[[], bool]
 
 MAX_POINTS = 1000
 """Most points of a sweep."""
@@ -16,12 +13,6 @@ MIN_LENGTH_PER_RADIUS = 10.0
 MIN_LENGTH_PER_CORE = 27.0
 """Shortest loop: a shorter stitch has no room for its own yarn (paper: 13 radii, 34 core radii)."""
 MAX_LENGTH_PER_RADIUS = 120.0
-
-
-def check_cancelled(cancel: Cancel | None) -> None:
-    """Raise CancelledError if the caller wants to stop."""
-    if cancel is not None and cancel():
-        raise CancelledError("The relaxation was cancelled.")
 
 
 def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:

@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from knitcore.chart import StitchChart
-from knitcore.errors import ConvergenceError, InputError
+from knitcore.errors import Cancelled, ConvergenceError, InputError
 from knitcore.yarnlevel.cell import free_cell
 from knitcore.yarnlevel.energy import CellEnergy
-from knitcore.yarnlevel.limits import Cancel
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
 from knitcore.yarnlevel.solver import Options, minimise
@@ -42,7 +41,7 @@ class Followed:
     lower: float
 
 
-def without_mirrors(relaxed: RelaxedRepeat, *, cancel: Cancel | None = None) -> Followed:
+def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> Followed:
     """Drop the symmetries of a relaxed repeat, and follow its instability if there is one.
 
     Raises
@@ -66,7 +65,7 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancel: Cancel | None = None) -> 
     found = minimise(
         energy, tiled_state(relaxed.cell, relaxed.state, cell),
         tension=np.resize(relaxed.tension_n, cell.rows),
-        options=Options(tolerance=1e-8 if cell.stitches <= 4 else 1e-6), cancel=cancel,
+        options=Options(tolerance=1e-8 if cell.stitches <= 4 else 1e-6), cancelled=cancelled,
     )  # fmt: skip
     became = outcome(energy, found)
     if became not in (RELAXED, UNSETTLED):

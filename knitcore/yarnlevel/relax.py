@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.growth import Start
-from knitcore.yarnlevel.limits import Cancel
 from knitcore.yarnlevel.published.relax import relax_published
 from knitcore.yarnlevel.published.stitch import pure_fabric
 from knitcore.yarnlevel.results import Branch, RelaxedCell
@@ -39,7 +38,7 @@ def relax(
     grid: SplineGrid | None = ...,
     starts: Sequence[Start] | None = ...,
     time_limit_s: float | None = ...,
-    cancel: Cancel | None = ...,
+    cancelled: Cancelled | None = ...,
 ) -> RelaxedRepeat: ...
 
 
@@ -57,7 +56,7 @@ def relax(
     grid: SplineGrid | None = ...,
     starts: Sequence[Start] | None = ...,
     time_limit_s: float | None = ...,
-    cancel: Cancel | None = ...,
+    cancelled: Cancelled | None = ...,
 ) -> RelaxedCell: ...
 
 
@@ -74,7 +73,7 @@ def relax(
     grid: SplineGrid | None = None,
     starts: Sequence[Start] | None = None,
     time_limit_s: float | None = None,
-    cancel: Cancel | None = None,
+    cancelled: Cancelled | None = None,
 ) -> RelaxedCell:
     """Shape of least energy of a repeat, free of force unless a size is prescribed.
 
@@ -94,7 +93,7 @@ def relax(
     grid : resolution; by default finer for small cells.
     starts : by default two, and four in the free branch (fewer for large cells).
     time_limit_s : refuse a cell that would probably take more CPU time.
-    cancel : called before every step; True stops with CancelledError.
+    cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
@@ -111,7 +110,7 @@ def relax(
         return relax_splines(
             chart, yarn, loop_length_mm, branch=kind, convention=factors,
             sizes_mm=(cell_course_mm, cell_wale_mm), flat=flat, grid=grid, starts=starts,
-            time_limit_s=time_limit_s, cancel=cancel,
+            time_limit_s=time_limit_s, cancelled=cancelled,
         )  # fmt: skip
     if flat or grid is not None or starts is not None or np.size(loop_length_mm) != 1:
         raise InputError(
@@ -121,5 +120,5 @@ def relax(
         )
     return relax_published(
         pure_fabric(chart), yarn, np.asarray(loop_length_mm, dtype=float).item(),
-        cell_course_mm, cell_wale_mm, factors, cancel=cancel,
+        cell_course_mm, cell_wale_mm, factors, cancelled=cancelled,
     )  # fmt: skip

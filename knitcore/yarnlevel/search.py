@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, KnitcoreError, UnravelledError
 from knitcore.yarnlevel.clasps import cell_is_knitted
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.growth import STAGE, Start, grow, shaken, stiffened
@@ -17,8 +17,6 @@ from knitcore.yarnlevel.results import StartReport
 from knitcore.yarnlevel.solver import Minimum, Options, minimise
 from knitcore.yarnlevel.tiling import refined_state, tiled_state
 from knitcore.yarnlevel.topology import Guard
-
-Cancel = Callable[[], bool]
 
 SAME_ENERGY = 1e-3
 """Starts whose energies agree within this are the same minimum."""
@@ -60,10 +58,10 @@ def outcome(energy: CellEnergy, found: Minimum) -> str:
 class Search:
     """Runs starts on one cell and records their outcomes."""
 
-    def __init__(self, energy: CellEnergy, options: Options, cancel: Cancel | None) -> None:
+    def __init__(self, energy: CellEnergy, options: Options, cancelled: Cancelled | None) -> None:
         self.energy = energy
         self.options = options
-        self.cancel = cancel
+        self.cancelled = cancelled
         self.found: list[Minimum] = []
         self.reports: list[StartReport] = []
         self.evaluations = 0
@@ -93,7 +91,7 @@ class Search:
             state = tiled_state(smaller.cell, mirrored[0].state, self.energy.cell)
             if seed is not None:
                 state = _shaken_safely(self.energy, state, seed)
-            return minimise(self.energy, state, options=self.options, cancel=self.cancel)
+            return minimise(self.energy, state, options=self.options, cancelled=self.cancelled)
 
         if follow:
             self.run("mirrored, followed", partial(run, None))
@@ -171,7 +169,7 @@ class Search:
     def _minimised(
         self, energy: CellEnergy, state: Array, tension: Array | None, options: Options
     ) -> Minimum:
-        found = minimise(energy, state, tension=tension, options=options, cancel=self.cancel)
+        found = minimise(energy, state, tension=tension, options=options, cancelled=self.cancelled)
         self.evaluations += found.evaluations
         return found
 
@@ -217,7 +215,7 @@ class Search:
         return grow(
             energy.cell, energy.yarn, energy.loop_length_mm, energy.convention, start,
             options=self.options, flat=energy.flat, gauge_per_bending=energy.gauge_per_bending,
-            cancel=self.cancel,
+            cancelled=self.cancelled,
         )  # fmt: skip
 
 

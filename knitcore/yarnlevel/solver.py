@@ -16,14 +16,13 @@ symmetry of the first shape; a saddle is left along its direction of most negati
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.errors import CancelledError, ConvergenceError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.fronts import Front, elimination
 from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System
@@ -121,7 +120,7 @@ def minimise(
     fixed: tuple[int, ...] = (),
     target: Array | None = None,
     options: Options | None = None,
-    cancel: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Minimum:
     """Minimise the energy from a state, without yarn passing through yarn.
 
@@ -132,22 +131,21 @@ def minimise(
     tension : (constraints,) tensions to begin with, N.
     fixed : COURSE and/or WALE: cell sizes that are prescribed.
     target : (2,) sizes of a stitch to move the fixed ones to, mm; by default where they are.
-    cancel : called before every step; True stops with CancelledError.
+    cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     UnravelledError
         If no step can be certified any more.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     opts = options or Options()
     held = np.array(sorted(f % energy.cell.unknowns for f in fixed), int)
     goal = state[held] if target is None else target[held - energy.cell.unknowns + 2]
     descent = _Descent(energy, state, tension, held, goal, opts)
     while not descent.converged and descent.steps < opts.iterations:
-        if cancel is not None and cancel():
-            raise CancelledError("The relaxation was cancelled.")
+        check_cancelled(cancelled)
         if not descent.step():
             break
     return descent.minimum()

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.fabric import Direction
-from knitcore.yarnlevel.limits import Cancel
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
 from knitcore.yarnlevel.slides import slides_at
@@ -30,19 +29,23 @@ class SplineStretch:
     ----------
     zero : the relaxed repeat, with its slide constraints.
     along : the direction.
-    cancel : called before every step of the solver.
+    cancelled : called before every step of the solver.
     """
 
     zero: RelaxedRepeat
     along: Direction
-    cancel: Cancel | None = None
+    cancelled: Cancelled | None = None
 
     @classmethod
     def of(
-        cls, zero: RelaxedRepeat, along: Direction, slide_quenching: bool, cancel: Cancel | None
+        cls,
+        zero: RelaxedRepeat,
+        along: Direction,
+        slide_quenching: bool,
+        cancelled: Cancelled | None,
     ) -> SplineStretch:
         """The stretch of a relaxed repeat, its slides held or not."""
-        return cls(with_slides_held(zero) if slide_quenching else zero, along, cancel)
+        return cls(with_slides_held(zero) if slide_quenching else zero, along, cancelled)
 
     @property
     def note(self) -> str:
@@ -71,7 +74,7 @@ class SplineStretch:
         found = minimise(
             last.energy, last.state, tension=last.tension_n,
             fixed=(COURSE if self.along is Direction.COURSE else WALE,),
-            target=np.array([size_mm, size_mm]), cancel=self.cancel,
+            target=np.array([size_mm, size_mm]), cancelled=self.cancelled,
             options=Options(tolerance=1e-8 if last.cell.stitches <= 4 else 1e-6, iterations=80),
         )  # fmt: skip
         became = outcome(last.energy, found)

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, STIFF_GAUGE_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
-from knitcore.yarnlevel.limits import Cancel, check_loop, check_size
+from knitcore.yarnlevel.limits import check_loop, check_size
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
 from knitcore.yarnlevel.search import (
     RELAXED,
@@ -110,7 +110,7 @@ def relax_splines(
     grid: SplineGrid | None,
     starts: Sequence[Start] | None,
     time_limit_s: float | None,
-    cancel: Cancel | None,
+    cancelled: Cancelled | None,
 ) -> RelaxedRepeat:
     """Shape of least energy of a repeat, free of force unless a size is prescribed.
 
@@ -148,7 +148,7 @@ def relax_splines(
     _compile()
     clock = time.process_time()
     enough = options if explored == grid else replace(options, tolerance=_EXPLORED, slack=_EXPLORED)
-    search = Search(energy, enough, cancel)
+    search = Search(energy, enough, cancelled)
     if shakes:
         small = mirrored_cell(repeat, explored)
         smaller = replace(energy, cell=small, loop_length_mm=np.resize(lengths, small.rows))
@@ -164,7 +164,7 @@ def relax_splines(
         )
         best = search.refined(energy, options)
     if any(size is not None for size in sizes_mm):
-        best = _held_at(energy, best, sizes_mm, options, cancel)
+        best = _held_at(energy, best, sizes_mm, options, cancelled)
     return relaxed_repeat(
         repeat, energy, branch, best, seconds=time.process_time() - clock,
         evaluations=search.evaluations, starts=tuple(search.reports), notes=search.notes(best),
@@ -239,7 +239,7 @@ def _check_cell(cell: YarnCell, most: int, starts: int, time_limit_s: float | No
 
 def _held_at(
     energy: CellEnergy, found: Minimum, sizes: tuple[float | None, float | None],
-    options: Options, cancel: Cancel | None,
+    options: Options, cancelled: Cancelled | None,
 ) -> Minimum:  # fmt: skip
     """Go from the force-free state to prescribed sizes in steps."""
     places = [place for place, size in zip((COURSE, WALE), sizes, strict=True) if size is not None]
@@ -257,7 +257,7 @@ def _held_at(
         try:
             found = minimise(
                 energy, found.state, tension=found.tension, fixed=tuple(places),
-                target=begin + way * k / count, options=options, cancel=cancel,
+                target=begin + way * k / count, options=options, cancelled=cancelled,
             )  # fmt: skip
         except (ConvergenceError, UnravelledError) as error:
             raise type(error)(f"No equilibrium at this size: {error} {nearer}") from error

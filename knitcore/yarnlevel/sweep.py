@@ -17,10 +17,16 @@ from typing import Protocol
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import (
+    Cancelled,
+    ConvergenceError,
+    InputError,
+    UnravelledError,
+    check_cancelled,
+)
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.jumps import find_jumps
-from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_stretch
+from knitcore.yarnlevel.limits import check_stretch
 from knitcore.yarnlevel.published.stretch import PublishedStretch
 from knitcore.yarnlevel.results import RelaxedCell, Sweep
 from knitcore.yarnlevel.search import SAME_ENERGY
@@ -65,7 +71,7 @@ def sweep(
     max_stress_n_per_mm: float | None = None,
     back: bool = True,
     slide_quenching: bool | None = None,
-    cancel: Cancel | None = None,
+    cancelled: Cancelled | None = None,
 ) -> Sweep:
     """Stretch in one direction, the other free of force.
 
@@ -79,38 +85,38 @@ def sweep(
     back : also go back from the end and keep the lower state of each strain.
     slide_quenching : keep the yarn from sliding where it touches at rest; by default only in the
         published branch, and there as the paper did, for seed along the course.
-    cancel : called before every point; True stops with CancelledError.
+    cancelled : called before every point; True stops with CancelledError.
 
     Raises
     ------
     InputError
         If the strain or the number of points cannot be used.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, max_stress_n_per_mm)
     _check_rest(zero)
     if isinstance(zero, RelaxedRepeat):
-        stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancel)
+        stretch: Stretch = SplineStretch.of(zero, along, bool(slide_quenching), cancelled)
     else:
         stretch = PublishedStretch.of(zero, along, slide_quenching)
     return follow(
         stretch, zero, along, np.linspace(0.0, max_strain, points),
-        max_stress_n_per_mm=max_stress_n_per_mm, back=back, cancel=cancel,
+        max_stress_n_per_mm=max_stress_n_per_mm, back=back, cancelled=cancelled,
     )  # fmt: skip
 
 
 def follow(
     stretch: Stretch, zero: RelaxedCell, along: Direction, strain: Array, *,
-    max_stress_n_per_mm: float | None = None, back: bool = True, cancel: Cancel | None = None,
+    max_stress_n_per_mm: float | None = None, back: bool = True, cancelled: Cancelled | None = None,
 ) -> Sweep:  # fmt: skip
     """The sweep of a relaxed state at given strains (see :func:`sweep`)."""
     rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
     notes = [*zero.notes, *filter(None, [stretch.note])]
     best: list[RelaxedCell] = []
     for target in rest * (1.0 + strain):
-        check_cancelled(cancel)
+        check_cancelled(cancelled)
         try:
             best.append(_timed(stretch, best[-2:], float(target)))
         except (ConvergenceError, UnravelledError) as error:
@@ -125,7 +131,7 @@ def follow(
             break
     other: set[int] = set()
     for i in range(len(best) - 2, -1, -1) if back else ():
-        check_cancelled(cancel)
+        check_cancelled(cancelled)
         try:
             returned = _timed(stretch, best[i + 1 : i + 2], best[i].cell_mm(along))
         except (ConvergenceError, UnravelledError) as error:

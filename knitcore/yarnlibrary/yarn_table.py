@@ -15,7 +15,7 @@ from pathlib import Path
 
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import Material
@@ -277,7 +277,7 @@ def characterise_yarns(
     workers: int | None = None,
     keep: Path | None = None,
     progress: Callable[[BatchProgress], None] | None = None,
-    cancelled: Callable[[], bool] | None = None,
+    cancelled: Cancelled | None = None,
 ) -> tuple[YarnTable, ...]:
     """The tables of one yarn or several, as one batch.
 

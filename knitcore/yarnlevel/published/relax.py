@@ -9,10 +9,16 @@ from dataclasses import replace
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import (
+    Cancelled,
+    ConvergenceError,
+    InputError,
+    UnravelledError,
+    check_cancelled,
+)
 from knitcore.fabric import Fabric
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.limits import Cancel, check_cancelled, check_loop, check_size
+from knitcore.yarnlevel.limits import check_loop, check_size
 from knitcore.yarnlevel.published.certificate import is_clasped
 from knitcore.yarnlevel.published.continuation import (
     Continuation,
@@ -41,7 +47,7 @@ def relax_published(
     convention: Convention | str = Convention.PUBLISHED,
     *,
     starts: int = STARTS,
-    cancel: Cancel | None = None,
+    cancelled: Cancelled | None = None,
 ) -> RelaxedCell:
     """Shape of least energy of one stitch of a pure fabric.
 
@@ -53,7 +59,7 @@ def relax_published(
     cell_course_mm, cell_wale_mm : sizes of the stitch to hold, mm; None leaves one free of force.
     convention : factors of the energy.
     starts : number of starts; the lowest result is kept.
-    cancel : called before every start; True stops with CancelledError.
+    cancelled : called before every start; True stops with CancelledError.
 
     Raises
     ------
@@ -64,7 +70,7 @@ def relax_published(
     UnravelledError
         If the strands of the lowest shape are no longer clasped.
     CancelledError
-        If ``cancel`` says so.
+        If ``cancelled`` says so.
     """
     stitch = Stitch(Fabric.parse(fabric), yarn, Convention.parse(convention))
     check_loop(yarn, loop_length_mm)
@@ -78,7 +84,7 @@ def relax_published(
     began = time.process_time()
     found = []
     for shape in shapes:
-        check_cancelled(cancel)
+        check_cancelled(cancelled)
         found.append(_settle(stitch, shape, loop_length_mm, constraints))
     best = lowest(stitch, found)
     evaluations = sum(m.evaluations for m in found)

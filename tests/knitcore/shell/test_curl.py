@@ -115,4 +115,4 @@ def test_a_piece_too_large_is_refused() -> None:
 
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(CancelledError):
-        curl(StitchChart.parse("K").tile(9, 9), ACRYLIC, cancel=lambda: True)
+        curl(StitchChart.parse("K").tile(9, 9), ACRYLIC, cancelled=lambda: True)

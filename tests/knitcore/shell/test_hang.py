@@ -48,4 +48,4 @@ def test_the_bottom_of_stockinette_rolls_to_the_front_against_its_weight() -> No
 
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(CancelledError):
-        hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, cancel=lambda: True)
+        hang(GARTER, ACRYLIC, linear_density_g_per_m=0.5, cancelled=lambda: True)

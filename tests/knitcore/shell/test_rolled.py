@@ -55,4 +55,4 @@ def test_what_lies_flat_begins_flat() -> None:
 def test_it_can_be_cancelled() -> None:
     sheet = sheet_of(StitchChart.parse("K").tile(6, 6), ACRYLIC)
     with pytest.raises(CancelledError):
-        start(sheet, cancel=lambda: True)
+        start(sheet, cancelled=lambda: True)

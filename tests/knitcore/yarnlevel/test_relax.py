@@ -199,7 +199,7 @@ def test_the_published_branch_relaxes_pure_fabrics_with_one_loop_length_only():
 
 def test_a_relaxation_can_be_cancelled():
     with pytest.raises(CancelledError):
-        relax(StitchChart.parse("KKP"), STUDY_YARN, 11.28, cancel=lambda: True)
+        relax(StitchChart.parse("KKP"), STUDY_YARN, 11.28, cancelled=lambda: True)
 
 
 def test_random_charts_and_starts_relax_or_fail_by_name():

@@ -114,7 +114,7 @@ def test_a_stretch_can_be_stopped():
 
     # asked before each point
     with pytest.raises(CancelledError):
-        stretch("cotton", "rib", "course", 0.2, 5, cancel=at_the_third_time)
+        stretch("cotton", "rib", "course", 0.2, 5, cancelled=at_the_third_time)
     assert len(asked) == 3
 
 
