@@ -399,7 +399,7 @@ export interface CharacterisedFabric {
 export type Clamps = "clamped" | "sliding";
 
 /** The quantity that colours the stitches. */
-export type Colour = "yarn" | "region" | "fabric" | "phase" | "course" | "wale" | "anisotropy" | "strain" | "utilisation" | "field";
+export type Colour = "yarn" | "region" | "fabric" | "phase" | "course" | "wale" | "anisotropy" | "strain" | "utilisation" | "pressure" | "field";
 
 /** A law, or a fabric of a material, and a field to compare it with. */
 export interface CompareRequest {
@@ -525,7 +525,7 @@ export interface CurlResult {
 
 /** The shape of a piece that was computed before. */
 export interface Curled {
-  /** The id that `curl` returned. */
+  /** The id that `curl`, `hang` or `limb` returned. */
   id: string;
 }
 
@@ -1219,8 +1219,8 @@ export interface Girth {
   at_mm: number;
   /** Around the limb. */
   girth_mm: number;
-  /** Around the unworn tube. */
-  rest_mm: number;
+  /** Around the unworn tube. Left out at all places, the whole chart is the tube. */
+  rest_mm?: number | null;
 }
 
 /** The therapeutic glove; measurements default to an adult's hand. */
@@ -1539,6 +1539,11 @@ export interface LimbResult {
   tightest_mm: number;
   /** Length along the limb on which the tube is loose. */
   loose_mm: number;
+  /** Name of the shape, for 3D views, if the whole chart is the tube. */
+  id: string | null;
+  /** Of the whole chart on the limb, held by nothing along it. */
+  length_mm: number | null;
+  relaxed_length_mm: number | null;
   notes: string[];
 }
 
@@ -2238,7 +2243,7 @@ export interface SharedViewRequest {
   /** Stitches on a side of a block. */
   rectangle_block?: number;
   stretch?: StretchStep | null;
-  /** Show it as it lies; not while it is stretched. */
+  /** Show it as it lies, hangs or is worn; not while it is stretched. */
   curl?: Curled | null;
   /** Around it a chart is drawn as yarn that is too large to be drawn whole. */
   focus?: Focus | null;
@@ -2624,7 +2629,7 @@ export interface ViewRequest {
   /** Stitches on a side of a block. */
   rectangle_block?: number;
   stretch?: StretchStep | null;
-  /** Show it as it lies; not while it is stretched. */
+  /** Show it as it lies, hangs or is worn; not while it is stretched. */
   curl?: Curled | null;
   /** Around it a chart is drawn as yarn that is too large to be drawn whole. */
   focus?: Focus | null;

@@ -23,8 +23,8 @@ from app.http.problems import NotFoundError, Problem
 from app.http.security import OPENED_BY
 from app.http.waiting import abandoned
 from app.models.base import RequestModel
-from app.operations.curl import CurlView
 from app.operations.perform import Reply
+from app.operations.posed import PosedView
 from app.operations.stretch import StretchView
 from app.viewer.camera import CameraSide
 from app.viewer.design_id import DesignId, private_name
@@ -235,7 +235,7 @@ def _found(body: ViewRequest, request: Request) -> Found:
     wanted = body.stretch or body.curl
     answer: Reply | None = request.app.state.recent.get(wanted.id) if wanted else None
     view = answer.view if answer else None
-    return view if isinstance(view, StretchView | CurlView) else None
+    return view if isinstance(view, StretchView | PosedView) else None
 
 
 def _view(design: str, request: Request) -> View:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.cli.options import out_option
@@ -15,6 +13,7 @@ from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.operations.context import Context
 from app.operations.perform import Viewed
+from app.operations.posed import PosedView
 from app.operations.registry import Command, Operation
 from knitcore.formats.curled import write_curled_glb, write_curled_npz
 from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece
@@ -37,18 +36,6 @@ class CurlRequest(RequestModel):
         allow_inf_nan=False,
         description="CPU time after which the current shape is returned, not converged.",
     )
-
-
-@dataclass(frozen=True, eq=False)
-class CurlView:
-    """What the 3D view shows: (rows + 1, columns + 1, 3) corners of the stitches, mm."""
-
-    corners_mm: NDArray[np.float32]
-
-    @property
-    def size_bytes(self) -> int:
-        """Memory that it takes, bytes."""
-        return self.corners_mm.nbytes
 
 
 class CurlResult(ResultModel):
@@ -86,7 +73,7 @@ def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
     those of frictionless cloth. Pieces may have up to 10,000 stitches.
     """
     piece = _curled(request, context)
-    return Viewed(_result(piece, request), CurlView(piece.corners_mm.astype(np.float32)))
+    return Viewed(_result(piece, request), PosedView(piece.corners_mm.astype(np.float32)))
 
 
 def _curled(request: CurlRequest, context: Context) -> CurledPiece:
@@ -116,7 +103,11 @@ def _and_write(request: CurlRequest, context: Context, out: Path | None) -> Curl
     if out is not None:
         glb = out.suffix.lower() == ".glb"
         material = context.material(request.material)
-        out.write_bytes(write_curled_glb(piece, material) if glb else write_curled_npz(piece))
+        out.write_bytes(
+            write_curled_glb(piece.chart, piece.corners_mm, material)
+            if glb
+            else write_curled_npz(piece)
+        )
     return _result(piece, request)
 
 

@@ -12,8 +12,8 @@ from app.models.base import ResultModel
 from app.models.charts import ChartInput, to_chart
 from app.models.weighed import FRICTIONLESS, Corners, WantsCorners, WeighedRequest
 from app.operations.context import Context
-from app.operations.curl import CurlView
 from app.operations.perform import Viewed
+from app.operations.posed import PosedView
 from app.operations.registry import Command, Operation
 from knitcore.shell.curl import TIME_LIMIT_S
 from knitcore.shell.hang import HungBy
@@ -70,7 +70,7 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
         corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
         notes=[FRICTIONLESS],
     )
-    return Viewed(result, CurlView(found.corners_mm.astype(np.float32)))
+    return Viewed(result, PosedView(found.corners_mm.astype(np.float32)))
 
 
 def _hung(request: HangRequest, context: Context) -> HangResult:

@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal
 
+import click
+import numpy as np
 from pydantic import Field
 
+from app.cli.options import out_option
 from app.models.base import Ends, RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
 from app.operations.context import Context
-from app.operations.registry import Operation
+from app.operations.perform import Viewed
+from app.operations.posed import Body, PosedView
+from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
-from knitcore.answer.limb import MAX_GIRTHS, LimbPlace, on_limb
+from knitcore.answer.limb import MAX_GIRTHS, PLACES, Limb, LimbPlace, on_limb
+from knitcore.errors import InputError
 from knitcore.fabric import Direction
+from knitcore.formats.curled import write_curled_glb
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
+from knitcore.shell.worn import WornTube, worn_tube
+
+MAX_STITCHES = 40_000
+"""Of a chart that is itself the tube."""
+FREE_ALONG = (
+    "The tube is as long as where nothing holds it along the limb; friction may keep it longer."
+)
 
 
 class Girth(RequestModel):
@@ -27,8 +43,12 @@ class Girth(RequestModel):
         description="Along the limb, from where the tube begins.",
     )
     girth_mm: float = Field(gt=0, le=3000, allow_inf_nan=False, description="Around the limb.")
-    rest_mm: float = Field(
-        gt=0, le=3000, allow_inf_nan=False, description="Around the unworn tube."
+    rest_mm: float | None = Field(
+        None,
+        gt=0,
+        le=3000,
+        allow_inf_nan=False,
+        description="Around the unworn tube. Left out at all places, the whole chart is the tube.",
     )
 
 
@@ -71,35 +91,96 @@ class LimbResult(ResultModel):
     places: list[LimbPlaceResult]
     tightest_mm: float = Field(description="Where the tube is nearest to its lock-up.")
     loose_mm: float = Field(description="Length along the limb on which the tube is loose.")
+    id: str | None = Field(
+        None, description="Name of the shape, for 3D views, if the whole chart is the tube."
+    )
+    length_mm: float | None = Field(
+        None, description="Of the whole chart on the limb, held by nothing along it."
+    )
+    relaxed_length_mm: float | None = None
     notes: list[str]
 
 
-def limb(request: LimbRequest, context: Context) -> LimbResult:
+def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     """Ease, pressure by Laplace's law and nearness to lock-up at 21 places along a limb.
+
+    With `rest_mm` at every place, the chart is a repeat of a tube of these sizes. Without, the
+    whole chart is the tube: its first row is where the limb begins, or its first column where the
+    columns run around it. The 3D view can show such a tube.
 
     Raises
     ------
     InputError
-        If the places do not increase, or the material lacks a fabric of the chart.
+        If the places do not increase, some have a `rest_mm` and others none, the chart is no tube,
+        or the material lacks a fabric of the chart.
     """
+    rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
+    if not rests:
+        tube = _tube(request, context)
+        return Viewed(_of_tube(tube, request), _view(tube, request.direction))
+    if len(rests) < len(request.girths):
+        raise InputError(
+            "girths", "some places have a rest_mm and others none.", "Give it for all, or for none."
+        )
     answer = choose(to_chart(request.chart), context.material(request.material))
     found = on_limb(
         answer.along(request.direction),
         [g.at_mm for g in request.girths],
         [g.girth_mm for g in request.girths],
-        [g.rest_mm for g in request.girths],
+        rests,
     )
-    step = found[1].at_mm - found[0].at_mm
-    loose = sum(place.ease >= 0.0 for place in found) / len(found) * step * (len(found) - 1)
+    length = found[-1].at_mm - found[0].at_mm
+    return Viewed(LimbResult(**_fit(found, found, length), notes=[ELASTIC_MEAN]), None)
+
+
+def _tube(request: LimbRequest, context: Context) -> WornTube:
+    chart = to_chart(request.chart)
+    if chart.purl.size > MAX_STITCHES:
+        raise InputError(
+            "chart",
+            f"{chart.purl.size} stitches are too many.",
+            f"Give a tube of at most {MAX_STITCHES}.",
+        )
+    girths = request.girths
+    on = Limb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
+    return worn_tube(chart, context.material(request.material), on, request.direction)
+
+
+def _of_tube(tube: WornTube, request: LimbRequest) -> LimbResult:
+    told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
     return LimbResult(
-        places=[_result(place) for place in found],
-        tightest_mm=max(found, key=lambda place: place.lock_up_share).at_mm,
-        loose_mm=loose,
-        notes=[ELASTIC_MEAN],
+        **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
+        id=OPERATION.key(request),
+        length_mm=tube.length_mm,
+        relaxed_length_mm=tube.relaxed_length_mm,
+        notes=[ELASTIC_MEAN, FREE_ALONG],
     )
 
 
-def _result(place: LimbPlace) -> LimbPlaceResult:
+def _view(tube: WornTube, around: Direction) -> PosedView:
+    rows, columns = (n - 1 for n in tube.corners_mm.shape[:2])
+    pressures = [place.pressure for place in tube.places]
+    kpa = np.array([np.nan if p is None else (p.kpa.low + p.kpa.high) / 2 for p in pressures])
+    lines = (MMHG_PER_KPA * kpa).astype(np.float32)
+    return PosedView(
+        tube.corners_mm.astype(np.float32),
+        Body.around(tube.limb_mm),
+        np.broadcast_to(
+            lines[:, None] if around is Direction.COURSE else lines, (rows, columns)
+        ).copy(),
+    )
+
+
+def _fit(told: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float) -> dict[str, Any]:
+    loose = sum(place.ease >= 0.0 for place in every) / len(every)
+    return {
+        "places": [_place(place) for place in told],
+        "tightest_mm": max(every, key=lambda place: place.lock_up_share).at_mm,
+        "loose_mm": loose * length_mm,
+    }
+
+
+def _place(place: LimbPlace) -> LimbPlaceResult:
     pressed = place.pressure
     return LimbPlaceResult.of(
         place,
@@ -108,6 +189,63 @@ def _result(place: LimbPlace) -> LimbPlaceResult:
             None if pressed is None else pressed.kpa_with_spread.scaled(MMHG_PER_KPA)
         ),
     )
+
+
+@click.option(
+    "--girth",
+    "girths",
+    metavar="AT:GIRTH[:REST]",
+    multiple=True,
+    required=True,
+    help="In mm, two or more: along the limb, around it, and around the unworn tube there. Without "
+    "REST the whole chart is the tube.",
+)
+def _girths(girths: tuple[str, ...]) -> dict[str, Any]:
+    names = ("at_mm", "girth_mm", "rest_mm")
+    try:
+        parts = [[float(part) for part in girth.split(":")] for girth in girths]
+        return {"girths": [dict(zip(names, part, strict=len(part) != 2)) for part in parts]}
+    except ValueError:
+        raise InputError(
+            "girth", f"{' '.join(girths)} are no girths.", "Write each as 0:170 or 0:170:140."
+        ) from None
+
+
+@out_option("--out", help="Write the tube on the limb to FILE.glb.", suffixes=(".glb",))
+def _and_write(request: LimbRequest, context: Context, out: Path | None) -> LimbResult:
+    if out is not None:
+        if any(girth.rest_mm is not None for girth in request.girths):
+            raise InputError("out", "needs a tube that is the whole chart.", "Leave REST out.")
+        chart, material = to_chart(request.chart), context.material(request.material)
+        out.write_bytes(write_curled_glb(chart, _tube(request, context).corners_mm, material))
+    return limb(request, context).result
+
+
+def _lines(r: LimbResult) -> list[str]:
+    head = (
+        []
+        if r.length_mm is None
+        else [f"on the limb {r.length_mm:.0f} mm long, unworn {r.relaxed_length_mm:.0f} mm"]
+    )
+    lines = [f"{'at':>7} {'limb':>7} {'tube':>7}  ease   pressure, mmHg (90 %)      to lock-up"]
+    for p in r.places:
+        pressure = (
+            p.problem
+            if p.mmhg is None or p.mmhg_with_spread is None
+            else (
+                f"{p.mmhg[0]:5.1f} to {p.mmhg[1]:5.1f} "
+                f"({p.mmhg_with_spread[0]:.1f} to {p.mmhg_with_spread[1]:.1f})"
+            )
+        )
+        lines.append(
+            f"{p.at_mm:4.0f} mm {p.girth_mm:4.0f} mm {p.rest_mm:4.0f} mm  {p.ease:+4.0%}  "
+            f"{pressure:27} {p.lock_up_share:.0%}"
+        )
+    return [
+        *head,
+        *lines,
+        f"nearest to its lock-up at {r.tightest_mm:.0f} mm; loose over {r.loose_mm:.0f} mm",
+    ]
 
 
 OPERATION = Operation(
@@ -122,4 +260,12 @@ OPERATION = Operation(
             {"at_mm": 200, "girth_mm": 260, "rest_mm": 200},
         ],
     },
+    heavy=True,
+    command=Command(
+        _lines,
+        help="How a tube of CHART fits a limb: ease, pressure, nearness to lock-up along it.",
+        names={"girths": None},
+        fields=_girths,
+        run=_and_write,
+    ),
 )

@@ -33,10 +33,10 @@ class ViewData(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Viewed(Generic[Result]):
-    """A result that the 3D view shows, too; an operation may return it in place of the result."""
+    """A result, and what a 3D view shows of it; operations may return it in place of the result."""
 
     result: Result
-    view: ViewData
+    view: ViewData | None
 
 
 @dataclass(frozen=True, eq=False)

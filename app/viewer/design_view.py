@@ -22,7 +22,7 @@ from app.models.charts import (
     to_chart,
 )
 from app.operations.context import Context
-from app.operations.curl import CurlView
+from app.operations.posed import PosedView
 from app.operations.stretch import StretchView
 from app.viewer.fabric import Drawing, FabricScene
 from app.viewer.stitch_colours import (
@@ -67,7 +67,7 @@ class StretchStep(RequestModel):
 class Curled(RequestModel):
     """The shape of a piece that was computed before."""
 
-    id: str = Field(max_length=128, description="The id that `curl` returned.")
+    id: str = Field(max_length=128, description="The id that `curl`, `hang` or `limb` returned.")
 
 
 class Focus(RequestModel):
@@ -93,7 +93,9 @@ class ViewRequest(RequestModel):
     rectangle_groups: RectangleGroups = RectangleGroups.STITCH
     rectangle_block: int = Field(4, ge=1, le=400, description="Stitches on a side of a block.")
     stretch: StretchStep | None = None
-    curl: Curled | None = Field(None, description="Show it as it lies; not while it is stretched.")
+    curl: Curled | None = Field(
+        None, description="Show it as it lies, hangs or is worn; not while it is stretched."
+    )
     focus: Focus | None = Field(
         None, description="Around it a chart is drawn as yarn that is too large to be drawn whole."
     )
@@ -121,9 +123,9 @@ def build_drawing(
 
 
 def build_scene(
-    request: ViewRequest, found: StretchView | CurlView | None, context: Context
+    request: ViewRequest, found: StretchView | PosedView | None, context: Context
 ) -> FabricScene:
-    """The scene of a design, flat, as it lies, or at one step of its stretch test.
+    """The scene of a design: flat, in a shape of its own, or at one step of its stretch test.
 
     Raises
     ------
@@ -133,12 +135,12 @@ def build_scene(
     chart, material = to_chart(request.chart), context.material(request.material)
     drawn = _drawn(request, chart)
     stretch = found if isinstance(found, StretchView) else None
-    corners = _corners(request, found, chart)
+    posed = _posed(request, found, chart)
     step = _checked_step(request, stretch, chart)
-    shapes = stitch_shapes(chart, material, folded=corners is None)
+    shapes = stitch_shapes(chart, material, folded=posed is None)
     placement, room = at_rest(shapes), None
-    if corners is not None:
-        placement = lying(corners)
+    if posed is not None:
+        placement = lying(posed.corners_mm.astype(float))
     if stretch is not None:
         centres = stretch.positions_mm[step].astype(float)
         placement = carried(shapes, centres, flat_lattice(chart, material))
@@ -152,6 +154,7 @@ def build_scene(
         field=request.field,
         stretch=stretch,
         step=step,
+        mmhg=None if posed is None else posed.mmhg,
     )
     return FabricScene(
         shapes=shapes,
@@ -161,21 +164,22 @@ def build_scene(
         rectangles_mm=_rectangles(request, chart, material, placement, drawn),
         focus=(request.focus.row, request.focus.column) if request.focus else None,
         room_mm=room,
+        body=None if posed is None else posed.body,
     )
 
 
-def _corners(
-    request: ViewRequest, found: StretchView | CurlView | None, chart: StitchChart
-) -> NDArray[np.float64] | None:
+def _posed(
+    request: ViewRequest, found: StretchView | PosedView | None, chart: StitchChart
+) -> PosedView | None:
     if request.curl is None:
         return None
     if request.stretch is not None:
         raise InputError("curl", "stretch is given as well.", "Leave one of them out.")
-    if not isinstance(found, CurlView):
+    if not isinstance(found, PosedView):
         raise InputError("curl.id", "is not known any more.", "Compute the shape again.")
     if found.corners_mm.shape[:2] != (chart.rows + 1, chart.columns + 1):
         raise InputError("curl.id", "belongs to another chart.", "Compute it for this one.")
-    return found.corners_mm.astype(float)
+    return found
 
 
 def _checked_step(request: ViewRequest, stretch: StretchView | None, chart: StitchChart) -> int:

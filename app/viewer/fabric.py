@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from app.operations.posed import Body
 from knitcore.arrays import Array
 from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import Lattice
@@ -111,6 +112,7 @@ class FabricScene:
     focus : (row, column) around which a chart that is too large is drawn as yarn; its middle if
         None.
     room_mm : width and height that the fabric takes at most while it is stretched.
+    body : what the fabric rests on, if that is to be seen.
     """
 
     shapes: StitchShapes
@@ -120,15 +122,22 @@ class FabricScene:
     rectangles_mm: Array | None = None
     focus: tuple[int, int] | None = None
     room_mm: Array | None = None
+    body: Body | None = None
+
+    @cached_property
+    def top_mm(self) -> float:
+        """How high the yarn reaches above the middle plane."""
+        highest = self.placement.depth * np.abs(self.shapes.lines[..., 2]).max()
+        return float(highest + self.shapes.yarn_radius_mm)
 
     @cached_property
     def ground(self) -> Ground:
         """Where all its stitches lie."""
-        places, highest = self.placement, np.abs(self.shapes.lines[..., 2]).max()
+        places = self.placement
         return Ground(
             centres_mm=places.centres_mm.astype(np.float32),
             sizes_mm=places.sizes_mm.astype(np.float32),
-            top_mm=float(places.depth * highest + self.shapes.yarn_radius_mm),
+            top_mm=self.top_mm,
             is_flat=places.frames is None,
             drawn=self.drawn,
             room_mm=self.room_mm,

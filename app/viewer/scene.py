@@ -24,6 +24,7 @@ SCALE = (128, 120, 112)
 SCALE_BELOW = 1.8
 """Stitches below the fabric where the scale lies."""
 PAPER = (255, 252, 246)
+SKIN = (226, 205, 188)
 
 
 class SceneWriter:
@@ -58,6 +59,7 @@ class SceneWriter:
             self._drawing = drawing
             self._draw(part, ground.middle_mm, level_of(stitches))
             self._draw_rectangles(part, ground.middle_mm)
+            self._draw_body(part, ground.middle_mm)
             self._draw_sheet(drawing)
             self._draw_scale(ground)
             room = _room(ground)
@@ -176,6 +178,23 @@ class SceneWriter:
             "rectangles",
             self._server.scene.add_line_segments(
                 "/rectangles", points=lines, colors=INK, thickness=1.5, thickness_units="screen"
+            ),
+        )
+
+    def _draw_body(self, scene: FabricScene, middle: Array) -> None:
+        if scene.body is None:
+            self._put("body", None)
+            return
+        self._put(
+            "body",
+            self._server.scene.add_mesh_simple(
+                "/body",
+                vertices=_units(scene.body.sunk_mm(scene.top_mm) - np.append(middle, 0.0)),
+                faces=scene.body.faces,
+                color=SKIN,
+                side="double",
+                cast_shadow=False,
+                receive_shadow=False,
             ),
         )
 

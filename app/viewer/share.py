@@ -11,6 +11,7 @@ import numpy as np
 from app.http.problems import ServiceError
 from app.viewer.fabric import FabricScene
 from app.viewer.incoming import WantedPicture
+from app.viewer.scene import SKIN
 from app.viewer.views import View, new_view
 from knitcore.geometry.instances import resampled
 from knitcore.geometry.placing import placed_lines
@@ -104,7 +105,7 @@ def _recorded(scenes: Iterable[FabricScene]) -> Iterator[Any]:
 
 
 def solid_glb(scene: FabricScene) -> bytes:
-    """The yarn as it lies, with its colours: binary glTF 2.0 in metres."""
+    """The yarn as it lies, with its colours, and what it rests on: binary glTF 2.0 in metres."""
     import trimesh
 
     drawn = np.ones(scene.shapes.index.size, dtype=bool)
@@ -122,5 +123,13 @@ def solid_glb(scene: FabricScene) -> bytes:
         vertex_colors=np.repeat(scene.colours.reshape(-1, 3)[drawn], count, axis=0),
         process=False,
     )
+    if scene.body is not None:
+        skin: Any = trimesh.Trimesh(
+            scene.body.sunk_mm(scene.top_mm) * 0.001,
+            scene.body.faces,
+            vertex_colors=np.tile(np.array(SKIN, dtype=np.uint8), (len(scene.body.vertices_mm), 1)),
+            process=False,
+        )
+        solid = trimesh.util.concatenate([solid, skin])
     content = solid.export(file_type="glb")
     return bytes(content)

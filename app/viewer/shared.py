@@ -9,7 +9,7 @@ from pydantic import Field
 
 from app.models.charts import to_chart
 from app.operations.context import Context
-from app.operations.curl import CurlView
+from app.operations.posed import PosedView
 from app.operations.stretch import StretchView
 from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene
@@ -26,7 +26,7 @@ class SharedViewRequest(ViewRequest):
     dark: bool = Field(False, description="Dark background of a page.")
 
 
-Found = StretchView | CurlView | None
+Found = StretchView | PosedView | None
 """What the view shows of a stretch test or a shape that was computed before."""
 
 

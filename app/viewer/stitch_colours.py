@@ -46,6 +46,7 @@ class Colour(StrEnum):
     ANISOTROPY = "anisotropy"
     STRAIN = "strain"
     UTILISATION = "utilisation"
+    PRESSURE = "pressure"
     FIELD = "field"
 
 
@@ -85,6 +86,7 @@ def stitch_colours(
     field: FieldColours | None,
     stretch: StretchView | None,
     step: int,
+    mmhg: NDArray[np.float32] | None,
 ) -> Colours:
     """Colour of every stitch, (rows, columns, 3).
 
@@ -100,6 +102,8 @@ def stitch_colours(
         return _field(chart, field)
     if colour in (Colour.STRAIN, Colour.UTILISATION):
         return _stretched(colour, stretch, step)
+    if colour is Colour.PRESSURE:
+        return _pressed(mmhg)
     return _kinds(colour, stitch_table(material), palette)[surroundings(chart)]
 
 
@@ -124,6 +128,14 @@ def _stretched(colour: Colour, stretch: StretchView | None, step: int) -> Colour
         return sequential(stretch.utilisation[step], 0.0, 1.0)
     along = stretch.strain[..., stretch.direction.axis]
     return diverging(along[step], float(np.abs(along).max()))
+
+
+def _pressed(mmhg: NDArray[np.float32] | None) -> Colours:
+    """From no pressure to the largest there is."""
+    if mmhg is None:
+        raise InputError("colour", "needs a tube on a limb.", "Compute one and name its id.")
+    pressed = np.nan_to_num(mmhg)
+    return sequential(pressed, 0.0, float(pressed.max()))
 
 
 def region_labels(chart: StitchChart, regions: Sequence[DesignRegion]) -> NDArray[np.intp]:

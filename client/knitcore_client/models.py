@@ -26,6 +26,7 @@ Colour = Literal[
     "anisotropy",
     "strain",
     "utilisation",
+    "pressure",
     "field",
 ]
 
@@ -295,7 +296,7 @@ class Curled(TypedDict):
     """The shape of a piece that was computed before."""
 
     id: str
-    """The id that `curl` returned."""
+    """The id that `curl`, `hang` or `limb` returned."""
 
 
 class CurveRequest(TypedDict):
@@ -559,8 +560,8 @@ class Girth(TypedDict):
     """Along the limb, from where the tube begins."""
     girth_mm: float
     """Around the limb."""
-    rest_mm: float
-    """Around the unworn tube."""
+    rest_mm: NotRequired[float | None]
+    """Around the unworn tube. Left out at all places, the whole chart is the tube."""
 
 
 class Glove(TypedDict):
@@ -937,7 +938,7 @@ class SharedViewRequest(TypedDict):
     """Stitches on a side of a block."""
     stretch: NotRequired[StretchStep | None]
     curl: NotRequired[Curled | None]
-    """Show it as it lies; not while it is stretched."""
+    """Show it as it lies, hangs or is worn; not while it is stretched."""
     focus: NotRequired[Focus | None]
     """Around it a chart is drawn as yarn that is too large to be drawn whole."""
     animated: NotRequired[bool]
@@ -1127,7 +1128,7 @@ class ViewRequest(TypedDict):
     """Stitches on a side of a block."""
     stretch: NotRequired[StretchStep | None]
     curl: NotRequired[Curled | None]
-    """Show it as it lies; not while it is stretched."""
+    """Show it as it lies, hangs or is worn; not while it is stretched."""
     focus: NotRequired[Focus | None]
     """Around it a chart is drawn as yarn that is too large to be drawn whole."""
 
@@ -2186,6 +2187,11 @@ class LimbResult(BaseModel):
     """Where the tube is nearest to its lock-up."""
     loose_mm: float
     """Length along the limb on which the tube is loose."""
+    id: str | None = None
+    """Name of the shape, for 3D views, if the whole chart is the tube."""
+    length_mm: float | None = None
+    """Of the whole chart on the limb, held by nothing along it."""
+    relaxed_length_mm: float | None = None
     notes: list[str]
 
 

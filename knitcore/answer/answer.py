@@ -14,7 +14,7 @@ from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.law.response import Response, stress_at_strain
+from knitcore.law.response import Response
 from knitcore.materials.uncertainty import Interval, log_interval, normal_interval
 
 GAUGE = "gauge"
@@ -99,12 +99,12 @@ class Along:
 
     def stress(self, strain: ArrayLike) -> Array:
         """Stresses (N/mm) at strains of at least 0; at most 10 N/mm, which lock any fabric."""
-        return stress_at_strain(self.response, _not_negative("strain", strain))
+        return self.response.stress(_not_negative("strain", strain))
 
     def stress_interval(self, strain: ArrayLike) -> tuple[Array, Array]:
         """Lower and upper ends of the stresses' 90 % intervals."""
         wanted = _not_negative("strain", strain)
-        return stress_at_strain(self.soft, wanted), stress_at_strain(self.stiff, wanted)
+        return self.soft.stress(wanted), self.stiff.stress(wanted)
 
     def held_strain(self, stress_n_per_mm: ArrayLike) -> Array:
         """Strains at stresses (N/mm, at least 0) while the width is held."""
@@ -112,7 +112,7 @@ class Along:
 
     def held_stress(self, strain: ArrayLike) -> Array:
         """Stresses (N/mm) at strains of at least 0 while the width is held; at most 10 N/mm."""
-        return stress_at_strain(self.held, _not_negative("strain", strain))
+        return self.held.stress(_not_negative("strain", strain))
 
     def across_strain(self, stress_n_per_mm: ArrayLike) -> Array:
         """Strains across the pull, below 0 where it narrows, at stresses (N/mm, at least 0)."""

@@ -9,12 +9,47 @@ import numpy as np
 
 from knitcore.answer.answer import Along
 from knitcore.answer.tube import TubePressure, tube_pressure
+from knitcore.arrays import Array
 from knitcore.errors import InputError
-from knitcore.law.response import MAX_STRESS_N_PER_MM
 
 PLACES = 21
 """Places along the limb, evenly spaced."""
 MAX_GIRTHS = 100
+
+
+@dataclass(frozen=True)
+class Limb:
+    """A limb by its girths, which change evenly between the places where they were taken.
+
+    Attributes
+    ----------
+    at_mm : increasing places along the limb, two at least.
+    girths_mm : there.
+
+    Raises
+    ------
+    InputError
+        If the lists do not fit each other or the places do not increase.
+    """
+
+    at_mm: tuple[float, ...]
+    girths_mm: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.at_mm) != len(self.girths_mm) or not 2 <= len(self.at_mm) <= MAX_GIRTHS:
+            raise InputError(
+                "girths",
+                "they do not fit each other.",
+                f"Give 2 to {MAX_GIRTHS} of each, all alike.",
+            )
+        if min(np.diff(self.at_mm)) <= 0.0 or min(self.girths_mm) <= 0.0:
+            raise InputError(
+                "girths", "a place or a size is out of order.", "Give increasing places and sizes."
+            )
+
+    def girth_mm(self, at_mm: Array) -> Array:
+        """Circumference at places along the limb; beyond its ends that of the end."""
+        return np.interp(at_mm, self.at_mm, self.girths_mm)
 
 
 @dataclass(frozen=True)
@@ -42,6 +77,11 @@ class LimbPlace:
         """Circumference of the tube over that of the limb, minus one: negative where stretched."""
         return self.rest_mm / self.girth_mm - 1.0
 
+    @property
+    def axial_strain(self) -> float:
+        """Along the limb, where nothing holds the tube."""
+        return 0.0 if self.pressure is None else self.pressure.axial_strain_free
+
 
 def on_limb(
     along: Along,
@@ -65,26 +105,22 @@ def on_limb(
     InputError
         If the lists do not fit each other or their places do not increase.
     """
-    known = [np.asarray(values, dtype=float) for values in (at_mm, girths_mm, rests_mm)]
-    if len({len(values) for values in known}) > 1 or not 2 <= len(known[0]) <= MAX_GIRTHS:
-        raise InputError(
-            "girths", "they do not fit each other.", f"Give 2 to {MAX_GIRTHS} of each, all alike."
-        )
-    if not (np.diff(known[0]) > 0.0).all() or not all((v > 0.0).all() for v in known[1:]):
-        raise InputError(
-            "girths", "a place or a size is out of order.", "Give increasing places and sizes."
-        )
-    lock = float(along.strain(MAX_STRESS_N_PER_MM))
-    at = np.linspace(known[0][0], known[0][-1], places)
-    girths, rests = (np.interp(at, known[0], values) for values in known[1:])
-    return tuple(
-        _place(along, lock, *(float(value) for value in place))
-        for place in zip(at, girths, rests, strict=True)
-    )
+    limb = Limb(tuple(at_mm), tuple(girths_mm))
+    rest = Limb(limb.at_mm, tuple(rests_mm))
+    at = np.linspace(limb.at_mm[0], limb.at_mm[-1], places)
+    sizes = zip(at.tolist(), limb.girth_mm(at).tolist(), rest.girth_mm(at).tolist(), strict=True)
+    return tuple(place_on(along, *size) for size in sizes)
 
 
-def _place(along: Along, lock: float, at_mm: float, girth_mm: float, rest_mm: float) -> LimbPlace:
-    share = max(girth_mm / rest_mm - 1.0, 0.0) / lock
+def place_on(along: Along, at_mm: float, girth_mm: float, rest_mm: float) -> LimbPlace:
+    """Fit of a tube at one place of a limb.
+
+    Parameters
+    ----------
+    along : the chart's answer for a pull around the limb.
+    at_mm, girth_mm, rest_mm : as in :class:`LimbPlace`.
+    """
+    share = max(girth_mm / rest_mm - 1.0, 0.0) / along.response.lock_up_strain
     try:
         found = tube_pressure(along, rest_mm, girth_mm)
     except InputError as error:

@@ -90,6 +90,18 @@ class Patches:
             notes=tuple(dict.fromkeys(note for answer in flat for note in answer.notes)),
         )
 
+    def lines(self, direction: Direction) -> tuple[Answer, ...]:
+        """Answers of the chart's rows (course), or of its columns, each that of its patches."""
+        by_row = direction is Direction.COURSE
+        cuts = self.rows if by_row else self.columns
+        found: list[Answer] = []
+        for k, count in enumerate(np.diff(cuts)):
+            line = self.answers[k : k + 1] if by_row else tuple(r[k : k + 1] for r in self.answers)
+            part = cuts[k : k + 2]
+            strip = Patches(part, self.columns, line) if by_row else Patches(self.rows, part, line)
+            found += [strip.together()] * int(count)
+        return tuple(found)
+
     def _along(self, flat: list[Answer], share: Array, direction: Direction) -> Along:
         parts = [answer.along(direction) for answer in flat]
 

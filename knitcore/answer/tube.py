@@ -70,14 +70,15 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
     True
     """
     strain = worn_strain(rest_mm, worn_mm)
-    tensions = _tensions(along, strain)
+    free = float(along.stress(strain))
+    axial = float(along.across_strain(free))
+    tensions = _tensions(along, strain, free, axial)
     if tensions.high >= MAX_STRESS_N_PER_MM:
         raise InputError(
             "worn_mm",
             f"a strain of {strain:.2f} is at or beyond the lock-up of this chart.",
             "Make the tube larger.",
         )
-    free = float(along.stress(strain))
     soft, stiff = (float(end) / free if free else 1.0 for end in along.stress_interval(strain))
     kpa = tensions.scaled(2 * math.pi / worn_mm * 1000.0)
     return TubePressure(
@@ -87,7 +88,7 @@ def tube_pressure(along: Along, rest_mm: float, worn_mm: float) -> TubePressure:
         kpa=kpa,
         kpa_with_spread=Interval(kpa.low * soft, kpa.high * stiff),
         tension_n_per_mm=tensions,
-        axial_strain_free=float(along.across_strain(free)),
+        axial_strain_free=axial,
     )
 
 
@@ -108,7 +109,8 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
     for end in (0, 1):
 
         def missing(strain: float, end: int = end) -> float:
-            both = _tensions(along, strain)
+            free = float(along.stress(strain))
+            both = _tensions(along, strain, free, float(along.across_strain(free)))
             return (both.low, both.high)[end] - wanted
 
         upper = 0.1
@@ -122,9 +124,8 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
     return Interval(min(found), max(found))
 
 
-def _tensions(along: Along, strain: float) -> Interval:
-    """Hoop tension per worn length (N/mm), axially free and axially fixed."""
-    free = float(along.stress(strain))
-    shortened = free / max(1 + float(along.across_strain(free)), MIN_LENGTH)
+def _tensions(along: Along, strain: float, free: float, axial: float) -> Interval:
+    """Hoop tension per worn length (N/mm), axially free (by a stress and strain) and fixed."""
+    shortened = free / max(1 + axial, MIN_LENGTH)
     fixed = float(along.held_stress(strain))
     return Interval(min(shortened, fixed), max(shortened, fixed))

@@ -7,6 +7,7 @@ from io import BytesIO
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.chart import StitchChart
 from knitcore.formats.yarn_mesh import POINTS, export, solid, yarn_radius_mm
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.geometry.tubes import TriangleMesh
@@ -15,9 +16,11 @@ from knitcore.shell.curl import CurledPiece
 from knitcore.shell.surface import Surface
 
 
-def curled_centre_lines(piece: CurledPiece, material: Material) -> tuple[NDArray[np.float64], ...]:
-    """The yarn of every course on the curled surface, mm: (stitches * (POINTS - 1) + 1, 3)."""
-    chart, surface = piece.chart, Surface(piece.corners_mm)
+def curled_centre_lines(
+    chart: StitchChart, corners_mm: NDArray[np.float64], material: Material
+) -> tuple[NDArray[np.float64], ...]:
+    """The yarn of every course on a curled surface, mm: (stitches * (POINTS - 1) + 1, 3)."""
+    surface = Surface(corners_mm)
     radius, kinds = yarn_radius_mm(chart, material), loop_kinds(chart)
     lines = []
     for row in range(chart.rows):
@@ -29,14 +32,19 @@ def curled_centre_lines(piece: CurledPiece, material: Material) -> tuple[NDArray
     return tuple(lines)
 
 
-def curled_mesh(piece: CurledPiece, material: Material) -> TriangleMesh:
+def curled_mesh(
+    chart: StitchChart, corners_mm: NDArray[np.float64], material: Material
+) -> TriangleMesh:
     """All courses as closed tubes, mm."""
-    return solid(curled_centre_lines(piece, material), yarn_radius_mm(piece.chart, material))
+    lines = curled_centre_lines(chart, corners_mm, material)
+    return solid(lines, yarn_radius_mm(chart, material))
 
 
-def write_curled_glb(piece: CurledPiece, material: Material) -> bytes:
-    """Binary glTF 2.0 in metres: the loops on the curled surface."""
-    return export(curled_mesh(piece, material), 0.001, "glb")
+def write_curled_glb(
+    chart: StitchChart, corners_mm: NDArray[np.float64], material: Material
+) -> bytes:
+    """Binary glTF 2.0 in metres: the loops on a curled surface, (rows + 1, columns + 1, 3)."""
+    return export(curled_mesh(chart, corners_mm, material), 0.001, "glb")
 
 
 def write_curled_npz(piece: CurledPiece) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,10 @@ from knitcore.arrays import Array
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import free_strains_at_stress, held_strains_at_stress
+
+MAX_STRESS_N_PER_MM = 10.0
+"""Locks any fabric."""
+_STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, MAX_STRESS_N_PER_MM, 600)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +31,28 @@ class Response:
 
     modulus_n_per_mm: float
     strain: Callable[[ArrayLike], Array]
+
+    @cached_property
+    def _points(self) -> tuple[Array, Array]:
+        """Strains and the stresses that they take, both increasing from 0."""
+        reached = np.maximum.accumulate(self.strain(_STRESSES))
+        grid, first = np.unique(reached, return_index=True)
+        return grid, _STRESSES[first]
+
+    @property
+    def lock_up_strain(self) -> float:
+        """Strain under a stress that locks any fabric."""
+        return float(self._points[0][-1])
+
+    def stress(self, strain: ArrayLike) -> Array:
+        """Stresses (N/mm) at strains of at least 0; 10 N/mm where that is not enough."""
+        grid, stresses = self._points
+        wanted = np.asarray(strain, dtype=float)
+        # in logarithms, so that the initial slope and the lock-up are equally accurate
+        logs = np.interp(
+            np.log(np.maximum(wanted, grid[1])), np.log(grid[1:]), np.log(stresses[1:])
+        )
+        return np.where(wanted < grid[1], self.modulus_n_per_mm * wanted, np.exp(logs))
 
 
 def free_response(law: ConstitutiveLaw, direction: Direction) -> Response:
@@ -68,20 +94,3 @@ def response_through(stress_n_per_mm: Array, strains: Array) -> Response:
         return np.where(sigma < first, sigma / modulus, curved)
 
     return Response(modulus, strain)
-
-
-MAX_STRESS_N_PER_MM = 10.0
-"""Locks any fabric."""
-_STRESSES = np.concatenate([[0.0], np.geomspace(1e-5, MAX_STRESS_N_PER_MM, 600)])
-
-
-def stress_at_strain(response: Response, strain: ArrayLike) -> Array:
-    """Stresses (N/mm) at strains of at least 0; 10 N/mm where that is not enough."""
-    reached = np.maximum.accumulate(response.strain(_STRESSES))
-    grid, first = np.unique(reached, return_index=True)
-    wanted = np.asarray(strain, dtype=float)
-    # in logarithms, so that the initial slope and the lock-up are equally accurate
-    logs = np.interp(
-        np.log(np.maximum(wanted, grid[1])), np.log(grid[1:]), np.log(_STRESSES[first][1:])
-    )
-    return np.where(wanted < grid[1], response.modulus_n_per_mm * wanted, np.exp(logs))

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from click.testing import CliRunner
 from fastapi.testclient import TestClient
+
+from app.cli.main import main
 
 CONE = [
     {"at_mm": 0, "girth_mm": 140, "rest_mm": 150},
@@ -27,3 +36,61 @@ def test_places_that_do_not_increase_are_refused(client: TestClient) -> None:
     answer = client.post("/api/v1/limb", json=body)
     assert answer.status_code == 422
     assert answer.json()["field"] == "girths"
+
+
+TUBE = {
+    "chart": {"fabric": "stockinette", "columns": 40, "rows": 6},
+    "material": "acrylic",
+    "girths": [{"at_mm": 0, "girth_mm": 165}, {"at_mm": 20, "girth_mm": 200}],
+}
+
+
+def test_a_whole_chart_is_worn_and_shown(client: TestClient) -> None:
+    told = client.post("/api/v1/limb", json=TUBE).json()
+    assert len(told["places"]) == 6
+    assert told["length_mm"] < told["relaxed_length_mm"]
+    view = {
+        "chart": TUBE["chart"],
+        "material": "acrylic",
+        "curl": {"id": told["id"]},
+        "colour": "pressure",
+    }
+    answer = client.post("/api/v1/views/solid", json=view)
+    assert answer.status_code == 200, answer.text
+    worn = trimesh.load_mesh(io.BytesIO(answer.content), file_type="glb")
+    around = 1000 * worn.extents[[0, 2]]
+    assert (around > 165 / np.pi).all()
+    colours = {tuple(colour) for colour in worn.visual.vertex_colors}
+    assert len(colours) == 6 + 1  # of the rows, and of the limb
+
+
+def test_pressure_needs_a_worn_tube(client: TestClient) -> None:
+    view = {"chart": "KP", "material": "acrylic", "colour": "pressure"}
+    answer = client.post("/api/v1/views/solid", json=view)
+    assert answer.status_code == 422
+    assert answer.json()["field"] == "colour"
+
+
+def test_sizes_at_rest_are_given_everywhere_or_nowhere(client: TestClient) -> None:
+    girths = [CONE[0], {"at_mm": 200, "girth_mm": 220}]
+    answer = client.post("/api/v1/limb", json=TUBE | {"girths": girths})
+    assert answer.status_code == 422
+    assert answer.json()["field"] == "girths"
+
+
+def test_limb_at_the_command_line(tmp_path: Path) -> None:
+    out = tmp_path / "sleeve.glb"
+    arguments = ["limb", "stockinette", "--size", "40x4", "--material", "acrylic"]
+    girths = ["--girth", "0:165", "--girth", "20:200"]
+    result = CliRunner().invoke(main, [*arguments, *girths, "--out", str(out)])
+    assert result.exit_code == 0, result.stderr
+    assert "nearest to its lock-up" in result.stdout
+    assert out.stat().st_size > 1000
+
+
+@pytest.mark.parametrize("girths", [["0"], ["a:b"], ["0:1:2:3"]])
+def test_girths_that_cannot_be_read_are_refused(girths: list[str]) -> None:
+    arguments = ["limb", "stockinette", "--size", "40x4", "--material", "acrylic"]
+    result = CliRunner().invoke(main, [*arguments, "--girth", *girths])
+    assert result.exit_code == 2
+    assert "0:170" in result.stderr

@@ -1,0 +1,74 @@
+"""A piece as it lies, hangs or is worn: data of a result for the 3D view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from knitcore.arrays import Array
+
+Floats = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """What cloth rests on: a limb, a table, a disc.
+
+    Attributes
+    ----------
+    vertices_mm, normals : (n, 3), the normals pointing to the cloth.
+    faces : (m, 3) triangles.
+    """
+
+    vertices_mm: Floats
+    normals: Floats
+    faces: NDArray[np.uint32]
+
+    @classmethod
+    def around(cls, rings_mm: Array) -> Body:
+        """The surface through rings (rings, sides, 3), closed around its axis."""
+        rings, sides, _ = rings_mm.shape
+        vertex = np.arange(rings * sides, dtype=np.uint32).reshape(rings, sides)
+        low, high = vertex[:-1], vertex[1:]
+        next_low, next_high = np.roll(low, -1, axis=1), np.roll(high, -1, axis=1)
+        faces = np.stack([low, next_low, next_high, low, next_high, high], axis=-1)
+        outwards = rings_mm - rings_mm.mean(axis=1, keepdims=True)
+        outwards /= np.linalg.norm(outwards, axis=-1, keepdims=True)
+        return cls(
+            rings_mm.reshape(-1, 3).astype(np.float32),
+            outwards.reshape(-1, 3).astype(np.float32),
+            faces.reshape(-1, 3),
+        )
+
+    def sunk_mm(self, depth_mm: float) -> Floats:
+        """Its vertices, farther from the cloth: half the cloth lies below its middle plane."""
+        return np.asarray(self.vertices_mm - np.float32(depth_mm) * self.normals)
+
+    @property
+    def size_bytes(self) -> int:
+        """Memory that it takes, bytes."""
+        return self.vertices_mm.nbytes + self.normals.nbytes + self.faces.nbytes
+
+
+@dataclass(frozen=True, eq=False)
+class PosedView:
+    """A piece in space.
+
+    Attributes
+    ----------
+    corners_mm : (rows + 1, columns + 1, 3) corners of the stitches.
+    body : what it rests on, if that is to be seen.
+    mmhg : (rows, columns) pressure on the limb; NaN where there is none. None if it is not worn.
+    """
+
+    corners_mm: Floats
+    body: Body | None = None
+    mmhg: Floats | None = None
+
+    @property
+    def size_bytes(self) -> int:
+        """Memory that it takes, bytes."""
+        more = 0 if self.body is None else self.body.size_bytes
+        return self.corners_mm.nbytes + more + (0 if self.mmhg is None else self.mmhg.nbytes)
