@@ -23,6 +23,7 @@ from app.http.problems import NotFoundError, Problem
 from app.http.security import OPENED_BY
 from app.http.waiting import abandoned
 from app.models.base import RequestModel
+from app.models.charts import size_of_chart
 from app.operations.perform import Reply
 from app.operations.posed import PosedView
 from app.operations.stretch import StretchView
@@ -44,6 +45,7 @@ from app.viewer.shared import (
     shared_page,
     shared_recording,
     shared_solid,
+    shared_still,
 )
 from app.viewer.views import View
 
@@ -53,6 +55,9 @@ HEARTBEATS = 30
 MISSING: dict[int | str, dict[str, Any]] = {
     404: {"model": Problem, "description": "This view is not open."}
 }
+
+MAX_STILL_HERE = 5_000
+"""Letters of a chart whose still the service draws itself, in 0.1 s; others wait for a worker."""
 
 T = TypeVar("T")
 # Threads of their own: for those that asyncio has, everybody's logins and jobs would wait.
@@ -202,6 +207,33 @@ async def post_recording(body: SharedViewRequest, request: Request) -> Response:
 async def post_solid(body: SharedViewRequest, request: Request) -> Response:
     """The fabric as it lies, relaxed or stretched, with its colours."""
     return await _shared(shared_solid, body, request, "model/gltf-binary", "glb")
+
+
+@router.post(
+    "/views/still",
+    summary="A picture of a design",
+    response_class=Response,
+    responses=_file("image/png", "A PNG without background."),
+)
+async def post_still(
+    body: ViewRequest,
+    request: Request,
+    width: Annotated[int, Query(ge=16, le=1600)] = 800,
+    height: Annotated[int, Query(ge=16, le=1200)] = 600,
+) -> Response:
+    """The face of the fabric as its view frames it at first; no browser needs to watch.
+
+    Of a chart of more than 40,000 stitches only what the view draws as yarn.
+    """
+    data_dir = request.app.state.answers.context().data_dir
+    draw = partial(shared_still, body, _found(body, request), data_dir, width, height)
+    gate: Gate = request.app.state.drawing
+    if size_of_chart(body.chart) > MAX_STILL_HERE:
+        content = await _by_worker(request, draw)
+    else:
+        async with gate.turn(current_user.get()):
+            content = await _in(_drawing, partial(draw, cancelled=lambda: False))
+    return Response(content, media_type="image/png")
 
 
 async def _shared(

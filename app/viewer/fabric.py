@@ -72,6 +72,14 @@ class Ground:
         extent: Array = span.astype(float) + self.sizes_mm[0, 0]
         return extent
 
+    @property
+    def framed_mm(self) -> Array:
+        """Width and height that a camera frames: loops reach into neighbouring rows and columns,
+        the outermost beyond the chart, and a stretch may need more room than the rest."""
+        room = self.extent_mm if self.room_mm is None else np.maximum(self.extent_mm, self.room_mm)
+        framed: Array = room + self.sizes_mm[0, 0]
+        return framed
+
     def stitch_at(self, x_mm: float, y_mm: float) -> tuple[int, int] | None:
         """The stitch at a place of the scene, (row, column); None outside the fabric."""
         if not self.is_flat:

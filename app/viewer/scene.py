@@ -109,12 +109,7 @@ class SceneWriter:
     def _place_camera(self, *, everybody: bool) -> None:
         if self._drawing is None:
             return
-        ground = self._drawing.ground
-        room = ground.extent_mm
-        if ground.room_mm is not None:
-            room = np.maximum(room, ground.room_mm)
-        # Loops reach into neighbouring rows and columns, the outermost beyond the chart.
-        extent = UNITS_PER_MM * (room + ground.sizes_mm[0, 0])
+        extent = UNITS_PER_MM * self._drawing.ground.framed_mm
         place_camera(self._server, self._side, extent, everybody=everybody)
 
     # -- yarn ---------------------------------------------------------------------------------

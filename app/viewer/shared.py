@@ -14,6 +14,7 @@ from app.operations.stretch import StretchView
 from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene
 from app.viewer.share import MAX_SOLID, page_html, recording, solid_glb
+from app.viewer.still import still_png
 from knitcore.errors import InputError
 
 MAX_SHARED_STITCHES = 40_000
@@ -60,6 +61,20 @@ def shared_solid(
     """
     _check_size(request, MAX_SOLID)
     return solid_glb(build_scene(request, found, Context(data_dir, cancelled=cancelled)))
+
+
+def shared_still(
+    request: ViewRequest,
+    found: Found,
+    data_dir: Path,
+    width: int,
+    height: int,
+    *,
+    cancelled: Callable[[], bool],
+) -> bytes:
+    """A picture without background, of so many pixels: a PNG."""
+    scene = build_scene(request, found, Context(data_dir, cancelled=cancelled))
+    return still_png(scene.drawing(), width, height)
 
 
 def _scenes(request: SharedViewRequest, found: Found, context: Context) -> Iterator[FabricScene]:

@@ -262,6 +262,13 @@ class AsyncClient(AsyncOperations):
         size = {"width": width, "height": height}
         return (await self._send("GET", f"/views/{design}/picture", params=size)).content
 
+    async def still(
+        self, width: int = 800, height: int = 600, **view: Unpack[ViewRequest]
+    ) -> bytes:
+        """A PNG of the fabric's face, drawn by the service."""
+        size = {"width": width, "height": height}
+        return (await self._send("POST", "/views/still", json=sent(view), params=size)).content
+
     async def page(self, **view: Unpack[SharedViewRequest]) -> bytes:
         """The view as one HTML file that needs nothing else."""
         return (await self._send("POST", "/views/page", json=sent(view))).content

@@ -262,6 +262,11 @@ class Client(Operations):
         size = {"width": width, "height": height}
         return (self._send("GET", f"/views/{design}/picture", params=size)).content
 
+    def still(self, width: int = 800, height: int = 600, **view: Unpack[ViewRequest]) -> bytes:
+        """A PNG of the fabric's face, drawn by the service."""
+        size = {"width": width, "height": height}
+        return (self._send("POST", "/views/still", json=sent(view), params=size)).content
+
     def page(self, **view: Unpack[SharedViewRequest]) -> bytes:
         """The view as one HTML file that needs nothing else."""
         return (self._send("POST", "/views/page", json=sent(view))).content

@@ -14,6 +14,7 @@ import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { ViewLink } from "./fabric/link.js";
+import { Still } from "./fabric/still.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
 import { problemText } from "../widgets/problem.js";
@@ -33,7 +34,7 @@ const MAX_DRAWN = 40_000;
 const BLIND = {
   type: "browser",
   status: 0,
-  title: "The fabric cannot be drawn here",
+  title: "A picture of the fabric, which cannot be turned",
   detail: "This browser draws nothing in 3D: it has no WebGL 2.",
   remedy: "Allow it graphics acceleration, or use another one. Chart, numbers and stretch test work all the same.",
 };
@@ -50,6 +51,7 @@ export function fabricview(host, studio, view) {
   frame.setAttribute("sandbox", "allow-scripts");
   const status = h("div", { class: "fabric-status", role: "status" });
   const caption = h("div", { class: "fabric-caption" });
+  const still = new Still();
   const drawing = { slow: false, held: false };
   /** @param {{pass: string} | {hold: boolean}} message */
   const tellFrame = (message) => frame.contentWindow?.postMessage(message, "*");
@@ -60,7 +62,10 @@ export function fabricview(host, studio, view) {
     tellFrame({ hold: held });
   };
   const link = new ViewLink(studio, view, {
-    lost: () => now(),
+    lost: () => {
+      sent = "";
+      now();
+    },
     slow: () => drawing.slow,
   });
 
@@ -86,6 +91,7 @@ export function fabricview(host, studio, view) {
     }
     patience *= 2;
     frame.src = shown;
+    beStill();
   };
   /** @param {number} ms */
   const reloadAfter = (ms) => {
@@ -123,6 +129,8 @@ export function fabricview(host, studio, view) {
 
   let sending = false;
   let again = false;
+  /** What the service shows. */
+  let sent = "";
   /** Address of the view in the frame, and what lets the frame watch it. */
   let shown = "";
   let pass = "";
@@ -134,24 +142,43 @@ export function fabricview(host, studio, view) {
   const wish = () => wanted(studio, view);
   host.replaceChildren(
     frame,
+    still.root,
     caption,
     toolbar(studio, (side) => void look(side), wish),
     status,
   );
 
   let problem = false;
-  /** A cloth is shown. */
+  let live = false;
+  /** @param {boolean} now */
+  const setLive = (now) => {
+    live = now;
+    host.toggleAttribute("data-live", live);
+  };
+  /** The live view shows the cloth. */
   const knitted = () => {
     clearTimeout(reloading);
+    setLive(true);
+    still.clear();
     if (!problem) status.replaceChildren();
+  };
+  /** Until it does, or always where it cannot, a picture stands in for it. */
+  const beStill = () => {
+    setLive(false);
+    void still.draw(wish(), () => {
+      if (!problem && !blind) status.replaceChildren();
+    });
   };
   /** @param {string} url */
   const open = (url) => {
     if (shown === url) return;
     shown = url;
     pass = "";
+    sent = "";
+    setLive(false);
     patience = RELOAD_MS;
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
+    still.clear();
     frame.src = url;
     link.disconnect();
   };
@@ -160,11 +187,17 @@ export function fabricview(host, studio, view) {
       again = true;
       return;
     }
+    open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
+    const asked = wish();
+    const text = JSON.stringify(asked);
+    if (text === sent) return;
     sending = true;
     host.toggleAttribute("data-sending", true);
-    open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
+    if (!live) beStill();
     try {
-      const answer = await api.view(studio.designId, wish());
+      sent = "";
+      const answer = await api.view(studio.designId, asked);
+      sent = text;
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;

@@ -17,6 +17,12 @@ YARN = 900
 """Coloured pixels of the small fabric at least."""
 
 
+def _wait_for_live_cloth(page: Page) -> np.ndarray:
+    """The pane once the live view has taken the place of the picture."""
+    expect(page.locator(".fabric[data-live]")).to_be_visible()
+    return wait_for_colour(page, "#fabric", YARN)
+
+
 def _click_fabric(page: Page, x: float, y: float) -> None:
     """A click in the view, at shares of its width and height."""
     box = page.locator(".fabric-frame").bounding_box()
@@ -26,7 +32,7 @@ def _click_fabric(page: Page, x: float, y: float) -> None:
 
 @pytest.mark.slow
 def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> None:
-    wait_for_colour(studio, "#fabric", YARN)
+    _wait_for_live_cloth(studio)
     before = pixels(studio, "#chart-host")
     readout = studio.locator("#readout")
     with studio.expect_response(lambda r: r.url.endswith("/mark") and r.ok):
@@ -38,8 +44,20 @@ def test_a_click_on_the_fabric_finds_its_stitch_and_marks_it(studio: Page) -> No
 
 
 @pytest.mark.slow
+def test_a_picture_stands_in_until_the_live_view_is_there(flat_studio: Page) -> None:
+    wait_for_colour(flat_studio, "#fabric", YARN)
+    expect(flat_studio.locator(".fabric-still")).to_be_visible()
+    expect(flat_studio.locator(".fabric-status")).to_be_hidden()
+    flat_studio.unroute_all()
+    flat_studio.reload()
+    expect(flat_studio.locator(".fabric[data-live]")).to_be_visible()
+    expect(flat_studio.locator(".fabric-still")).to_be_hidden()
+    wait_for_colour(flat_studio, "#fabric", YARN)
+
+
+@pytest.mark.slow
 def test_what_is_selected_in_the_chart_is_outlined_on_the_fabric(studio: Page) -> None:
-    wait_for_colour(studio, "#fabric", YARN)
+    _wait_for_live_cloth(studio)
     with studio.expect_request(
         lambda r: r.url.endswith("/mark") and '"row0":0' in (r.post_data or "")
     ) as sent:
@@ -54,7 +72,7 @@ def test_what_is_selected_in_the_chart_is_outlined_on_the_fabric(studio: Page) -
 
 @pytest.mark.slow
 def test_sides_and_yarn_colours_change_the_picture(studio: Page) -> None:
-    face = wait_for_colour(studio, "#fabric", YARN)
+    face = _wait_for_live_cloth(studio)
     with studio.expect_response(lambda r: r.url.endswith("/camera") and r.ok):
         studio.click("#look-edge")
     studio.wait_for_timeout(2_000)
@@ -132,7 +150,7 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
         wait_for_numbers(page)
         contexts.append((context, page))
     for _, page in contexts:
-        pictures.append(wait_for_colour(page, "#fabric", YARN))
+        pictures.append(_wait_for_live_cloth(page))
     for context, _ in contexts:
         context.close()
     stockinette, rib = (picture.reshape(-1, 3) for picture in pictures)
@@ -149,19 +167,19 @@ def test_two_designs_never_show_each_other(browser: Browser, service: str) -> No
 
 @pytest.mark.slow
 def test_a_lost_view_is_restored_automatically(studio: Page) -> None:
-    wait_for_colour(studio, "#fabric", YARN)
+    _wait_for_live_cloth(studio)
     with studio.expect_response(
         lambda r: r.url.endswith("views/" + _design(studio)) and r.request.method == "PUT" and r.ok
     ):
         studio.context.set_offline(True)
         studio.wait_for_timeout(500)
         studio.context.set_offline(False)
-    wait_for_colour(studio, "#fabric", YARN)
+    _wait_for_live_cloth(studio)
 
 
 @pytest.mark.slow
 def test_a_page_is_saved_that_needs_no_service(studio: Page, tmp_path: Path) -> None:
-    wait_for_colour(studio, "#fabric", YARN)
+    _wait_for_live_cloth(studio)
     studio.click("#fabric-share-button")
     with studio.expect_download() as download:
         studio.click("#share-page")

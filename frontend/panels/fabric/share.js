@@ -24,7 +24,7 @@ export async function savePicture(studio, width) {
 }
 
 /** Whether the view shows a cloth, of which a picture can be made. */
-export const isKnitted = () => document.querySelector(".fabric-status:empty") !== null;
+export const isKnitted = () => document.querySelector(".fabric[data-live]") !== null;
 
 /**
  * A picture (PNG) as this browser sees the fabric.

@@ -1,0 +1,62 @@
+/**
+ * A picture of the cloth that the service draws in a tenth of the time that the live view needs to
+ * start: on show until that is there, and all the time in browsers that draw nothing in 3D.
+ *
+ * @import {ViewRequest} from "../../types.js"
+ */
+
+import { ApiError, fetched } from "../../api.js";
+import { h } from "../../dom.js";
+
+/** Pixels that the service draws at most. */
+const WIDEST = 1600;
+const HIGHEST = 1200;
+
+export class Still {
+  root = h("img", { class: "fabric-still", alt: "", hidden: true });
+  /** What was asked for last. */
+  #asked = "";
+  #busy = false;
+
+  /** At most one is being drawn; of the wishes meanwhile only the last is. @param {ViewRequest} wish @param {() => void} shown */
+  async draw(wish, shown) {
+    const asked = JSON.stringify(wish);
+    if (asked === this.#asked) return;
+    this.#asked = asked;
+    if (this.#busy) return;
+    this.#busy = true;
+    try {
+      const content = await this.#drawn(wish);
+      if (this.#asked) {
+        URL.revokeObjectURL(this.root.src);
+        this.root.src = URL.createObjectURL(content);
+        this.root.hidden = false;
+        shown();
+      }
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error; // the live view asks for the same, and tells
+    } finally {
+      this.#busy = false;
+    }
+    if (!["", asked].includes(this.#asked)) {
+      const next = JSON.parse(this.#asked);
+      this.#asked = "";
+      await this.draw(next, shown);
+    }
+  }
+
+  /** The live view is there, or another design. */
+  clear() {
+    this.#asked = "";
+    this.root.hidden = true;
+  }
+
+  /** @param {ViewRequest} wish */
+  async #drawn(wish) {
+    const { clientWidth, clientHeight } = /** @type {HTMLElement} */ (this.root.parentElement);
+    const width = Math.max(16, Math.min(WIDEST, clientWidth));
+    const height = Math.max(16, Math.min(HIGHEST, clientHeight));
+    const answer = await fetched(`/views/still?width=${width}&height=${height}`, { method: "POST", body: wish });
+    return answer.blob();
+  }
+}

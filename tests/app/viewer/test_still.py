@@ -1,0 +1,67 @@
+"""Pictures of a fabric that the service draws itself."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from PIL import Image
+
+from app.operations.context import Context
+from app.viewer.colours import FABRIC_COLOURS, rgb
+from app.viewer.design_view import ViewRequest, build_scene
+from app.viewer.still import still_png
+from knitcore.fabric import Fabric
+
+ASKED = {"chart": "\n".join(["KKKK"] * 4), "material": "acrylic", "colour": "fabric"}
+
+
+def picture(content: bytes) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(content))).astype(float)
+
+
+def still(width: int, height: int, **changed: object) -> np.ndarray:
+    request = ViewRequest.model_validate(ASKED | changed)
+    return picture(still_png(build_scene(request, None, Context(Path())).drawing(), width, height))
+
+
+def test_the_fabric_lies_in_the_middle_in_its_colour() -> None:
+    drawn = still(120, 90)
+    assert drawn.shape == (90, 120, 4)
+    shown = drawn[..., 3] > 128
+    columns, rows = np.flatnonzero(shown.any(axis=0)), np.flatnonzero(shown.any(axis=1))
+    assert columns.mean() == pytest.approx(60, abs=2)
+    assert 0.6 * 90 < np.ptp(rows) < 90
+    assert not shown[0].any()
+    colour = drawn[shown][:, :3].mean(axis=0)
+    wanted = np.array(rgb(FABRIC_COLOURS[Fabric.STOCKINETTE]))
+    assert np.corrcoef(colour, wanted)[0, 1] > 0.99
+
+
+def test_face_and_back_of_a_loop_differ() -> None:
+    """Knits show their legs in front, purls their heads."""
+    knit, purl = (still(120, 90, chart="\n".join([4 * kind] * 4)) for kind in "KP")
+    assert np.abs(knit - purl).mean() > 5
+
+
+def test_where_there_is_no_stitch_nothing_is_drawn() -> None:
+    part = still(120, 90, outline="\n".join(["xx.."] * 4))[..., 3] > 128
+    right = np.flatnonzero(part.any(axis=0)).max()
+    whole = np.flatnonzero((still(120, 90)[..., 3] > 128).any(axis=0)).max()
+    assert right < whole - 20
+
+
+def test_large_pictures_are_larger_not_other_ones() -> None:
+    small, large = still(80, 60), still(160, 120)
+    shares = [(each[..., 3] > 128).mean() for each in (small, large)]
+    assert shares[0] == pytest.approx(shares[1], abs=0.03)
+
+
+def test_the_service_gives_it_without_a_browser(client: TestClient) -> None:
+    answer = client.post("/api/v1/views/still?width=64&height=48", json=ASKED)
+    assert answer.headers["content-type"] == "image/png"
+    assert picture(answer.content).shape == (48, 64, 4)
+    assert client.post("/api/v1/views/still?width=1601", json=ASKED).status_code == 422
