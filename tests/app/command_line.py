@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from app.cli.main import main
 
 
-def run(*arguments: str | Path) -> Any:
+def run(*arguments: str | float | Path) -> Any:
     """The one JSON object that a command prints, and nothing else."""
     result = CliRunner().invoke(main, [*map(str, arguments), "--json"])
     assert result.exit_code == 0, result.output

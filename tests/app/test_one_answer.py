@@ -13,7 +13,8 @@ from app.operations.context import Context
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
 from knitcore import Direction, Fabric, StitchChart, curve, predict, strip_test
-from knitcore.design.atlas import STRESS_N_PER_MM
+from knitcore.answer.answer import Answer
+from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.targets import Limb, Quantity, Target, values_of
 from knitcore.formats import report
@@ -41,82 +42,108 @@ def _charts() -> dict[str, StitchChart]:
 
 
 CHARTS = _charts()
-SOME = [*list(CHARTS)[:6], *list(CHARTS)[60::40]]
+ALL, SOME = list(CHARTS.values()), list(CHARTS.values())[::60]
 
-
-@pytest.mark.parametrize(
-    "yarn",
+in_yarns = pytest.mark.parametrize(
+    ("yarn", "charts"),
     [
-        "acrylic",
-        "acrylic:simulation",
-        *(pytest.param(yarn, marks=pytest.mark.slow) for yarn in ("cotton", "lace-bamboo")),
+        *((yarn, SOME) for yarn in ("acrylic", "glove-wool", "lace-bamboo")),
+        *(
+            pytest.param(yarn, ALL, marks=pytest.mark.slow)
+            for yarn in ("acrylic", "acrylic:simulation", "cotton")
+        ),
     ],
+    ids=lambda given: given if isinstance(given, str) else f"{len(given)} charts",
 )
-def test_library_operations_and_atlas_give_one_answer(yarn: str) -> None:
-    used, charts = material(yarn), list(CHARTS.values())
+
+
+@in_yarns
+def test_all_ways_of_asking_give_one_answer(
+    client: TestClient,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    yarn: str,
+    charts: list[StitchChart],
+) -> None:
+    """Library, operation, command line, REST, report and atlas."""
+    used, file = material(yarn), tmp_path / "chart.txt"
     atlas = build_atlas(used, [chart.canonical() for chart in charts])
     for chart in charts:
-        answer, told = predict(chart, used), _operation(chart, yarn)
-        row = atlas.index_of(chart)
-        assert row is not None
-        for direction in Direction:
-            along = answer.along(direction)
-            interval = along.modulus_interval_n_per_mm
-            assert told[f"modulus_{direction}_n_per_mm"] == along.modulus_n_per_mm
-            assert told[f"modulus_{direction}_interval_n_per_mm"] == [interval.low, interval.high]
-            assert told[f"relaxed_{direction}_mm"] == along.relaxed_mm
-            assert interval.low < along.modulus_n_per_mm < interval.high
-            size = along.relaxed_interval_mm
-            assert size.low < along.relaxed_mm < size.high
-            bounds = told[f"modulus_{direction}_bounds_n_per_mm"]
-            assert bounds[0] <= along.modulus_n_per_mm <= bounds[1]
-            kept = atlas.column(f"modulus_{direction}_n_per_mm")[row]
-            assert kept == pytest.approx(along.modulus_n_per_mm, rel=1e-7)
-            assert atlas.column(f"relaxed_{direction}_mm")[row] == pytest.approx(
-                along.relaxed_mm, rel=1e-7
-            )
-            for kind, own in enumerate((along.strain, along.across_strain, along.held_strain)):
-                np.testing.assert_allclose(
-                    atlas.curves[row, kind, direction.axis], own(STRESS_N_PER_MM), rtol=1e-5
-                )
-        assert told["provenance"] == answer.provenance == atlas.provenance[row]
+        answer, body = predict(chart, used), {"chart": chart.text, "material": yarn}
+        told = _operation(body)
+        _agrees_with_library(told, answer)
+        _agrees_with_atlas(atlas, chart, answer)
+        _agrees_with_report(_report(chart, yarn, monkeypatch), answer)
+        file.write_text(chart.text)
+        assert run("predict", file, "--material", yarn) == told
+        assert client.post("/api/v1/predict", json=body).json() == told
 
 
-@pytest.mark.parametrize("key", SOME)
-@pytest.mark.parametrize("yarn", ["acrylic", "glove-wool"])
-def test_command_line_rest_and_report_give_the_same(
-    client: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, key: str, yarn: str
+@in_yarns
+@pytest.mark.parametrize("direction", Direction)
+def test_all_ways_of_asking_give_one_curve(
+    client: TestClient, tmp_path: Path, yarn: str, charts: list[StitchChart], direction: Direction
 ) -> None:
-    chart, used = CHARTS[key], material(yarn)
-    answer, told = predict(chart, used), _operation(chart, yarn)
-    file = tmp_path / "chart.txt"
-    file.write_text(chart.text)
-    body = {"chart": chart.text, "material": yarn}
-    assert run("predict", str(file), "--material", yarn) == told
-    assert client.post("/api/v1/predict", json=body).json() == told
-    for direction in Direction:
+    """Library, command line and REST."""
+    used, file = material(yarn), tmp_path / "chart.txt"
+    for chart in charts:
         own = curve(chart, used, direction, LOADS)
-        asked = body | {"direction": direction, "stress_n_per_mm": LOADS}
-        served = client.post("/api/v1/curve", json=asked).json()
+        asked = {"chart": chart.text, "material": yarn, "direction": direction}
+        served = client.post("/api/v1/curve", json=asked | {"stress_n_per_mm": LOADS}).json()
         assert served["strain"] == own.strain.tolist()
-        ends = [own.strain_low.tolist(), own.strain_high.tolist()]
-        assert served["strain_interval"] == ends
-        ends = [own.stress_low.tolist(), own.stress_high.tolist()]
-        assert served["stress_interval_n_per_mm"] == ends
+        assert served["strain_interval"] == np.array([own.strain_low, own.strain_high]).tolist()
+        ends = np.array([own.stress_low, own.stress_high])
+        assert served["stress_interval_n_per_mm"] == ends.tolist()
+        file.write_text(chart.text)
         shown = run(
-            "curve", str(file), "--material", yarn, "--direction", str(direction),
-            "--max-stress", "0.2", "--points", "2",
+            "curve", file, "--material", yarn, "--direction", direction,
+            "--max-stress", LOADS[-1], "--points", 2,
         )  # fmt: skip
         assert shown["strain"][-1] == pytest.approx(own.strain[-1])
-    labels = _report(chart, yarn, monkeypatch)
+
+
+def _agrees_with_library(told: Any, answer: Answer) -> None:
+    assert told["provenance"] == answer.provenance
     for direction in Direction:
         along = answer.along(direction)
-        interval = along.modulus_interval_n_per_mm
-        modulus = f"{along.modulus_n_per_mm:.3g}  ({interval.low:.3g} to {interval.high:.3g})"
-        assert modulus in labels
-        size = along.relaxed_interval_mm
-        assert f"{along.relaxed_mm:.3g}  ({size.low:.3g} to {size.high:.3g})" in labels
-    assert any(str(answer.provenance) in label for label in labels)
+        interval, size = along.modulus_interval_n_per_mm, along.relaxed_interval_mm
+        assert told[f"modulus_{direction}_n_per_mm"] == along.modulus_n_per_mm
+        assert told[f"modulus_{direction}_interval_n_per_mm"] == [interval.low, interval.high]
+        assert interval.low < along.modulus_n_per_mm < interval.high
+        assert told[f"relaxed_{direction}_mm"] == along.relaxed_mm
+        assert told[f"relaxed_{direction}_interval_mm"] == [size.low, size.high]
+        assert size.low < along.relaxed_mm < size.high
+        low, high = told[f"modulus_{direction}_bounds_n_per_mm"]
+        assert low <= along.modulus_n_per_mm <= high
+
+
+def _agrees_with_atlas(atlas: Atlas, chart: StitchChart, answer: Answer) -> None:
+    """The curves of an atlas are kept in single precision."""
+    row = atlas.index_of(chart)
+    assert row is not None
+    assert atlas.provenance[row] == answer.provenance
+    for direction in Direction:
+        along = answer.along(direction)
+        modulus = atlas.column(f"modulus_{direction}_n_per_mm")[row]
+        assert modulus == pytest.approx(along.modulus_n_per_mm, rel=1e-7)
+        size = atlas.column(f"relaxed_{direction}_mm")[row]
+        assert size == pytest.approx(along.relaxed_mm, rel=1e-7)
+        for kind, strain in enumerate((along.strain, along.across_strain, along.held_strain)):
+            np.testing.assert_allclose(
+                atlas.curves[row, kind, direction.axis], strain(STRESS_N_PER_MM), rtol=1e-5
+            )
+
+
+def _agrees_with_report(labels: set[str], answer: Answer) -> None:
+    """Figures are printed with three digits."""
+    assert any(answer.provenance in label for label in labels)
+    for direction in Direction:
+        along = answer.along(direction)
+        for value, interval in (
+            (along.modulus_n_per_mm, along.modulus_interval_n_per_mm),
+            (along.relaxed_mm, along.relaxed_interval_mm),
+        ):
+            assert f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})" in labels
 
 
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
@@ -154,8 +181,8 @@ def test_a_target_pressure_agrees_with_the_pressure_command(
     assert value[0] == pytest.approx(middle, rel=0.01)
 
 
-def _operation(chart: StitchChart, yarn: str) -> Any:
-    request = PredictRequest.model_validate({"chart": chart.text, "material": yarn})
+def _operation(body: dict[str, str]) -> Any:
+    request = PredictRequest.model_validate(body)
     return predict_operation(request, Context(Path())).model_dump(mode="json")
 
 
