@@ -8,11 +8,15 @@
 
 /** A refused or failed call. */
 export class ApiError extends Error {
-  /** @param {Problem} problem */
-  constructor(problem) {
+  /**
+   * @param {Problem} problem
+   * @param {boolean} [passing] whether the service asks to try again later
+   */
+  constructor(problem, passing = false) {
     super(problem.detail || problem.title);
     this.name = "ApiError";
     this.problem = problem;
+    this.passing = passing;
   }
 
   /** Whether the service could not be reached at all. */
@@ -91,7 +95,9 @@ export async function fetched(path, { method = "GET", body, signal, headers = {}
     if (isAbort(error)) throw error;
     throw new ApiError(UNREACHABLE);
   }
-  if (!response.ok && response.status !== 304) throw new ApiError(await problemOf(response));
+  if (!response.ok && response.status !== 304) {
+    throw new ApiError(await problemOf(response), response.headers.has("Retry-After"));
+  }
   return response;
 }
 

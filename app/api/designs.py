@@ -77,9 +77,12 @@ def get_designs(
     limit: Limit = 50,
     cursor: Cursor = None,
     deleted: Annotated[bool, Query(description="List what can be recovered instead.")] = False,
+    q: Annotated[
+        str, Query(max_length=200, description="Only those whose name contains this.")
+    ] = "",
 ) -> DesignPage:
     """A page of summaries; ask with ``next_cursor`` for the next one."""
-    return store.page(owner, limit=limit, cursor=cursor, deleted=deleted)
+    return store.page(owner, limit=limit, cursor=cursor, deleted=deleted, part=q)
 
 
 @router.post("/designs", status_code=201, summary="Save a new design", responses=CONFLICT)

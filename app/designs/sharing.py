@@ -7,8 +7,7 @@ import secrets
 
 from sqlalchemy import Connection, Row, func, insert, select, update
 
-from app.budgets import BUDGETS
-from app.designs.conditions import ConflictError
+from app.budgets import BUDGETS, OverBudgetError
 from app.designs.document import (
     Design,
     NewShare,
@@ -47,8 +46,9 @@ class Sharing:
                 shares.c.design_id == design, shares.c.revoked_at.is_(None)
             )
             if connection.execute(given).scalar_one() >= BUDGETS.links:
-                raise ConflictError(
+                raise OverBudgetError(
                     f"The design has {BUDGETS.links} open links, which is as many as it may.",
+                    field="links",
                     remedy="Take some back.",
                 )
             connection.execute(

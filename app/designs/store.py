@@ -10,7 +10,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Row, Select, bindparam, func, insert, select, update
 
-from app.budgets import BUDGETS
+from app.budgets import BUDGETS, OverBudgetError
 from app.designs.conditions import ConflictError, check_match
 from app.designs.document import (
     Design,
@@ -71,12 +71,16 @@ class DesignStore:
         with self._database.read() as connection:
             return full(find(connection, owner, design))
 
-    def page(self, owner: str, *, limit: int, cursor: str | None, deleted: bool) -> DesignPage:
-        """Designs of an owner, the latest changes first."""
+    def page(
+        self, owner: str, *, limit: int, cursor: str | None, deleted: bool, part: str = ""
+    ) -> DesignPage:
+        """Designs of an owner whose names contain a part, the latest changes first."""
         chosen = select(*_SUMMARY).where(
             designs.c.owner == owner,
             designs.c.deleted_at.is_not(None) if deleted else designs.c.deleted_at.is_(None),
         )
+        if part:
+            chosen = chosen.where(designs.c.name.icontains(part, autoescape=True))
         rows, following = one_page(
             self._database, chosen, designs.c.changed_at, designs.c.id, limit=limit, cursor=cursor
         )
@@ -285,12 +289,13 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
 
     Raises
     ------
-    ConflictError
+    OverBudgetError
         If the owner has as many as the service stores.
     """
     if _count(connection, owner) >= BUDGETS.designs:
-        raise ConflictError(
+        raise OverBudgetError(
             f"You have {BUDGETS.designs} designs, deleted ones included; no more are kept.",
+            field="designs",
             remedy="Export and delete some; deleted ones leave for good after 30 days.",
         )
     content = _sized(connection, owner, content)
@@ -377,13 +382,14 @@ def _check_room(connection: Connection, owner: str, more: int) -> None:
 
     Raises
     ------
-    ConflictError
+    OverBudgetError
     """
     total = _kept_bytes(connection, owner)
     if total + more > BUDGETS.kept_bytes:
-        raise ConflictError(
+        raise OverBudgetError(
             f"Your designs and their versions have {total / 1e6:.1f} of "
             f"{BUDGETS.kept_bytes / 1e6:.0f} MB; this would be {more / 1e6:.1f} MB more.",
+            field="kept_bytes",
             remedy="Export and delete some; deleted ones leave for good after 30 days.",
         )
 
@@ -404,8 +410,9 @@ def _keep(connection: Connection, row: Row[Any], name: str, *, automatic: bool) 
     last = connection.execute(select(func.max(design_versions.c.number)).where(mine)).scalar()
     number = (last or 0) + 1
     if number > BUDGETS.versions:
-        raise ConflictError(
+        raise OverBudgetError(
             f"{BUDGETS.versions} versions of this design are kept, as many as there can be.",
+            field="versions",
             remedy="Duplicate the design and go on with the copy.",
         )
     kept = {column.name for column in design_versions.c} & row._mapping.keys()

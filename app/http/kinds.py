@@ -57,7 +57,7 @@ KINDS = {
     ),
     "conflict": Kind(
         "409",
-        "The request conflicts with the present state, or a limit is reached.",
+        "The request conflicts with the present state.",
         "Read the present state, and decide again.",
     ),
     "stale": Kind(

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import secrets
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from sqlalchemy import (
-    Column,
     ColumnElement,
     Connection,
     Row,
@@ -26,12 +25,10 @@ from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.store.database import Database, StoreError
 from app.store.pages import one_page
-from app.store.tables import jobs, results
+from app.store.tables import job_requests, jobs, results
 
 OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
-STATUS = tuple(column for column in jobs.c if column is not jobs.c.request)
-"""Columns that describe a job, without its request, which may be megabytes."""
 ORPHANED_S = 60.0
 """A process not seen for this long counts as gone; the others take over its jobs."""
 INTERRUPTED = Problem(
@@ -82,7 +79,6 @@ class JobStore:
             "owner": owner,
             "process": self.process,
             "kind": kind,
-            "request": request,
             "size_bytes": len(request),
             "key": key,
             "state": state.value,
@@ -94,6 +90,7 @@ class JobStore:
         def action(connection: Connection) -> JobStatus:
             _make_room(connection, owner, len(request))
             connection.execute(insert(jobs).values(values))
+            connection.execute(insert(job_requests).values(job_id=values["id"], request=request))
             return _status(_one(connection, owner, str(values["id"])))
 
         return once(self._database, retry, JobStatus, action)
@@ -111,12 +108,13 @@ class JobStore:
     def request_of(self, owner: str, job: str) -> tuple[str, str]:
         """Kind and request of a job."""
         with self._database.read() as connection:
-            row = _one(connection, owner, job, (jobs.c.kind, jobs.c.request))
-        return row.kind, row.request
+            kind = _one(connection, owner, job).kind
+            request = select(job_requests.c.request).where(job_requests.c.job_id == job)
+            return kind, connection.execute(request).scalar_one()
 
     def page(self, owner: str, *, limit: int, cursor: str | None) -> JobPage:
         """Jobs of an owner, latest first."""
-        mine = select(*STATUS).where(jobs.c.owner == owner)
+        mine = select(jobs).where(jobs.c.owner == owner)
         rows, following = one_page(
             self._database, mine, jobs.c.created_at, jobs.c.id, limit=limit, cursor=cursor
         )
@@ -303,12 +301,9 @@ def _make_room(connection: Connection, owner: str, more: int) -> None:
         )
 
 
-def _one(
-    connection: Connection, owner: str, job: str, columns: Sequence[Column[Any]] = STATUS
-) -> Row[Any]:
-    row = connection.execute(
-        select(*columns).where(jobs.c.id == job, jobs.c.owner == owner)
-    ).one_or_none()
+def _one(connection: Connection, owner: str, job: str) -> Row[Any]:
+    mine = select(jobs).where(jobs.c.id == job, jobs.c.owner == owner)
+    row = connection.execute(mine).one_or_none()
     if row is None:
         raise NotFoundError(
             f"You have no job {job}.",

@@ -93,7 +93,6 @@ jobs = Table(
     Column("owner", String(80), nullable=False),
     Column("process", String(80), nullable=False),  # which service process runs it
     Column("kind", String(40), nullable=False),
-    Column("request", Text, nullable=False),
     Column("key", String(64), nullable=False),  # of the content, names the result
     Column("state", String(16), nullable=False),
     Column("problem", Text),
@@ -106,6 +105,13 @@ jobs = Table(
     Index(None, "owner", "created_at", "id"),
     Index(None, "owner", "size_bytes"),
     Index(None, "process", "state"),
+)
+
+job_requests = Table(
+    "job_requests",
+    metadata,
+    Column("job_id", ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True),
+    Column("request", Text, nullable=False),  # may be megabytes, while rows of jobs change often
 )
 
 results = Table(

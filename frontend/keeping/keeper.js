@@ -328,7 +328,7 @@ export class Keeper {
     if (error.offline) {
       this.state.value = { kind: "offline" };
       this.#sendLater(RETRY_MS);
-    } else if (error.problem.status >= 500 || error.problem.status === 429) {
+    } else if (error.problem.status >= 500 || error.passing) {
       this.state.value = { kind: "waiting" };
       this.#sendLater(RETRY_MS);
     } else {

@@ -17,7 +17,6 @@ from app.budgets import BUDGETS, Budgets, ComputingTime, InUse, OverBudgetError,
 from app.compute.compute import Compute
 from app.designs import sharing as sharing_module
 from app.designs import store as store_module
-from app.designs.conditions import ConflictError
 from app.designs.document import DesignDocument, ShareMode
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
@@ -144,7 +143,7 @@ def test_bytes_kept_are_counted_with_versions(
         lambda: store.keep_version("ada", first.id, "two"),
         lambda: store.replace("ada", second.id, larger, "*"),
     ):
-        with pytest.raises(ConflictError, match="of 0 MB"):
+        with pytest.raises(OverBudgetError, match="of 0 MB"):
             refused()
     small = RIB.model_copy(update={"chart": "KP"})
     assert store.replace("ada", second.id, small, "*").columns == 2  # smaller is always taken
@@ -158,7 +157,7 @@ def test_links_to_a_design_are_bounded(database: Database, monkeypatch: pytest.M
     links = Sharing(database)
     first = links.give("ada", design, ShareMode.READ)
     links.give("ada", design, ShareMode.COPY)
-    with pytest.raises(ConflictError, match="2 open links"):
+    with pytest.raises(OverBudgetError, match="2 open links"):
         links.give("ada", design, ShareMode.READ)
     assert links.most_given("ada") == 2
     links.revoke("ada", design, first.id)

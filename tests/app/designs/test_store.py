@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from app.budgets import Budgets
+from app.budgets import Budgets, OverBudgetError
 from app.designs import store as store_module
 from app.designs.conditions import ConflictError, StaleError, UnconditionalError
 from app.designs.document import DesignDocument, DesignPatch, Run, ShareMode, Strokes
@@ -188,10 +188,10 @@ def test_the_designs_of_one_owner_are_limited(
     made = designs.create("ada", RIB)
     designs.create("ada", RIB)
     designs.create("bob", RIB)
-    with pytest.raises(ConflictError, match="no more"):
+    with pytest.raises(OverBudgetError, match="no more"):
         designs.create("ada", RIB)
     designs.keep_version("ada", made.id, "first")
-    with pytest.raises(ConflictError, match="as many"):
+    with pytest.raises(OverBudgetError, match="as many"):
         designs.keep_version("ada", made.id, "second")
 
 
