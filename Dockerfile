@@ -1,5 +1,5 @@
-# `scripts/image pin` adds the digests of today's images; `scripts/image` builds this and tries it out.
-ARG BASE=debian:bookworm-slim
+# `scripts/image pin` writes the digests of today's images; `scripts/image` builds this and tries it out.
+ARG BASE=debian:bookworm-slim@sha256:88200866dfff7ea7f5cbcb6ec7c8a701889efe6fe859fe64d6990e4b07ea4171
 
 FROM ${BASE} AS page
 RUN apt-get update \
@@ -21,7 +21,7 @@ RUN python3 -m venv /opt/knitcore \
 COPY . .
 COPY --from=page /page/dist frontend/dist
 RUN /opt/knitcore/bin/pip install --no-deps . \
- && find /opt/knitcore -type d -name tests -path '*/site-packages/*' -prune -exec rm -rf {} + \
+ && find /opt/knitcore -type d '(' -name tests -o -path '*/site-packages/docs' ')' -prune -exec rm -rf {} + \
  && /opt/knitcore/bin/pip uninstall -y pip
 
 FROM ${BASE}
