@@ -74,6 +74,19 @@ def test_pages_hold_every_design_once(designs: DesignStore) -> None:
         designs.page("ada", limit=3, cursor="nonsense", deleted=False)
 
 
+def test_designs_are_found_by_a_part_of_their_name(designs: DesignStore) -> None:
+    for name in ("Ribbed cuff", "Cuff, 100% cotton", "Sock"):
+        designs.create("ada", RIB.model_copy(update={"name": name}))
+
+    def named(part: str) -> set[str]:
+        page = designs.page("ada", limit=9, cursor=None, deleted=False, part=part)
+        return {design.name for design in page.designs}
+
+    assert named("cuff") == {"Ribbed cuff", "Cuff, 100% cotton"}
+    assert named("0%") == {"Cuff, 100% cotton"}  # no pattern
+    assert named("hat") == set()
+
+
 def test_a_change_on_an_old_state_is_refused(designs: DesignStore) -> None:
     made = designs.create("ada", RIB)
     mine = RIB.model_copy(update={"name": "Mine"})

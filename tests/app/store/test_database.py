@@ -14,6 +14,8 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import Connection, event, text
 from sqlalchemy.exc import IntegrityError
 
+from app.jobs.document import JobState
+from app.jobs.store import JobStore
 from app.store.database import Database, StoreError
 from app.store.schema import migrate, revision
 from app.store.tables import metadata
@@ -46,6 +48,22 @@ def test_the_migrations_make_the_tables(database: Database) -> None:
     assert revision(database) is not None
     with database.read() as connection:
         assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+
+
+def test_jobs_of_an_earlier_version_keep_their_requests(database: Database) -> None:
+    migrate(database, "0007")
+    insert = text(
+        "INSERT INTO jobs (id, owner, process, kind, request, key, state, created_at)"
+        " VALUES ('j', 'ada', 'p', 'relax', :request, 'key', 'waiting', 0)"
+    )
+    database.write(lambda c: c.execute(insert, {"request": '{"chart": "KP"}'}))
+    migrate(database)
+    jobs = JobStore(database, "p")
+    assert jobs.request_of("ada", "j") == ("relax", '{"chart": "KP"}')
+    jobs.end("j", JobState.CANCELLED)
+    database.write(lambda c: c.execute(text("DELETE FROM jobs")))
+    with database.read() as connection:
+        assert connection.execute(text("SELECT count(*) FROM job_requests")).scalar() == 0
 
 
 def test_a_database_of_a_newer_program_is_left_alone(database: Database) -> None:
