@@ -80,8 +80,9 @@ def pure_fabric(chart: StitchChart) -> Fabric | None:
     >>> pure_fabric(StitchChart.of_fabric("seed", rows=31, columns=31))
     <Fabric.SEED: 'seed'>
     """
-    found = np.unique(quarter_phases(chart))
-    return PHASES[found[0]] if len(found) == 1 else None
+    phases = quarter_phases(chart)
+    first = phases[0, 0]
+    return PHASES[first] if (phases == first).all() else None
 
 
 def reference_fabric(chart: StitchChart) -> Fabric:

@@ -14,7 +14,6 @@ from pydantic import BaseModel
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
-from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.garment.piece import Piece
 from knitcore.patterns import patterns
 
@@ -34,6 +33,8 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
         If it is none, or the size is missing or malformed.
     """
     if Path(chart).suffix:
+        from knitcore.formats.chart_files import read_chart  # a fabric needs no readers
+
         if size is not None:
             raise InputError(
                 "size", "goes with the name of a fabric, not with a file.", "Leave --size out."
@@ -60,7 +61,11 @@ def resolve_chart(chart: str, size: str | None) -> StitchChart:
 def resolve_piece(chart: str, size: str | None) -> Piece:
     """As :func:`resolve_chart`, with the outline of a file that has one."""
     stitches = resolve_chart(chart, size)
-    return read_piece(chart) if Path(chart).suffix else Piece.plain(stitches)
+    if not Path(chart).suffix:
+        return Piece.plain(stitches)
+    from knitcore.formats.chart_files import read_piece
+
+    return read_piece(chart)
 
 
 def user_settings() -> Settings:

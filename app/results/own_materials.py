@@ -12,10 +12,13 @@ import logging
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from knitcore.errors import InputError
 from knitcore.materials import Material, load_material_file
-from knitcore.materials.document import MaterialDocument
+
+if TYPE_CHECKING:
+    from knitcore.materials.document import MaterialDocument
 
 FOLDER = "materials"
 PREFIX = "own:"

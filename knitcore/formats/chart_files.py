@@ -7,14 +7,10 @@ from pathlib import Path
 
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
-from knitcore.formats.design import FORMAT as DESIGN_FORMAT
-from knitcore.formats.design import VERSION as DESIGN_VERSION
 from knitcore.formats.design import read_design
 from knitcore.formats.knitspeak import looks_knitspeak, read_knitspeak
 from knitcore.formats.written_reader import looks_written, read_piece_rows
 from knitcore.garment.piece import Piece
-
-__all__ = ["DESIGN_FORMAT", "DESIGN_VERSION", "MAX_FILE_BYTES", "read_chart", "read_piece"]
 
 MAX_FILE_BYTES = 16_000_000
 

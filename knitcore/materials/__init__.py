@@ -1,6 +1,5 @@
 """Materials: yarns, their fabrics and laws; the paper's tables, and users' own files."""
 
-from knitcore.materials.document import LawDocument, MaterialDocument
 from knitcore.materials.figures import Figure, FigureTable, paper_figures
 from knitcore.materials.files import (
     load_material_file,
@@ -17,11 +16,9 @@ __all__ = [
     "Figure",
     "FigureTable",
     "Interval",
-    "LawDocument",
     "LawUncertainty",
     "Laws",
     "Material",
-    "MaterialDocument",
     "MeasuredCurve",
     "Origin",
     "Yarn",

@@ -110,6 +110,7 @@ def paper_figures() -> FigureTable:
     return FigureTable(tuple(_figure(row) for row in read_packaged("figures.csv")))
 
 
+@cache
 def read_packaged(name: str) -> tuple[Mapping[str, str], ...]:
     """Rows of a packaged CSV file."""
     text = files("knitcore.materials").joinpath("data", name).read_text(encoding="utf-8")

@@ -22,6 +22,9 @@
         stitch_wale_mm: 2.3
         loop_length_mm: 11.2
         origin: fitted
+
+The model of a file and the YAML library are imported when a file is read or written: materials of
+the library need neither.
 """
 
 from __future__ import annotations
@@ -31,11 +34,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-from pydantic import ValidationError
-
 from knitcore.errors import InputError
-from knitcore.materials.document import MaterialDocument
 from knitcore.materials.material import Material
 
 MAX_FILE_BYTES = 1_000_000
@@ -49,6 +48,10 @@ def material_from_mapping(data: Mapping[str, Any]) -> Material:
     InputError
         Naming the first field that cannot be used.
     """
+    from pydantic import ValidationError
+
+    from knitcore.materials.document import MaterialDocument
+
     try:
         document = MaterialDocument.model_validate(dict(data))
     except ValidationError as error:
@@ -69,6 +72,8 @@ def load_material_file(path: str | Path) -> Material:
     InputError
         If the file is missing, too large, not JSON or YAML, or does not describe a valid material.
     """
+    import yaml
+
     file = Path(path)
     if not file.is_file():
         raise InputError(
@@ -101,6 +106,10 @@ def load_material_file(path: str | Path) -> Material:
 
 def save_material_file(material: Material, path: str | Path) -> None:
     """Write a material as JSON or YAML (by the suffix), so that it can be loaded again."""
+    import yaml
+
+    from knitcore.materials.document import MaterialDocument
+
     file = Path(path)
     data = MaterialDocument.from_material(material).model_dump(mode="json", exclude_none=True)
     if file.suffix.lower() == ".json":
