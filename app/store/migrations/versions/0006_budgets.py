@@ -9,6 +9,7 @@ revision = "0006"
 down_revision = "0005"
 
 SIZED = {"designs": "owner", "design_versions": "design_id"}
+PARTS = ("chart", "note", "layout")
 
 
 def upgrade() -> None:
@@ -17,9 +18,9 @@ def upgrade() -> None:
         op.add_column(
             table, sa.Column("size_bytes", sa.Integer, nullable=False, server_default="0")
         )
-        op.execute(
-            f"UPDATE {table} SET size_bytes = length(chart) + length(note) + length(layout)"  # noqa: S608
-        )
+        sized = sa.table(table, *map(sa.column, ("size_bytes", *PARTS)))
+        size = sum(sa.func.length(sized.c[part]) for part in PARTS)
+        op.execute(sized.update().values(size_bytes=size))
         op.create_index(f"ix_{table}_{whose}_size_bytes", table, [whose, "size_bytes"])
     op.create_table(
         "sessions",
