@@ -8,6 +8,7 @@ that are eliminated together own a dense front, and the dense work is done by BL
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 
 import numba
@@ -63,6 +64,36 @@ def elimination(touching: NDArray[np.bool_]) -> tuple[Front, ...]:
     )
 
 
+class Room:
+    """Memory for factors, used again by the next one: touching new pages would take as long as
+    the arithmetic."""
+
+    def __init__(self) -> None:
+        self._spare: defaultdict[int, list[Floats]] = defaultdict(list)
+        self._lent: dict[int, Floats] = {}
+
+    def zeros(self, rows: int, columns: int) -> Floats:
+        """A lent array of zeros (rows, columns), columns first."""
+        count = rows * columns
+        spare = self._spare[count.bit_length()]
+        flat = spare.pop() if spare else np.empty(1 << count.bit_length(), np.float32)
+        array = flat[:count].reshape((rows, columns), order="F")
+        array.fill(0.0)
+        self._lent[array.ctypes.data] = flat
+        return array
+
+    def take_back(self, array: Floats) -> None:
+        """The array is not used any more."""
+        flat = self._lent.pop(array.ctypes.data)
+        self._spare[len(flat).bit_length() - 1].append(flat)
+
+    def take_all_back(self) -> None:
+        """None of the arrays is used any more."""
+        for flat in self._lent.values():
+            self._spare[len(flat).bit_length() - 1].append(flat)
+        self._lent.clear()
+
+
 class FrontalFactor:
     """Factors of one matrix, scaled to a unit diagonal, in single precision.
 
@@ -70,11 +101,13 @@ class FrontalFactor:
     ----------
     matrix : the matrix.
     fronts : its order of elimination.
+    room : memory; whoever factorises in it overwrites the factor that was there.
     """
 
-    def __init__(self, matrix: TiledMatrix, fronts: tuple[Front, ...]) -> None:
+    def __init__(self, matrix: TiledMatrix, fronts: tuple[Front, ...], room: Room) -> None:
         self._matrix = matrix
         self._fronts = fronts
+        self._room = room
         size = matrix.tiles.shape[1]
         inside = np.arange(size)
         self._places = [
@@ -87,13 +120,15 @@ class FrontalFactor:
         matrix = self._matrix
         size = matrix.tiles.shape[1]
         self._scale = _scale(matrix.tiles, matrix.where, matrix.unknowns, damping)
+        room = self._room
+        room.take_all_back()
         self._factors: list[tuple[Floats, Floats]] = []
         remainders: list[Floats | None] = []
         for front in self._fronts:
             own, edge = len(front.own) * size, len(front.border) * size
-            upper = np.zeros((own, own), np.float32, order="F")
-            side = np.zeros((edge, own), np.float32, order="F")
-            rest = np.zeros((edge, edge), np.float32, order="F")
+            upper = room.zeros(own, own)
+            side = room.zeros(edge, own)
+            rest = room.zeros(edge, edge)
             _assemble(
                 matrix.tiles, matrix.where, self._scale, damping, matrix.unknowns,
                 front.own, front.border, upper, side,
@@ -102,6 +137,7 @@ class FrontalFactor:
                 remainder = remainders[child]
                 assert remainder is not None  # noqa: S101 - a child has one parent
                 _extend(remainder, places, len(front.own), size, upper, side, rest)
+                room.take_back(remainder)
                 remainders[child] = None
             upper, info = lapack.spotrf(upper, lower=1, overwrite_a=1, clean=0)
             if info != 0:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
-from knitcore.yarnlevel.fronts import Front, elimination
+from knitcore.yarnlevel.fronts import Front, Room, elimination
 from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System
 from knitcore.yarnlevel.trajectory import Trajectory
 
@@ -171,6 +171,7 @@ class _Descent:
         self.sparse = energy.cell.stitches >= _SPARSE_FROM and not dense_only
         self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
         self.fronts: tuple[NDArray[np.bool_], tuple[Front, ...]] | None = None
+        self.room = Room()
         self.lowest = 0.0
         self.softest: Array | None = None
         self.steps, self.evaluations = 0, 1
@@ -242,7 +243,7 @@ class _Descent:
             return DenseSystem(slope, self.energy.penalty, self.free, self.single)
         if self.fronts is None or not np.array_equal(self.fronts[0], slope.sparse.touching):
             self.fronts = slope.sparse.touching, elimination(slope.sparse.touching)
-        return SparseSystem(slope, self.energy.penalty, self.free, self.fronts[1])
+        return SparseSystem(slope, self.energy.penalty, self.free, self.fronts[1], self.room)
 
     def _factorise(self, system: System) -> None:
         """Factorise with as much damping as it takes, and learn how negative the lowest

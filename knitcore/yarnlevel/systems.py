@@ -17,7 +17,7 @@ from scipy.linalg import blas, lapack
 from knitcore.arrays import Array
 from knitcore.threads import one_blas_thread
 from knitcore.yarnlevel.energy import Slope
-from knitcore.yarnlevel.fronts import Front, FrontalFactor
+from knitcore.yarnlevel.fronts import Front, FrontalFactor, Room
 
 
 class System(ABC):
@@ -153,13 +153,14 @@ class SparseSystem(System):
     """With a sparse factor; the two sizes of a stitch, which touch everything, come last."""
 
     def __init__(
-        self, slope: Slope, penalty: float, free: NDArray[np.bool_], fronts: tuple[Front, ...]
-    ) -> None:
+        self, slope: Slope, penalty: float, free: NDArray[np.bool_], fronts: tuple[Front, ...],
+        room: Room,
+    ) -> None:  # fmt: skip
         super().__init__(slope, penalty, free)
         assert slope.sparse is not None  # noqa: S101 - see the dense system
         self._hessian = slope.sparse
         self._lengths = slope.lengths
-        self._factor = FrontalFactor(slope.sparse.matrix, fronts)
+        self._factor = FrontalFactor(slope.sparse.matrix, fronts, room)
         self._sizes = np.flatnonzero(free[-2:])
         self._beside = slope.sparse.sizes[self._sizes, :-2].T
 

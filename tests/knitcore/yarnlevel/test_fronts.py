@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore.yarnlevel.fronts import FrontalFactor, elimination
+from knitcore.yarnlevel.fronts import FrontalFactor, Room, elimination
 from knitcore.yarnlevel.kernels import empty_tiles, tiled_product
 
 SIZE, UNKNOWNS = 3, 58
@@ -43,7 +43,7 @@ def test_every_block_is_eliminated_once_and_borders_come_later():
 @pytest.mark.parametrize("damping", [0.0, 5.0])
 def test_solves_like_a_dense_solver(damping):
     touching, matrix, dense = _ring_with_chords()
-    factor = FrontalFactor(matrix, elimination(touching))
+    factor = FrontalFactor(matrix, elimination(touching), Room())
     assert factor.factorise(damping)
     right = np.random.default_rng(5).standard_normal((UNKNOWNS, 2))
     expected = np.linalg.solve(dense + damping * np.eye(UNKNOWNS), right)
@@ -55,11 +55,26 @@ def test_tells_an_indefinite_matrix_and_how_much_damping_it_takes():
     matrix.tiles[matrix.where[4, 4]] -= 20.0 * np.eye(SIZE)
     dense[4 * SIZE : 5 * SIZE, 4 * SIZE : 5 * SIZE] -= 20.0 * np.eye(SIZE)
     lowest = np.linalg.eigvalsh(dense)[0]
-    factor = FrontalFactor(matrix, elimination(touching))
+    factor = FrontalFactor(matrix, elimination(touching), Room())
     assert lowest < 0.0
     assert not factor.factorise(0.0)
     assert not factor.factorise(-0.99 * lowest)
     assert factor.factorise(-1.01 * lowest)
+
+
+def test_memory_is_used_again_and_blank():
+    room = Room()
+    first, second = room.zeros(5, 3), room.zeros(4, 4)
+    assert not np.shares_memory(first, second)
+    first += 1.0
+    again = [room.zeros(3, 5)]
+    assert not np.shares_memory(first, again[0])
+    room.take_back(first)
+    again.append(room.zeros(2, 7))
+    assert np.shares_memory(first, again[1])
+    assert not again[1].any()
+    room.take_all_back()
+    assert np.shares_memory(second, room.zeros(4, 4))
 
 
 def test_product_with_a_vector():
