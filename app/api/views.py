@@ -24,8 +24,8 @@ from app.http.security import OPENED_BY
 from app.http.waiting import abandoned
 from app.models.base import RequestModel
 from app.models.charts import size_of_chart
+from app.models.posed import PosedView
 from app.operations.perform import Reply
-from app.operations.posed import PosedView
 from app.operations.stretch import StretchView
 from app.viewer.camera import CameraSide
 from app.viewer.design_id import DesignId, private_name

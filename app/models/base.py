@@ -62,7 +62,7 @@ def read(model: Any, content: bytes | str) -> Any:
 class RequestModel(BaseModel):
     """A request, or a part of one; unknown fields are refused."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     def into(self, kind: type[OfLibrary], **more: Any) -> OfLibrary:
         """A dataclass of the library, made from the fields that both have and the values given."""
@@ -131,4 +131,4 @@ Known = Annotated[float | None, BeforeValidator(_known)]
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]
 """The ends of an interval, null where they are not finite."""
 
-Positive = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, le=1000)]

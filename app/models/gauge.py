@@ -14,7 +14,6 @@ Count = Annotated[
     Field(
         gt=0,
         le=1000,
-        allow_inf_nan=False,
         description="Counted on your own relaxed swatch; give stitches and rows, or neither.",
     ),
 ]

@@ -21,9 +21,8 @@ MAX_ELEMENT_STEPS = 40_000
 """Most elements times steps over REST, about a minute; the command line accepts more."""
 MAX_CONDITIONS = 50
 
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Millimetres = Annotated[float, Field(ge=-10_000, le=10_000, allow_inf_nan=False)]
-Size = Annotated[float, Field(ge=1, le=10_000, allow_inf_nan=False)]
+Millimetres = Annotated[float, Field(ge=-10_000, le=10_000)]
+Size = Annotated[float, Field(ge=1, le=10_000)]
 Corners = Annotated[
     list[tuple[Millimetres, Millimetres]], Field(min_length=3, max_length=MAX_CORNERS)
 ]
@@ -48,8 +47,8 @@ class PulledInput(RequestModel):
 
     kind: Literal["pulled"]
     edge: EdgeName
-    x_n: Number = 0.0
-    y_n: Number = 0.0
+    x_n: float = 0.0
+    y_n: float = 0.0
 
     def condition(self) -> Condition:
         """As the library has it."""
@@ -61,8 +60,8 @@ class TractionInput(RequestModel):
 
     kind: Literal["traction"]
     edge: EdgeName
-    x_n_per_mm: Number = 0.0
-    y_n_per_mm: Number = 0.0
+    x_n_per_mm: float = 0.0
+    y_n_per_mm: float = 0.0
 
     def condition(self) -> Condition:
         """As the library has it."""
@@ -74,9 +73,7 @@ class SewnInput(RequestModel):
 
     kind: Literal["sewn"]
     edge: EdgeName
-    stiffness_n: float = Field(
-        gt=0, allow_inf_nan=False, description="Force of the tape over its strain."
-    )
+    stiffness_n: float = Field(gt=0, description="Force of the tape over its strain.")
 
     def condition(self) -> Condition:
         """As the library has it."""
@@ -98,7 +95,7 @@ class PieceInput(RequestModel):
     holes: list[Corners] = Field(
         [], max_length=100, description="Corners of each hole; their sides continue the numbering."
     )
-    grain_deg: Number = Field(
+    grain_deg: float = Field(
         0.0, description="Angle from the x axis to the rows, counter-clockwise: 45 is on the bias."
     )
     edges: dict[EdgeName, Annotated[list[int], Field(max_length=MAX_CORNERS)]] = Field(
@@ -120,17 +117,12 @@ class PieceTestRequest(LawsRequest):
     material: MaterialName
     steps: int = Field(10, ge=1, le=1000, description="Steps of the load.")
     shear_modulus_n_per_mm: float | None = Field(
-        None,
-        ge=1e-4,
-        le=10,
-        allow_inf_nan=False,
-        description="C_xyxy; that of the laws by default.",
+        None, ge=1e-4, le=10, description="C_xyxy; that of the laws by default."
     )
     mesh_mm: float | None = Field(
         None,
         gt=0,
         le=10_000,
-        allow_inf_nan=False,
         description="Length of an element's side; by default there are about 600 elements.",
     )
 

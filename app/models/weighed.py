@@ -11,12 +11,7 @@ from app.models.charts import MaterialName
 
 LinearDensity = Annotated[
     float,
-    Field(
-        gt=0,
-        le=20,
-        allow_inf_nan=False,
-        description="Of the yarn, g/m: weigh some metres; tex divided by 1000.",
-    ),
+    Field(gt=0, le=20, description="Of the yarn, g/m: weigh some metres; tex divided by 1000."),
 ]
 Corner = tuple[float, float, float] | None
 Corners = Annotated[

@@ -20,7 +20,7 @@ from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlibrary.yarns import ChartYarn, yarn_for
 
-LoopLength = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+LoopLength = Annotated[float, Field(gt=0, le=1000)]
 LoopLengths = list[
     Annotated[list[LoopLength], Field(min_length=1, max_length=MAX_STITCHES_PER_SIDE)]
 ]
@@ -33,11 +33,7 @@ class YarnLevelRequest(RequestModel):
     material: MaterialName
 
     loop_length_mm: float | None = Field(
-        None,
-        gt=0,
-        le=1000,
-        allow_inf_nan=False,
-        description="Yarn per stitch; the material's by default.",
+        None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
     )
     loop_lengths_mm: LoopLengths | None = Field(
         None,

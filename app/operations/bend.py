@@ -41,18 +41,10 @@ class BendRequest(LawsRequest):
     chart: RepeatInput
     material: MaterialName
     loop_length_mm: float | None = Field(
-        None,
-        gt=0,
-        le=1000,
-        allow_inf_nan=False,
-        description="Yarn per stitch; the material's by default.",
+        None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
     )
     linear_density_g_per_m: float | None = Field(
-        None,
-        gt=0,
-        le=100,
-        allow_inf_nan=False,
-        description="Of the yarn; needed for the bending lengths.",
+        None, gt=0, le=100, description="Of the yarn; needed for the bending lengths."
     )
 
 

@@ -18,16 +18,13 @@ from knitcore.piece.standard import bias_test
 class BiasRequest(PieceTestRequest):
     """A strip and how far it is pulled."""
 
-    strain: float = Field(
-        gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
-    )
+    strain: float = Field(gt=0, le=5, description="Last clamp-to-clamp strain: 0.5 is 50 %.")
     width_mm: Size = Field(50.0, description="Distance between the free sides.")
     length_mm: Size = Field(100.0, description="Distance between the clamps.")
     angle_deg: float = Field(
         45.0,
         ge=-180,
         le=180,
-        allow_inf_nan=False,
         description="Angle from the width to the rows: 0 pulls along columns, 90 along rows.",
     )
 

@@ -18,13 +18,11 @@ from knitcore.piece.standard import biaxial_test
 class BiaxialRequest(PieceTestRequest):
     """A rectangle and how far its edges are pulled."""
 
-    strain_x: float = Field(ge=0, le=5, allow_inf_nan=False, description="Last strain along x.")
-    strain_y: float = Field(ge=0, le=5, allow_inf_nan=False, description="Last strain along y.")
+    strain_x: float = Field(ge=0, le=5, description="Last strain along x.")
+    strain_y: float = Field(ge=0, le=5, description="Last strain along y.")
     width_mm: Size = Field(100.0, description="Along x.")
     length_mm: Size = Field(100.0, description="Along y.")
-    grain_deg: float = Field(
-        0.0, ge=-180, le=180, allow_inf_nan=False, description="Angle from the x axis to the rows."
-    )
+    grain_deg: float = Field(0.0, ge=-180, le=180, description="Angle from the x axis to the rows.")
 
 
 class BiaxialResult(PieceTestResult):

@@ -52,7 +52,7 @@ class YarnInput(RequestModel):
     contact_stiffness_n_per_mm3: Positive = Field(description="k of its contact law.")
     contact_exponent: Positive = Field(description="p of its contact law.")
     radius_mm: Positive = Field(description="Outer radius.")
-    core_radius_mm: float = Field(ge=0, le=100, allow_inf_nan=False, description="Core radius.")
+    core_radius_mm: float = Field(ge=0, le=100, description="Core radius.")
 
 
 class CharacteriseOptions(RequestModel):
@@ -73,11 +73,7 @@ class CharacteriseOptions(RequestModel):
     branch: Branch = Branch.MIRRORED
     convention: Convention = Convention.PUBLISHED
     max_stress_n_per_mm: float = Field(
-        MAX_STRESS_N_PER_MM,
-        gt=0.001,
-        le=100,
-        allow_inf_nan=False,
-        description="Largest stress of the fitted laws.",
+        MAX_STRESS_N_PER_MM, gt=0.001, le=100, description="Largest stress of the fitted laws."
     )
 
 

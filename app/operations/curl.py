@@ -11,9 +11,9 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
+from app.models.posed import PosedView
 from app.operations.context import Context
 from app.operations.perform import Viewed
-from app.operations.posed import PosedView
 from app.operations.registry import Command, Operation
 from knitcore.formats.curled import write_curled_glb, write_curled_npz
 from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece
@@ -33,7 +33,6 @@ class CurlRequest(RequestModel):
         TIME_LIMIT_S,
         gt=0,
         le=600,
-        allow_inf_nan=False,
         description="CPU time after which the current shape is returned, not converged.",
     )
 

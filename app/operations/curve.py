@@ -20,7 +20,7 @@ from knitcore.answer.curve import curve as chart_curve
 from knitcore.errors import check_cancelled
 from knitcore.fabric import Direction
 
-Stress = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+Stress = Annotated[float, Field(ge=0, le=100)]
 
 
 class CurveRequest(LawsRequest):

@@ -22,12 +22,8 @@ class DrapeRequest(WeighedRequest):
     """A fabric, and the sizes of the test."""
 
     chart: RepeatInput
-    piece_mm: float = Field(
-        PIECE_MM, ge=20, le=2000, allow_inf_nan=False, description="Diameter of the round piece."
-    )
-    disc_mm: float = Field(
-        DISC_MM, ge=10, le=1900, allow_inf_nan=False, description="Diameter of the disc."
-    )
+    piece_mm: float = Field(PIECE_MM, ge=20, le=2000, description="Diameter of the round piece.")
+    disc_mm: float = Field(DISC_MM, ge=10, le=1900, description="Diameter of the disc.")
     across: int = Field(
         ACROSS, ge=10, le=MAX_ACROSS, description="Rectangles of the sheet across the piece."
     )

@@ -46,11 +46,7 @@ class ExportRequest(DesignLayout, LawsRequest):
     name: str = Field("Untitled", min_length=1, max_length=200, pattern=r"^[^\x00-\x1f]+$")
     note: str = Field("", max_length=20_000, pattern=r"^[^\x00]*$", description="Printed.")
     linear_density_tex: float | None = Field(
-        None,
-        gt=0,
-        lt=1e5,
-        allow_inf_nan=False,
-        description="Linear density of the yarn, for its mass.",
+        None, gt=0, lt=1e5, description="Linear density of the yarn, for its mass."
     )
     photo: Content | None = Field(
         None,

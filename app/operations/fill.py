@@ -42,7 +42,7 @@ MAX_STITCHES = 40_000
 MAX_WISHES = 200
 MAX_RUNS = 40_000
 
-Modulus = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)] | None
+Modulus = Annotated[float, Field(gt=0, le=1000)] | None
 Map = Annotated[list[list[Modulus]], Field(min_length=1, max_length=1000)]
 Run = tuple[Annotated[int, Field(ge=0)], Annotated[int, Field(ge=0)], Annotated[int, Field(ge=1)]]
 

@@ -33,21 +33,15 @@ ELSEWHERE = 3
 class LimbInput(RequestModel):
     """A tube on a limb."""
 
-    rest_mm: float = Field(
-        gt=0, le=5000, allow_inf_nan=False, description="Circumference of the unworn tube."
-    )
-    worn_mm: float = Field(
-        gt=0, le=5000, allow_inf_nan=False, description="Circumference of the limb."
-    )
+    rest_mm: float = Field(gt=0, le=5000, description="Circumference of the unworn tube.")
+    worn_mm: float = Field(gt=0, le=5000, description="Circumference of the limb.")
 
 
 class TargetInput(RequestModel):
     """One target property of a fabric."""
 
     quantity: Quantity
-    value: float = Field(
-        ge=-10, le=1e6, allow_inf_nan=False, description="Stretch as a strain: 0.5 is 50 %."
-    )
+    value: float = Field(ge=-10, le=1e6, description="Stretch as a strain: 0.5 is 50 %.")
     tolerance: float = Field(
         0.10, gt=0, le=10, description="Relative (0.1 is 10 %); a difference for Poisson's ratios."
     )

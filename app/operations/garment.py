@@ -27,24 +27,19 @@ from knitcore.garment.worn import Fit, Worn
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import log_interval
 
-Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
-Ease = Annotated[float, Field(ge=-0.6, le=1, allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0, le=5000)]
+Ease = Annotated[float, Field(ge=-0.6, le=1)]
 Target = Annotated[
     float | None,
-    Field(
-        gt=0,
-        le=300,
-        allow_inf_nan=False,
-        description="Target pressure; takes precedence over the ease.",
-    ),
+    Field(gt=0, le=300, description="Target pressure; takes precedence over the ease."),
 ]
 
 
 class GaugeCount(RequestModel):
     """A gauge counted on a swatch."""
 
-    stitches: float = Field(gt=0, le=1000, allow_inf_nan=False)
-    rows: float = Field(gt=0, le=1000, allow_inf_nan=False)
+    stitches: float = Field(gt=0, le=1000)
+    rows: float = Field(gt=0, le=1000)
     per: Literal["10 cm", "4 in", "5 cm"] = "10 cm"
     fabric: Fabric = Field(Fabric.STOCKINETTE, description="Repeat of the swatch.")
 
@@ -173,11 +168,7 @@ class GarmentRequest(LawsRequest):
         None, description="The knitter's gauge; the material's by default."
     )
     linear_density_tex: float | None = Field(
-        None,
-        gt=0,
-        lt=1e5,
-        allow_inf_nan=False,
-        description="Linear density of the yarn (g/km), for its mass.",
+        None, gt=0, lt=1e5, description="Linear density of the yarn (g/km), for its mass."
     )
     intarsia: bool = Field(False, description="Whether each fabric gets a yarn of its own.")
 

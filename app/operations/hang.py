@@ -10,10 +10,10 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, to_chart
+from app.models.posed import PosedView
 from app.models.weighed import FRICTIONLESS, Corners, WantsCorners, WeighedRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
-from app.operations.posed import PosedView
 from app.operations.registry import Command, Operation
 from knitcore.shell.curl import TIME_LIMIT_S
 from knitcore.shell.hang import HungBy
@@ -30,7 +30,6 @@ class HangRequest(WeighedRequest):
         TIME_LIMIT_S,
         gt=0,
         le=600,
-        allow_inf_nan=False,
         description="CPU time after which the current shape is returned, not converged.",
     )
 

@@ -35,22 +35,15 @@ class HysteresisRequest(LawsRequest):
     chart: RepeatInput
     material: MaterialName
     direction: Direction = Field(Direction.COURSE, description="Along rows, or along columns.")
-    max_strain: float = Field(
-        0.3, gt=0, le=5, allow_inf_nan=False, description="Largest strain: 0.5 is 50 %."
-    )
+    max_strain: float = Field(0.3, gt=0, le=5, description="Largest strain: 0.5 is 50 %.")
     friction: float | None = Field(
         None,
         ge=0,
         le=MAX_COEFFICIENT,
-        allow_inf_nan=False,
         description="Coefficient of friction between yarns; that of the fibre by default.",
     )
     loop_length_mm: float | None = Field(
-        None,
-        gt=0,
-        le=1000,
-        allow_inf_nan=False,
-        description="Yarn per stitch; the material's by default.",
+        None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
     )
     points: int = Field(DEFAULT_POINTS, ge=2, le=200, description="Strains on the way there.")
     cycles: int = Field(2, ge=1, le=MAX_CYCLES)

@@ -14,9 +14,9 @@ from app.cli.options import out_option
 from app.models.base import Ends, RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
+from app.models.posed import Body, PosedView
 from app.operations.context import Context
 from app.operations.perform import Viewed
-from app.operations.posed import Body, PosedView
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.limb import MAX_GIRTHS, PLACES, Limb, LimbPlace, on_limb
@@ -36,18 +36,12 @@ FREE_ALONG = (
 class Girth(RequestModel):
     """Circumferences at one place."""
 
-    at_mm: float = Field(
-        ge=0,
-        le=3000,
-        allow_inf_nan=False,
-        description="Along the limb, from where the tube begins.",
-    )
-    girth_mm: float = Field(gt=0, le=3000, allow_inf_nan=False, description="Around the limb.")
+    at_mm: float = Field(ge=0, le=3000, description="Along the limb, from where the tube begins.")
+    girth_mm: float = Field(gt=0, le=3000, description="Around the limb.")
     rest_mm: float | None = Field(
         None,
         gt=0,
         le=3000,
-        allow_inf_nan=False,
         description="Around the unworn tube. Left out at all places, the whole chart is the tube.",
     )
 

@@ -23,11 +23,7 @@ class OverhangRequest(WeighedRequest):
     chart: RepeatInput
     direction: Direction = Field(Direction.COURSE, description="Along the strip.")
     overhang_mm: float | None = Field(
-        None,
-        gt=0,
-        le=2000,
-        allow_inf_nan=False,
-        description="Beyond the edge; that which falls by 41.5° if left out.",
+        None, gt=0, le=2000, description="Beyond the edge; that which falls by 41.5° if left out."
     )
     corners: WantsCorners = False
 

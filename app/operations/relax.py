@@ -26,10 +26,10 @@ class RelaxRequest(YarnLevelRequest):
     """A repeat, its yarn, and what may be held while it relaxes."""
 
     cell_course_mm: float | None = Field(
-        None, gt=0, le=1000, allow_inf_nan=False, description="Hold a stitch at this width."
+        None, gt=0, le=1000, description="Hold a stitch at this width."
     )
     cell_wale_mm: float | None = Field(
-        None, gt=0, le=1000, allow_inf_nan=False, description="Hold a stitch at this height."
+        None, gt=0, le=1000, description="Hold a stitch at this height."
     )
     centre_lines: bool = Field(False, description="Return the centre lines of the yarn too.")
 

@@ -29,7 +29,7 @@ def _rounded(values: Any) -> Any:
 
 Rounded = Annotated[list[float], BeforeValidator(_rounded)]
 Gaps = Annotated[list[Known], BeforeValidator(list)]
-Width = Annotated[float, Field(gt=0.05, lt=3, allow_inf_nan=False)] | None
+Width = Annotated[float, Field(gt=0.05, lt=3)] | None
 
 
 class ShapeRequest(LawsRequest):
@@ -37,9 +37,7 @@ class ShapeRequest(LawsRequest):
 
     material: MaterialName
     direction: Direction = Field(Direction.WALE, description="Direction of the pull.")
-    strain: float = Field(
-        gt=0, le=5, allow_inf_nan=False, description="From clamp to clamp: 0.3 is 30 %."
-    )
+    strain: float = Field(gt=0, le=5, description="From clamp to clamp: 0.3 is 30 %.")
     width: list[Width] = Field(
         min_length=3,
         max_length=1000,

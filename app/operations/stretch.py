@@ -43,20 +43,14 @@ class StretchRequest(LawsRequest):
     material: MaterialName
     outline: OutlineInput = None
     direction: Direction = Field(description="Along rows, or along columns.")
-    strain: float = Field(
-        gt=0, le=5, allow_inf_nan=False, description="Last clamp-to-clamp strain: 0.5 is 50 %."
-    )
+    strain: float = Field(gt=0, le=5, description="Last clamp-to-clamp strain: 0.5 is 50 %.")
     steps: int = Field(12, ge=1, le=1000)
     clamps: Clamps = Field(
         Clamps.CLAMPED, description="Ends gripped, or free to slide along the clamps."
     )
     model: EnergyModel = EnergyModel.FULL
     shear_modulus_n_per_mm: float | None = Field(
-        None,
-        ge=1e-4,
-        le=10,
-        allow_inf_nan=False,
-        description="C_xyxy in N/mm; that of the laws by default.",
+        None, ge=1e-4, le=10, description="C_xyxy in N/mm; that of the laws by default."
     )
     width_mm: float | None = Field(
         None, ge=1, le=10_000, description="Size course-wise; from the gauge by default."

@@ -36,9 +36,7 @@ class SweepRequest(YarnLevelRequest):
     """A repeat, its yarn and the stretch."""
 
     direction: Direction = Field(description="Along rows, or along columns.")
-    max_strain: float = Field(
-        gt=0, le=20, allow_inf_nan=False, description="Largest strain: 0.5 is 50 %."
-    )
+    max_strain: float = Field(gt=0, le=20, description="Largest strain: 0.5 is 50 %.")
     points: int = Field(25, ge=2, le=400)
     slide_quenching: bool = Field(
         False,

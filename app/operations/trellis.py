@@ -21,18 +21,11 @@ class TrellisRequest(PieceTestRequest):
     """A square and how far it is sheared."""
 
     angle_deg: float = Field(
-        gt=0,
-        le=68,
-        allow_inf_nan=False,
-        description="How far the frame's right angle closes at the last step.",
+        gt=0, le=68, description="How far the frame's right angle closes at the last step."
     )
     side_mm: Size = Field(100.0, description="Side of the square.")
     grain_deg: float = Field(
-        0.0,
-        ge=-180,
-        le=180,
-        allow_inf_nan=False,
-        description="Angle from a bar of the frame to the rows.",
+        0.0, ge=-180, le=180, description="Angle from a bar of the frame to the rows."
     )
 
 

@@ -21,8 +21,8 @@ from app.models.charts import (
     size_of_chart,
     to_chart,
 )
+from app.models.posed import PosedView
 from app.operations.context import Context
-from app.operations.posed import PosedView
 from app.operations.stretch import StretchView
 from app.viewer.fabric import Drawing, FabricScene
 from app.viewer.stitch_colours import (

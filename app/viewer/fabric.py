@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from app.operations.posed import Body
+from app.models.posed import Body
 from knitcore.arrays import Array
 from knitcore.geometry.instances import MAX_STITCHES
 from knitcore.geometry.lattice import Lattice

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,6 @@ from knitcore.mechanics.local import StitchTable, stitch_table
 from knitcore.phases import surroundings
 
 Colours = NDArray[np.uint8]
-Value = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class Colour(StrEnum):
@@ -67,11 +66,11 @@ class Palette(RequestModel):
 class FieldColours(RequestModel):
     """Any value of each stitch on a colour map."""
 
-    values: list[Value] = Field(
+    values: list[float] = Field(
         max_length=MAX_FIELD, description="Row by row from the bottom, each from the left."
     )
-    low: Value
-    high: Value
+    low: float
+    high: float
     log: bool = False
     map: Literal["batlow", "vik"] = "batlow"
 

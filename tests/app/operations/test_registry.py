@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import click
 import pytest
 from click.testing import CliRunner
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from app.cli.commands import command_of
 from app.cli.main import main
@@ -181,6 +183,27 @@ def test_remarks_do_not_mix_with_the_result() -> None:
     assert (told.stdout, told.stderr) == ("4\n", "note: one\nwarning: two\n")
     told = CliRunner().invoke(command_of(operation, "remark"), ["rib", "--json"])
     assert told.stderr == ""
+
+
+@pytest.mark.parametrize("name", [name for name, of in operations().items() if of.example])
+def test_no_part_of_a_request_may_be_infinite(name: str) -> None:
+    operation = operations()[name]
+    request = operation.request.model_validate(operation.example).model_dump()
+    for holder, key in _leaves(request):
+        value, holder[key] = holder[key], math.inf
+        with pytest.raises(ValidationError):
+            operation.request.model_validate(request)
+        holder[key] = value
+
+
+def _leaves(value: Any) -> Iterator[tuple[Any, Any]]:
+    """What holds each part without parts of its own, and its name or number there."""
+    inside = list(value.items() if isinstance(value, dict) else enumerate(value))
+    for key, part in inside:
+        if isinstance(part, dict | list):
+            yield from _leaves(part)
+        else:
+            yield value, key
 
 
 def test_an_operation_is_described_by_its_function() -> None:
