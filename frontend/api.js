@@ -192,6 +192,13 @@ export const api = {
   curl: (body, signal) => call("/curl", { method: "POST", body, signal }),
 
   /**
+   * @param {import("./types.js").LimbRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").LimbResult>}
+   */
+  limb: (body, signal) => call("/limb", { method: "POST", body, signal }),
+
+  /**
    * Run something in the background.
    *
    * @param {string} kind

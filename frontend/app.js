@@ -30,7 +30,7 @@ import { offerTour, topbar } from "./panels/topbar.js";
 import { watchConnection } from "./services/connection.js";
 import { listenToImports } from "./services/importer.js";
 import { startPredictor } from "./services/predictor.js";
-import { startCurler } from "./services/curler.js";
+import { startPoser } from "./services/poser.js";
 import { Stretcher } from "./services/stretcher.js";
 import { Studio } from "./studio.js";
 
@@ -72,7 +72,7 @@ const retheme = () => {
 dark.addEventListener("change", retheme);
 
 const stretcher = new Stretcher(studio);
-startCurler(studio);
+startPoser(studio);
 topbar(byId("topbar"), studio, context);
 sharedBanner(byId("shared"), context);
 rail(byId("rail"), studio, context);

@@ -2,6 +2,7 @@
  * The state that the panels share: the chart, how it is shown and painted, what the service says of
  * it. Panels watch the signals and change them; none knows another.
  *
+ * @import {GirthAt} from "./chart/seeing.js"
  * @import {ChartDocument} from "./core/document.js"
  * @import {Selection} from "./core/selection.js"
  * @import {History} from "./core/history.js"
@@ -32,6 +33,9 @@ const SETTINGS = {
   tool: "pencil",
   size: 1,
 };
+
+/** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
+const SNUG = [1.12, 1.25];
 
 /** Number of the step before the first: the cloth lies between its clamps, not pulled yet. */
 export const REST = -1;
@@ -143,6 +147,24 @@ export class Studio {
   /** What the service has to know of the design. */
   get request() {
     return { chart: this.document.grid.text, material: this.materialId.value };
+  }
+
+  /** The limb that the chart is worn on: as given, or one on which a tube of it sits firmly. */
+  get limb() {
+    const { direction, girths } = this.seeing.limb.value;
+    return { direction, girths: girths ?? this.snugLimb };
+  }
+
+  /** A limb of the chart's size that grows a little along it. @returns {GirthAt[]} */
+  get snugLimb() {
+    const { rows, columns } = this.document.grid;
+    const size = this.prediction.value.value;
+    const [course, wale] = [columns * (size?.relaxed_course_mm ?? 1), rows * (size?.relaxed_wale_mm ?? 1)];
+    const [around, long] = this.seeing.limb.value.direction === "course" ? [course, wale] : [wale, course];
+    return [
+      { at_mm: 0, girth_mm: Math.round(SNUG[0] * around) },
+      { at_mm: Math.max(1, Math.round(long)), girth_mm: Math.round(SNUG[1] * around) },
+    ];
   }
 
   /** The 16 kinds of stitch in the chosen material; none until it is loaded. @returns {StitchKind[]} */

@@ -2,20 +2,29 @@
  * How the fabric and its mechanics are looked at: state of the panels that is no part of the design.
  *
  * @import {Cell} from "../core/raster.js"
- * @import {CurlResult} from "../types.js"
+ * @import {Direction} from "../types.js"
  *
  * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
  *   has them, or one of its own
+ * @typedef {"flat" | "lying" | "worn"} Pose of the fabric in 3D: held flat, as it lies, on the body
+ * @typedef {{pose: Pose, id: string, rows: number, columns: number, converged: boolean, words: string,
+ *   note: string}} Posed a shape that was computed, and what to say of it
+ * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
  * @typedef {"stitch" | "block" | "region"} Groups what an extensibility rectangle stands for
  */
 
 import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../core/store.js";
 
+/** Names of the poses. @type {Record<Pose, string>} */
+export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body" };
+
 const SETTINGS = {
   yarnColours: /** @type {YarnColours} */ ("chart"),
   groups: /** @type {Groups} */ ("stitch"),
   block: 4,
+  limbAround: /** @type {Direction} */ ("course"),
+  girths: /** @type {GirthAt[] | null} */ (null),
 };
 
 export class Seeing {
@@ -35,14 +44,21 @@ export class Seeing {
     this.against = new Signal(/** @type {string | null} */ (null));
     /** Id of a stretch test that the service has forgotten. */
     this.forgotten = new Signal(/** @type {string | null} */ (null));
-    /** Whether the fabric is shown as it lies, curled and folded. */
-    this.lying = new Signal(false);
-    /** Its shape; null while it is being computed. */
-    this.curled = new Signal(/** @type {CurlResult | null} */ (null));
+    this.pose = new Signal(/** @type {Pose} */ ("flat"));
+    /** The shape of that pose; null while it is being computed, and if the fabric is flat. */
+    this.posed = new Signal(/** @type {Posed | null} */ (null));
+    /** The limb that the fabric is worn on, and what runs around it; no girths: those that fit. */
+    this.limb = new Signal(
+      /** @type {{direction: Direction, girths: GirthAt[] | null}} */ ({
+        direction: settings.limbAround,
+        girths: settings.girths,
+      }),
+    );
     /** The stitch that was clicked in the 3D view last. */
     this.found = new Signal(/** @type {Cell | null} */ (null));
     this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));
     this.groups.listen((groups) => saveSettings({ groups }));
+    this.limb.listen(({ direction, girths }) => saveSettings({ limbAround: direction, girths }));
     this.block.listen((block) => saveSettings({ block }));
   }
 }

@@ -18,6 +18,7 @@ import { Still } from "./fabric/still.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
 import { problemText } from "../widgets/problem.js";
+import { POSES } from "../chart/seeing.js";
 import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
@@ -211,9 +212,10 @@ export function fabricview(host, studio, view) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
       const { field } = error.problem;
-      if (field === "curl.id" && studio.seeing.lying.value) {
-        studio.seeing.lying.value = false; // a restarted service has forgotten the shape
-        studio.seeing.lying.value = true;
+      if (field === "curl.id" && studio.seeing.pose.value !== "flat") {
+        const { value } = studio.seeing.pose;
+        studio.seeing.pose.value = "flat"; // a restarted service has forgotten the shape
+        studio.seeing.pose.value = value;
         return;
       }
       const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
@@ -246,26 +248,26 @@ export function fabricview(host, studio, view) {
   };
 
   const describe = () => {
-    const strain = studio.seeing.lying.value ? 0 : studio.currentStrain();
+    const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
     caption.replaceChildren(
-      strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : lyingText(studio),
+      strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : poseText(studio),
       h("span", { class: "caption-scale figures", title: "Length of the line below the cloth" }, scale),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
-    caption.title = studio.seeing.curled.value?.notes[0] ?? (source && `Yarn: ${source}`);
+    caption.title = studio.seeing.posed.value?.note ?? (source && `Yarn: ${source}`);
   };
 
   studio.document.onChange(soon);
-  const { yarnColours, groups, block, lying, curled } = studio.seeing;
+  const { yarnColours, groups, block, pose, posed } = studio.seeing;
   for (const signal of [studio.materialId, studio.overlay, studio.rectangles, studio.stretch, groups, block]) {
     signal.listen(soon);
   }
   yarnColours.listen(now);
-  curled.listen(() => {
+  posed.listen(() => {
     now();
     describe();
   });
-  lying.listen(() => {
+  pose.listen(() => {
     now();
     describe();
   });
@@ -291,7 +293,9 @@ function wanted(studio, view) {
   const { document: chart, seeing } = studio;
   const stretch = pulled(studio);
   const overlay = stretch ? shownOverlay(studio) : atRest(shownOverlay(studio));
-  const colour = seeing.yarnColours.value === "chart" ? overlay.view : seeing.yarnColours.value;
+  const posed = seeing.posed.value;
+  const ofChart = posed?.pose === "worn" ? "pressure" : overlay.view;
+  const colour = seeing.yarnColours.value === "chart" ? ofChart : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;
   const seen = view.viewport.visible(chart.grid);
@@ -305,7 +309,7 @@ function wanted(studio, view) {
     rectangle_groups: seeing.groups.value,
     rectangle_block: seeing.block.value,
     stretch: stretch && studio.step.value !== REST ? { id: stretch.id, step: studio.step.value } : null,
-    curl: seeing.curled.value ? { id: seeing.curled.value.id } : null,
+    curl: posed && { id: posed.id },
     focus:
       rows * columns > MAX_DRAWN
         ? { row: (seen.row0 + seen.row1) >> 1, column: (seen.column0 + seen.column1) >> 1 }
@@ -313,19 +317,19 @@ function wanted(studio, view) {
   };
 }
 
-/** The test that is shown: none while the fabric is shown as it lies, or the test is run again. @param {Studio} studio */
+/** The test that is shown: none while the fabric is shown in another pose, or the test is run again. @param {Studio} studio */
 function pulled(studio) {
-  const { lying, forgotten } = studio.seeing;
-  const test = lying.value ? null : studio.currentStretch();
+  const { pose, forgotten } = studio.seeing;
+  const test = pose.value === "flat" ? studio.currentStretch() : null;
   return test?.id === forgotten.value ? null : test;
 }
 
 /** How the fabric that nobody pulls is shown. @param {Studio} studio */
-function lyingText(studio) {
-  const { lying, curled } = studio.seeing;
-  if (!lying.value) return "Relaxed, held flat";
-  if (!curled.value) return "As it lies: being computed";
-  return curled.value.converged ? "As it lies, without friction" : "As it lies: a preview, still moving";
+function poseText(studio) {
+  const { pose, posed } = studio.seeing;
+  const { value } = pose;
+  if (value === "flat") return "Relaxed, held flat";
+  return posed.value?.words ?? `${POSES[value]}: being computed`;
 }
 
 /** The theme's colours. @returns {NonNullable<ViewRequest["palette"]>} */

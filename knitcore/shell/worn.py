@@ -26,6 +26,8 @@ LEAST_AROUND = 4
 """Stitches that can close to a tube."""
 SIDES = 72
 """Of the limb's surface."""
+BARE = 0.12
+"""So many girths of the limb are seen beyond either end of the tube."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +40,7 @@ class WornTube:
         front (z), the seam behind. The face is outside.
     places : of every line of stitches around the limb, from where the tube begins.
     length_mm, relaxed_length_mm : of the tube along the limb's surface, worn and unworn.
-    limb_mm : (rings, sides, 3) the limb under it, closed around.
+    limb_mm : (rings, sides, 3) the limb under it and a little beyond, closed around.
     """
 
     corners_mm: Array
@@ -87,12 +89,13 @@ def worn_tube(
     rings = _between(np.array([max(p.rest_mm, p.girth_mm) for p in places])) / (2.0 * np.pi)
     shares = np.cumsum(sizes[..., 0], axis=1) / rests[:, None]
     angles = 2.0 * np.pi * _between(np.pad(shares, ((0, 0), (1, 0)))) - np.pi
-    reached = np.array(along_mm)
-    girths = limb.girth_mm(reached)
-    level = _levels(reached, girths / (2.0 * np.pi))
-    corners = _turned(rings[:, None], angles, level[:, None])
+    bare = BARE * places[-1].girth_mm
+    reached = np.array([-bare, *along_mm, along_mm[-1] + bare])
+    radius = limb.girth_mm(reached) / (2.0 * np.pi)
+    level = _levels(reached, radius)[:, None]
+    corners = _turned(rings[:, None], angles, level[1:-1])
     sides = np.linspace(-np.pi, np.pi, SIDES, endpoint=False)[None]
-    skin = _turned(girths[:, None] / (2.0 * np.pi), sides, level[:, None])
+    skin = _turned(radius[:, None], sides, level)
     if not by_row:
         corners, skin = (points[..., [1, 0, 2]] for points in (corners, skin))
         corners = corners.transpose(1, 0, 2)

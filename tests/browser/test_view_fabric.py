@@ -118,6 +118,20 @@ def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page)
     expect(flat_studio.locator(".fabric-caption")).to_contain_text("As it lies, without friction")
 
 
+@pytest.mark.slow
+def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> None:
+    flat_studio.click("#tab-limb")
+    expect(flat_studio.locator(".limb-girths input")).to_have_count(4)
+    flat_studio.get_by_label("Girth 2", exact=True).fill("70")
+    with flat_studio.expect_response(
+        lambda r: "/views/" in r.url and '"colour":"pressure"' in (r.request.post_data or "")
+    ) as shown:
+        flat_studio.click("#limb-wear")
+    assert shown.value.ok, shown.value.text()
+    expect(flat_studio.locator(".fabric-caption")).to_contain_text("On the body: 0 to")
+    expect(flat_studio.locator(".pressure-plot")).to_be_attached()
+
+
 def test_a_test_can_be_cancelled(flat_studio: Page) -> None:
     flat_studio.route("**/api/v1/jobs/*/events", lambda route: None)  # its end is never heard
     flat_studio.click("#stretch-run")

@@ -5,6 +5,7 @@
  * @import {CameraSide} from "../../types.js"
  */
 
+import { POSES } from "../../chart/seeing.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { menu } from "../../widgets/menu.js";
@@ -15,6 +16,13 @@ const SIDES = [
   { side: "back", label: "Back", hint: "Look at the back" },
   { side: "edge", label: "Edge", hint: "Look along the columns, from the cast-on edge" },
   { side: "angle", label: "Angle", hint: "Look from below right" },
+];
+
+/** @type {[import("../../chart/seeing.js").Pose, string][]} */
+const HINTS = [
+  ["flat", "The fabric held flat"],
+  ["lying", "Curled and folded, as it lies on its own"],
+  ["worn", 'Closed to a tube on a limb; its girths are under "On a limb"'],
 ];
 
 /** @type {[import("../../chart/seeing.js").YarnColours, string][]} */
@@ -35,17 +43,14 @@ export function toolbar(studio, look, wish) {
   const sides = SIDES.map(({ side, label, hint }) =>
     h("button", { class: "segment", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
   );
-  const lies = [
-    { id: "flat", lying: false, label: "Flat", hint: "The fabric held flat" },
-    { id: "lying", lying: true, label: "As it lies", hint: "Curled and folded, as it lies on its own" },
-  ].map(({ id, lying, label, hint }) => {
-    const press = () => (studio.seeing.lying.value = lying);
+  const poses = HINTS.map(([id, hint]) => {
+    const press = () => (studio.seeing.pose.value = id);
     const segment = h(
       "button",
       { class: "segment", role: "radio", id: `fabric-${id}`, title: hint, onclick: press },
-      label,
+      POSES[id],
     );
-    studio.seeing.lying.watch((now) => segment.setAttribute("aria-checked", String(now === lying)));
+    studio.seeing.pose.watch((now) => segment.setAttribute("aria-checked", String(now === id)));
     return segment;
   });
   const { root, setItems, button } = menu({
@@ -70,7 +75,7 @@ export function toolbar(studio, look, wish) {
     "div",
     { class: "fabric-tools", role: "toolbar", "aria-label": "The fabric in 3D" },
     h("div", { class: "segmented", role: "group", "aria-label": "Side" }, ...sides),
-    h("div", { class: "segmented", role: "radiogroup", "aria-label": "Shape" }, ...lies),
+    h("div", { class: "segmented", role: "radiogroup", "aria-label": "Shape" }, ...poses),
     root,
     shareMenu(studio, wish),
   );
