@@ -799,6 +799,8 @@ export interface EstimateResult {
   fabrics: Partial<Record<Fabric, FabricEstimateResult>>;
   /** None if all fabrics are measured. */
   left_out: LeftOutResult | null;
+  /** A material file of the four fabrics. */
+  material: MaterialDocument;
   warnings: string[];
 }
 

@@ -31,6 +31,7 @@ from knitcore.estimate.material import estimated_material
 from knitcore.estimate.model import left_out
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import law_from_mapping, load_law
+from knitcore.materials.document import MaterialDocument
 from knitcore.materials.files import save_material_file
 
 
@@ -85,6 +86,7 @@ class EstimateResult(ResultModel):
 
     fabrics: dict[Fabric, FabricEstimateResult]
     left_out: LeftOutResult | None = Field(description="None if all fabrics are measured.")
+    material: MaterialDocument = Field(description="A material file of the four fabrics.")
     warnings: list[str]
 
 
@@ -113,6 +115,7 @@ def _result(found: YarnEstimate) -> EstimateResult:
             fabric: FabricEstimateResult.of(f, **_values(f)) for fabric, f in found.fabrics.items()
         },
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,
+        material=MaterialDocument.from_material(estimated_material(found, "estimated")),
     )
 
 

@@ -1701,6 +1701,8 @@ class EstimateResult(BaseModel):
     fabrics: dict[Fabric, FabricEstimateResult]
     left_out: LeftOutResult | None
     """None if all fabrics are measured."""
+    material: MaterialDocument
+    """A material file of the four fabrics."""
     warnings: list[str]
 
 

@@ -1,11 +1,11 @@
 /**
- * Yarns of one's own: kept at the service from a file, or made of stretch tests of the four fabrics.
+ * Yarns of one's own: kept at the service from a file, or made of what was measured.
  *
  * @import {Studio} from "../studio.js"
- * @import {Fabric, FitResult, MaterialDocument, MaterialSummary} from "../types.js"
+ * @import {EstimateResult, Fabric, FabricDocument, FitResult, MaterialDocument, MaterialSummary, YarnDocument} from "../types.js"
  *
- * @typedef {{course: File, wale: File, stitches: number, rows: number}} Tests of a fabric: pulled along
- *   rows and columns, and the gauge per 10 cm
+ * @typedef {{stitches: number, rows: number}} Gauge per 10 cm
+ * @typedef {Gauge & {course: File, wale: File}} Tests of a fabric: pulled along rows and columns
  */
 
 import { api, call } from "../api.js";
@@ -70,52 +70,125 @@ async function uploaded(file) {
 }
 
 /**
- * A yarn of fitted laws.
+ * What photos of hanging yarn say of its bending modulus.
  *
+ * @param {readonly File[]} photos
+ * @param {{gramsPerMetre: number, lengthMm: number}} given weight per length, and the length that hangs
+ */
+export const bendingRequest = async (photos, { gramsPerMetre, lengthMm }) => ({
+  images: await Promise.all(photos.map(uploaded)),
+  linear_density_g_per_m: gramsPerMetre,
+  length_mm: lengthMm,
+});
+
+/** @param {File} file @param {number} diameterMm NaN if the file says it */
+export const compressionRequest = async (file, diameterMm) => ({
+  file: await uploaded(file),
+  diameter_mm: diameterMm > 0 ? diameterMm : null,
+});
+
+/**
+ * Fabrics of the yarn that nobody has tested, from its bending modulus, the yarn in a stitch and the
+ * fabrics that were tested.
+ *
+ * @param {MaterialDocument} yarn with its bending modulus
+ * @param {number} loopMm
+ * @returns {Promise<EstimateResult>}
+ */
+export function estimated(yarn, loopMm) {
+  const swatches = entries(yarn).map(([fabric, { law, loop_length_mm }]) => ({
+    fabric,
+    law: Object.fromEntries(Object.entries(law).filter(([, value]) => value !== null)),
+    loop_length_mm: loop_length_mm ?? loopMm,
+  }));
+  const body = { bending_modulus_n_mm2: yarn.yarn?.bending_modulus_n_mm2, loop_length_mm: loopMm, swatches };
+  return call("/estimate", { method: "POST", body });
+}
+
+/**
+ * A yarn of what is known of it: a former state, and what was measured since. Fabrics that were only
+ * estimated are left out, to be estimated anew.
+ *
+ * @param {MaterialDocument | null} base
  * @param {string} name
- * @param {Map<Fabric, {tests: Tests, fit: FitResult}>} fabrics
+ * @param {Partial<YarnDocument>} yarn
+ * @param {Map<Fabric, {tests: Tests, fit: FitResult}>} fitted
+ * @param {readonly string[]} evidence in sentences
  * @returns {MaterialDocument}
  */
-export function yarnOf(name, fabrics) {
-  const identifier = name
+export function yarnOf(base, name, yarn, fitted, evidence = []) {
+  const tested = base ? entries(base).filter(([, { origin }]) => origin !== "estimated") : [];
+  const document = {
+    format: "knitcore-material",
+    version: 1,
+    identifier: base?.identifier ?? identifierOf(name),
+    name,
+    yarn: { ...base?.yarn, ...yarn },
+    fabrics: {
+      ...Object.fromEntries(tested),
+      ...Object.fromEntries([...fitted].map(([fabric, known]) => [fabric, fabricOf(known)])),
+    },
+    note: distinctLines(base?.note ?? "", ...evidence),
+  };
+  // What is left out is filled in by the service.
+  return /** @type {MaterialDocument} */ (/** @type {unknown} */ (document));
+}
+
+/** Lines of a note, each once. @param {...string} texts */
+export const distinctLines = (...texts) => [...new Set(texts.join("\n").split("\n"))].filter(Boolean).join("\n");
+
+/**
+ * The yarn with the size of its stitches as measured; what agrees already keeps its source.
+ *
+ * @param {MaterialDocument} yarn
+ * @param {ReadonlyMap<Fabric, Gauge>} gauges
+ */
+export function withGauges(yarn, gauges) {
+  const fabrics = entries(yarn).map(([fabric, known]) => {
+    const gauge = gauges.get(fabric);
+    return [fabric, gauge && differs(known, gauge) ? { ...known, ...sizes(gauge) } : known];
+  });
+  return { ...yarn, fabrics: Object.fromEntries(fabrics) };
+}
+
+/** @param {MaterialDocument} yarn */
+const entries = ({ fabrics }) => /** @type {[Fabric, FabricDocument][]} */ (Object.entries(fabrics));
+
+/** Whether a gauge says more than what was rounded of the size. @param {FabricDocument} known @param {Gauge} gauge */
+const differs = ({ stitch_course_mm, stitch_wale_mm }, { stitches, rows }) =>
+  Math.abs((stitches * stitch_course_mm) / 100 - 1) > 1e-3 || Math.abs((rows * stitch_wale_mm) / 100 - 1) > 1e-3;
+
+/** @param {Gauge} gauge */
+const sizes = ({ stitches, rows }) => ({
+  stitch_course_mm: 100 / stitches,
+  stitch_wale_mm: 100 / rows,
+  stitch_size_source: "gauge given on the page",
+});
+
+/** @param {{tests: Tests, fit: FitResult}} known */
+const fabricOf = ({ tests, fit }) => ({
+  law: lawOf(fit),
+  ...sizes(tests),
+  law_source: `fitted to ${tests.course.name} and ${tests.wale.name}, ${fit.rms_n_per_mm.toFixed(4)} N/mm rms`,
+  standard_deviation: {
+    modulus_course: fit.standard_errors.modulus_course_n_per_mm,
+    modulus_wale: fit.standard_errors.modulus_wale_n_per_mm,
+    poisson_yx: fit.standard_errors.poisson_yx,
+    poisson_xy: fit.standard_errors.poisson_xy,
+  },
+  measured: fit.curves,
+});
+
+/** @param {string} name */
+function identifierOf(name) {
+  const plain = name
     .normalize("NFKD")
     .replace(/\p{M}/gu, "")
     .toLowerCase()
     .replace(/[^a-z0-9]+/g, "-")
     .replace(/^-+|-+$/g, "")
     .slice(0, 60);
-  const document = {
-    format: "knitcore-material",
-    version: 1,
-    identifier: identifier || "yarn",
-    name,
-    fabrics: Object.fromEntries(
-      [...fabrics].map(([fabric, { tests, fit }]) => [
-        fabric,
-        {
-          law: lawOf(fit),
-          stitch_course_mm: 100 / tests.stitches,
-          stitch_wale_mm: 100 / tests.rows,
-          stitch_size_source: "gauge given on the page",
-          standard_deviation: {
-            modulus_course: fit.standard_errors.modulus_course_n_per_mm,
-            modulus_wale: fit.standard_errors.modulus_wale_n_per_mm,
-            poisson_yx: fit.standard_errors.poisson_yx,
-            poisson_xy: fit.standard_errors.poisson_xy,
-          },
-          measured: fit.curves,
-        },
-      ]),
-    ),
-    note: [...fabrics]
-      .map(
-        ([fabric, { tests, fit }]) =>
-          `${fabric}: ${tests.course.name}, ${tests.wale.name}; rms ${fit.rms_n_per_mm.toFixed(4)} N/mm`,
-      )
-      .join("\n"),
-  };
-  // What is left out is filled in by the service.
-  return /** @type {MaterialDocument} */ (/** @type {unknown} */ (document));
+  return plain || "yarn";
 }
 
 /** Constants of a law, without the units in their names. @param {FitResult} fit */

@@ -45,7 +45,7 @@ export function dialog(id, title, ...content) {
 /**
  * What went wrong, and what to do, for the body of a dialog.
  *
- * @param {import("../types.js").Problem} problem
+ * @param {Pick<import("../types.js").Problem, "title" | "detail" | "remedy">} problem
  * @param {() => void} [again] tries once more
  */
 export function problemBox(problem, again) {

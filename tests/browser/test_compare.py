@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -11,8 +12,10 @@ from tests.browser.conftest import wait_for_numbers
 
 pytestmark = pytest.mark.slow
 
+EXAMPLES = Path(__file__).parents[2] / "app" / "examples"
 
-def test_pieces_limbs_and_yarns_leave_the_console_clean(flat_studio: Page) -> None:
+
+def test_pieces_and_limbs_leave_the_console_clean(flat_studio: Page) -> None:
     said: list[str] = []
     flat_studio.on("console", lambda m: said.append(m.text) if m.type != "log" else None)
     flat_studio.on("response", lambda r: said.append(r.url) if r.status >= 400 else None)
@@ -28,23 +31,47 @@ def test_pieces_limbs_and_yarns_leave_the_console_clean(flat_studio: Page) -> No
     flat_studio.select_option("#compare-b-yarn", "cotton")
     expect(numbers.first).not_to_contain_text("the same")
     flat_studio.keyboard.press("Escape")
+    assert said == []
 
-    file = flat_studio.evaluate(
-        "fetch('/api/v1/materials/acrylic/document').then((answer) => answer.json())"
-    )
+
+def test_an_own_yarn_is_added_measured_and_changed(flat_studio: Page) -> None:
+    page, said = flat_studio, []
+    page.on("response", lambda r: said.append(r.url) if r.status >= 400 else None)
+    file = page.evaluate("fetch('/api/v1/materials/acrylic/document').then((a) => a.json())")
     file |= {"identifier": "aunts-wool", "name": "My aunt's wool"}
-    flat_studio.focus("#chart")
-    flat_studio.keyboard.press("Shift+Y")
-    flat_studio.set_input_files(
-        "#yarn-file",
-        files=[
-            {
-                "name": "wool.json",
-                "mimeType": "application/json",
-                "buffer": json.dumps(file).encode(),
-            }
-        ],
-    )
-    expect(flat_studio.locator("#material-button")).to_contain_text("My aunt's wool")
-    wait_for_numbers(flat_studio)
+    wool = {"name": "wool.json", "mimeType": "application/json"}
+    page.focus("#chart")
+    page.keyboard.press("Shift+Y")
+    page.set_input_files("#yarn-file", files=[{**wool, "buffer": json.dumps(file).encode()}])
+    expect(page.locator("#material-button")).to_contain_text("My aunt's wool")
+    wait_for_numbers(page)
+
+    page.focus("#chart")
+    page.keyboard.press("Shift+Y")
+    page.click("#yarn-new")
+    page.fill("#yarn-name", "Plain cotton")
+    page.click("#yarn-bend summary")
+    page.set_input_files("#yarn-photos", EXAMPLES / "photo.png")
+    page.fill("#yarn-weight", "0.5")
+    page.fill("#yarn-hanging", "120")
+    page.click("#yarn-bend-run")
+    expect(page.locator("#yarn-bend")).to_contain_text("mN·mm² from 1 photo.")
+    page.fill("#yarn-loop", "12")
+    page.fill("#yarn-rib-stitches", "40")
+    page.click("#yarn-make")
+    expect(page.locator("#yarn-maker .problem")).to_contain_text("both its stitches and its rows")
+    page.fill("#yarn-rib-rows", "30")
+    page.click("#yarn-make")
+    expect(page.locator("#material-button")).to_contain_text("Plain cotton")
+
+    page.focus("#chart")
+    page.keyboard.press("Shift+Y")
+    page.get_by_label("Change Plain cotton").click()
+    expect(page.locator("#yarn-rib-stitches")).to_have_value("40")
+    page.fill("#yarn-name", "Soft cotton")
+    page.click("#yarn-make")
+    expect(page.locator("#material-button")).to_contain_text("Soft cotton")
+    page.focus("#chart")
+    page.keyboard.press("Shift+Y")
+    expect(page.locator("#yarns-list")).not_to_contain_text("Plain cotton")
     assert said == []

@@ -10,6 +10,15 @@ from playwright.sync_api import Page, expect
 from tests.browser.axe import THEMES, violations
 from tests.browser.page import kept_chart
 
+
+def open_yarn_form(page: Page) -> None:
+    """Own yarns, with all that can be told of a new one."""
+    page.keyboard.press("Shift+Y")
+    page.click("#yarn-new")
+    for summary in page.locator("#yarn-maker summary").all():
+        summary.click()
+
+
 MENUS = ["designs", "material", "export"]
 PANELS: dict[str, Callable[[Page], None]] = {
     "help-dialog": lambda page: page.keyboard.press("?"),
@@ -25,7 +34,7 @@ PANELS: dict[str, Callable[[Page], None]] = {
     "panel-regions": lambda page: page.keyboard.press("Shift+A"),
     "panel-repeats": lambda page: page.keyboard.press("Shift+L"),
     "compare-dialog": lambda page: page.keyboard.press("Shift+C"),
-    "yarns-dialog": lambda page: page.keyboard.press("Shift+Y"),
+    "yarns-dialog": open_yarn_form,
     "inverse": lambda page: page.keyboard.press("a"),
 }
 

@@ -1,0 +1,336 @@
+/**
+ * The form in which a yarn is made of what is known of it, or changed: photos and a squeeze of the yarn,
+ * the gauge of its fabrics, stretch tests of some. What was not tested is estimated.
+ *
+ * @import {Studio} from "../../studio.js"
+ * @import {BendingResult, CompressionResult, Fabric, FitResult, MaterialDocument, YarnDocument} from "../../types.js"
+ * @import {Gauge, Tests} from "../../services/yarns.js"
+ */
+
+import { FABRICS } from "../../core/segments.js";
+import { h } from "../../dom.js";
+import {
+  adopt,
+  bendingRequest,
+  compressionRequest,
+  distinctLines,
+  estimated,
+  fitRequest,
+  withGauges,
+  yarnOf,
+} from "../../services/yarns.js";
+import { attempt } from "../../widgets/attempt.js";
+import { textButton } from "../../widgets/buttons.js";
+import { labelled, numberField } from "../../widgets/fields.js";
+import { Run } from "../../widgets/jobrun.js";
+
+const ESTIMATED = "estimated from the library's yarns";
+const TABLES = ".csv,.xlsx,.xls";
+
+/**
+ * @param {Studio} studio
+ * @param {() => void} made called when the yarn is kept
+ */
+export function yarnMaker(studio, made) {
+  const status = h("div", { class: "dialog-status", role: "status" });
+  const run = new Run();
+  /** The yarn that is changed; null for a new one. @type {MaterialDocument | null} */
+  let base = null;
+  /** Where the figures come from, by subject. @type {Map<string, string>} */
+  const evidence = new Map();
+  /** Deviation and diameter, which have no field of their own. @type {Partial<YarnDocument>} */
+  let measured = {};
+
+  /** @param {string} title @param {string} detail */
+  const say = (title, detail) => run.say({ title, detail, remedy: null });
+
+  const name = h("input", { type: "text", class: "text-field", id: "yarn-name", maxLength: 80 });
+  const bending = figure("yarn-bending", { min: ".01", max: "10000" });
+  const loop = figure("yarn-loop", { min: "1", max: "200" });
+  const stiffness = figure("yarn-stiffness", { min: ".0001", max: "100000" });
+  const exponent = figure("yarn-exponent", { min: "1.01", max: "20" });
+
+  // Bending, from photos.
+  const photos = picker("yarn-photos", "image/*", true);
+  const weight = figure("yarn-weight", { min: ".005", max: "20" });
+  const hanging = figure("yarn-hanging", { min: "10", max: "1000" });
+  const bent = h("p", { class: "muted", role: "status" });
+  const bend = async () => {
+    const chosen = [...(photos.files ?? [])];
+    const given = { gramsPerMetre: weight.valueAsNumber, lengthMm: hanging.valueAsNumber };
+    if (!chosen.length || !(given.gramsPerMetre > 0) || !(given.lengthMm > 0)) {
+      return say("Something is missing", "Choose photos, and give the yarn's weight and the length that hangs.");
+    }
+    /** @type {BendingResult | null} */
+    const found = await run.run("bending", await bendingRequest(chosen, given), "Tracing the yarn …");
+    if (!found) return;
+    const spread = found.standard_deviation;
+    bending.value = milli(found.bending_modulus_n_mm2);
+    measured = { ...measured, bending_modulus_sd_n_mm2: spread };
+    const words = `${milli(found.bending_modulus_n_mm2)}${spread ? ` ± ${milli(spread)}` : ""} mN·mm² from ${counted(found.photos.length, "photo")}`;
+    evidence.set("bending", `Bending modulus ${words}.`);
+    bent.textContent = [`${words}.`, ...found.notes].join(" ");
+  };
+
+  // Contact, from squeezing.
+  const squeezes = picker("yarn-squeezes", TABLES);
+  const diameter = figure("yarn-diameter", { min: ".01", max: "50" });
+  const which = h("select", {
+    id: "yarn-which",
+    hidden: true,
+    "aria-label": "Yarn of the file",
+    onchange: () => take(),
+  });
+  const squeezed = h("p", { class: "muted", role: "status" });
+  /** @type {CompressionResult | null} */
+  let compression = null;
+  const take = () => {
+    const mean = compression?.mean[which.value];
+    if (!compression || !mean) return;
+    stiffness.value = milli(mean.k_n_per_mm3);
+    exponent.value = mean.p.toFixed(2);
+    const diameters = compression.samples.filter((one) => one.yarn === mean.yarn).map((one) => one.diameter_mm);
+    measured = { ...measured, diameter_mm: diameters.reduce((sum, one) => sum + one, 0) / diameters.length };
+    const words = `k ${stiffness.value} mN/mm³, p ${exponent.value} from ${counted(mean.samples, "sample")} of ${squeezes.files?.[0]?.name}`;
+    evidence.set("contact", `Contact law ${words}.`);
+    squeezed.textContent = `${words}.`;
+  };
+  const squeeze = async () => {
+    const [file] = squeezes.files ?? [];
+    if (!file) return say("There is no test yet", "Choose the file of a compression test.");
+    compression = await run.run(
+      "compression",
+      await compressionRequest(file, diameter.valueAsNumber),
+      "Fitting the contact law …",
+    );
+    const yarns = Object.keys(compression?.mean ?? {});
+    which.replaceChildren(...yarns.map((yarn) => h("option", { value: yarn }, yarn)));
+    which.hidden = yarns.length < 2;
+    take();
+  };
+
+  const rows = FABRICS.map(fabricRow);
+
+  /** @returns {Promise<Map<Fabric, {tests: Tests, fit: FitResult}> | null>} null if one fails */
+  const fittedFabrics = async () => {
+    const fitted = new Map();
+    for (const { fabric, tests } of rows) {
+      const given = tests();
+      if (!given) continue;
+      const fit = await run.run("fit", await fitRequest(given), `Fitting ${fabric} …`);
+      if (!fit) return null;
+      fitted.set(fabric, { tests: given, fit });
+    }
+    return fitted;
+  };
+
+  /** @returns {Partial<YarnDocument>} figures of the yarn that are given */
+  const figures = () => ({
+    ...measured,
+    ...(bending.valueAsNumber > 0 && { bending_modulus_n_mm2: bending.valueAsNumber / 1000 }),
+    ...(stiffness.valueAsNumber > 0 && { compression_stiffness_n_per_mm3: stiffness.valueAsNumber / 1000 }),
+    ...(exponent.valueAsNumber > 1 && { compression_exponent: exponent.valueAsNumber }),
+  });
+
+  const make = async () => {
+    if (!name.value.trim()) return say("The yarn has no name", "Give it one.");
+    const half = rows.find(({ incomplete }) => incomplete());
+    if (half) return say(`The ${half.fabric} is not complete`, `${half.incomplete()}`);
+    const fitted = await fittedFabrics();
+    if (!fitted) return;
+    const known = yarnOf(base, name.value.trim(), figures(), fitted, [...evidence.values()]);
+    const lacking = FABRICS.filter((fabric) => !(fabric in known.fabrics));
+    const estimable = bending.valueAsNumber > 0 && loop.valueAsNumber > 0;
+    if (lacking.length === FABRICS.length && !estimable) {
+      return say(
+        "That is not enough for a yarn",
+        "Give its bending modulus and the yarn in a stitch, or two stretch tests and the gauge of a fabric.",
+      );
+    }
+    const yarn = await attempt(status, async () => (lacking.length && estimable ? completed(known, lacking) : known));
+    if (!yarn) return;
+    /** @type {Map<Fabric, Gauge>} */
+    const gauges = new Map();
+    for (const { fabric, gauge } of rows) {
+      const given = gauge();
+      if (given) gauges.set(fabric, given);
+    }
+    if (await attempt(status, () => adopt(studio, withGauges(yarn, gauges)))) made();
+  };
+
+  /** @param {MaterialDocument} known @param {readonly Fabric[]} lacking */
+  const completed = async (known, lacking) => {
+    const { material, warnings } = await estimated(known, loop.valueAsNumber);
+    const fabrics = Object.fromEntries(
+      lacking.map((fabric) => [fabric, { ...material.fabrics[fabric], law_source: ESTIMATED }]),
+    );
+    return { ...known, fabrics: { ...known.fabrics, ...fabrics }, note: distinctLines(known.note ?? "", ...warnings) };
+  };
+
+  const title = h("h3", {}, "Make a yarn");
+  const element = h(
+    "section",
+    { class: "yarn-maker", id: "yarn-maker", hidden: true, "aria-label": "Make a yarn" },
+    title,
+    labelled("Name", name),
+    h("h4", {}, "1. The yarn"),
+    h(
+      "div",
+      { class: "yarn-facts" },
+      labelled("Bending modulus", bending, "mN·mm²"),
+      labelled("Yarn in a stitch", loop, "mm: unravel ten, divide by ten"),
+    ),
+    h(
+      "details",
+      { id: "yarn-bend" },
+      h("summary", {}, "Measure the bending modulus on photos"),
+      h(
+        "p",
+        { class: "muted" },
+        "Let a known length hang over the edge of a table, 10 to 25 cm, before a plain background. Photograph it level from the side, crop the photo at the edge, and take five.",
+      ),
+      h(
+        "div",
+        { class: "yarn-facts" },
+        labelled("Photos", photos),
+        labelled("Weight", weight, "g/m"),
+        labelled("Hanging length", hanging, "mm"),
+      ),
+      textButton("play", "Measure the photos", () => void bend(), { id: "yarn-bend-run" }),
+      bent,
+    ),
+    h(
+      "details",
+      { id: "yarn-squeeze" },
+      h("summary", {}, "Contact law, from a compression test (for the yarn level only)"),
+      h(
+        "div",
+        { class: "yarn-facts" },
+        labelled("Test", squeezes, "XLSX, XLS or CSV"),
+        labelled("Diameter", diameter, "mm, unless the file has it"),
+        which,
+      ),
+      textButton("play", "Fit the test", () => void squeeze(), { id: "yarn-squeeze-run" }),
+      h("div", { class: "yarn-facts" }, labelled("k", stiffness, "mN/mm³"), labelled("p", exponent)),
+      squeezed,
+    ),
+    h("h4", {}, "2. The fabrics"),
+    h(
+      "p",
+      { class: "muted" },
+      "Stitches and rows per 10 cm of a swatch at rest; and, for one fabric or more, two stretch tests (CSV, XLSX or HDF5), pulled along its rows and along its columns. A fabric without tests is estimated from the bending modulus, the yarn in a stitch and the fabrics that have them.",
+    ),
+    h(
+      "div",
+      { class: "yarn-fabrics" },
+      h(
+        "table",
+        { class: "yarn-table" },
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            ...[
+              "Fabric",
+              "Stitches per 10 cm",
+              "Rows per 10 cm",
+              "Pulled along the rows",
+              "Pulled along the columns",
+            ].map((text) => h("th", { scope: "col" }, text)),
+          ),
+        ),
+        h("tbody", {}, ...rows.map((row) => row.element)),
+      ),
+    ),
+    run.element,
+    status,
+    h(
+      "div",
+      { class: "dialog-buttons" },
+      textButton("yarn", "Keep the yarn", () => void make(), { class: "button primary", id: "yarn-make" }),
+    ),
+  );
+
+  return {
+    element,
+    /** Show the form, for a new yarn or with what is known of one. @param {MaterialDocument | null} yarn */
+    open(yarn) {
+      base = yarn;
+      measured = {};
+      evidence.clear();
+      compression = null;
+      for (const field of [photos, weight, hanging, squeezes, diameter]) field.value = "";
+      for (const told of [bent, squeezed, status]) told.replaceChildren();
+      which.hidden = true;
+      title.textContent = yarn ? `Change ${yarn.name}` : "Make a yarn";
+      name.value = yarn?.name ?? "";
+      bending.value = milli(yarn?.yarn?.bending_modulus_n_mm2);
+      stiffness.value = milli(yarn?.yarn?.compression_stiffness_n_per_mm3);
+      exponent.value = String(yarn?.yarn?.compression_exponent ?? "");
+      const loops = Object.values(yarn?.fabrics ?? {}).flatMap(({ loop_length_mm }) => loop_length_mm ?? []);
+      loop.value = loops.length ? String(Number(loops[0].toPrecision(4))) : "";
+      for (const row of rows) row.show(yarn?.fabrics[row.fabric] ?? null);
+      element.hidden = false;
+      name.focus();
+    },
+  };
+}
+
+/** @param {Fabric} fabric */
+function fabricRow(fabric) {
+  const course = picker(`yarn-${fabric}-along-rows`, `${TABLES},.h5,.hdf5`);
+  const wale = picker(`yarn-${fabric}-along-columns`, `${TABLES},.h5,.hdf5`);
+  course.ariaLabel = `${fabric}, pulled along the rows`;
+  wale.ariaLabel = `${fabric}, pulled along the columns`;
+  const stitches = figure(`yarn-${fabric}-stitches`, { "aria-label": `Stitches of ${fabric} per 10 cm` });
+  const rows = figure(`yarn-${fabric}-rows`, { "aria-label": `Rows of ${fabric} per 10 cm` });
+  const known = h("span", { class: "muted" });
+  const gauge = () => {
+    const given = { stitches: stitches.valueAsNumber, rows: rows.valueAsNumber };
+    return given.stitches > 0 && given.rows > 0 ? given : null;
+  };
+  /** @returns {Tests | null} null until all is given */
+  const tests = () => {
+    const [along, across, size] = [course.files?.[0], wale.files?.[0], gauge()];
+    return along && across && size ? { course: along, wale: across, ...size } : null;
+  };
+  /** What is missing, in words; empty if it is all or nothing. */
+  const incomplete = () => {
+    const files = [course, wale].filter((field) => field.files?.length).length;
+    const numbers = [stitches, rows].filter((field) => field.value).length;
+    if (files === 1) return "A fabric needs two tests: along its rows and along its columns.";
+    if (numbers === 1) return "Give both its stitches and its rows per 10 cm.";
+    return files && !numbers ? "Its tests need its gauge, too." : "";
+  };
+  /** @param {MaterialDocument["fabrics"][Fabric] | null} record */
+  const show = (record) => {
+    course.value = wale.value = "";
+    stitches.value = record ? perTenCm(record.stitch_course_mm) : "";
+    rows.value = record ? perTenCm(record.stitch_wale_mm) : "";
+    known.textContent = record ? ` ${record.origin === "estimated" ? "estimated" : "tested"}` : "";
+  };
+  const element = h(
+    "tr",
+    {},
+    h("th", { scope: "row" }, fabric, known),
+    ...[stitches, rows, course, wale].map((field) => h("td", {}, field)),
+  );
+  return { fabric, gauge, tests, incomplete, show, element };
+}
+
+/** @param {string} id @param {Record<string, unknown>} more */
+const figure = (id, more) => numberField({ id, min: "1", max: "400", step: "any", ...more });
+
+/** @param {string} id @param {string} accept @param {boolean} [multiple] */
+const picker = (id, accept, multiple = false) => h("input", { type: "file", id, accept, multiple });
+
+/** @param {number | null | undefined} value in thousandths, or nothing */
+const milli = (value) => (value ? String(Number((1000 * value).toPrecision(3))) : "");
+
+/** @param {number} mm */
+const perTenCm = (mm) => String(Number((100 / mm).toPrecision(4)));
+
+/** @param {number} count @param {string} thing */
+const counted = (count, thing) => `${count} ${thing}${count === 1 ? "" : "s"}`;
