@@ -1303,14 +1303,14 @@ export interface HysteresisRequest {
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
   material: string;
+  /** Yarn per stitch; the material's by default. */
+  loop_length_mm?: number | null;
   /** Along rows, or along columns. */
   direction?: Direction;
   /** Largest strain: 0.5 is 50 %. */
   max_strain?: number;
   /** Coefficient of friction between yarns; that of the fibre by default. */
   friction?: number | null;
-  /** Yarn per stitch; the material's by default. */
-  loop_length_mm?: number | null;
   /** Strains on the way there. */
   points?: number;
   cycles?: number;

@@ -8,6 +8,9 @@ from pydantic import Field
 
 from app.models.base import RequestModel
 from app.models.charts import MaterialName
+from app.operations.context import Context
+from knitcore.chart import StitchChart
+from knitcore.shell.cloth import Cloth, cloth_of
 
 LinearDensity = Annotated[
     float,
@@ -19,11 +22,19 @@ Corners = Annotated[
     Field(description="Corners of the sheet line by line, mm; null outside the piece."),
 ]
 WantsCorners = Annotated[bool, Field(description="Also return the corners of the sheet.")]
+TimeLimit = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=600,
+        description="CPU time after which the current shape is returned, not converged.",
+    ),
+]
 FRICTIONLESS = (
     "Without friction and set. Friction makes real fabric seem stiffer, and keeps it in more than "
     "one shape."
 )
-CURLS = (
+_CURLS = (
     "This fabric curls. It was taken as flat at rest, as if its edges were pressed: the test is "
     "not meant for fabric that rolls up."
 )
@@ -34,3 +45,13 @@ class WeighedRequest(RequestModel):
 
     material: MaterialName
     linear_density_g_per_m: LinearDensity
+
+    def cloth(self, repeat: StitchChart, context: Context) -> Cloth:
+        """Cloth of a repeat."""
+        density = self.linear_density_g_per_m
+        return cloth_of(repeat, context.material(self.material), linear_density_g_per_m=density)
+
+
+def notes_of(cloth: Cloth) -> list[str]:
+    """What a test of cloth that is flat at rest leaves out."""
+    return [FRICTIONLESS, *([_CURLS] if cloth.curls else [])]

@@ -15,6 +15,7 @@ from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
 from app.operations.context import Context
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
 from knitcore.errors import InputError
+from knitcore.materials import Material
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import Branch, relax
 from knitcore.yarnlevel.results import RelaxedCell
@@ -26,15 +27,41 @@ LoopLengths = list[
 ]
 
 
-class YarnLevelRequest(RequestModel):
-    """A repeat, its yarn, and the model to use."""
+class StitchRequest(RequestModel):
+    """A repeat and its yarn."""
 
     chart: RepeatInput
     material: MaterialName
-
     loop_length_mm: float | None = Field(
         None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
     )
+
+    def repeat(self, most: int | None = None) -> StitchChart:
+        """The chart's repeat.
+
+        Raises
+        ------
+        InputError
+            If it has more than ``most`` stitches.
+        """
+        repeat = to_repeat(self.chart).repeat()
+        stitches = repeat.rows * repeat.columns
+        if most is not None and stitches > most:
+            raise InputError(
+                "chart",
+                f"its repeat has {stitches} stitches.",
+                f"Use a repeat of at most {most} stitches.",
+            )
+        return repeat
+
+    def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:
+        """The material's yarn in a repeat, with the loop length if it is given."""
+        return _yarn(context.material(self.material), repeat, self.loop_length_mm)
+
+
+class YarnLevelRequest(StitchRequest):
+    """A repeat, its yarn, and the model to use."""
+
     loop_lengths_mm: LoopLengths | None = Field(
         None,
         min_length=1,
@@ -50,11 +77,9 @@ class YarnLevelRequest(RequestModel):
     convention: Convention = Convention.PUBLISHED
     fresh: bool = Field(False, description="Compute again, even if the result is stored.")
 
-    def repeat(self) -> StitchChart:
+    def repeat(self, most: int | None = None) -> StitchChart:
         """The chart's repeat, or the whole chart if its rows have loop lengths of their own."""
-        if self.loop_lengths_mm is not None:
-            return to_chart(self.chart)
-        return to_repeat(self.chart).repeat()
+        return super().repeat(most) if self.loop_lengths_mm is None else to_chart(self.chart)
 
     def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:
         """The material's yarn for a repeat, with the mean of the loop lengths if they are given.
@@ -71,13 +96,17 @@ class YarnLevelRequest(RequestModel):
             )
         if lengths is not None:
             given = float(np.mean([np.mean(row) for row in lengths]))
-        used = yarn_for(context.material(self.material), repeat, given)
-        return used if given is None else replace(used, loop_length_mm=given)
+        return _yarn(context.material(self.material), repeat, given)
 
     def inputs(self, repeat: StitchChart, used: ChartYarn) -> dict[str, Any]:
         """Everything that decides a result, from which its stored name is made."""
         asked = self.model_dump(mode="json", exclude={"fresh", "chart", "material"})
         return {"repeat": repeat.text, "used": asdict(used), "asked": asked}
+
+
+def _yarn(material: Material, repeat: StitchChart, loop_length_mm: float | None) -> ChartYarn:
+    used = yarn_for(material, repeat, loop_length_mm)
+    return used if loop_length_mm is None else replace(used, loop_length_mm=loop_length_mm)
 
 
 class YarnResult(ResultModel):

@@ -8,12 +8,11 @@ from pydantic import Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from app.models.base import ResultModel
-from app.models.charts import MaterialName, RepeatInput, to_repeat
 from app.models.laws import LawsRequest
-from app.models.yarn_level import YarnResult
+from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.errors import ConvergenceError, InputError, UnravelledError
+from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.yarnlevel.bending import (
     MAX_STITCHES,
     Curl,
@@ -23,7 +22,6 @@ from knitcore.yarnlevel.bending import (
 )
 from knitcore.yarnlevel.bent_cell import BendingResponse
 from knitcore.yarnlevel.relax import Branch, OnSplines, RelaxedRepeat, relax
-from knitcore.yarnlibrary.yarns import yarn_for
 
 COMPARED_UP_TO = 9
 """Repeats of up to this many stitches are also relaxed without symmetry, for comparison."""
@@ -35,14 +33,9 @@ _FRICTIONLESS = (
 )
 
 
-class BendRequest(LawsRequest):
+class BendRequest(StitchRequest, LawsRequest):
     """A repeat and its yarn."""
 
-    chart: RepeatInput
-    material: MaterialName
-    loop_length_mm: float | None = Field(
-        None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
-    )
     linear_density_g_per_m: float | None = Field(
         None, gt=0, le=100, description="Of the yarn; needed for the bending lengths."
     )
@@ -100,15 +93,9 @@ def bend(request: BendRequest, context: Context) -> BendResult:
     ConvergenceError
         If no stable state is found.
     """
-    repeat = to_repeat(request.chart).repeat()
-    if repeat.rows * repeat.columns > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its repeat has {repeat.rows * repeat.columns} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
-    used = yarn_for(context.material(request.material), repeat, request.loop_length_mm)
-    loop = request.loop_length_mm or used.loop_length_mm
+    repeat = request.repeat(MAX_STITCHES)
+    used = request.yarn(repeat, context)
+    loop = used.loop_length_mm
 
     def relaxed(branch: OnSplines) -> RelaxedRepeat:
         return relax(repeat, used.yarn, loop, branch=branch, cancelled=context.cancelled)

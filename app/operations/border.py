@@ -14,7 +14,6 @@ from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.shell.border import RULE_ROWS, RULE_STITCHES, advice
-from knitcore.shell.cloth import cloth_of
 
 _RULE = (
     f"Knitters' rule, {RULE_STITCHES[0]} to {RULE_STITCHES[1]} stitches and {RULE_ROWS} rows, "
@@ -68,10 +67,9 @@ def border(request: BorderRequest, context: Context) -> BorderResult:
     ------
     InputError, ConvergenceError, CancelledError
     """
-    material, density = context.material(request.material), request.linear_density_g_per_m
-    inner = cloth_of(to_repeat(request.chart), material, linear_density_g_per_m=density)
+    inner = request.cloth(to_repeat(request.chart), context)
     edge = StitchChart.of_fabric(request.border, rows=2, columns=2)
-    around = cloth_of(edge, material, linear_density_g_per_m=density)
+    around = request.cloth(edge, context)
     sides, ends = (advice(inner, around, axis, cancelled=context.cancelled) for axis in (0, 1))
     notes = [_RULE] if max(sides.moment_n, ends.moment_n) > 0.0 else []
     if not (sides.holds and ends.holds):

@@ -12,6 +12,7 @@ from app.cli.options import out_option
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.posed import PosedView
+from app.models.weighed import TimeLimit
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -29,12 +30,7 @@ class CurlRequest(RequestModel):
     chart: ChartInput
     material: MaterialName
     corners: bool = Field(False, description="Also return the corners of all stitches.")
-    time_limit_s: float = Field(
-        TIME_LIMIT_S,
-        gt=0,
-        le=600,
-        description="CPU time after which the current shape is returned, not converged.",
-    )
+    time_limit_s: TimeLimit = TIME_LIMIT_S
 
 
 class CurlResult(ResultModel):

@@ -9,10 +9,9 @@ from pydantic import Field
 
 from app.models.base import Ends, ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import CURLS, FRICTIONLESS, Corners, WantsCorners, WeighedRequest
+from app.models.weighed import Corners, WantsCorners, WeighedRequest, notes_of
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.shell.cloth import cloth_of
 from knitcore.shell.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
 from knitcore.shell.drape import Drape as Draped
 from knitcore.shell.drape import drape as drape_cloth
@@ -57,11 +56,7 @@ def drape(request: DrapeRequest, context: Context) -> DrapeResult:
     ------
     InputError, ConvergenceError, CancelledError
     """
-    cloth = cloth_of(
-        to_repeat(request.chart),
-        context.material(request.material),
-        linear_density_g_per_m=request.linear_density_g_per_m,
-    )
+    cloth = request.cloth(to_repeat(request.chart), context)
     found = drape_cloth(
         cloth,
         piece_mm=request.piece_mm,
@@ -76,7 +71,7 @@ def drape(request: DrapeRequest, context: Context) -> DrapeResult:
         bending_length_wale_mm=cloth.bending_length_mm(1),
         weight_g_per_m2=cloth.weight_g_per_m2,
         corners_mm=_corners(found) if request.corners else None,
-        notes=[FRICTIONLESS, *([CURLS] if cloth.curls else [])],
+        notes=notes_of(cloth),
     )
 
 

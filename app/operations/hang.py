@@ -11,7 +11,7 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, to_chart
 from app.models.posed import PosedView
-from app.models.weighed import FRICTIONLESS, Corners, WantsCorners, WeighedRequest
+from app.models.weighed import FRICTIONLESS, Corners, TimeLimit, WantsCorners, WeighedRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -26,12 +26,7 @@ class HangRequest(WeighedRequest):
     chart: ChartInput
     by: HungBy = Field(HungBy.EDGE, description="The whole top edge, or its two corners.")
     corners: WantsCorners = False
-    time_limit_s: float = Field(
-        TIME_LIMIT_S,
-        gt=0,
-        le=600,
-        description="CPU time after which the current shape is returned, not converged.",
-    )
+    time_limit_s: TimeLimit = TIME_LIMIT_S
 
 
 class HangResult(ResultModel):

@@ -7,12 +7,10 @@ from typing import Literal
 from pydantic import Field
 
 from app.models.base import Floats, ResultModel
-from app.models.charts import MaterialName, RepeatInput, to_repeat
 from app.models.laws import LawsRequest
-from app.models.yarn_level import YarnResult
+from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.yarnlevel import hysteresis as loops
 from knitcore.yarnlevel.friction import MAX_COEFFICIENT, MAX_STITCHES
@@ -26,14 +24,11 @@ from knitcore.yarnlevel.hysteresis import (
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlevel.splines import COARSE
 from knitcore.yarnlibrary.yarn_friction import yarn_friction
-from knitcore.yarnlibrary.yarns import yarn_for
 
 
-class HysteresisRequest(LawsRequest):
+class HysteresisRequest(StitchRequest, LawsRequest):
     """A repeat, its yarn and the pull."""
 
-    chart: RepeatInput
-    material: MaterialName
     direction: Direction = Field(Direction.COURSE, description="Along rows, or along columns.")
     max_strain: float = Field(0.3, gt=0, le=5, description="Largest strain: 0.5 is 50 %.")
     friction: float | None = Field(
@@ -41,9 +36,6 @@ class HysteresisRequest(LawsRequest):
         ge=0,
         le=MAX_COEFFICIENT,
         description="Coefficient of friction between yarns; that of the fibre by default.",
-    )
-    loop_length_mm: float | None = Field(
-        None, gt=0, le=1000, description="Yarn per stitch; the material's by default."
     )
     points: int = Field(DEFAULT_POINTS, ge=2, le=200, description="Strains on the way there.")
     cycles: int = Field(2, ge=1, le=MAX_CYCLES)
@@ -102,22 +94,14 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     ConvergenceError, UnravelledError
         If the yarn locks or unravels on the way.
     """
-    repeat = to_repeat(request.chart).repeat()
-    if repeat.rows * repeat.columns > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its repeat has {repeat.rows * repeat.columns} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
-    material = context.material(request.material)
-    used = yarn_for(material, repeat, request.loop_length_mm)
-    known = yarn_friction(material)
+    repeat = request.repeat(MAX_STITCHES)
+    used = request.yarn(repeat, context)
+    known = yarn_friction(context.material(request.material))
     given = request.friction
     coefficient = known.coefficient if given is None else given
     relaxed = relax(
-        repeat, used.yarn, request.loop_length_mm or used.loop_length_mm, grid=COARSE,
-        cancelled=context.cancelled,
-    )  # fmt: skip
+        repeat, used.yarn, used.loop_length_mm, grid=COARSE, cancelled=context.cancelled
+    )
     found = loops.hysteresis(
         relaxed, request.direction, request.max_strain, coefficient,
         points=request.points, cycles=request.cycles, cancelled=context.cancelled,

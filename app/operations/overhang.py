@@ -9,11 +9,10 @@ from pydantic import Field
 
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import CURLS, FRICTIONLESS, Corners, WantsCorners, WeighedRequest
+from app.models.weighed import Corners, WantsCorners, WeighedRequest, notes_of
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
-from knitcore.shell.cloth import cloth_of
 from knitcore.shell.overhang import overhang as hang_over
 
 
@@ -52,11 +51,7 @@ def overhang(request: OverhangRequest, context: Context) -> OverhangResult:
     ------
     InputError, ConvergenceError, CancelledError
     """
-    cloth = cloth_of(
-        to_repeat(request.chart),
-        context.material(request.material),
-        linear_density_g_per_m=request.linear_density_g_per_m,
-    )
+    cloth = request.cloth(to_repeat(request.chart), context)
     axis = 0 if request.direction is Direction.COURSE else 1
     found = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
     return OverhangResult.of(
@@ -65,7 +60,7 @@ def overhang(request: OverhangRequest, context: Context) -> OverhangResult:
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
         weight_g_per_m2=cloth.weight_g_per_m2,
         corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
-        notes=[FRICTIONLESS, *([CURLS] if cloth.curls else [])],
+        notes=notes_of(cloth),
     )
 
 

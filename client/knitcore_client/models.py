@@ -618,14 +618,14 @@ class HysteresisRequest(TypedDict):
     chart: str | PureFabricChart
     material: str
     """Identifier of a material of the library."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's by default."""
     direction: NotRequired[Direction]
     """Along rows, or along columns."""
     max_strain: NotRequired[float]
     """Largest strain: 0.5 is 50 %."""
     friction: NotRequired[float | None]
     """Coefficient of friction between yarns; that of the fibre by default."""
-    loop_length_mm: NotRequired[float | None]
-    """Yarn per stitch; the material's by default."""
     points: NotRequired[int]
     """Strains on the way there."""
     cycles: NotRequired[int]
