@@ -2112,6 +2112,8 @@ export interface RelaxResult {
   converged: boolean;
   yarn: YarnResult;
   starts: StartResult[];
+  /** Without the mirror symmetries; null for other branches, shapes that are held, and free cells of more than 9 stitches. */
+  unmirrored: UnmirroredResult | null;
   notes: string[];
   /** Bottom course first; each runs once across the repeat. */
   centre_lines_mm: [number, number, number][][] | null;
@@ -2557,6 +2559,15 @@ export interface TrellisResult {
   moment_n_mm: number[];
   /** Moment over the relaxed area. */
   shear_stress_n_per_mm: number[];
+}
+
+/** The minimum that the shape is, or leads to, once its mirror symmetries are dropped. */
+export interface UnmirroredResult {
+  /** Whether the mirrored shape is that minimum. */
+  minimum: boolean;
+  energy_n_mm: number;
+  cell_course_mm: number;
+  cell_wale_mm: number;
 }
 
 /** A file's name and its content. */

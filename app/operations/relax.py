@@ -12,14 +12,20 @@ from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, re
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
+from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_SIZE_LOG_SD,
     log_interval,
 )
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.relax import Branch
+from knitcore.yarnlevel.lowest import can_be_followed, without_mirrors
+from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
+from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlibrary.yarns import ChartYarn
+
+FOLLOWED_UP_TO = 9
+"""Free cells of up to this many stitches are also followed without their symmetries."""
 
 
 class RelaxRequest(YarnLevelRequest):
@@ -42,6 +48,15 @@ class StartResult(ResultModel):
     energy_n_mm: Known
     cell_course_mm: Known
     cell_wale_mm: Known
+
+
+class UnmirroredResult(ResultModel):
+    """The minimum that the shape is, or leads to, once its mirror symmetries are dropped."""
+
+    minimum: bool = Field(description="Whether the mirrored shape is that minimum.")
+    energy_n_mm: float
+    cell_course_mm: float
+    cell_wale_mm: float
 
 
 class RelaxResult(ResultModel):
@@ -74,6 +89,11 @@ class RelaxResult(ResultModel):
     converged: bool
     yarn: YarnResult
     starts: list[StartResult]
+    unmirrored: UnmirroredResult | None = Field(
+        None,
+        description="Without the mirror symmetries; null for other branches, shapes that are held, "
+        f"and free cells of more than {FOLLOWED_UP_TO} stitches.",
+    )
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
         None, description="Bottom course first; each runs once across the repeat."
@@ -97,8 +117,11 @@ def _relaxed(
         log_interval(size, YARN_LEVEL_SIZE_LOG_SD) if held is None else None
         for size, held in zip((cell.cell_course_mm, cell.cell_wale_mm), sizes, strict=True)
     ]
+    unmirrored, note = _unmirrored(cell, context) if sizes == (None, None) else (None, ())
     return RelaxResult.of(
         cell,
+        notes=[*cell.notes, *note],
+        unmirrored=unmirrored,
         cell_course_interval_mm=free[0],
         cell_wale_interval_mm=free[1],
         interval_source=YARN_LEVEL_ERRORS,
@@ -110,6 +133,26 @@ def _relaxed(
         centre_lines_mm=[line.tolist() for line in cell.centre_lines]
         if request.centre_lines
         else None,
+    )
+
+
+def _unmirrored(
+    cell: RelaxedCell, context: Context
+) -> tuple[UnmirroredResult | None, tuple[str, ...]]:
+    """What becomes of the shape without its symmetries, and a note where it does not stay."""
+    if not isinstance(cell, RelaxedRepeat) or not can_be_followed(cell, FOLLOWED_UP_TO):
+        return None, ()
+    try:
+        found = without_mirrors(cell, cancelled=context.cancelled)
+    except (ConvergenceError, UnravelledError):
+        return None, ("Without its mirror symmetries no shape was found.",)
+    told = UnmirroredResult.of(found.state, minimum=found.minimum)
+    if found.minimum:
+        return told, ()
+    return told, (
+        "This shape is a minimum only among mirrored ones: without the symmetries it leaves for "
+        f"one with {found.lower:.1%} less energy, {told.cell_course_mm:.2f} x "
+        f"{told.cell_wale_mm:.2f} mm a stitch. The free branch looks for the lowest.",
     )
 
 

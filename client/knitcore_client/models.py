@@ -2594,6 +2594,9 @@ class RelaxResult(BaseModel):
     converged: bool
     yarn: YarnResult
     starts: list[StartResult]
+    unmirrored: UnmirroredResult | None = None
+    """Without the mirror symmetries; null for other branches, shapes that are held, and free
+    cells of more than 9 stitches."""
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
     """Bottom course first; each runs once across the repeat."""
@@ -2847,6 +2850,16 @@ class TrellisResult(BaseModel):
     """Moment about the hinges: work per radian of shear."""
     shear_stress_n_per_mm: list[float]
     """Moment over the relaxed area."""
+
+
+class UnmirroredResult(BaseModel):
+    """The minimum that the shape is, or leads to, once its mirror symmetries are dropped."""
+
+    minimum: bool
+    """Whether the mirrored shape is that minimum."""
+    energy_n_mm: float
+    cell_course_mm: float
+    cell_wale_mm: float
 
 
 class Use(BaseModel):

@@ -10,13 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import Cancelled, ConvergenceError, InputError
 from knitcore.yarnlevel.cell import free_cell
 from knitcore.yarnlevel.energy import CellEnergy
 from knitcore.yarnlevel.results import Branch
 from knitcore.yarnlevel.search import RELAXED, SAME_ENERGY, UNSETTLED, outcome
-from knitcore.yarnlevel.solver import Options, minimise
+from knitcore.yarnlevel.solver import Minimum, Options, minimise
 from knitcore.yarnlevel.splines import RelaxedRepeat, relaxed_repeat
 from knitcore.yarnlevel.tiling import tiled_state
 
@@ -41,6 +42,41 @@ class Followed:
     lower: float
 
 
+def followed(
+    energy: CellEnergy, state: Array, *, tension: Array | None = None,
+    cancelled: Cancelled | None = None,
+) -> Minimum:  # fmt: skip
+    """The minimum that a state of a free cell leads to, along its instability if it has one.
+
+    Parameters
+    ----------
+    energy : of the free cell.
+    state : unknowns, such as those of a mirrored state laid out over it.
+    tension : (courses,) to begin with, N.
+
+    Raises
+    ------
+    ConvergenceError, UnravelledError
+        If the descent finds no state of the fabric.
+    """
+    options = Options(tolerance=1e-8 if energy.cell.stitches <= 4 else 1e-6)
+    found = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
+    became = outcome(energy, found)
+    if became not in (RELAXED, UNSETTLED):
+        raise ConvergenceError(f"Without its symmetries the repeat does not settle: {became}.")
+    return found
+
+
+def can_be_followed(relaxed: RelaxedRepeat, most_stitches: int = MAX_STITCHES) -> bool:
+    """Whether a repeat has mirrors to drop, and no more stitches without them than given."""
+    stitches = free_cell(relaxed.chart, relaxed.cell.grid).stitches
+    return relaxed.branch is Branch.MIRRORED and not _held(relaxed) and stitches <= most_stitches
+
+
+def _held(relaxed: RelaxedRepeat) -> bool:
+    return bool(relaxed.flat or relaxed.slides or relaxed.loop_lengths_mm.ndim != 1)
+
+
 def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = None) -> Followed:
     """Drop the symmetries of a relaxed repeat, and follow its instability if there is one.
 
@@ -52,7 +88,7 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = Non
         If the descent from it finds no state of the fabric.
     """
     cell = free_cell(relaxed.chart, relaxed.cell.grid)
-    if relaxed.flat or relaxed.slides or relaxed.loop_lengths_mm.ndim != 1:
+    if _held(relaxed):
         raise InputError("relaxed", "is held beside its symmetries.", "Relax it without rules.")
     if cell.stitches > MAX_STITCHES:
         raise InputError(
@@ -62,14 +98,10 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = Non
         )
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
     energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
-    found = minimise(
+    found = followed(
         energy, tiled_state(relaxed.cell, relaxed.state, cell),
-        tension=np.resize(relaxed.tension_n, cell.rows),
-        options=Options(tolerance=1e-8 if cell.stitches <= 4 else 1e-6), cancelled=cancelled,
+        tension=np.resize(relaxed.tension_n, cell.rows), cancelled=cancelled,
     )  # fmt: skip
-    became = outcome(energy, found)
-    if became not in (RELAXED, UNSETTLED):
-        raise ConvergenceError(f"Without its symmetries the repeat does not settle: {became}.")
     shown = relaxed_repeat(
         StitchChart(cell.purl), energy, Branch.FREE, found, seconds=0.0,
         evaluations=found.evaluations,

@@ -61,7 +61,7 @@ def build(
     named = {f"{name}.{task.key}": task for name, task in tasks.items()}
     found = run_batch(
         characterise_repeat, named, scheduler=scheduler, workers=workers, keep=keep,
-        progress=_tell,
+        progress=tell,
     )  # fmt: skip
     entries: dict[str, Any] = {}
     controls: dict[str, NDArray[np.float32]] = {}
@@ -156,7 +156,8 @@ _SHARES = ("bending_share", "contact_share")
 _LAW = ("law", "law_failure")
 
 
-def _tell(progress: BatchProgress) -> None:
+def tell(progress: BatchProgress) -> None:
+    """Progress of a batch, to stderr."""
     sys.stderr.write(
         f"{progress.done}/{progress.total} {progress.key.rpartition('.')[0]}"
         f"{f', {progress.failed} failed' if progress.failed else ''}\n"

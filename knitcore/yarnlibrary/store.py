@@ -1,7 +1,8 @@
 """Relaxed stitches that come with the package.
 
 ``data/stitches.json`` holds sizes, energies and laws, ``data/stitches.npz`` control points;
-:mod:`knitcore.yarnlibrary.build` makes both.
+:mod:`knitcore.yarnlibrary.build` makes both. ``data/lowest.json`` tells which of them are minima
+without their mirrors (:mod:`knitcore.yarnlibrary.lowest`).
 """
 
 from __future__ import annotations
@@ -40,6 +41,25 @@ class FreeStitch:
     law: ConstitutiveLaw | None
 
 
+@dataclass(frozen=True)
+class Unmirrored:
+    """What becomes of a mirrored repeat when its symmetries are dropped.
+
+    Attributes
+    ----------
+    minimum : whether it stays, being a minimum without them too.
+    cell_course_mm, cell_wale_mm, energy_n_mm : size and energy of a stitch of the minimum that it
+        is or that its instability leads to.
+    converged : whether the solver reached its tolerance there.
+    """
+
+    minimum: bool
+    cell_course_mm: float
+    cell_wale_mm: float
+    energy_n_mm: float
+    converged: bool
+
+
 @dataclass(frozen=True, eq=False)
 class StoredStitch:
     """A relaxed repeat from the store.
@@ -58,6 +78,7 @@ class StoredStitch:
     law_jumps : abrupt changes of shape within the fitted range, course-wise and wale-wise.
     controls : (rows, columns * N, 3) control points over the repeat without the drift, mm.
     free : the repeat without imposed symmetry, for repeats of a known name.
+    unmirrored : what becomes of it without its symmetries; None where that was not found out.
     """
 
     chart: StitchChart
@@ -79,6 +100,13 @@ class StoredStitch:
     law_jumps: tuple[int, int]
     controls: Array
     free: FreeStitch | None = None
+    unmirrored: Unmirrored | None = None
+
+    @property
+    def lowest_energy_n_mm(self) -> float:
+        """Energy of a stitch of the lowest state found, with or without symmetries, N·mm."""
+        others = [found.energy_n_mm for found in (self.free, self.unmirrored) if found is not None]
+        return min([self.energy_n_mm, *others])
 
     def centre_lines(self, per_span: int = 2) -> Array:
         """(rows, points, 3): centre lines across the repeat, mm, bottom course first."""
@@ -118,6 +146,7 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
         points = points * (1.0, 1.0, -1.0)
     points = np.roll(points, (placed.up, placed.right * per_stitch), axis=(0, 1))
     free = entry.get("free", {"failure": "not relaxed freely"})
+    unmirrored = _unmirrored().get(f"{material_id}/{representative.key}", {"failure": "not tried"})
     return StoredStitch(
         chart=repeat,
         material=material_id,
@@ -138,6 +167,7 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
         law_jumps=(entry["law_jumps"][0], entry["law_jumps"][1]),
         controls=points,
         free=None if "failure" in free else FreeStitch(**{**free, "law": _law(free)}),
+        unmirrored=None if "failure" in unmirrored else Unmirrored(**unmirrored),
     )
 
 
@@ -169,6 +199,15 @@ def _entries() -> dict[str, Any]:
         return {}
     entries: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["stitches"]
     return entries
+
+
+@cache
+def _unmirrored() -> dict[str, Any]:
+    path = files(_DATA) / "data" / "lowest.json"
+    if not path.is_file():
+        return {}
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
 
 
 @cache

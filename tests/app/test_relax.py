@@ -29,6 +29,19 @@ def test_relax_on_the_command_line_and_over_rest_agree(client: TestClient) -> No
     assert len(answer["centre_lines_mm"]) == 1
 
 
+def test_a_shape_that_only_its_mirrors_hold_says_so() -> None:
+    garter = run("relax", "garter", "--size", "2x2", "--material", "cotton")
+    assert not garter["unmirrored"]["minimum"]
+    assert garter["unmirrored"]["energy_n_mm"] < 0.995 * garter["energy_n_mm"]
+    assert any("only among mirrored ones" in note for note in garter["notes"])
+    stockinette = run("relax", "stockinette", "--size", "2x2", "--material", "acrylic")
+    assert stockinette["unmirrored"]["minimum"]
+    held = run(
+        "relax", "stockinette", "--size", "2x2", "--material", "acrylic", "--cell-course-mm", "3"
+    )
+    assert held["unmirrored"] is None
+
+
 def test_relax_in_the_published_branch() -> None:
     told = run(
         "relax", "stockinette", "--size", "2x2", "--material", "cotton", "--branch", "published"
