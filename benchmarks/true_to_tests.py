@@ -57,6 +57,7 @@ def compared(
 ) -> Row:
     """Simulated over measured force, waist less the measured one, whether the force is inside.
 
+    The waist is read between the points that the test tracks, and includes its flattening.
     The reading of its width is no error between pulls of the same sample.
     """
     stress, waist = strip.means

@@ -56,6 +56,8 @@ class StretchTest:
     width_mm : clamped width at rest, per run.
     length_mm : distance of the clamps at rest; None where the file does not say.
     notes : readings left out and why, in sentences.
+    across_mm : distance at rest of the points between which the strain across is read; None for
+        the edges.
     """
 
     source: str
@@ -64,6 +66,7 @@ class StretchTest:
     width_mm: tuple[float, ...]
     notes: tuple[str, ...] = field(default=())
     length_mm: float | None = None
+    across_mm: float | None = None
 
     @property
     def peak_stress(self) -> float:

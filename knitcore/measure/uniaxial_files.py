@@ -8,8 +8,9 @@ clamp of 35.5 mm) and ``fabricSize`` (px, the clamped width). ``video1`` conditi
 is not used.
 
 Table (CSV, or the first sheet of an XLSX or XLS workbook): a header line with ``strain_along,
-strain_across, force_n, width_mm`` and, for repeated pulls, ``run``, and the distance of the clamps
-at rest, ``length_mm``; one row per point in the order of the pull.
+strain_across, force_n, width_mm`` and, for repeated pulls, ``run``, the distance of the clamps at
+rest, ``length_mm``, and that of the points between which the strain across is read, ``across_mm``;
+one row per point in the order of the pull.
 """
 
 from __future__ import annotations
@@ -37,6 +38,8 @@ from knitcore.measure.tables import numbers, read_table
 
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
+TABLE_LENGTHS = {"length_mm": "the clamps", "across_mm": "the points tracked across"}
+"""Optional columns, and between what they are measured."""
 MAX_TABLE_BYTES = 64 * 2**20
 MAX_PIXEL = 1e6
 MAX_FORCE_N = 1e6
@@ -173,6 +176,7 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
             " width."
         )
     length_mm = None if first is None else float(np.nanmedian(first.clamps[:9])) * scale
+    across_mm = None if first is None else float(first.across[0]) * scale
     runs = _sound(runs, notes)
     if not runs:
         raise InputError(
@@ -182,7 +186,8 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
         )
     description = np.asarray(file.attrs.get("description", "")).ravel()
     text = _text(description[0]) if description.size else ""
-    return StretchTest(name, text, tuple(runs), (width_mm,) * len(runs), tuple(notes), length_mm)
+    widths = (width_mm,) * len(runs)
+    return StretchTest(name, text, tuple(runs), widths, tuple(notes), length_mm, across_mm)
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,7 +315,7 @@ def _read_table(path: Path) -> StretchTest:
     table = read_table(path, ", ".join(CSV_COLUMNS))
     table.columns = [_column_name(str(c)) for c in table.columns]
     _check_header(path.name, list(table.columns))
-    given = [*CSV_COLUMNS, *(["length_mm"] if "length_mm" in table else [])]
+    given = [*CSV_COLUMNS, *(name for name in TABLE_LENGTHS if name in table)]
     values = {name: numbers(f"{path.name}, column {name}", table[name]) for name in given}
     labels = (
         table["run"].fillna("").str.strip().to_numpy(dtype=str)
@@ -326,17 +331,27 @@ def _read_table(path: Path) -> StretchTest:
         run, width = _run(path.name, label, rows, values)
         runs.append(run)
         widths.append(width)
-    length_mm = _length(path.name, values["length_mm"]) if "length_mm" in values else None
-    return StretchTest(path.name, "", tuple(runs), tuple(widths), length_mm=length_mm)
+    lengths = {
+        column: _length(path.name, column, values[column])
+        for column in TABLE_LENGTHS
+        if column in values
+    }
+    if lengths.get("across_mm", 0.0) > WIDER_THAN_CLAMPED * min(widths):
+        raise InputError(
+            f"{path.name}, column across_mm",
+            f"{lengths['across_mm']:g} mm is more than the clamped width.",
+            "Give the distance, in mm at rest, of the points that you track across.",
+        )
+    return StretchTest(path.name, "", tuple(runs), tuple(widths), **lengths)
 
 
-def _length(name: str, length: Array) -> float:
-    """The distance of the clamps, the same in all rows."""
+def _length(name: str, column: str, length: Array) -> float:
+    """A length at rest, the same in all rows."""
     if length.min() < 5 or np.ptp(length) > 0.01 * length[0]:
         raise InputError(
-            f"{name}, column length_mm",
+            f"{name}, column {column}",
             f"goes from {length.min():g} to {length.max():g} mm.",
-            "Give the distance of the clamps at rest in mm, the same in every row.",
+            f"Give the distance of {TABLE_LENGTHS[column]} at rest in mm, the same in every row.",
         )
     return float(length[0])
 

@@ -34,6 +34,8 @@ _SHIFT = 3e-3
 _RENEW = 32
 """Steps with one factor."""
 _MIN_STEP = 1e-8
+_ROUNDING = 1e-10
+"""Energies this close, relatively, count as equal; then the slope decides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +144,9 @@ class _Descent:
             moved = fraction * way
             energy, gradient = self._at(self.x + moved)
             if energy <= self.energy + 1e-4 * fraction * slope:
+                break
+            level = energy <= self.energy + _ROUNDING * abs(self.energy)
+            if level and abs(float((way * gradient).sum())) < 0.9 * abs(slope):
                 break
             fraction *= 0.4
         else:

@@ -15,7 +15,7 @@ from knitcore.measure.stretch_test import StretchRun, StretchTest
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.models import SheetModel
 from knitcore.swatch.sheet import Sheet
-from knitcore.swatch.strip import Clamps, pull
+from knitcore.swatch.strip import Clamps, pull, waist_strain
 
 LEVELS = 14
 """Strains at which force and waist are compared."""
@@ -40,6 +40,8 @@ class MeasuredStrip:
     width_mm, length_mm : of the strip at rest; length None where it is unknown.
     strain : (levels,) clamp to clamp, increasing.
     stress_n_per_mm, waist : (pulls, levels); NaN where a pull does not reach.
+    across_mm : distance at rest of the two points, half-way between the clamps and as far from the
+        middle, between which the waist is read; None for the edges.
     """
 
     direction: Direction
@@ -48,6 +50,7 @@ class MeasuredStrip:
     strain: Array
     stress_n_per_mm: Array
     waist: Array
+    across_mm: float | None = None
 
     @classmethod
     def of(cls, test: StretchTest, direction: Direction) -> MeasuredStrip:
@@ -69,7 +72,9 @@ class MeasuredStrip:
                 "has no readings over part of the pull.",
                 "Give readings from rest to the largest force.",
             )
-        return cls(direction, float(np.mean(test.width_mm)), test.length_mm, strain, stress, waist)
+        width = float(np.mean(test.width_mm))
+        across = None if test.across_mm is None else min(test.across_mm, width)
+        return cls(direction, width, test.length_mm, strain, stress, waist, across)
 
     def without(self, index: int) -> MeasuredStrip:
         """The test with one pull left out."""
@@ -78,7 +83,7 @@ class MeasuredStrip:
 
     @property
     def pulls(self) -> int:
-        """Number of levels."""
+        """Number of pulls."""
         return len(self.stress_n_per_mm)
 
     @property
@@ -109,8 +114,23 @@ class MeasuredStrip:
         clamps = Clamps.SLIDING if self.length_mm is None else Clamps.CLAMPED
         found = pull(self.sheet(law, cells), self.direction, levels, clamps=clamps)
         stress, waist = np.full(len(levels), np.nan), np.full(len(levels), np.nan)
-        stress[: found.steps], waist[: found.steps] = found.stress_n_per_mm, found.waist_strain
+        stress[: found.steps] = found.stress_n_per_mm
+        waist[: found.steps] = [self._waist(found.sheet.grid, s.corners) for s in found.states]
         return stress, waist
+
+    def _waist(self, grid: QuarterGrid, corners: Array) -> float:
+        """Strain between the points where the test reads it."""
+        if self.across_mm is None or self.length_mm is None:
+            return waist_strain(grid, corners, self.direction)
+        shape = (grid.rows + 1, grid.columns + 1)
+        across = self.direction.other.axis
+        rest, now = (p[:, across].reshape(shape) for p in (grid.corners, corners))
+        if self.direction is Direction.COURSE:
+            rest, now = rest.T, now.T
+        middle = [(len(rest) - 1) // 2, len(rest) // 2]
+        points = self.across_mm * np.array([-0.5, 0.5]) + rest[0].mean()
+        left, right = np.interp(points, rest[0], now[middle].mean(axis=0))
+        return float((right - left) / self.across_mm - 1)
 
 
 def _resampled(run: StretchRun, strain: Array, top: float) -> tuple[Array, Array]:

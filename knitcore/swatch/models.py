@@ -63,6 +63,21 @@ class Coupling(StrEnum):
     SCRIPT = "script"
 
 
+def energy_model(name: str) -> EnergyModel:
+    """The energy of a name.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    try:
+        return EnergyModel(name)
+    except ValueError:
+        known = " or ".join(EnergyModel)
+        raise InputError("model", f"{name!r} is not known.", f"Use {known}.") from None
+
+
 @dataclass(frozen=True)
 class SheetModel:
     """An energy model and its assumptions.
@@ -88,6 +103,7 @@ class SheetModel:
     tension_field: bool = False
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "energy", energy_model(self.energy))
         if self.shear_modulus is not None and not (
             np.isfinite(self.shear_modulus) and self.shear_modulus > 0
         ):

@@ -18,7 +18,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.material import Material
 from knitcore.swatch.grid import QuarterGrid, check_cloth
 from knitcore.swatch.misfit import draw_in as draw_in_path
-from knitcore.swatch.models import EnergyModel, SheetModel
+from knitcore.swatch.models import EnergyModel, SheetModel, energy_model
 from knitcore.swatch.results import StripTest
 from knitcore.swatch.run import Path, Progress, run_path
 from knitcore.swatch.sheet import Sheet
@@ -213,12 +213,7 @@ def sheet_model(
                 "shear_modulus", "is given twice.", "Give it in the model or on its own, not both."
             )
         return model
-    try:
-        energy = EnergyModel(model)
-    except ValueError:
-        known = " or ".join(EnergyModel)
-        raise InputError("model", f"{model!r} is not known.", f"Use {known}.") from None
-    return SheetModel(energy, shear_modulus=shear_modulus)
+    return SheetModel(energy_model(model), shear_modulus=shear_modulus)
 
 
 def pull(

@@ -51,6 +51,7 @@ class LinearFit:
     unknowns : (n,).
     residuals : of force and waist of each test in turn, then of the priors.
     jacobian : (residuals, n).
+    flattening : per test, what its waist reads more than the simulated one throughout.
     law_of : the law of unknowns.
     log_lock_up, log_shear : places of ln alpha (course, wale) and ln C_xyxy / sqrt(Y_x Y_y) among
         the unknowns.
@@ -60,6 +61,7 @@ class LinearFit:
     unknowns: Array
     residuals: Array
     jacobian: Array
+    flattening: tuple[float, ...]
     law_of: Callable[[Array], ConstitutiveLaw]
     log_lock_up: tuple[int, int]
     log_shear: int
@@ -114,7 +116,9 @@ class LinearFit:
             curves.append(
                 CurveUncertainty(log_stress, math.sqrt(self.covariance[lock_up, lock_up]))
             )
-            rms = math.sqrt(np.nanmean((WAIST_NOISE * waist_error) ** 2))
+            rms = math.hypot(
+                math.sqrt(np.nanmean((WAIST_NOISE * waist_error) ** 2)), self.flattening[test]
+            )
             waists.append(rms / max(math.sqrt(np.mean(waist**2)), 1e-3))
         return LawUncertainty(
             log_modulus_course=errors["modulus_course"] / law.modulus_course,

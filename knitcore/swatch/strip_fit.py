@@ -5,10 +5,11 @@ C_xxxx, C_yyyy, one coupling, alpha, beta and kappa of both directions, and the 
 chosen such that the finite elements of :mod:`knitcore.swatch`, on a strip of the measured width and
 length, give the measured force and the measured waist at the measured clamp-to-clamp strains, in
 both tests at once (least squares, priors on kappa and the shear modulus, to which tests along
-course and wale are hardly sensitive). Where the distance of the clamps is unknown the ends are left
-free to narrow,
-so that the strip strains evenly. :mod:`knitcore.swatch.strip_errors` estimates the errors of the
-result.
+course and wale are hardly sensitive). The waist is read where the test reads it, between two points
+inside the cloth or its edges, and up to a constant: at the start of a pull cloth that curls or has
+ridges becomes flat, and thereby wider, which is no strain. Where the distance of the clamps is
+unknown the ends are left free to narrow, so that the strip strains evenly.
+:mod:`knitcore.swatch.strip_errors` estimates the errors of the result.
 """
 
 from __future__ import annotations
@@ -50,15 +51,18 @@ KAPPA_STARTS = ((0.4, 0.02), (0.05, 0.4))
 """Starts of kappa_xx and kappa_yy besides their prior: the sum of squares has several minima."""
 LOG_SHEAR_PRIOR = (math.log(0.2), 0.35)
 """Mean and standard deviation of ln(C_xyxy / sqrt(Y_x Y_y)): 0.15 to 0.35 in jersey pulled on the
-bias (``benchmarks/bias_strip.py``), 0.2 in a displacement field of acrylic garter, 0.08 and 0.15 on
-the yarn level (acrylic stockinette and garter). That is a deviation of 0.7; half of it here,
-because the sum of squares counts neighbouring points, which err alike, as if independent."""
+bias (``benchmarks/bias_strip.py``), 0.1 to 0.2 in a displacement field of acrylic garter, 0.08 and
+0.15 on the yarn level (acrylic stockinette and garter). That is a deviation of 0.7; half of it
+here, because the sum of squares counts neighbouring points, which err alike, as if independent."""
 SHEAR_STIFFENING = 4.0
 """1/rad², of jersey pulled on the bias: its force to 30 %. Straight pulls do not see it."""
 KAPPA_PRIOR = (0.2, 0.5)
 """Mean and standard deviation."""
 COUPLING_PRIOR = (0.3, 1.0)
 """Mean and standard deviation of artanh(C_xxyy / sqrt(C_xxxx C_yyyy))."""
+FLATTENING = 0.015
+"""Standard deviation of the waist that a test reads where flat cloth has none: 0.03, halved for the
+same reason. (It is 0.038 in acrylic garter, whose displacement field starts flat.)"""
 ALPHA_SHARE = 0.97
 """Largest alpha times the largest strain, so that the law can follow the whole test."""
 STOPPED_SHORT = 3.0
@@ -83,6 +87,7 @@ class StripFit:
     uncertainty : of moduli and curves.
     errors : standard errors by the law's field names, ratios and moduli.
     stress, waist : simulated, per test, at the tests' strains.
+    flattening : per test, what its waist reads more than the simulated one throughout.
     evaluations : simulated pairs of tests.
     """
 
@@ -91,6 +96,7 @@ class StripFit:
     errors: dict[str, float]
     stress: tuple[Array, ...]
     waist: tuple[Array, ...]
+    flattening: tuple[float, ...]
     evaluations: int
 
 
@@ -205,13 +211,18 @@ def fit_strips(
     fit = problem.solve(best.x, CELLS, MAX_STEPS)
     law = _law(fit.x)
     simulated = [strip.simulate(law) for strip in strips]
-    about = LinearFit(problem.strips, fit.x, fit.fun, fit.jac, _law, _ALPHAS, _SHEAR)
+    flat = tuple(
+        flattening(waist, strip.means[1])
+        for (_, waist), strip in zip(simulated, strips, strict=True)
+    )
+    about = LinearFit(problem.strips, fit.x, fit.fun, fit.jac, flat, _law, _ALPHAS, _SHEAR)
     return StripFit(
         law=law,
         uncertainty=about.uncertainty,
         errors=about.errors,
         stress=tuple(stress for stress, _ in simulated),
         waist=tuple(waist for _, waist in simulated),
+        flattening=flat,
         evaluations=problem.evaluations,
     )
 
@@ -269,13 +280,22 @@ class _Problem:
         check_cancelled(self.cancelled)
         self.evaluations += 1
         law = _law(unknowns)
-        parts = [np.concatenate(_residual(strip, law, cells)) for strip in self.strips]
+        parts, shifts = zip(*(_residual(strip, law, cells) for strip in self.strips), strict=True)
         means, deviations = _PRIORS
-        return np.concatenate([*parts, (unknowns[list(_PRIOR_OF)] - means) / deviations])
+        return np.concatenate([*parts, shifts, (unknowns[list(_PRIOR_OF)] - means) / deviations])
 
 
-def _residual(strip: MeasuredStrip, law: ConstitutiveLaw, cells: int) -> tuple[Array, Array]:
-    """Residuals of force and waist; beyond the simulation's end, of a strip that strains evenly."""
+def flattening(simulated: Array, measured: Array) -> float:
+    """The most likely constant that a measured waist reads more than a simulated one."""
+    apart = (measured - simulated)[np.isfinite(simulated) & np.isfinite(measured)]
+    return float(apart.sum() / (len(apart) + (WAIST_NOISE / FLATTENING) ** 2))
+
+
+def _residual(strip: MeasuredStrip, law: ConstitutiveLaw, cells: int) -> tuple[Array, float]:
+    """Residuals of force and waist, (2 levels,), and of the flattening.
+
+    Beyond the simulation's end they are those of a strip that strains evenly.
+    """
     stress, waist = strip.simulate(law, cells=cells)
     failed = ~np.isfinite(stress)
     if failed.any():
@@ -283,8 +303,9 @@ def _residual(strip: MeasuredStrip, law: ConstitutiveLaw, cells: int) -> tuple[A
         stress[failed], waist[failed] = even.stress, even.transverse_strain
     wanted_stress, wanted_waist = strip.means
     force = (stress - wanted_stress) / force_noise(wanted_stress)
-    narrowing = (waist - wanted_waist) / WAIST_NOISE
-    return force + STOPPED_SHORT * failed, narrowing
+    flat = flattening(waist, wanted_waist)
+    narrowing = (waist + flat - wanted_waist) / WAIST_NOISE
+    return np.concatenate([force + STOPPED_SHORT * failed, narrowing]), flat / FLATTENING
 
 
 def _law(unknowns: Array) -> ConstitutiveLaw:

@@ -28,7 +28,9 @@ def test_a_pure_fabric_has_its_law(client: TestClient) -> None:
     assert lows[0] == highs[0] == 0
     assert [told["stress_low"], told["stress_high"]] == told["stress_interval_n_per_mm"]
     for low, strain, high in zip(lows[1:], told["strain"][1:], highs[1:], strict=True):
-        assert low < strain < high < law.lock_up_strain(Direction.WALE)
+        assert low < strain < high
+    # cloth that narrows locks a little later than cloth held at its width
+    assert highs[-1] < 1.05 * law.lock_up_strain(Direction.WALE)
     body = {"chart": "K\nP", "material": "acrylic", "direction": "wale"}
     body["stress_n_per_mm"] = told["stress_n_per_mm"]
     assert client.post("/api/v1/curve", json=body).json()["strain"] == pytest.approx(expected)

@@ -116,7 +116,7 @@ def test_beyond_the_lock_up_the_limit_is_named(client: TestClient) -> None:
     result = CliRunner().invoke(main, ["stretch", *arguments, "--strain", "0.9", "--json"])
     assert result.exit_code == 2
     assert "locks up before that" in result.stderr
-    assert "Use at most 0.45" in result.stderr
+    assert "Use at most 0.4" in result.stderr
 
 
 def test_the_published_model_warns_beyond_the_lock_up(client: TestClient) -> None:
@@ -145,7 +145,7 @@ def test_a_lock_up_in_part_of_a_quarter_cell_is_reported(client: TestClient) -> 
     body = ASKED | {
         "chart": "PPKKPKP\nKKKPPKK\nPKKKPKK",
         "outline": "xxxxxxx\nxxxxxxx\n...x...",
-        "strain": 0.9,
+        "strain": 1.0,
         "steps": 8,
     }
     answer = client.post("/api/v1/stretch", json=body).json()

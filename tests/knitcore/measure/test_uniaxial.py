@@ -334,6 +334,31 @@ def test_a_width_below_that_of_the_tracked_points_is_reported(tmp_path: Path) ->
     assert any("fabricSize may be misread" in note for note in read_stretch_test(path).notes)
 
 
-def test_the_distance_of_the_clamps_is_read(tmp_path: Path) -> None:
-    length = read_stretch_test(write_h5(tmp_path / "x.h5", X)).length_mm
-    assert length == pytest.approx(90.0, rel=0.01)  # of the first frames, a little stretched
+def test_distances_of_clamps_and_points_are_read(tmp_path: Path) -> None:
+    test = read_stretch_test(write_h5(tmp_path / "x.h5", X))
+    assert test.length_mm == pytest.approx(90.0, rel=0.01)  # of the first frames, stretched a bit
+    assert test.across_mm == pytest.approx(0.8 * 70.0, rel=0.01)
+
+
+def with_column(path: Path, name: str, value: str) -> Path:
+    """The CSV file with one more column."""
+    header, *rows = path.read_text().split()
+    path.write_text("\n".join([f"{header},{name}", *(f"{row},{value}" for row in rows)]))
+    return path
+
+
+@pytest.mark.parametrize("name", ["length_mm", "across_mm"])
+def test_optional_lengths_of_a_csv_are_read_and_checked(tmp_path: Path, name: str) -> None:
+    path = write_csv(tmp_path / "x.csv", X, runs=2)
+    assert getattr(read_stretch_test(path), name) is None
+    written = with_column(path, name, "60")
+    assert getattr(read_stretch_test(written), name) == 60.0
+    written.write_text(written.read_text().replace(",60", ",6", 1))
+    with pytest.raises(InputError, match=f"column {name}"):
+        read_stretch_test(written)
+
+
+def test_points_outside_the_sample_are_refused(tmp_path: Path) -> None:
+    path = with_column(write_csv(tmp_path / "x.csv", X, runs=2), "across_mm", "99")
+    with pytest.raises(InputError, match="more than the clamped width"):
+        read_stretch_test(path)

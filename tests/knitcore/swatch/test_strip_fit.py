@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.swatch.measured_strip import LEVELS, MeasuredStrip
-from knitcore.swatch.strip_fit import fit_strips, fit_tests
+from knitcore.swatch.strip_fit import fit_strips, fit_tests, flattening
 from tests.knitcore.measure.synthetic import LAW, write_csv, write_h5
 
 TRUTH = ConstitutiveLaw(
@@ -66,6 +67,35 @@ def test_a_law_is_recovered_from_simulated_strips(
     assert found.law.kappa_yy == pytest.approx(TRUTH.kappa_yy, abs=0.05)
     for strip, stress in zip(strips, found.stress, strict=True):
         assert stress == pytest.approx(strip.means[0], rel=0.01)
+
+
+@pytest.mark.slow
+def test_cloth_that_flattens_first_has_the_same_law() -> None:
+    """A constant in the reading of the waist is found, and leaves Poisson's ratios alone."""
+    strips = [made_strip(d, EVEN) for d in Direction]
+    wavy = [replace(strip, waist=strip.waist + 0.02) for strip in strips]
+    flat, uneven = fit_strips(strips), fit_strips(wavy)
+    assert flat.flattening == pytest.approx((0, 0), abs=0.002)
+    assert uneven.flattening == pytest.approx((0.02, 0.02), abs=0.01)
+    assert uneven.law.poisson_yx == pytest.approx(flat.law.poisson_yx, rel=0.08)
+    assert uneven.uncertainty.poisson_yx > flat.uncertainty.poisson_yx + 0.01
+
+
+def test_a_wide_strip_narrows_more_at_its_edges_than_between_points_inside() -> None:
+    strip = made_strip(Direction.WALE, CLAMPED)
+    inside, edges = (
+        replace(strip, across_mm=across).simulate(TRUTH, strip.strain[-1:])[1][0]
+        for across in (80.0, 120.0)
+    )
+    assert edges == pytest.approx(strip.waist[0, -1], abs=1e-6)
+    assert edges < 1.8 * inside < 0
+
+
+def test_the_constant_of_a_waist_is_drawn_towards_none() -> None:
+    simulated = -0.3 * np.linspace(0, 0.5, LEVELS)
+    assert 0.018 < flattening(simulated, simulated + 0.02) < 0.02
+    few = np.where(np.arange(LEVELS) < 1, 0.02, np.nan) + simulated
+    assert flattening(simulated, few) == pytest.approx(0.01)
 
 
 @pytest.mark.slow
