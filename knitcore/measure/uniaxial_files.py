@@ -336,13 +336,14 @@ def _read_table(path: Path) -> StretchTest:
         for column in TABLE_LENGTHS
         if column in values
     }
-    if lengths.get("across_mm", 0.0) > WIDER_THAN_CLAMPED * min(widths):
+    clamps, across = (lengths.get(column) for column in TABLE_LENGTHS)
+    if across is not None and across > WIDER_THAN_CLAMPED * min(widths):
         raise InputError(
             f"{path.name}, column across_mm",
-            f"{lengths['across_mm']:g} mm is more than the clamped width.",
+            f"{across:g} mm is more than the clamped width.",
             "Give the distance, in mm at rest, of the points that you track across.",
         )
-    return StretchTest(path.name, "", tuple(runs), tuple(widths), **lengths)
+    return StretchTest(path.name, "", tuple(runs), tuple(widths), (), clamps, across)
 
 
 def _length(name: str, column: str, length: Array) -> float:
