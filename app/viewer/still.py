@@ -112,13 +112,14 @@ def _balls(drawing: Drawing, width: int, height: int) -> _Balls:
 def _drawn(balls: _Balls, width: int, height: int) -> NDArray[np.uint8]:
     """(height, width, 4) uint8."""
     reach = math.ceil(balls.radius)
-    stride = width + 2 * reach
-    near = (balls.x > -reach) & (balls.x < width + reach - 1)
-    near &= (balls.y > -reach) & (balls.y < height + reach - 1)
+    margin = 2 * reach  # balls beyond the edge reach as far beyond it again
+    stride = width + 2 * margin
+    near = (balls.x > -reach) & (balls.x < width + reach)
+    near &= (balls.y > -reach) & (balls.y < height + reach)
     x, y, z = balls.x[near], balls.y[near], balls.z[near].astype(np.float32)
     column, row = np.floor(x).astype(np.intp), np.floor(y).astype(np.intp)
-    at = (row + reach) * stride + column + reach
-    depth = np.full(stride * (height + 2 * reach), -np.inf, np.float32)
+    at = (row + margin) * stride + column + margin
+    depth = np.full(stride * (height + 2 * margin), -np.inf, np.float32)
     whose = np.full(depth.shape, -1, np.int32)
     number = np.arange(len(at), dtype=np.int32)
     radius = max(balls.radius, 0.75)
@@ -134,7 +135,7 @@ def _drawn(balls: _Balls, width: int, height: int) -> NDArray[np.uint8]:
             hit, pixel = hit[over], pixel[over]
             depth[pixel] = top[over]  # of several on one pixel the last counts, the nearest
             whose[pixel] = number[hit]
-    inside = (slice(reach, reach + height), slice(reach, reach + width))
+    inside = (slice(margin, margin + height), slice(margin, margin + width))
     depth = depth.reshape(-1, stride)[inside]
     whose = whose.reshape(-1, stride)[inside]
     shown = whose >= 0

@@ -10,6 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 from PIL import Image
 
+from app.models.posed import PosedView
 from app.operations.context import Context
 from app.viewer.colours import FABRIC_COLOURS, rgb
 from app.viewer.design_view import ViewRequest, build_scene
@@ -52,6 +53,16 @@ def test_where_there_is_no_stitch_nothing_is_drawn() -> None:
     right = np.flatnonzero(part.any(axis=0)).max()
     whole = np.flatnonzero((still(120, 90)[..., 3] > 128).any(axis=0)).max()
     assert right < whole - 20
+
+
+def test_a_shape_that_leaves_the_picture_is_cut_at_its_edges() -> None:
+    corners = np.full((5, 5, 3), 30.0, np.float32)  # near the eye
+    corners[..., 1], corners[..., 0] = np.mgrid[:5, :5] * 3.0
+    request = ViewRequest.model_validate(ASKED | {"curl": {"id": "bowl"}})
+    scene = build_scene(request, PosedView(corners), Context(Path()))
+    shown = picture(still_png(scene.drawing(), 120, 90))[..., 3] > 128
+    assert shown[0].any()
+    assert shown[-1].any()
 
 
 def test_large_pictures_are_larger_not_other_ones() -> None:
