@@ -194,6 +194,13 @@ def rectangles(client: httpx.Client) -> str:
     return _codes(client.put(path, content=content, headers=JSON) for path in paths)
 
 
+def stills(client: httpx.Client) -> str:
+    """As large as they are drawn, of few and of many stitches."""
+    wishes = [{"chart": _chart(side, side), "material": "acrylic"} for side in (1, 2, 63, 200) * 8]
+    bodies = [json.dumps(wish).encode() for wish in wishes]
+    return _posted(client, "views/still?width=1600&height=1200", bodies)
+
+
 def heads(client: httpx.Client) -> str:
     """A header, an address and a trailer without end, and headers without end."""
     begins = (HEAD + b"A: ", b"GET /", CHUNKED + b"0\r\nA: ")
@@ -268,6 +275,7 @@ ATTACKS: list[Callable[[httpx.Client], str]] = [
     slow,
     views,
     rectangles,
+    stills,
     large_file,
     large_job,
     heads,
