@@ -19,6 +19,7 @@ def test_a_named_test_exists(file: str, test: str) -> None:
 
 
 def test_every_threat_has_a_test() -> None:
-    rows = [line for line in PAGE.splitlines() if line.startswith("| ") and "threat" not in line]
+    lines = [line for line in PAGE.splitlines() if line.startswith("| ")]
+    rows = [line for line in lines if not line.endswith("| test |")]  # heads of the tables
     assert len(rows) > 15
     assert [row for row in rows if "::test_" not in row] == []
