@@ -19,7 +19,7 @@
  */
 
 import { Grid } from "./core/grid.js";
-import { FLIP } from "./core/ink.js";
+import { PURL } from "./core/ink.js";
 import { Signal } from "./core/signal.js";
 import { loadSettings, saveSettings } from "./core/store.js";
 import { Editing } from "./chart/editing.js";
@@ -59,7 +59,7 @@ export class Studio {
 
     /** @type {Signal<Tool>} */
     this.tool = new Signal(TOOLS.find(({ id }) => id === settings.tool) ?? TOOLS[0]);
-    this.ink = new Signal(/** @type {Ink} */ (FLIP));
+    this.ink = new Signal(/** @type {Ink} */ (PURL));
     this.shelf = new Signal(/** @type {Ink[]} */ ([]));
     this.size = new Signal(settings.size);
     this.symmetry = new Signal(/** @type {Symmetry} */ ("none"));

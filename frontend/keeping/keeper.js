@@ -28,6 +28,8 @@ import { Windows } from "./windows.js";
 const SAVE_MS = 250;
 /** Strokes follow each other: they are sent together. */
 const SEND_MS = 900;
+/** Unless another window waits to show them. */
+const SEND_SEEN_MS = 100;
 const RETRY_MS = 4000;
 /** How often the service is asked what others did. */
 const LOOK_MS = 4000;
@@ -176,7 +178,7 @@ export class Keeper {
     this.#saveTimer ??= setTimeout(() => requestIdleCallback(() => this.save(), { timeout: SAVE_MS }), SAVE_MS);
     if (this.state.value.kind === "conflict") return; // the choice comes first
     if (this.state.value.kind !== "offline") this.state.value = { kind: "waiting" };
-    this.#sendLater(SEND_MS);
+    this.#sendLater(this.windows.others.value ? SEND_SEEN_MS : SEND_MS);
   }
 
   /** Keep nothing from here on: the user signs out. */

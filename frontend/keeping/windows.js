@@ -1,6 +1,11 @@
 /**
- * Other windows of this browser that show the same design: how many there are, and when one of them has
- * delivered something.
+ * Other windows of this browser that show the same design: how many there are, where their pointers and
+ * selections are, and when one of them has delivered something.
+ *
+ * @import {Box} from "../core/grid.js"
+ * @import {Cell} from "../core/raster.js"
+ *
+ * @typedef {{cell: Cell | null, box: Box | null}} Place stitch under the pointer, and the selection's box
  */
 
 import { Signal } from "../core/signal.js";
@@ -9,20 +14,26 @@ import { newIdentifier } from "../core/store.js";
 /** How often the others are asked whether they are still there, and how long they have to answer. */
 const ASK_MS = 4000;
 const ANSWER_MS = 1000;
+/** @type {Place} */
+const NOWHERE = { cell: null, box: null };
 
 /**
  * @typedef {{kind: "here" | "gone" | "who", window: string, design: string | null}
- *   | {kind: "changed", window: string, design: string, revision: number}} Word
+ *   | {kind: "changed", window: string, design: string, revision: number}
+ *   | {kind: "at", window: string, design: string, place: Place}} Word
  */
 
 export class Windows {
   /** Number of other windows with the design. */
   others = new Signal(0);
+  /** Where they are, by window. */
+  places = new Signal(/** @type {ReadonlyMap<string, Place>} */ (new Map()));
   /** Called when another window has delivered a revision of the design. @type {(revision: number) => void} */
   onChanged = () => {};
   #channel = new BroadcastChannel("knitcore-windows");
   #name = newIdentifier();
   /** @type {string | null} */ #design = null;
+  #place = NOWHERE;
   /** @type {(name: string) => void} */ #answered = () => {};
   /** Design of each other window. @type {Map<string, string | null>} */ #seen = new Map();
 
@@ -47,6 +58,12 @@ export class Windows {
     if (this.#design) this.#say({ kind: "changed", window: this.#name, design: this.#design, revision });
   }
 
+  /** This window's pointer and selection are there. @param {Place} place */
+  at(place) {
+    this.#place = place;
+    if (this.#design && this.others.value) this.#say({ kind: "at", window: this.#name, design: this.#design, place });
+  }
+
   #ask() {
     const silent = new Set(this.#seen.keys());
     this.#answered = (name) => silent.delete(name);
@@ -68,12 +85,21 @@ export class Windows {
     if (word.kind === "gone") this.#seen.delete(word.window);
     else this.#seen.set(word.window, word.design);
     if (word.kind === "who") this.#say({ kind: "here", window: this.#name, design: this.#design });
+    if (word.kind === "at" && word.design === this.#design) {
+      this.places.value = new Map([...this.places.value, [word.window, word.place]]);
+    }
     if (word.kind === "changed" && word.design === this.#design) this.onChanged(word.revision);
     this.#count();
   }
 
   #count() {
     const design = this.#design;
-    this.others.value = design ? [...this.#seen.values()].filter((one) => one === design).length : 0;
+    const here = [...this.#seen].filter(([, one]) => design && one === design).map(([name]) => name);
+    if (here.length > this.others.value) {
+      this.others.value = here.length;
+      this.at(this.#place); // for whoever has come
+    } else this.others.value = here.length;
+    const known = [...this.places.value].filter(([name]) => here.includes(name));
+    if (known.length < this.places.value.size) this.places.value = new Map(known);
   }
 }

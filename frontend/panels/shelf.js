@@ -1,5 +1,5 @@
 /**
- * What to paint with: flip, knit, purl, no stitch, a region, whole patterns, and patterns of one's own.
+ * What to paint with: knit, purl, their opposite, no stitch, a region, whole patterns, and patterns of one's own.
  *
  * @import {ActionContext} from "../actions/action.js"
  * @import {Palette} from "../chart/palette.js"
@@ -46,7 +46,7 @@ export function shelf(host, studio, context) {
         chart.shelf.filter((item) => item.motif !== motif),
         "Remove a pattern",
       );
-      studio.ink.value = FLIP;
+      studio.ink.value = PURL;
       show();
     },
     { id: "shelf-remove", title: removeLabel },
@@ -63,7 +63,7 @@ export function shelf(host, studio, context) {
     const chosen = studio.ink.value;
     const own = ownPatterns(chart.shelf, loadShelf()).map(ownInk);
     const region = chosen.target.startsWith("region:") ? [chosen] : [];
-    const inks = [FLIP, KNIT, PURL, NO_STITCH, ...region, ...studio.shelf.value, ...own];
+    const inks = [KNIT, PURL, FLIP, NO_STITCH, ...region, ...studio.shelf.value, ...own];
     const what = JSON.stringify([inks.map(({ id, name }) => [id, name]), palette]);
     if (what !== shown) {
       shown = what;
@@ -97,7 +97,7 @@ export function shelf(host, studio, context) {
     if (all.length > kept.length) saveShelf(all.slice(0, 200));
     const { target } = studio.ink.value;
     // A region that is gone can no longer be painted.
-    if (target.startsWith("region:") && !chart.region(target.slice(7))) studio.ink.value = FLIP;
+    if (target.startsWith("region:") && !chart.region(target.slice(7))) studio.ink.value = PURL;
     show();
   };
   studio.shelf.watch(show);
