@@ -101,8 +101,11 @@ const files = [
 ];
 for (const { name, contents } of files) await put(name, contents);
 await put("icon.svg", await readFile(join(ROOT, "icon.svg")));
-const frame = await transform(await readFile(join(ROOT, "frame.js"), "utf8"), { minify: true, target: "es2022" });
-await put("frame.js", frame.code);
+const inFrame = ["frame.js", "yarn.js"];
+for (const name of inFrame) {
+  const { code } = await transform(await readFile(join(ROOT, name), "utf8"), { minify: true, target: "es2022" });
+  await put(name, code);
+}
 
 // --- the page itself ----------------------------------------------------------------------------
 const entry = output.find((file) => file.type === "chunk" && file.isEntry);
@@ -143,7 +146,7 @@ const sizes = {
 await put("sizes.json", `${JSON.stringify(sizes, null, 2)}\n`);
 await put("index.html", page);
 
-const current = new Set(["index.html", "icon.svg", "frame.js", "sizes.json", ...files.map(({ name }) => name)]);
+const current = new Set(["index.html", "icon.svg", ...inFrame, "sizes.json", ...files.map(({ name }) => name)]);
 for (const name of await readdir(DIST)) {
   if (current.has(name.replace(/\.gz$/, ""))) continue;
   const { mtimeMs } = await stat(join(DIST, name)).catch(() => ({ mtimeMs: Date.now() }));

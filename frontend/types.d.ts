@@ -1733,7 +1733,8 @@ export interface Painted {
 
 /** Colours that carry a meaning; the page sends those of its theme. */
 export interface Palette {
-  yarn?: string;
+  /** By default that of the yarn's name. */
+  yarn?: string | null;
   stockinette?: string;
   garter?: string;
   rib?: string;

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import ImageColor
 
 from knitcore.fabric import PHASES, Fabric
 
@@ -16,8 +19,19 @@ FABRIC_COLOURS: dict[Fabric, str] = {
     Fabric.SEED: "8a62ad",
 }
 
-YARN_COLOUR = "d8c6ab"
-"""Undyed wool, where a yarn has no colour of its own."""
+UNDYED = "d8c6ab"
+"""Of wool, where a yarn's name tells no colour."""
+MAKERS_COLOURS = {
+    "white": "f1ede4",
+    "black": "2b2a2c",
+    "natural": UNDYED,
+    "ecru": "d9cdb4",
+    "rice": "ece4d3",
+    "celeste": "9fc6d8",
+    "brume": "b4bac0",
+    "sapphire": "1f4aa8",
+}
+"""What makers of yarns mean by these words, which web pages lack or mean as pure light."""
 
 BATLOW = (
     "011959 08255b 0d315d 0f3b5f 114360 134b61 175262 1b5962 226061 2b655e 356a59 "
@@ -32,6 +46,22 @@ VIK = (
     "cf8e68 c98056 c37243 bd6431 b3531f a5400f 942f06 832106 741506 670a07 590008"
 )
 """His map for signed quantities."""
+
+
+def named_colour(name: str) -> tuple[int, int, int]:
+    """The colour that the name of a yarn tells; that of undyed wool if it tells none.
+
+    Examples
+    --------
+    >>> named_colour("082L Pearl cotton 3/2, 1800-13 sapphire"), named_colour("Merino, navy")
+    ((31, 74, 168), (0, 0, 128))
+    """
+    words = re.findall(r"[a-z]+", name.lower())[::-1]  # makers say the kind first, then the colour
+    for known in (MAKERS_COLOURS, ImageColor.colormap):
+        for word in words:
+            if word in known:
+                return rgb(MAKERS_COLOURS.get(word) or str(ImageColor.colormap[word]))
+    return rgb(UNDYED)
 
 
 def linear(colours: Colours) -> Colours:

@@ -28,6 +28,8 @@ log = logging.getLogger("knitcore.app")
 router = APIRouter(include_in_schema=False)
 
 CLIENT_PAGE = Path(viser.__file__).parent / "client" / "build" / "index.html"
+SCRIPTS = ("yarn.js", "frame.js")
+"""Ours, before viser's own."""
 OPENING_S = 8.0
 """So long a browser waits for a view: its page is loaded while the first scene is being made."""
 LOOK_AGAIN_S = 0.05
@@ -144,7 +146,7 @@ async def _carry(socket: WebSocket, inner: websockets.ClientConnection, view: Vi
 
 @dataclass(frozen=True)
 class ViewerPage:
-    """viser's client page, with our script for its frame and the style that hides its panel."""
+    """viser's client page, with our scripts for its frame and the style that hides its panel."""
 
     content: bytes
     tag: str
@@ -153,6 +155,8 @@ class ViewerPage:
 def viewer_page() -> ViewerPage:
     """Put it together."""
     page = CLIENT_PAGE.read_text(encoding="utf-8")
-    script = (page_files() / "frame.js").read_text(encoding="utf-8")
-    content = page.replace("<head>", f"<head><script>{script}</script>{VIEW_STYLE}", 1).encode()
+    scripts = "".join(
+        f"<script>{(page_files() / name).read_text(encoding='utf-8')}</script>" for name in SCRIPTS
+    )
+    content = page.replace("<head>", f"<head>{scripts}{VIEW_STYLE}", 1).encode()
     return ViewerPage(content, f'"{hashlib.sha256(content).hexdigest()[:16]}"')

@@ -15,9 +15,9 @@ from app.models.charts import MAX_FIELD
 from app.operations.stretch import StretchView
 from app.viewer.colours import (
     FABRIC_COLOURS,
-    YARN_COLOUR,
     diverging,
     fabric_mix,
+    named_colour,
     rgb,
     sequential,
 )
@@ -52,7 +52,7 @@ class Colour(StrEnum):
 class Palette(RequestModel):
     """Colours that carry a meaning; the page sends those of its theme."""
 
-    yarn: HexColour = f"#{YARN_COLOUR}"
+    yarn: HexColour | None = Field(None, description="By default that of the yarn's name.")
     stockinette: HexColour = f"#{FABRIC_COLOURS[Fabric.STOCKINETTE]}"
     garter: HexColour = f"#{FABRIC_COLOURS[Fabric.GARTER]}"
     rib: HexColour = f"#{FABRIC_COLOURS[Fabric.RIB]}"
@@ -96,7 +96,12 @@ def stitch_colours(
     """
     if colour in (Colour.YARN, Colour.REGION):
         every = colour is Colour.REGION
-        return _regions(chart, [r for r in regions if every or r.yarn is not None], palette)
+        own = (
+            rgb(palette.yarn)
+            if palette.yarn
+            else named_colour(f"{material.name} {material.yarn.product}")
+        )
+        return _regions(chart, [r for r in regions if every or r.yarn is not None], own)
     if colour is Colour.FIELD:
         return _field(chart, field)
     if colour in (Colour.STRAIN, Colour.UTILISATION):
@@ -160,8 +165,10 @@ def region_labels(chart: StitchChart, regions: Sequence[DesignRegion]) -> NDArra
     return labels
 
 
-def _regions(chart: StitchChart, regions: Sequence[DesignRegion], palette: Palette) -> Colours:
-    colours = np.array([rgb(palette.yarn), *(rgb(r.colour) for r in regions)], dtype=np.uint8)
+def _regions(
+    chart: StitchChart, regions: Sequence[DesignRegion], own: tuple[int, int, int]
+) -> Colours:
+    colours = np.array([own, *(rgb(r.colour) for r in regions)], dtype=np.uint8)
     return colours[region_labels(chart, regions) + 1]
 
 

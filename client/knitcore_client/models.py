@@ -725,7 +725,8 @@ class OverhangRequest(TypedDict):
 class Palette(TypedDict):
     """Colours that carry a meaning; the page sends those of its theme."""
 
-    yarn: NotRequired[str]
+    yarn: NotRequired[str | None]
+    """By default that of the yarn's name."""
     stockinette: NotRequired[str]
     garter: NotRequired[str]
     rib: NotRequired[str]

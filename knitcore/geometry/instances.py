@@ -15,10 +15,14 @@ from knitcore.geometry.tubes import tube_faces, tube_vertices
 
 Floats = NDArray[np.float32]
 
-LEVELS = ((1_500, 48, 8), (10_000, 16, 6), (40_000, 10, 4))
+LEVELS = ((1_500, 48, 8), (10_000, 14, 6), (40_000, 10, 4))
 """(largest number of stitches, points, sides): how finely each stitch is drawn."""
 OVERLAP = 0.012
 """Tubes overlap the next by this share of a stitch, so that joins show no gap."""
+ENDS = ((0, 1), (-1, -2))
+"""Points at both ends of a line, and those before them."""
+ROUND = 0.7
+"""So many radii the round ends reach beyond a tube; within a row the next tube hides them."""
 MAX_STITCHES = LEVELS[-1][0]
 
 
@@ -28,7 +32,8 @@ class StitchMeshes:
 
     Attributes
     ----------
-    vertices : (shapes, V, 3) mm, around the stitch's centre.
+    vertices : (shapes, V, 3) mm, around the stitch's centre; ring by ring along the tube, with a
+        ring at each end that rounds it.
     faces : (F, 3), the same for all.
     sizes_mm : (shapes, 2) of the stitch that was drawn.
     depth : of the placement that was drawn.
@@ -62,12 +67,22 @@ def stitch_meshes(
     lines = resampled(shapes.lines, points) * scale[:, None]
     lines[:, 0] -= OVERLAP * points * (lines[:, 1] - lines[:, 0])
     lines[:, -1] += OVERLAP * points * (lines[:, -1] - lines[:, -2])
+    tubes = tube_vertices(lines, shapes.yarn_radius_mm, sides)
+    ends = [_tips(lines[:, at], lines[:, by], shapes.yarn_radius_mm) for at, by in ENDS]
+    first, last = (np.repeat(tip[:, None], sides, axis=1).astype(np.float32) for tip in ends)
     return StitchMeshes(
-        vertices=tube_vertices(lines, shapes.yarn_radius_mm, sides),
-        faces=tube_faces(points, sides),
+        vertices=np.concatenate([first, tubes, last], axis=1),
+        faces=tube_faces(points + 2, sides),
         sizes_mm=sizes,
         depth=placement.depth,
     )
+
+
+def _tips(end: Array, before: Array, radius_mm: float) -> Array:
+    """Points (n, 3) beyond the ends of lines."""
+    along = end - before
+    tips: Array = end + ROUND * radius_mm * along / np.linalg.norm(along, axis=1, keepdims=True)
+    return tips
 
 
 def resampled(lines: Array, points: int) -> Array:

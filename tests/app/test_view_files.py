@@ -16,6 +16,7 @@ from fastapi.testclient import TestClient
 
 from app.operations.context import Context
 from app.viewer.clicks import Clicks, clicked_stitch
+from app.viewer.colours import MAKERS_COLOURS, rgb
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.fabric import RECTANGLE, Box
 from knitcore.errors import InputError
@@ -74,9 +75,8 @@ def test_a_solid_is_the_yarn_in_metres_with_its_colours(client: TestClient) -> N
     expected = build_scene(ViewRequest.model_validate(SMALL), None, HERE)
     across = 0.001 * expected.shapes.lattice.sizes_mm[0, :, 0].sum()
     assert np.ptp(solid.vertices[:, 0]) == pytest.approx(across, rel=0.15)
-    np.testing.assert_array_equal(
-        np.unique(solid.visual.vertex_colors[:, :3], axis=0)[0], [216, 198, 171]
-    )
+    colours = np.unique(solid.visual.vertex_colors[:, :3], axis=0)
+    np.testing.assert_array_equal(colours, [rgb(MAKERS_COLOURS["white"])])
 
 
 def test_an_empty_cell_is_not_drawn_clicked_or_exported(client: TestClient) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from knitcore.geometry.instances import LEVELS
 from tests.browser.conftest import COLUMNS, ROWS, TIMEOUT_MS, wait_for_numbers
 from tests.browser.page import pixels, wait_for_colour
 
@@ -53,6 +54,25 @@ def test_a_picture_stands_in_until_the_live_view_is_there(flat_studio: Page) -> 
     expect(flat_studio.locator(".fabric[data-live]")).to_be_visible()
     expect(flat_studio.locator(".fabric-still")).to_be_hidden()
     wait_for_colour(flat_studio, "#fabric", YARN)
+
+
+@pytest.mark.slow
+def test_the_shaders_know_the_yarn_they_draw(studio: Page) -> None:
+    """Corners of a tube, turns of its plies, radius in dm, one over half the thickness in mm."""
+    studio.add_init_script(
+        """const set = WebGL2RenderingContext.prototype.uniform4fv;
+        WebGL2RenderingContext.prototype.uniform4fv = function (place, values) {
+            if (values.length === 4) window.yarn = [...values];
+            set.call(this, place, values);
+        };"""
+    )
+    studio.reload()
+    _wait_for_live_cloth(studio)
+    frame = next(frame for frame in studio.frames if "/view/" in frame.url)
+    sides, turns, radius, thickness = frame.evaluate("[...yarn.slice(0, 3), 1 / yarn[3]]")
+    assert sides == LEVELS[0][2]
+    assert 2 <= round(turns * (LEVELS[0][1] - 1), 3) <= 12
+    assert 0.2 < 100 * radius < thickness < 5
 
 
 @pytest.mark.slow

@@ -146,7 +146,7 @@ def test_meshes_follow_the_chart_s_size() -> None:
     for most, points, sides in LEVELS:
         assert level_of(most) == (points, sides)
         meshes = stitch_meshes(shapes, at_rest(shapes), points, sides)
-        assert meshes.vertices.shape == (len(shapes.lines), points * sides, 3)
+        assert meshes.vertices.shape == (len(shapes.lines), (points + 2) * sides, 3)
     assert resampled(shapes.lines, POINTS) == pytest.approx(shapes.lines)
     grown = carried(shapes, shapes.lattice.centres_mm * 1.2, shapes.lattice)
     meshes = stitch_meshes(shapes, at_rest(shapes), 16, 6)

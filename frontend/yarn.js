@@ -1,0 +1,113 @@
+/**
+ * Yarn that looks like yarn: plies that wind around each other, the shine of fibres that stand off,
+ * and shadow where strands lie behind others. viser's tubes are plain, so this adds to the shaders
+ * that draw them, before viser starts; a shader that is not as expected stays as it is.
+ *
+ * A plain script without imports: the service puts it into viser's page.
+ */
+
+(() => {
+  const PLIES = 3;
+  /** A ply shows again after so many radii along the yarn. */
+  const PITCH = 3.4;
+  /** Depth of the grooves over the yarn's radius. */
+  const GROOVE = 0.4;
+
+  /** Corners of a tube, turns of its plies from ring to ring, radius in the scene's unit, one over half the cloth's thickness. */
+  const yarn = new Float32Array(4);
+
+  const DECLARED = `
+    uniform vec4 yarn;
+    varying vec3 vYarn; // cosine and sine of the place around the yarn, turns of the plies up to here
+    varying vec2 vShade; // height in the cloth towards the eye, and how far it faces outwards
+  `;
+  /** The corners of a tube follow each other ring by ring, with a ring at each end that closes it. */
+  const PLACED = `
+    float yarnSides = max( yarn.x, 1.0 ), yarnRing = floor( ( float( gl_VertexID ) + 0.5 ) / yarnSides );
+    float yarnAngle = 6.2831853 * ( float( gl_VertexID ) / yarnSides - yarnRing );
+    vYarn = vec3( cos( yarnAngle ), sin( yarnAngle ), ( yarnRing - 1.0 ) * yarn.y );
+    vec3 yarnFace = normalMatrix * im[ 2 ];
+    float yarnSide = dot( yarnFace, vViewPosition ) * inversesqrt( dot( yarnFace, yarnFace ) * dot( vViewPosition, vViewPosition ) );
+    vShade = clamp( 4.0 * yarnSide, - 1.0, 1.0 ) * vec2( position.z * yarn.w, objectNormal.z );
+  `;
+  const LIT = `
+    if ( yarn.x > 0.0 ) {
+      diffuseColor.rgb *= mix( 0.42, 1.06, clamp( 0.5 + 0.5 * vShade.x, 0.0, 1.0 ) ) * ( 0.9 + 0.1 * vShade.y );
+      if ( fwidth( vYarn.z ) < 0.25 ) {
+        vec2 dx = dFdx( vYarn.xy ), dy = dFdy( vYarn.xy );
+        float c = vYarn.x, s = vYarn.y, inside = 1.0 / max( c * c + s * s, 1e-6 );
+        vec2 change = ${PLIES}.0 * inside * vec2( c * dx.y - s * dx.x, c * dy.y - s * dy.x ) + 6.2831853 * vec2( dFdx( vYarn.z ), dFdy( vYarn.z ) );
+        float pixel = length( change ), near = 1.0 - smoothstep( 0.5, 1.6, pixel );
+        float phase = ${PLIES}.0 * atan( s, c ) + 6.2831853 * vYarn.z;
+        float groove = sqrt( 0.5 + 0.5 * cos( phase ) );
+        vec2 slope = - 0.25 * ${GROOVE} * near * yarn.z * sin( phase ) / max( groove, 0.1 ) * change;
+        vec3 right = dFdx( - vViewPosition ), up = dFdy( - vViewPosition );
+        vec3 r1 = cross( up, normal ), r2 = cross( normal, right );
+        float det = dot( right, r1 );
+        normal = normalize( abs( det ) * normal - sign( det ) * ( slope.x * r1 + slope.y * r2 ) );
+        float fibres = sin( 5.0 * phase + 2.0 * sin( 11.0 * vYarn.z + 2.0 * c ) ) * ( 1.0 - smoothstep( 0.1, 0.5, pixel ) );
+        float rim = 1.0 - clamp( dot( nonPerturbedNormal, normalize( vViewPosition ) ), 0.0, 1.0 );
+        diffuseColor.rgb *= mix( 1.0, 0.62 + 0.5 * sqrt( groove ) + 0.07 * fibres + 0.35 * rim * rim * rim, near );
+      }
+    }
+  `;
+  const MAIN = "void main() {";
+  const AFTER_PLACE = "vViewPosition = - mvPosition.xyz;";
+  const AFTER_NORMAL = "vec3 nonPerturbedNormal = normal;";
+
+  /** @param {string} source */
+  function dressed(source) {
+    if (!source.includes("#define USE_INSTANCING_INDIRECT") || !source.includes("#define STANDARD")) return source;
+    const [mark, added] = source.includes("gl_Position") ? [AFTER_PLACE, PLACED] : [AFTER_NORMAL, LIT];
+    const whole = [MAIN, mark].every((each) => source.split(each).length === 2);
+    return whole ? source.replace(MAIN, `${DECLARED}${MAIN}`).replace(mark, `${mark}${added}`) : source;
+  }
+
+  const gl = WebGL2RenderingContext.prototype;
+  const { shaderSource, useProgram } = gl;
+  gl.shaderSource = function (shader, source) {
+    shaderSource.call(this, shader, dressed(source));
+  };
+  /** Where programs take the yarn. @type {WeakMap<WebGLProgram, WebGLUniformLocation | null>} */
+  const places = new WeakMap();
+  gl.useProgram = function (program) {
+    useProgram.call(this, program);
+    if (!program) return;
+    let place = places.get(program);
+    if (place === undefined) places.set(program, (place = this.getUniformLocation(program, "yarn")));
+    if (place) this.uniform4fv(place, yarn);
+  };
+
+  /** @typedef {{vertices: Float32Array, faces: Uint32Array, scale: number}} Tubes */
+
+  /** What the shaders need to know of a cloth. @param {Tubes[]} tubes one for each shape */
+  function measure(tubes) {
+    const { vertices, faces, scale } = tubes[0];
+    const sides = faces[2];
+    /** @param {number} from @param {number} to */
+    const between = (from, to) => Math.hypot(...[0, 1, 2].map((i) => vertices[3 * from + i] - vertices[3 * to + i]));
+    const rings = vertices.length / 3 / sides;
+    const radius = between(sides, sides + sides / 2) / 2;
+    let length = 0;
+    for (let ring = 1; ring < rings - 2; ring++) length += between(ring * sides, (ring + 1) * sides);
+    const turns = Math.max(1, Math.round(length / (PITCH * radius)));
+    let highest = 0;
+    for (const tube of tubes)
+      for (let i = 2; i < tube.vertices.length; i += 3) highest = Math.max(highest, Math.abs(tube.vertices[i]));
+    yarn.set([sides, turns / (rings - 3), radius * scale, 1 / highest]);
+  }
+
+  const Threads = Worker;
+  window.Worker = class extends Threads {
+    /** @param {string | URL} url @param {WorkerOptions} [options] */
+    constructor(url, options) {
+      super(url, options);
+      this.addEventListener("message", ({ data }) => {
+        /** @type {{type: string, props: Tubes}[]} */
+        const messages = data.type === "message_batch" ? data.messages : [];
+        const tubes = messages.filter(({ type }) => type === "BatchedMeshesMessage").map(({ props }) => props);
+        if (tubes.length) measure(tubes);
+      });
+    }
+  };
+})();
