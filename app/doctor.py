@@ -141,7 +141,7 @@ def check_space(folder: Path) -> None:
         raise InputError(
             "data_dir",
             f"The disk of the designs has {free / 1e6:.0f} MB left.",
-            "Make room; nothing that was acknowledged is lost.",
+            "Free some space; nothing that was saved is lost.",
         )
 
 
@@ -179,7 +179,7 @@ def check_handles() -> None:
     if hard != resource.RLIM_INFINITY and hard < MIN_HANDLES:
         raise InputError(
             "nofile",
-            f"this process may open {hard} files only.",
+            f"this process may open only {hard} files.",
             f"Raise the limit (ulimit -n, LimitNOFILE) to {MIN_HANDLES} or more.",
         )
 

@@ -202,7 +202,7 @@ class Settings(BaseSettings):
         except OSError as error:
             raise InputError(
                 "data_dir",
-                f"{folder} cannot be made ({error.strerror}).",
+                f"{folder} cannot be created ({error.strerror}).",
                 "Set KNITCORE_DATA_DIR to a folder that can be written.",
             ) from error
         return f"sqlite:///{self.database_file}"

@@ -103,7 +103,9 @@ class Tokens:
             .values(revoked_at=now())
         )
         if not self._database.write(lambda c: c.execute(change).rowcount):
-            raise InputError("id", f"there is no open token {token}.", "See `knitcore token list`.")
+            raise InputError(
+                "id", f"there is no active token {token}.", "See `knitcore token list`."
+            )
 
     def find(self, *, hashed: str | None = None, identifier: str | None = None) -> tuple[str, str]:
         """(id, user) of an open token by its hash or id; empty strings if there is none."""

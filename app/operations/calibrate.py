@@ -108,7 +108,9 @@ def _command(
     request: CalibrateRequest, context: Context, out: Path, more_tests: tuple[Path, ...]
 ) -> CalibrateResult:
     if more_tests and not request.tests:
-        raise InputError("tests", f"{more_tests[0]} is unexpected.", "Put --tests before tests.")
+        raise InputError(
+            "tests", f"{more_tests[0]} is unexpected.", "Put --tests before the names of the tests."
+        )
     tests = [*request.tests, *map(UploadedFile.at, more_tests)]
     if len(tests) > 2:
         raise InputError("tests", f"{len(tests)} tests are too many.", "Give one per direction.")

@@ -201,7 +201,9 @@ def _girths(girths: tuple[str, ...]) -> dict[str, Any]:
         return {"girths": [dict(zip(names, part, strict=len(part) != 2)) for part in parts]}
     except ValueError:
         raise InputError(
-            "girth", f"{' '.join(girths)} are no girths.", "Write each as 0:170 or 0:170:140."
+            "girth",
+            f"{' '.join(girths)} cannot be read as girths.",
+            "Write each as 0:170 or 0:170:140.",
         ) from None
 
 

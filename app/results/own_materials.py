@@ -46,7 +46,7 @@ def find_own_material(identifier: str, data_dir: Path) -> Material:
     raise InputError(
         "material",
         f"the file of {identifier} was changed since." if changed else f"{identifier} is gone.",
-        "Choose it again." if changed else "Have it put back, or choose another material.",
+        "Choose it again." if changed else "Put it back, or choose another material.",
     )
 
 

@@ -176,12 +176,16 @@ def _field(chart: StitchChart, field: FieldColours | None) -> Colours:
     if field is None or len(field.values) != chart.rows * chart.columns:
         raise InputError(
             "field",
-            "has not one value for each stitch.",
+            "does not have one value for each stitch.",
             f"Send {chart.rows * chart.columns} values, row by row from the bottom.",
         )
     values = np.array(field.values).reshape(chart.rows, chart.columns)
     if field.log and (min(field.low, field.high) <= 0 or values.min() <= 0):
-        raise InputError("field", "has values without a logarithm.", "Send positive ones.")
+        raise InputError(
+            "field",
+            "has values that are not positive, on a logarithmic scale.",
+            "Send positive ones.",
+        )
     if field.map == "vik":
         return diverging(values, max(abs(field.low), abs(field.high)))
     return sequential(values, field.low, field.high, log=field.log)

@@ -272,5 +272,5 @@ class Answer:
 def _not_negative(field: str, values: ArrayLike) -> Array:
     array = np.asarray(values, dtype=float)
     if not np.all(np.isfinite(array)) or np.any(array < 0):
-        raise InputError(field, "must be finite and at least 0.", "Give, say, 0, 0.1, 0.2.")
+        raise InputError(field, "must be finite and at least 0.", "Give, for example, 0, 0.1, 0.2.")
     return array

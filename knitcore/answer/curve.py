@@ -59,7 +59,9 @@ def increasing(stress_n_per_mm: ArrayLike) -> Array:
     stress = np.atleast_1d(np.asarray(stress_n_per_mm, dtype=float))
     if not np.all(np.isfinite(stress)) or np.any(np.diff(stress) <= 0) or np.any(stress < 0):
         raise InputError(
-            "stress", "must be finite, increasing and at least 0.", "Give, say, 0, 0.1, 0.2 N/mm."
+            "stress",
+            "must be finite, increasing and at least 0.",
+            "Give, for example, 0, 0.1, 0.2 N/mm.",
         )
     return stress
 

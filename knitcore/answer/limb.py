@@ -39,8 +39,8 @@ class Limb:
         if len(self.at_mm) != len(self.girths_mm) or not 2 <= len(self.at_mm) <= MAX_GIRTHS:
             raise InputError(
                 "girths",
-                "they do not fit each other.",
-                f"Give 2 to {MAX_GIRTHS} of each, all alike.",
+                "the lists differ in length.",
+                f"Give 2 to {MAX_GIRTHS} places, and as many sizes.",
             )
         if min(np.diff(self.at_mm)) <= 0.0 or min(self.girths_mm) <= 0.0:
             raise InputError(

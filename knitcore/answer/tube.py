@@ -118,7 +118,7 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
             upper *= 2
         if missing(upper) < 0:
             raise InputError(
-                "target_mmhg", f"no size presses by {mmhg:g} mmHg.", "Ask for less pressure."
+                "target_mmhg", f"no size gives {mmhg:g} mmHg.", "Ask for less pressure."
             )
         found.append(worn_mm / (1 + float(brentq(missing, 0.0, upper, xtol=1e-9))))
     return Interval(min(found), max(found))

@@ -266,7 +266,7 @@ def load_atlas(file: Path) -> Atlas:
             raise InputError(
                 "atlas", f"{file.name} is of another version.", "Build it again."
             ) from None
-        raise InputError("atlas", f"{file.name} holds no atlas.", "Build it again.") from None
+        raise InputError("atlas", f"{file.name} is not an atlas.", "Build it again.") from None
     rows = len(atlas.keys)
     if (
         atlas.values.shape != (rows, len(VALUES))

@@ -367,7 +367,9 @@ def _checked(
     given = wanted[~np.isnan(wanted)]
     if not (np.isfinite(given).all() and (given > 0.05).all() and (given < 3).all()):
         raise InputError(
-            "width", "is not 0.05 to 3 times that at rest.", "Give width over width at rest."
+            "width",
+            "is outside 0.05 to 3 times the width at rest.",
+            "Give every width as a multiple of the width at rest.",
         )
     lines = (across, len(wanted)) if direction is Direction.COURSE else (len(wanted), across)
     check_size(*lines)
@@ -379,7 +381,7 @@ def _checked(
         )
     if not 0 < strain <= 5:
         raise InputError(
-            "strain", f"{strain:g} is not a stretch.", "Give a strain above 0, like 0.3."
+            "strain", f"{strain:g} is not a stretch.", "Give a strain above 0, such as 0.3."
         )
     if not 1 <= smallest_band <= len(wanted):
         raise InputError(

@@ -177,7 +177,7 @@ def export_chart(
         known = ", ".join(name for name, built_in in FORMATS.items() if built_in.holds_outlines)
         raise InputError(
             "to",
-            f"{kind} cannot hold a chart with an outline, and its stitches must not be made up.",
+            f"{kind} cannot hold an outline: the cells outside it would become stitches.",
             f"Export {known}, or a rectangular part.",
         )
     with nullcontext() if kind in FORMATS else running(Group.EXPORTERS, kind):

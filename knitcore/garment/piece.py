@@ -57,7 +57,7 @@ class Piece:
 
     def __post_init__(self) -> None:
         if self.yarn_of.shape != self.shaped.stitch.shape:
-            raise InputError("yarns", "they have another size than the chart.", "Give all cells.")
+            raise InputError("yarns", "their size is not that of the chart.", "Give all cells.")
         used = np.unique(self.yarn_of[self.shaped.stitch]).tolist()
         renumbered = np.zeros(len(self.yarns), dtype=np.intp)
         renumbered[used] = np.arange(len(used))

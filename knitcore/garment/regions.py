@@ -84,7 +84,11 @@ def fill_regions(stitch: NDArray[np.bool_], regions: Sequence[Region]) -> Shaped
     purl = np.zeros(stitch.shape, dtype=bool)
     for region in regions:
         if region.cells.shape != stitch.shape:
-            raise InputError("regions", f"{region.name} has another size.", "Mark every cell.")
+            raise InputError(
+                "regions",
+                f"the size of {region.name} is not that of the chart.",
+                "Mark every cell.",
+            )
         times += region.cells
         purl[region.cells] = region.fill.resized(*stitch.shape).purl[region.cells]
     for problem, cells in (("two regions", times > 1), ("no region", times == 0)):

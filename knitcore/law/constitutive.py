@@ -115,7 +115,7 @@ class ConstitutiveLaw:
             raise InputError(
                 "stiffness_yyxx",
                 "has the opposite sign of stiffness_xxyy.",
-                "Give both couplings one sign.",
+                "Give both couplings the same sign.",
             )
         if self.stiffness_xxxx * self.stiffness_yyyy <= self.stiffness_xxyy * self.stiffness_yyxx:
             raise InputError(

@@ -41,7 +41,9 @@ class MeasuredCurve:
                 f"Give 2 to {MAX_POINTS} points, a stress for each strain.",
             )
         if not np.all(np.isfinite([self.strain, self.stress_n_per_mm])):
-            raise InputError("measured", "a curve is not finite.", "Leave out lost points.")
+            raise InputError(
+                "measured", "a curve has values that are not finite.", "Leave those points out."
+            )
         if np.any(np.diff(self.strain) <= 0):
             raise InputError(
                 "measured", "the strains of a curve do not increase.", "Give a pull, not a cycle."

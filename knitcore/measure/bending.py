@@ -99,7 +99,7 @@ def measure_bending(
         If a photo does not show a hanging yarn, or its scale is unknown.
     """
     if not paths:
-        raise InputError("images", "there are none.", "Give at least one photo.")
+        raise InputError("images", "no photo is given.", "Give at least one photo.")
     low, high = DENSITY_RANGE_G_PER_M
     if not (np.isfinite(linear_density_g_per_m) and low <= linear_density_g_per_m <= high):
         raise InputError(

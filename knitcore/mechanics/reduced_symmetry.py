@@ -221,7 +221,9 @@ def rs_fabric(
         expected = Parity.ODD if odd else Parity.EVEN
         if segment.parity is not expected:
             raise InputError(
-                name, f"is {segment.parity}, but {fabric} has {expected} segments.", "Exchange it."
+                name,
+                f"is {segment.parity}, but {fabric} has {expected} segments.",
+                "Exchange them.",
             )
     return RSFabric(
         fabric,

@@ -135,7 +135,7 @@ class Constraints:
 
     def __init__(self, basis: Any, piece: CutPiece, conditions: Sequence[Condition]) -> None:
         if not conditions:
-            raise InputError("conditions", "there are none.", "Hold an edge, and pull another.")
+            raise InputError("conditions", "no edge is held.", "Hold an edge, and pull another.")
         self.conditions = tuple(conditions)
         self._places: Array = basis.doflocs
         for condition in conditions:

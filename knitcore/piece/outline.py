@@ -61,7 +61,9 @@ class CutPiece:
                 raise InputError(name, f"{len(ring)} corners are too few.", "Give at least three.")
             if not np.all(np.abs(np.asarray(ring, dtype=float)) <= MAX_SIZE_MM):
                 raise InputError(
-                    name, "a corner is not a place.", f"Give mm, at most {MAX_SIZE_MM:g} from 0."
+                    name,
+                    "a corner has no usable coordinates.",
+                    f"Give mm, at most {MAX_SIZE_MM:g} from 0.",
                 )
             if np.any(np.all(np.asarray(ring) == np.roll(ring, -1, axis=0), axis=1)):
                 raise InputError(

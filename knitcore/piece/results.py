@@ -183,7 +183,9 @@ def write_piece_test(test: PieceTest, path: Path | str) -> None:
     if suffix not in SUFFIXES:
         raise InputError("out", f"{target.name} has an unknown suffix.", "Use .npz, .csv or .vtu.")
     if not test.found:
-        raise InputError("out", "no step converged, so there is nothing to write.", "Load it less.")
+        raise InputError(
+            "out", "no step converged, so there is nothing to write.", "Use a smaller load."
+        )
     if suffix == ".csv":
         _write_csv(test, target)
     elif suffix == ".npz":

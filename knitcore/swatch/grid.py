@@ -63,7 +63,7 @@ class QuarterGrid:
             ("length_mm", self.row_lines, rows),
         ):
             if lines.shape != (count + 1,) or not np.all(np.diff(lines) > 0):
-                raise InputError(name, "gives cells without size.", "Give sizes above 0 mm.")
+                raise InputError(name, "leaves cells without size.", "Give sizes above 0 mm.")
         for array in (self.natural_width, self.natural_height):
             if array.shape != (rows, columns) or not np.all(array > 0):
                 raise InputError("size", "a cell has no natural size.", "Give sizes above 0 mm.")
@@ -286,7 +286,7 @@ def check_cells(rows: int, columns: int) -> None:
         Naming the number of cells that would be accepted.
     """
     if rows < 1 or columns < 1:
-        raise InputError("size", f"{columns} x {rows} cells are none.", "Give at least 1 x 1.")
+        raise InputError("size", f"{columns} x {rows} cells make no grid.", "Give at least 1 x 1.")
     if rows * columns > MAX_CELLS:
         raise InputError(
             "size",

@@ -79,7 +79,7 @@ def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
         )
     if relaxed.flat or relaxed.slides:
         raise InputError(
-            "flat", "friction needs yarn that nothing else holds.", "Relax it without `flat`."
+            "flat", "a repeat that is held flat cannot have friction.", "Relax it without `flat`."
         )
     return RubbedCell(relaxed, Rubbing(np.zeros(0, np.int64), np.zeros((0, 2))), 0.0)
 

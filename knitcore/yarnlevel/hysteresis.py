@@ -147,7 +147,7 @@ def hysteresis(
     along = Direction.parse(direction)
     check_stretch(max_strain, points, None)
     if not 1 <= cycles <= MAX_CYCLES:
-        raise InputError("cycles", f"{cycles} is not possible.", f"Give 1 to {MAX_CYCLES}.")
+        raise InputError("cycles", f"{cycles} cycles are not possible.", f"Give 1 to {MAX_CYCLES}.")
     rest = relaxed.cell_mm(along)
     steps = rest * (1.0 + np.linspace(0.0, max_strain, points))[1:]
     state = agitated(relaxed)

@@ -89,7 +89,11 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = Non
     """
     cell = free_cell(relaxed.chart, relaxed.cell.grid)
     if _held(relaxed):
-        raise InputError("relaxed", "is held beside its symmetries.", "Relax it without rules.")
+        raise InputError(
+            "relaxed",
+            "is held by more than its symmetries.",
+            "Relax it with nothing prescribed but the loop length.",
+        )
     if cell.stitches > MAX_STITCHES:
         raise InputError(
             "chart",

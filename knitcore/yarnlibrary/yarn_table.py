@@ -148,7 +148,7 @@ def plan_for_yarn(
     """
     if not loop_lengths_mm:
         raise InputError(
-            "loop_lengths", "none is given.", "Give the yarn in a stitch, in mm, once or more."
+            "loop_lengths", "no length is given.", "Give one or more, in mm of yarn per stitch."
         )
     settings = _given_settings(loop_lengths_mm, tuple(_distinct(fabrics)))
     return YarnPlan(

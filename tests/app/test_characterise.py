@@ -129,7 +129,7 @@ def test_one_yarn_has_to_be_named(body: dict[str, object]) -> None:
         (["cotton", "--loop-lengths", "twelve"], "'twelve': Input should be a valid number"),
         (["cotton", "--fabrics", "tweed"], "tweed"),
         (["--yarn", "mine", "--loop-lengths", "12"], "bending-modulus-n-mm2"),
-        (YARN, "none is given"),
+        (YARN, "no length is given"),
         ([*YARN[:-1], "0.7", "--loop-lengths", "12"], "not inside the yarn"),
         (["cotton", "--scheduler", "somewhere"], "not an address"),
     ],

@@ -100,7 +100,7 @@ def test_an_outline_is_drawn_and_never_dropped(tmp_path: Path) -> None:
     assert "no stitch" in drawing.read_text()
     refused = CliRunner().invoke(main, ["export", str(design), "--to", "text", "-o", "x.txt"])
     assert refused.exit_code == 2
-    assert "cannot hold a chart with an outline" in refused.stderr
+    assert "cannot hold an outline" in refused.stderr
 
 
 def test_a_missing_measurement_is_named(client: TestClient) -> None:

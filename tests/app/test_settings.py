@@ -56,7 +56,7 @@ def test_a_scheduler_has_an_address() -> None:
 
 @pytest.mark.parametrize(
     ("name", "value", "says"),
-    [("ALLOWED_HOSTS", "knit.example", "as JSON"), ("DATA_DIR", "/proc/x", "cannot be made")],
+    [("ALLOWED_HOSTS", "knit.example", "as JSON"), ("DATA_DIR", "/proc/x", "cannot be created")],
 )
 def test_a_wrong_setting_is_reported_in_one_line(
     monkeypatch: pytest.MonkeyPatch, name: str, value: str, says: str

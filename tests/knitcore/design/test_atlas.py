@@ -209,7 +209,7 @@ def test_files_that_hold_no_atlas(tmp_path: Path, content: bytes | None) -> None
         np.savez(file, format=np.array(FORMAT), values=np.zeros((2, 3)))
     else:
         file.write_bytes(content)
-    with pytest.raises(InputError, match="holds no atlas"):
+    with pytest.raises(InputError, match="is not an atlas"):
         load_atlas(file)
 
 

@@ -105,7 +105,7 @@ def test_a_setting_without_a_law_makes_no_material(table: YarnTable) -> None:
 
 
 def test_impossible_plans_are_refused() -> None:
-    with pytest.raises(InputError, match="none is given"):
+    with pytest.raises(InputError, match="no length is given"):
         plan_for_yarn("mine", COTTON.yarn, [])
     with pytest.raises(InputError, match="above 0"):
         plan_for_yarn("mine", COTTON.yarn, [12.0, -1.0])
