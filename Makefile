@@ -62,11 +62,12 @@ serve:           ## Run the tool and print its address
 
 # --- checking ---------------------------------------------------------------------------------
 test: $(VENV)/.installed-dev frontend/node_modules/.installed ## Run the default suite (browser tests install Chromium if missing)
-	scripts/ensure-chromium
+	scripts/ensure-browsers chromium
 	@$(MAKE) --no-print-directory -j 3 $(VENV)/.compiled frontend-check page
 	$(BIN)/pytest -n 2 --dist loadgroup -m "not slow"
 
 test-slow: $(VENV)/.installed-dev $(VENV)/.compiled page ## Run the tests that take many seconds: physics, long journeys through the page, wheels
+	scripts/ensure-browsers chromium firefox-esr
 	$(BIN)/pytest -n 2 --dist loadgroup -m slow
 
 ten-runs: ## Run the default suite ten times, two at a time, in fresh clones; log in build

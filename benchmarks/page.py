@@ -152,7 +152,7 @@ def painting(browser: Browser, url: str) -> None:
 def main() -> None:
     weight()
     if not CHROMIUM.exists():
-        print("needs Chromium for the rest (scripts/ensure-chromium)")
+        print("needs Chromium for the rest (scripts/ensure-browsers chromium)")
         return
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         service = Service(Path(folder))
