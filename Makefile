@@ -151,6 +151,7 @@ types: $(VENV)/.installed-dev ## Make the page's types and the client from the s
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
 	$(BIN)/python -m knitcore.yarnlibrary.build $(OPTIONS)
+	$(BIN)/python -m knitcore.yarnlibrary.lowest
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-dev ## Pin the dependencies again

@@ -1316,6 +1316,8 @@ export interface HysteresisRequest {
   cycles?: number;
   /** Also find the rest size after every history. */
   rest_sizes?: boolean;
+  /** Also pull with the ends of the interval of friction, in three times the time. */
+  intervals?: boolean;
 }
 
 /** Cycles of pulling and letting go, and what is left of them. */
@@ -1324,17 +1326,21 @@ export interface HysteresisResult {
   direction: Direction;
   /** Coefficient of friction that was used. */
   friction: number;
-  /** Of the fibre; null where the coefficient was given. */
+  /** Of the yarn or its fibre; null where the request gave the coefficient. */
   friction_interval: [number, number] | null;
   friction_source: string;
   /** Ways there and back in turn. */
   legs: LoopLeg[];
   /** Energy that the last cycle loses per area of fabric, N·mm/mm². */
   lost_per_cycle_n_per_mm: number;
+  /** Over the interval of friction, as all further intervals. */
+  lost_per_cycle_interval_n_per_mm: [number, number] | null;
   /** The same as a share of the work of the pull. */
   lost_share: number;
+  lost_share_interval: [number, number] | null;
   /** Strain that is left after letting go. */
   left_strain: number;
+  left_strain_interval: [number, number] | null;
   /** Change of the greatest stress from the first cycle to the last. */
   closes_within: number;
   rest_sizes: RestSizeResult[];
@@ -2133,6 +2139,9 @@ export interface RestSizeResult {
   history: History;
   course_mm: number;
   wale_mm: number;
+  /** Over the interval of friction. */
+  course_interval_mm: [number, number] | null;
+  wale_interval_mm: [number, number] | null;
 }
 
 /** Adjacent stitches of one kind in a row. */
@@ -2703,6 +2712,9 @@ export interface YarnDocument {
   compression_stiffness_n_per_mm3: number | null;
   compression_exponent: number | null;
   diameter_mm: number | null;
+  friction: number | null;
+  friction_low: number | null;
+  friction_high: number | null;
 }
 
 /** A yarn by its parameters. */

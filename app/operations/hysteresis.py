@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Literal
 
 from pydantic import Field
 
-from app.models.base import Floats, ResultModel
+from app.models.base import Ends, Floats, ResultModel
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.context import Context
@@ -40,6 +41,10 @@ class HysteresisRequest(StitchRequest, LawsRequest):
     points: int = Field(DEFAULT_POINTS, ge=2, le=200, description="Strains on the way there.")
     cycles: int = Field(2, ge=1, le=MAX_CYCLES)
     rest_sizes: bool = Field(True, description="Also find the rest size after every history.")
+    intervals: bool = Field(
+        True,
+        description="Also pull with the ends of the interval of friction, in three times the time.",
+    )
 
 
 class LoopLeg(ResultModel):
@@ -57,6 +62,8 @@ class RestSizeResult(ResultModel):
     history: History
     course_mm: float
     wale_mm: float
+    course_interval_mm: Ends | None = Field(None, description="Over the interval of friction.")
+    wale_interval_mm: Ends | None = None
 
 
 class HysteresisResult(ResultModel):
@@ -66,15 +73,20 @@ class HysteresisResult(ResultModel):
     direction: Direction
     friction: float = Field(description="Coefficient of friction that was used.")
     friction_interval: tuple[float, float] | None = Field(
-        description="Of the fibre; null where the coefficient was given."
+        description="Of the yarn or its fibre; null where the request gave the coefficient."
     )
     friction_source: str
     legs: list[LoopLeg] = Field(description="Ways there and back in turn.")
     lost_per_cycle_n_per_mm: float = Field(
         description="Energy that the last cycle loses per area of fabric, N·mm/mm²."
     )
+    lost_per_cycle_interval_n_per_mm: Ends | None = Field(
+        None, description="Over the interval of friction, as all further intervals."
+    )
     lost_share: float = Field(description="The same as a share of the work of the pull.")
+    lost_share_interval: Ends | None = None
     left_strain: float = Field(description="Strain that is left after letting go.")
+    left_strain_interval: Ends | None = None
     closes_within: float = Field(
         description="Change of the greatest stress from the first cycle to the last."
     )
@@ -102,22 +114,36 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     relaxed = relax(
         repeat, used.yarn, used.loop_length_mm, grid=COARSE, cancelled=context.cancelled
     )
-    found = loops.hysteresis(
-        relaxed, request.direction, request.max_strain, coefficient,
-        points=request.points, cycles=request.cycles, cancelled=context.cancelled,
-    )  # fmt: skip
-    rests = (
-        loops.rest_sizes(relaxed, coefficient, cancelled=context.cancelled)
-        if request.rest_sizes
-        else ()
-    )
+
+    def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
+        found = loops.hysteresis(
+            relaxed, request.direction, request.max_strain, friction,
+            points=request.points, cycles=request.cycles, cancelled=context.cancelled,
+        )  # fmt: skip
+        if not request.rest_sizes:
+            return found, ()
+        return found, loops.rest_sizes(relaxed, friction, cancelled=context.cancelled)
+
+    found, rests = rubbed(coefficient)
+    wanted = request.intervals and given is None and known.low < known.high
+    runs = [(found, rests), rubbed(known.low), rubbed(known.high)] if wanted else []
     return HysteresisResult.of(
         found,
         friction=coefficient,
         friction_interval=(known.low, known.high) if given is None else None,
         friction_source=known.source if given is None else "given",
         legs=[LoopLeg.of(leg) for leg in found.legs],
-        rest_sizes=[RestSizeResult.of(rest) for rest in rests],
+        lost_per_cycle_interval_n_per_mm=_ends(h.lost_per_cycle_n_per_mm for h, _ in runs),
+        lost_share_interval=_ends(h.lost_share for h, _ in runs),
+        left_strain_interval=_ends(h.left_strain for h, _ in runs),
+        rest_sizes=[
+            RestSizeResult.of(
+                rest,
+                course_interval_mm=_ends(sizes[k].course_mm for _, sizes in runs),
+                wale_interval_mm=_ends(sizes[k].wale_mm for _, sizes in runs),
+            )
+            for k, rest in enumerate(rests)
+        ],
         yarn=YarnResult.of(used, used.yarn),
         notes=[
             "As-knitted: pulled along the columns by "
@@ -127,12 +153,19 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     )
 
 
+def _ends(values: Iterable[float]) -> Ends | None:
+    found = list(values)
+    return (min(found), max(found)) if found else None
+
+
+def _between(interval: Ends | None, form: str) -> str:
+    return "" if interval is None else f" [{interval[0]:{form}}, {interval[1]:{form}}]"
+
+
 def _text(r: HysteresisResult) -> list[str]:
-    low_high = (
-        "" if r.friction_interval is None else " [{:.2f}, {:.2f}]".format(*r.friction_interval)
-    )
     lines = [
-        f"friction            {r.friction:.2f}{low_high} ({r.friction_source})",
+        f"friction            {r.friction:.2f}{_between(r.friction_interval, '.2f')} "
+        f"({r.friction_source})",
         f"{'':20}there         back",
     ]
     there, back = r.legs[-2], r.legs[-1]
@@ -146,12 +179,13 @@ def _text(r: HysteresisResult) -> list[str]:
         lines.append(f"strain {strain:8.3f}   {stress:10.4f}   {again} N/mm")
     lines += [
         f"lost in a cycle     {r.lost_per_cycle_n_per_mm:.4g} N·mm/mm², "
-        f"{r.lost_share:.0%} of the work",
-        f"strain left         {r.left_strain:.3f}",
+        f"{r.lost_share:.0%}{_between(r.lost_share_interval, '.0%')} of the work",
+        f"strain left         {r.left_strain:.3f}{_between(r.left_strain_interval, '.3f')}",
     ]
     for rest in r.rest_sizes:
         lines.append(
             f"rest, {rest.history:18}{rest.course_mm:6.3f} × {rest.wale_mm:.3f} mm a stitch"
+            f"{_between(rest.course_interval_mm, '.2f')}{_between(rest.wale_interval_mm, '.2f')}"
         )
     return [*lines, *(f"note: {note}" for note in r.notes)]
 

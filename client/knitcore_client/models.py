@@ -631,6 +631,8 @@ class HysteresisRequest(TypedDict):
     cycles: NotRequired[int]
     rest_sizes: NotRequired[bool]
     """Also find the rest size after every history."""
+    intervals: NotRequired[bool]
+    """Also pull with the ends of the interval of friction, in three times the time."""
 
 
 class ImportRequest(TypedDict):
@@ -2010,16 +2012,20 @@ class HysteresisResult(BaseModel):
     friction: float
     """Coefficient of friction that was used."""
     friction_interval: tuple[float, float] | None
-    """Of the fibre; null where the coefficient was given."""
+    """Of the yarn or its fibre; null where the request gave the coefficient."""
     friction_source: str
     legs: list[LoopLeg]
     """Ways there and back in turn."""
     lost_per_cycle_n_per_mm: float
     """Energy that the last cycle loses per area of fabric, N·mm/mm²."""
+    lost_per_cycle_interval_n_per_mm: tuple[float, float] | None = None
+    """Over the interval of friction, as all further intervals."""
     lost_share: float
     """The same as a share of the work of the pull."""
+    lost_share_interval: tuple[float, float] | None = None
     left_strain: float
     """Strain that is left after letting go."""
+    left_strain_interval: tuple[float, float] | None = None
     closes_within: float
     """Change of the greatest stress from the first cycle to the last."""
     rest_sizes: list[RestSizeResult]
@@ -2618,6 +2624,9 @@ class RestSizeResult(BaseModel):
     history: History
     course_mm: float
     wale_mm: float
+    course_interval_mm: tuple[float, float] | None = None
+    """Over the interval of friction."""
+    wale_interval_mm: tuple[float, float] | None = None
 
 
 class SegmentCountsResult(BaseModel):
@@ -2947,6 +2956,9 @@ class YarnDocument(BaseModel):
     compression_stiffness_n_per_mm3: float | None = None
     compression_exponent: float | None = None
     diameter_mm: float | None = None
+    friction: float | None = None
+    friction_low: float | None = None
+    friction_high: float | None = None
 
 
 class YarnResult(BaseModel):

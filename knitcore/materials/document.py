@@ -259,6 +259,9 @@ _SHARED = (
 _CURVES = ("curve_course", "curve_wale")
 
 
+Friction = Annotated[float, Field(ge=0, le=2, description="of yarn on yarn")]
+
+
 class YarnDocument(_Model):
     """The yarn of a material; every field is optional."""
 
@@ -269,6 +272,21 @@ class YarnDocument(_Model):
     compression_stiffness_n_per_mm3: Annotated[float, Field(gt=0, le=100)] | None = None
     compression_exponent: Annotated[float, Field(gt=1, le=20)] | None = None
     diameter_mm: Annotated[float, Field(gt=0, le=50)] | None = None
+    friction: Friction | None = None
+    friction_low: Friction | None = None
+    friction_high: Friction | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        ends = self.friction_low, self.friction_high
+        if ends == (None, None):
+            return self
+        if self.friction is None:
+            raise ValueError("give friction with its interval")
+        low, high = (self.friction if end is None else end for end in ends)
+        if not low <= self.friction <= high:
+            raise ValueError("friction must lie from friction_low to friction_high")
+        return self
 
 
 class MaterialDocument(_Model):

@@ -61,6 +61,8 @@ class Yarn:
         unmeasured).
     diameter_mm : nominal diameter, from the wraps per inch (25.4 mm / WPI). Inside a fabric the
         yarn is squeezed: see :attr:`FabricRecord.yarn_diameter_mm`.
+    friction, friction_low, friction_high : coefficient of friction of yarn on yarn and the ends of
+        its interval (None if unmeasured; that of the fibre is used then).
     """
 
     fibre: str = ""
@@ -70,6 +72,9 @@ class Yarn:
     compression_stiffness_n_per_mm3: float | None = None
     compression_exponent: float | None = None
     diameter_mm: float | None = None
+    friction: float | None = None
+    friction_low: float | None = None
+    friction_high: float | None = None
 
 
 @dataclass(frozen=True)

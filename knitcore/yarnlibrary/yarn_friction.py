@@ -1,4 +1,4 @@
-"""Coefficient of friction between yarns, by fibre.
+"""Coefficient of friction between yarns: measured, or by fibre.
 
 The yarns of the library were not measured. Listed are static and kinetic coefficients of fibre on
 fibre (Röder 1953, in Morton and Hearle, Physical Properties of Textile Fibres, 4th ed., chapter
@@ -52,7 +52,9 @@ class YarnFriction:
 
 
 def yarn_friction(of: Material) -> YarnFriction:
-    """The coefficient of friction of a material's yarn, by the first fibre that it names.
+    """The coefficient of friction of a material's yarn: its own, or by the first fibre it names.
+
+    An end of the interval that a measured yarn does not give is the coefficient itself.
 
     Examples
     --------
@@ -60,7 +62,13 @@ def yarn_friction(of: Material) -> YarnFriction:
     >>> yarn_friction(material("cotton")).coefficient
     0.26
     """
-    fibre = of.yarn.fibre.lower()
+    own = of.yarn
+    if own.friction is not None:
+        low, high = (
+            own.friction if e is None else e for e in (own.friction_low, own.friction_high)
+        )
+        return YarnFriction(own.friction, low, high, "given with the material")
+    fibre = own.fibre.lower()
     named = [(fibre.find(name), name) for name in _STATIC_AND_KINETIC if name in fibre]
     static, kinetic = _STATIC_AND_KINETIC[min(named)[1]] if named else _UNLISTED
     unlisted = "" if named else "as cotton, since the fibre is not listed: "

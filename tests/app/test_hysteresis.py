@@ -19,6 +19,16 @@ def test_a_loop_over_rest(client: TestClient) -> None:
     assert 0.05 < loop["lost_share"] < 0.5
     assert (loop["friction"], loop["friction_interval"]) == (0.26, [0.13, 0.51])
     assert loop["left_strain"] > 0.0
+    low, high = loop["lost_share_interval"]
+    assert low < loop["lost_share"] < high
+    assert loop["left_strain_interval"][0] < loop["left_strain_interval"][1]
+
+
+def test_a_given_coefficient_has_no_interval(client: TestClient) -> None:
+    asked = {"chart": "K", "material": "acrylic", "points": 2, "cycles": 1, "rest_sizes": False}
+    loop = client.post("/api/v1/hysteresis", json={**asked, "friction": 0.2}).json()
+    assert loop["friction"] == 0.2
+    assert loop["lost_share_interval"] is None
 
 
 @pytest.mark.parametrize(

@@ -184,3 +184,18 @@ def test_files_that_are_not_materials_are_refused(tmp_path, name, content, messa
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(InputError, match="is not a file"):
         load_material_file(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    "yarn",
+    [
+        {"friction_low": 0.1},
+        {"friction": 0.1, "friction_low": 0.2},
+        {"friction": 0.3, "friction_high": 0.2},
+        {"friction": 3.0},
+    ],
+)
+def test_friction_lies_within_its_interval(document, yarn):
+    with pytest.raises(InputError) as caught:
+        material_from_mapping({**document, "yarn": yarn})
+    assert caught.value.field.startswith("yarn")

@@ -130,3 +130,15 @@ def test_every_stored_shape_is_knotted_like_its_chart(name):
         assert stored is not None
         lines = stored.centre_lines()
         assert is_knitted(stored.chart, lines, stored.cell_course_mm, stored.cell_wale_mm)
+
+
+@pytest.mark.parametrize("name", ["acrylic", "cotton"])
+def test_every_stored_repeat_says_whether_it_stays_without_its_mirrors(name):
+    stored = [stored_stitch(chart, name) for chart in stored_charts(name)]
+    for entry in stored:
+        assert entry.unmirrored is not None
+        assert entry.unmirrored.converged
+        assert entry.unmirrored.energy_n_mm < entry.energy_n_mm * (1.0 + 1e-3)
+        if entry.unmirrored.minimum:
+            assert entry.lowest_energy_n_mm > 0.999 * entry.energy_n_mm or entry.free is not None
+    assert 10 < sum(entry.unmirrored.minimum for entry in stored) < len(stored)
