@@ -18,7 +18,7 @@ in a pure fabric, and small where large areas of pure fabrics meet.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 
@@ -46,6 +46,8 @@ FEATURES = {
     "smoothed": 3 * len(_SMOOTHED_OVER),
 }
 """Number of features of each kind, in their order."""
+Mean = Callable[[NDArray[np.generic]], Array]
+"""Takes means of values of the stitches (…, rows, columns)."""
 _NO_CHANGE = 1e-12
 _FEW_CROSSINGS = 0.1
 """Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""
@@ -90,6 +92,20 @@ class Densities:
         """Shares (without stockinette's, which the others leave) and excess."""
         return np.concatenate([self.shares[..., 1:], self.excess], axis=-1)
 
+    def towards(self, other: Densities, share: float) -> Densities:
+        """Densities between these (share 0) and others (1)."""
+        pairs = zip(self.arrays, other.arrays, strict=True)
+        return Densities(*((1 - share) * own + share * one for own, one in pairs))
+
+    def __iter__(self) -> Iterator[Densities]:
+        """One chart after another."""
+        return (Densities(*one) for one in zip(*self.arrays, strict=True))
+
+
+def _mean(values: NDArray[np.generic]) -> Array:
+    """Mean over the stitches."""
+    return np.asarray(values.mean(axis=(-2, -1)))
+
 
 def densities(chart: StitchChart) -> Densities:
     """Densities of a repeat.
@@ -103,17 +119,24 @@ def densities(chart: StitchChart) -> Densities:
     return densities_of(chart.purl)
 
 
-def densities_of(purl: NDArray[np.bool_]) -> Densities:
-    """Densities of repeats of one size, bool (…, rows, columns)."""
+def densities_of(purl: NDArray[np.bool_], mean: Mean = _mean) -> Densities:
+    """Densities of repeats of one size, bool (…, rows, columns).
+
+    Parameters
+    ----------
+    purl : the repeats.
+    mean : what takes means of values of the stitches (…, rows, columns); of all stitches of a
+        repeat, or of those of each of its parts.
+    """
     sign = np.where(purl, -1.0, 1.0)
     odd_course, odd_wale = _odd_sides(sign, -1), _odd_sides(sign, -2)
-    seed = _mean(odd_course * odd_wale) / 4
-    garter, rib = _mean(odd_wale) / 2 - seed, _mean(odd_course) / 2 - seed
+    seed = mean(odd_course * odd_wale) / 4
+    garter, rib = mean(odd_wale) / 2 - seed, mean(odd_course) / 2 - seed
     shares = np.stack([1 - garter - rib - seed, garter, rib, seed], axis=-1)
-    values = _values(sign)
+    values = _values(sign, mean)
     # even columns (rows), times changes from one to the next that go on upwards (across)
-    straight = values[..., [-1, -2]] * _lines(sign)
-    both = _mean((odd_course > 0) & (odd_wale > 0))
+    straight = values[..., [-1, -2]] * _lines(sign, mean)
+    both = mean((odd_course > 0) & (odd_wale > 0))
     neither = both / (both + _FEW_CROSSINGS)
     course = (rib + seed + _NO_CHANGE) / (rib + garter + 2 * seed + 2 * _NO_CHANGE)
     one_way = 1 - neither
@@ -125,37 +148,37 @@ def densities_of(purl: NDArray[np.bool_]) -> Densities:
 def _pure() -> Array:
     """(4, densities) of the pure fabrics."""
     charts = [StitchChart.of_fabric(fabric) for fabric in PHASES]
-    return np.array([_values(np.where(chart.purl, -1.0, 1.0)) for chart in charts])
+    return np.array([_values(np.where(chart.purl, -1.0, 1.0), _mean) for chart in charts])
 
 
-def _values(sign: Array) -> Array:
+def _values(sign: Array, mean: Mean) -> Array:
     """(…, densities), the squares of s smoothed along the course and along the wale last."""
     odd_course, odd_wale = _odd_sides(sign, -1), _odd_sides(sign, -2)
     sides = [(i, j) for i in range(3) for j in range(3) if i + j > 0]
-    found = [_mean((odd_course == i) & (odd_wale == j)) for i, j in sides]
-    found += [_product(sign, up, right) for up, right in _LAGS]
+    found = [mean((odd_course == i) & (odd_wale == j)) for i, j in sides]
+    found += [mean(_product(sign, up, right)) for up, right in _LAGS]
     pair = sign * _lagged(sign, 0, 1)
-    found += [_mean(pair * _lagged(pair, up, right)) for up, right in _PAIRS]
+    found += [mean(pair * _lagged(pair, up, right)) for up, right in _PAIRS]
     kx, ky, back = _waves(sign)
     for bed in _BEDS:
         bent = 1 / ((kx**2 + ky**2) ** 2 + bed**4)
         for slope in (kx, ky):
             course, wale = (_leaning(back(slope * k**2 * bent)) for k in (kx, ky))
-            found += [_mean(course * course), _mean(course * wale), _mean(wale * wale)]
+            found += [mean(course * course), mean(course * wale), mean(wale * wale)]
     for length in _SMOOTHED_OVER:
         along, up = _weights(kx, length), _weights(ky, length)
-        found += [_mean(back(weights) ** 2) for weights in (along * up, along, up)]
+        found += [mean(back(weights) ** 2) for weights in (along * up, along, up)]
     return np.stack(found, axis=-1)
 
 
-def _lines(sign: Array) -> Array:
+def _lines(sign: Array, mean: Mean) -> Array:
     """(…, 2) part of the changes from column to column that goes on upwards; of those of rows."""
     kx, ky, back = _waves(sign)
     found = []
     for across, along in ((kx, ky), (ky, kx)):
         change = np.sin(across / 2)
-        plain = _mean(back(change) ** 2)
-        smooth = _mean(back(change * _weights(along, _SMOOTHED_OVER[-1])) ** 2)
+        plain = mean(back(change) ** 2)
+        smooth = mean(back(change * _weights(along, _SMOOTHED_OVER[-1])) ** 2)
         found.append(np.divide(smooth, plain, out=np.zeros_like(plain), where=plain > _NO_CHANGE))
     return np.stack(found, axis=-1)
 
@@ -189,18 +212,13 @@ def _lagged(sign: Array, up: int, right: int) -> Array:
 
 
 def _product(sign: Array, up: int, right: int) -> Array:
-    """Mean of s times s at a lag, of both diagonals."""
+    """s times s at a lag, the mean of both diagonals."""
     there = _lagged(sign, up, right)
     if up and right:
         there = (there + _lagged(sign, up, -right)) / 2
-    return _mean(sign * there)
+    return np.asarray(sign * there)
 
 
 def _leaning(slope: Array) -> Array:
     """Sine of the angle: however steep, it stays below 1."""
     return np.asarray(slope / np.sqrt(1.0 + slope**2))
-
-
-def _mean(values: NDArray[np.generic]) -> Array:
-    """Mean over the stitches."""
-    return np.asarray(values.mean(axis=(-2, -1)))

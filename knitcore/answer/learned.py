@@ -215,8 +215,8 @@ class LearnedModel:
         means, variance = unfolding
         slopes = self.slopes * follows(mixture)
         values = means[0] + slopes @ fold
-        spread = found.ways @ self.unfolding_scale
-        spread[:12] *= found.mixed  # near a pure fabric little remains to be learned
+        # near a pure fabric little remains to be learned
+        spread = found.mixed * (found.ways @ self.unfolding_scale)
         deviations = np.sqrt(spread**2 * variance[0] + slopes**2 @ fold_sd**2)
         return LearnedAnswer(
             size_mm=flat_mm * np.exp(fold),

@@ -54,8 +54,9 @@ def mixed(
         If the material lacks a pure fabric that the repeat needs.
     """
     learned = packaged_model().answer(found, material, gauge, swept)
-    own = 0.0 if gauge is not None else GAUGE_LOG_SD * (1 - float(found.mixed))
-    course, wale = (_along(learned, direction, own) for direction in Direction)
+    pure = 1 - float(found.mixed)  # near a pure fabric that fabric's own uncertainty counts
+    own = 0.0 if gauge is not None else GAUGE_LOG_SD * pure
+    course, wale = (_along(learned, direction, own, pure) for direction in Direction)
     parts = learned.mixture.parts
     shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
     source = Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE
@@ -73,8 +74,12 @@ def mixed(
     )
 
 
-def _along(found: LearnedAnswer, direction: Direction, own_size_log_sd: float) -> Along:
+def _along(
+    found: LearnedAnswer, direction: Direction, own_size_log_sd: float, pure: float
+) -> Along:
     response = _response(found, direction)
+    parts = found.mixture.parts
+    own_poisson_sd = pure * sum(share * r.uncertainty.poisson(direction) for share, r in parts)
     held = float(found.mixture.shares_of_strain(direction, 0.0)[1])
     bounds = (*found.mixture.bounds_n_per_mm(direction), response.modulus_n_per_mm)
     return Along(
@@ -84,7 +89,7 @@ def _along(found: LearnedAnswer, direction: Direction, own_size_log_sd: float) -
         partial(found.across_strain, direction),
         Response(response.modulus_n_per_mm / held, partial(found.held_strain, direction)),
         poisson=float(found.poisson[direction.axis]),
-        poisson_sd=float(found.poisson_sd[direction.axis]),
+        poisson_sd=math.hypot(found.poisson_sd[direction.axis], own_poisson_sd),
         relaxed_mm=float(found.size_mm[direction.axis]),
         relaxed_log_sd=math.hypot(found.size_log_sd[direction.axis], own_size_log_sd),
         bounds_n_per_mm=Interval(min(bounds), max(bounds)),

@@ -1,12 +1,13 @@
 """Large charts: patches of stitches, each with its own answer, that pull on each other.
 
-A repeat of at most :data:`SIDE` stitches a side, a rib or a welt is one patch. A larger chart is
-cut at its middle and in steps of that size from there. Each patch has the answer of the window of
-that size around it, a pure fabric or a mixed chart of its own. The patches at the ends are smaller
-than their windows and grow with the chart, so one row more changes little. Up to twice that size,
-the densities of patches pass gradually from those of the whole chart to their own. The densities of
-mixed patches are shifted so that their mean is the whole chart's: a cut across a repeat then does
-not change the result for the whole.
+A repeat of at most :data:`SIDE` stitches a side is one patch. A larger chart is cut at its middle
+and in steps of that size from there. The densities of a patch are means over the window of that
+size around it, of stitches that know their neighbours beyond the window: the last row of a hem
+counts as one row of it, not as a texture of its own. The patches at the ends are smaller than their
+windows and grow with the chart, so one row more changes little. Up to twice that size, densities
+pass gradually from those of the whole chart to those of patches. They are shifted so that
+their mean is the whole chart's: a cut across a repeat then does not change the result for the
+whole.
 
 Patches form lines along the pull: in a line all patches carry the same force per row (wale), and
 their stretched sizes add up; all lines are strained alike, and their forces add up.
@@ -23,14 +24,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from knitcore.answer.answer import Along, Answer
-from knitcore.answer.densities import Densities, densities
+from knitcore.answer.densities import Densities, densities, densities_of
 from knitcore.answer.learned import SweptChart, packaged_model
 from knitcore.answer.measured import measured
 from knitcore.answer.mixed import mixed
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.fabric import Direction, Fabric
+from knitcore.fabric import Direction
 from knitcore.law.response import Response, response_through
 from knitcore.materials import Interval, Material, Origin
 from knitcore.phases import pure_fabric
@@ -195,55 +196,41 @@ def patches_of(
     repeat = chart.repeat_cut()
     if swept is None and all(r.origin is Origin.SIMULATED for r in material.fabrics.values()):
         swept = packaged_model().sweep_of(repeat, material)
-    small = max(repeat.rows, repeat.columns) <= SIDE or min(repeat.rows, repeat.columns) == 1
-    if swept is not None or small:
-        return _one(chart, mixed(repeat, densities(repeat), material, gauge, swept))
+    whole = densities(repeat)
+    if swept is not None or max(repeat.rows, repeat.columns) <= SIDE:
+        return _one(chart, mixed(repeat, whole, material, gauge, swept))
     cuts = _cuts if gradual else _even_cuts
     rows, columns = cuts(repeat.rows), cuts(repeat.columns)
-    cells = list(product(_windows(rows, gradual), _windows(columns, gradual)))
-    parts = [repeat.region(*cell) for cell in cells]
-    found = [densities(part) for part in parts]
-    counts = np.outer(np.diff(rows), np.diff(columns)).ravel()
-    moved = _difference(densities(repeat), found, counts)
-    shifted = [_sum(own, moved) for own in found]
-    # a chart slightly larger than one patch gets almost the answer of one patch
-    apart = min(max(repeat.rows, repeat.columns) / SIDE - 1, 1.0) if gradual else 1.0
-    if apart < 1:
-        shifted = [_between(densities(repeat), own, apart) for own in shifted]
-    pure = cache(partial(measured, material=material)) if apart == 1 else None
+    cells = product(pairwise(rows.tolist()), pairwise(columns.tolist()))
+    parts = [repeat.region(slice(*up), slice(*along)) for up, along in cells]
+    found = _densities_of(repeat, whole, rows, columns, SIDE if gradual else 0)
+    if gradual:  # a chart slightly larger than one patch gets almost the answer of one patch
+        found = found.towards(whole, max(2 - max(repeat.rows, repeat.columns) / SIDE, 0.0))
+    pure = cache(partial(measured, material=material))
 
     def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
-        given = zip(parts, shifted, sizes, strict=True)
-        flat = [_patch(part, own, material, size, pure) for part, own, size in given]
+        flat = []
+        for part, own, size in zip(parts, found, sizes, strict=True):
+            fabric = None if gradual else pure_fabric(part)
+            if fabric is None:
+                flat.append(mixed(part, own, material, size))
+            else:
+                flat.append(pure(fabric) if size is None else pure(fabric).with_size(size))
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
         return Patches(rows, columns, tuple(lines))
 
-    whole = answered([None] * len(parts))
+    free = answered([None] * len(parts))
     if gauge is None:
-        return whole
-    wider, higher = (gauge.extent_mm(d) / whole.relaxed_mm(d) for d in Direction)
+        return free
+    wider, higher = (gauge.extent_mm(d) / free.relaxed_mm(d) for d in Direction)
     return answered(
         [
             RelaxedSize(a.relaxed_course_mm * wider, a.relaxed_wale_mm * higher, gauge.log_sd)
-            for line in whole.answers
+            for line in free.answers
             for a in line
         ]
     )
-
-
-def _patch(
-    part: StitchChart,
-    found: Densities,
-    material: Material,
-    gauge: RelaxedSize | None,
-    pure: Callable[[Fabric], Answer] | None,
-) -> Answer:
-    fabric = pure_fabric(part)
-    if fabric is None or pure is None:
-        return mixed(part, found, material, gauge)
-    answer = pure(fabric)
-    return answer if gauge is None else answer.with_size(gauge)
 
 
 def _one(chart: StitchChart, answer: Answer) -> Patches:
@@ -271,31 +258,37 @@ def _even_cuts(stitches: int) -> NDArray[np.intp]:
     return np.linspace(0, stitches, count + 1).round().astype(np.intp)
 
 
-def _windows(cuts: NDArray[np.intp], gradual: bool) -> list[slice]:
-    """Of each patch its stitches; a gradual one has :data:`SIDE`, if the chart has as many."""
-    end, found = int(cuts[-1]), []
-    for low, high in pairwise(cuts.tolist()):
-        size = min(max(SIDE if gradual else 0, high - low), end)
-        start = min(max((low + high - size) // 2, 0), end - size)
-        found.append(slice(start, start + size))
-    return found
-
-
-def _difference(
-    whole: Densities, parts: Sequence[Densities], counts: NDArray[np.intp]
+def _densities_of(
+    repeat: StitchChart,
+    whole: Densities,
+    rows: NDArray[np.intp],
+    columns: NDArray[np.intp],
+    least: int,
 ) -> Densities:
-    own = zip(*(part.arrays for part in parts), strict=True)
-    means = (np.average(np.stack(values), axis=0, weights=counts) for values in own)
-    return Densities(*(a - mean for a, mean in zip(whole.arrays, means, strict=True)))
+    """Densities of the patches, row by row: means over the window of each, which has at least so
+    many stitches a side, moved so that the mean of all patches is the whole repeat's.
+    """
+    up, along = _windows(rows, least), _windows(columns, least)
+    own = densities_of(repeat.purl, lambda values: (up @ values.astype(float) @ along.T).ravel())
+    counts = np.outer(np.diff(rows), np.diff(columns)).ravel()
+    shares, excess, straight, ways = (
+        values + mean - np.average(values, axis=0, weights=counts)
+        for values, mean in zip(own.arrays, whole.arrays, strict=True)
+    )
+    return Densities(_shares(shares), excess, np.clip(straight, 0.0, 1.0), _shares(ways))
 
 
-def _between(whole: Densities, part: Densities, share: float) -> Densities:
-    """Densities that lie between those of the whole chart (share 0) and of a part (1)."""
-    pairs = zip(whole.arrays, part.arrays, strict=True)
-    return Densities(*((1 - share) * one + share * other for one, other in pairs))
+def _windows(cuts: NDArray[np.intp], least: int) -> Array:
+    """(patches, stitches) weights that take the mean over the window of each patch."""
+    weights = np.zeros((len(cuts) - 1, end := int(cuts[-1])))
+    for own, (low, high) in zip(weights, pairwise(cuts.tolist()), strict=True):
+        size = min(max(least, high - low), end)
+        start = min(max((low + high - size) // 2, 0), end - size)
+        own[start : start + size] = 1 / size
+    return weights
 
 
-def _sum(own: Densities, moved: Densities) -> Densities:
-    shares, ways = (np.maximum(v, 0.0) for v in (own.shares + moved.shares, own.ways + moved.ways))
-    straight = np.clip(own.straight + moved.straight, 0.0, 1.0)
-    return Densities(shares / shares.sum(), own.excess + moved.excess, straight, ways / ways.sum())
+def _shares(values: Array) -> Array:
+    """Shares that add up to 1, none of them below 0."""
+    values = np.maximum(values, 0.0)
+    return np.asarray(values / values.sum(axis=-1, keepdims=True))
