@@ -484,11 +484,15 @@ export type Convention = "published" | "paper" | "authors-code";
 /** How the free edges across a direction curl. */
 export type Curl = "flat" | "front" | "back";
 
-/** A whole piece with free edges. */
+/** A whole piece whose edges are free, all or beside two clamps. */
 export interface CurlRequest {
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
   material: string;
+  /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
+  outline?: string | null;
+  /** By clamps, whose free sides curl. */
+  pull?: PullInput | null;
   /** Also return the corners of all stitches. */
   corners?: boolean;
   /** CPU time after which the current shape is returned, not converged. */
@@ -506,10 +510,10 @@ export interface CurlResult {
   width_mm: number;
   height_mm: number;
   depth_mm: number;
-  /** Height of the sides above the fabric next to them; negative to the back. */
-  curl_course_mm: number;
+  /** Height of the sides above the fabric next to them; negative to the back. Null for a shaped piece. */
+  curl_course_mm: number | null;
   /** Height of the top and bottom above the fabric next to them. */
-  curl_wale_mm: number;
+  curl_wale_mm: number | null;
   /** Extent of the piece laid flat. */
   flat_width_mm: number;
   flat_height_mm: number;
@@ -518,8 +522,8 @@ export interface CurlResult {
   converged: boolean;
   /** CPU time. */
   seconds: number;
-  /** Corners of the stitches, the lowest row first. */
-  corners_mm: [number, number, number][][] | null;
+  /** Corners of the sheet line by line, mm; null outside the piece. */
+  corners_mm: (([number, number, number] | null)[])[] | null;
   notes: string[];
 }
 
@@ -1971,6 +1975,14 @@ export interface Problem {
   most?: number | null;
   /** Of inputs that cannot be used: all that is wrong, at most 100; `field`, `detail` and `remedy` are those of the first. */
   errors?: Fault[];
+}
+
+/** Two clamps that hold the outermost rows or columns and move apart. */
+export interface PullInput {
+  /** Of the pull. */
+  direction?: Direction;
+  /** From clamp to clamp: 0.3 is 30 %. */
+  strain: number;
 }
 
 /** An edge in a clamp that does not turn and moves freely under a force. */

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from app.models.base import RequestModel
 from app.models.charts import MaterialName
 from app.operations.context import Context
+from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.shell.cloth import Cloth, cloth_of
 
@@ -55,3 +58,11 @@ class WeighedRequest(RequestModel):
 def notes_of(cloth: Cloth) -> list[str]:
     """What a test of cloth that is flat at rest leaves out."""
     return [FRICTIONLESS, *([_CURLS] if cloth.curls else [])]
+
+
+def corners_of(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:
+    """Corners (lines, points, 3) as an answer has them, null where there are none."""
+    lines = zip(corners_mm.round(3).tolist(), there.tolist(), strict=True)
+    return [
+        [tuple(at) if known else None for at, known in zip(*line, strict=True)] for line in lines
+    ]

@@ -9,26 +9,37 @@ import numpy as np
 from pydantic import Field
 
 from app.cli.options import out_option
-from app.models.base import RequestModel, ResultModel
-from app.models.charts import ChartInput, MaterialName, to_chart
+from app.models.base import Known, RequestModel, ResultModel
+from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
 from app.models.posed import PosedView
-from app.models.weighed import TimeLimit
+from app.models.weighed import Corners, TimeLimit, corners_of
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
+from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb, write_curled_npz
-from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece
+from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.shell.curl import MAX_STITCHES, TIME_LIMIT_S, CurledPiece, Pull
 from knitcore.shell.curl import curl as curl_piece
 
 FLAT = 0.02
 """Edges that stand out by less than this fraction of the thickness count as flat."""
 
 
+class PullInput(RequestModel):
+    """Two clamps that hold the outermost rows or columns and move apart."""
+
+    direction: Direction = Field(Direction.WALE, description="Of the pull.")
+    strain: float = Field(gt=0, le=1, description="From clamp to clamp: 0.3 is 30 %.")
+
+
 class CurlRequest(RequestModel):
-    """A whole piece with free edges."""
+    """A whole piece whose edges are free, all or beside two clamps."""
 
     chart: ChartInput
     material: MaterialName
+    outline: OutlineInput = None
+    pull: PullInput | None = Field(None, description="By clamps, whose free sides curl.")
     corners: bool = Field(False, description="Also return the corners of all stitches.")
     time_limit_s: TimeLimit = TIME_LIMIT_S
 
@@ -43,10 +54,11 @@ class CurlResult(ResultModel):
     width_mm: float = Field(description="Extent along the rows of the piece as a whole.")
     height_mm: float
     depth_mm: float
-    curl_course_mm: float = Field(
-        description="Height of the sides above the fabric next to them; negative to the back."
+    curl_course_mm: Known = Field(
+        description="Height of the sides above the fabric next to them; negative to the back. Null "
+        "for a shaped piece."
     )
-    curl_wale_mm: float = Field(
+    curl_wale_mm: Known = Field(
         description="Height of the top and bottom above the fabric next to them."
     )
     flat_width_mm: float = Field(description="Extent of the piece laid flat.")
@@ -54,9 +66,7 @@ class CurlResult(ResultModel):
     thickness_mm: float
     converged: bool = Field(description="If false, the shape is only a preview.")
     seconds: float = Field(description="CPU time.")
-    corners_mm: list[list[tuple[float, float, float]]] | None = Field(
-        None, description="Corners of the stitches, the lowest row first."
-    )
+    corners_mm: Corners = None
     notes: list[str]
 
 
@@ -73,8 +83,16 @@ def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
 
 def _curled(request: CurlRequest, context: Context) -> CurledPiece:
     chart, material = to_chart(request.chart), context.material(request.material)
+    stitches = None if request.outline is None else outline_marks(request.outline)
+    if stitches is not None and stitches.shape == chart.purl.shape and stitches.any():
+        chart = ShapedChart(chart, stitches).continued()
     return curl_piece(
-        chart, material, time_limit_s=request.time_limit_s, cancelled=context.cancelled
+        chart,
+        material,
+        stitches=stitches,
+        pull=None if request.pull is None else request.pull.into(Pull),
+        time_limit_s=request.time_limit_s,
+        cancelled=context.cancelled,
     )
 
 
@@ -87,7 +105,7 @@ def _result(piece: CurledPiece, request: CurlRequest) -> CurlResult:
         columns=piece.chart.columns,
         flat_width_mm=float(flat[0]),
         flat_height_mm=float(flat[1]),
-        corners_mm=piece.corners_mm.round(3).tolist() if request.corners else None,
+        corners_mm=corners_of(piece.corners_mm, piece.used) if request.corners else None,
         notes=list(piece.notes),
     )
 
@@ -99,7 +117,7 @@ def _and_write(request: CurlRequest, context: Context, out: Path | None) -> Curl
         glb = out.suffix.lower() == ".glb"
         material = context.material(request.material)
         out.write_bytes(
-            write_curled_glb(piece.chart, piece.corners_mm, material)
+            write_curled_glb(piece.chart, piece.corners_mm, material, piece.stitches)
             if glb
             else write_curled_npz(piece)
         )
@@ -112,8 +130,14 @@ def _lines(r: CurlResult) -> list[str]:
         f"{r.columns} columns x {r.rows} rows, flat {r.flat_width_mm:.0f} x "
         f"{r.flat_height_mm:.0f} mm",
         f"as it lies      {r.width_mm:.0f} x {r.height_mm:.0f} x {r.depth_mm:.0f} mm{state}",
-        f"sides           {_where(r.curl_course_mm, r.thickness_mm)}",
-        f"top and bottom  {_where(r.curl_wale_mm, r.thickness_mm)}",
+        *(
+            f"{edges:15} {_where(curl_mm, r.thickness_mm)}"
+            for edges, curl_mm in (
+                ("sides", r.curl_course_mm),
+                ("top and bottom", r.curl_wale_mm),
+            )
+            if curl_mm is not None
+        ),
         f"solved          {r.seconds:.1f} s CPU",
     ]
 

@@ -9,11 +9,10 @@ from pydantic import Field
 
 from app.models.base import Ends, ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import Corners, WantsCorners, WeighedRequest, notes_of
+from app.models.weighed import Corners, WantsCorners, WeighedRequest, corners_of, notes_of
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.shell.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
-from knitcore.shell.drape import Drape as Draped
 from knitcore.shell.drape import drape as drape_cloth
 
 
@@ -70,18 +69,11 @@ def drape(request: DrapeRequest, context: Context) -> DrapeResult:
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),
         weight_g_per_m2=cloth.weight_g_per_m2,
-        corners_mm=_corners(found) if request.corners else None,
+        corners_mm=corners_of(found.corners_mm, np.isfinite(found.corners_mm[..., 0]))
+        if request.corners
+        else None,
         notes=notes_of(cloth),
     )
-
-
-def _corners(found: Draped) -> Corners:
-    inside = np.isfinite(found.corners_mm[..., 0])
-    lines = found.corners_mm.round(3).tolist()
-    return [
-        [tuple(at) if there else None for at, there in zip(*line, strict=True)]
-        for line in zip(lines, inside, strict=True)
-    ]
 
 
 def _lines(r: DrapeResult) -> list[str]:

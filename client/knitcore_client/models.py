@@ -281,11 +281,15 @@ class CompressionRequest(TypedDict):
 
 
 class CurlRequest(TypedDict):
-    """A whole piece with free edges."""
+    """A whole piece whose edges are free, all or beside two clamps."""
 
     chart: str | PureFabricChart
     material: str
     """Identifier of a material of the library."""
+    outline: NotRequired[str | None]
+    """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
+    pull: NotRequired[PullInput | None]
+    """By clamps, whose free sides curl."""
     corners: NotRequired[bool]
     """Also return the corners of all stitches."""
     time_limit_s: NotRequired[float]
@@ -822,6 +826,15 @@ class PressureRequest(TypedDict):
     """A chart of the material, in place of a fabric."""
     law: NotRequired[dict[str, float] | None]
     """Constants of a law, by name."""
+
+
+class PullInput(TypedDict):
+    """Two clamps that hold the outermost rows or columns and move apart."""
+
+    direction: NotRequired[Direction]
+    """Of the pull."""
+    strain: float
+    """From clamp to clamp: 0.3 is 30 %."""
 
 
 class PulledInput(TypedDict):
@@ -1502,9 +1515,10 @@ class CurlResult(BaseModel):
     """Extent along the rows of the piece as a whole."""
     height_mm: float
     depth_mm: float
-    curl_course_mm: float
-    """Height of the sides above the fabric next to them; negative to the back."""
-    curl_wale_mm: float
+    curl_course_mm: float | None
+    """Height of the sides above the fabric next to them; negative to the back. Null for a shaped
+    piece."""
+    curl_wale_mm: float | None
     """Height of the top and bottom above the fabric next to them."""
     flat_width_mm: float
     """Extent of the piece laid flat."""
@@ -1514,8 +1528,8 @@ class CurlResult(BaseModel):
     """If false, the shape is only a preview."""
     seconds: float
     """CPU time."""
-    corners_mm: list[list[tuple[float, float, float]]] | None = None
-    """Corners of the stitches, the lowest row first."""
+    corners_mm: list[list[tuple[float, float, float] | None]] | None = None
+    """Corners of the sheet line by line, mm; null outside the piece."""
     notes: list[str]
 
 

@@ -7,7 +7,7 @@
  * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
  *   has them, or one of its own
  * @typedef {"flat" | "lying" | "worn"} Pose of the fabric in 3D: held flat, as it lies, on the body
- * @typedef {{pose: Pose, id: string, rows: number, columns: number, converged: boolean, words: string,
+ * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
  *   note: string}} Posed a shape that was computed, and what to say of it
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
  * @typedef {"stitch" | "block" | "region"} Groups what an extensibility rectangle stands for
@@ -44,6 +44,8 @@ export class Seeing {
     this.against = new Signal(/** @type {string | null} */ (null));
     /** Id of a stretch test that the service has forgotten. */
     this.forgotten = new Signal(/** @type {string | null} */ (null));
+    /** Whether the free edges of a stretched fabric curl. */
+    this.curling = new Signal(false);
     this.pose = new Signal(/** @type {Pose} */ ("flat"));
     /** The shape of that pose; null while it is being computed, and if the fabric is flat. */
     this.posed = new Signal(/** @type {Posed | null} */ (null));

@@ -212,10 +212,11 @@ export function fabricview(host, studio, view) {
       if (!(error instanceof ApiError)) throw error;
       if (error.offline) studio.online.value = false;
       const { field } = error.problem;
-      if (field === "curl.id" && studio.seeing.pose.value !== "flat") {
-        const { value } = studio.seeing.pose;
-        studio.seeing.pose.value = "flat"; // a restarted service has forgotten the shape
-        studio.seeing.pose.value = value;
+      if (field === "curl.id" && studio.seeing.posed.value) {
+        const { pose, curling } = studio.seeing;
+        const forgotten = { pose: pose.value, curling: curling.value }; // by a restarted service
+        [pose.value, curling.value] = ["flat", false];
+        [pose.value, curling.value] = [forgotten.pose, forgotten.curling];
         return;
       }
       const id = field === "stretch.id" ? (studio.currentStretch()?.id ?? null) : null;
@@ -250,7 +251,9 @@ export function fabricview(host, studio, view) {
   const describe = () => {
     const strain = studio.seeing.pose.value !== "flat" ? 0 : studio.currentStrain();
     caption.replaceChildren(
-      strain ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %` : poseText(studio),
+      strain && !studio.seeing.posed.value
+        ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
+        : poseText(studio),
       h("span", { class: "caption-scale figures", title: "Length of the line below the cloth" }, scale),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
@@ -291,9 +294,9 @@ export function fabricview(host, studio, view) {
  */
 function wanted(studio, view) {
   const { document: chart, seeing } = studio;
-  const stretch = pulled(studio);
-  const overlay = stretch ? shownOverlay(studio) : atRest(shownOverlay(studio));
   const posed = seeing.posed.value;
+  const stretch = posed ? null : pulled(studio);
+  const overlay = stretch ? shownOverlay(studio) : atRest(shownOverlay(studio));
   const ofChart = posed?.pose === "worn" ? "pressure" : overlay.view;
   const colour = seeing.yarnColours.value === "chart" ? ofChart : seeing.yarnColours.value;
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
@@ -328,8 +331,9 @@ function pulled(studio) {
 function poseText(studio) {
   const { pose, posed } = studio.seeing;
   const { value } = pose;
+  if (posed.value) return posed.value.words;
   if (value === "flat") return "Relaxed, held flat";
-  return posed.value?.words ?? `${POSES[value]}: being computed`;
+  return `${POSES[value]}: being computed`;
 }
 
 /** The theme's colours. @returns {NonNullable<ViewRequest["palette"]>} */

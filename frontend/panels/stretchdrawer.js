@@ -110,7 +110,7 @@ export function stretchdrawer(host, studio, stretcher) {
     { class: "progress", role: "progressbar", "aria-label": "Stretch test", hidden: true },
     done,
   );
-  const options = stretchOptions();
+  const options = stretchOptions(studio);
   const note = h("div", { class: "stretch-note", role: "status", id: "stretch-note" });
 
   const play = h("button", {
@@ -244,8 +244,12 @@ function locking(test) {
   return used > 0 ? `No stitch locks: the tightest has used ${percent(used)} of its stretch.` : "";
 }
 
-/** How the ends are held and what is computed; the usual choice is made. */
-function stretchOptions() {
+/**
+ * How the ends are held, what is computed and shown; the usual choice is made.
+ *
+ * @param {Studio} studio
+ */
+function stretchOptions(studio) {
   /** @param {string} id @param {[string, string][]} choices */
   const select = (id, choices) =>
     h("select", { class: "select", id }, ...choices.map(([value, text]) => h("option", { value }, text)));
@@ -264,6 +268,12 @@ function stretchOptions() {
     step: "0.001",
     placeholder: "assumed",
   });
+  const curling = h("input", {
+    type: "checkbox",
+    id: "stretch-curling",
+    onchange: () => (studio.seeing.curling.value = curling.checked),
+  });
+  studio.seeing.curling.watch((on) => (curling.checked = on));
   /** @param {string} text @param {HTMLElement} field */
   const row = (text, field, unit = "") =>
     h("label", {}, h("span", {}, text), field, unit && h("span", { class: "muted" }, unit));
@@ -273,6 +283,7 @@ function stretchOptions() {
     row("Ends", clamps),
     row("Law", model),
     row("Shear modulus", shear, "N/mm"),
+    row("Free edges curl in 3D", curling),
     h(
       "p",
       { class: "muted" },

@@ -8,8 +8,10 @@
  */
 
 import { ApiError, api, isAbort } from "../api.js";
+import { along } from "../core/directions.js";
 import { Latest } from "../core/latest.js";
 import { figure } from "../core/format.js";
+import { outlineText } from "../core/snapshot.js";
 import { REST } from "../studio.js";
 
 const DELAY_MS = 150;
@@ -17,18 +19,21 @@ const DELAY_MS = 150;
 const PATIENCE_S = [0.15, 40];
 
 /** @type {Record<string, (studio: Studio, signal: AbortSignal) => AsyncGenerator<Posed>>} */
-const POSES = { lying, worn };
+const SHAPES = { lying, worn, pulled };
 
 /** @param {Studio} studio */
 export function startPoser(studio) {
   const latest = new Latest(DELAY_MS);
-  const { pose, posed, limb } = studio.seeing;
+  const { pose, posed, limb, curling } = studio.seeing;
+  /** @returns {Posed["pose"]} */
+  const wanted = () => (pose.value === "flat" && curling.value && studio.currentStrain() ? "pulled" : pose.value);
   const ask = () => {
     latest.cancel();
-    const shapes = POSES[pose.value];
+    const now = wanted();
+    const shapes = SHAPES[now];
     const { rows, columns } = studio.document.grid;
     const old = posed.value;
-    const fits = old?.pose === pose.value && old.rows === rows && old.columns === columns;
+    const fits = old?.pose === now && old.rows === rows && old.columns === columns;
     posed.value = fits && old ? { ...old, converged: false } : null;
     if (!shapes) return;
     latest.run(async (signal) => {
@@ -44,25 +49,50 @@ export function startPoser(studio) {
         if (error.offline) studio.online.value = false;
         studio.tellProblem(error.problem);
         pose.value = "flat";
+        curling.value = false;
       }
     });
   };
-  const again = () => pose.value !== "flat" && ask();
+  const again = () => wanted() !== "flat" && ask();
   pose.listen(ask);
   limb.listen(() => pose.value === "worn" && ask());
   studio.step.listen((step) => {
     if (step !== REST) pose.value = "flat"; // it is pulled
+    if (curling.value) ask();
   });
+  studio.stretch.listen(() => curling.value && ask());
+  curling.listen(ask);
   studio.document.onChange(again);
   studio.materialId.listen(again);
 }
 
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* lying(studio, signal) {
+  for await (const found of curled(studio, signal, null)) {
+    const words = found.converged ? "As it lies, without friction" : "As it lies: a preview, still moving";
+    yield { ...found, pose: "lying", words };
+  }
+}
+
+/** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
+async function* pulled(studio, signal) {
+  const [direction, strain] = [studio.stretchDirection(), studio.currentStrain() ?? 0];
+  const words = `Stretched ${along(direction)} by ${(100 * strain).toFixed(0)} %, free edges curl`;
+  for await (const found of curled(studio, signal, { direction, strain })) {
+    yield { ...found, pose: "pulled", words: found.converged ? words : `${words}: a preview` };
+  }
+}
+
+/**
+ * @param {Studio} studio
+ * @param {AbortSignal} signal
+ * @param {import("../types.js").CurlRequest["pull"]} pull
+ */
+async function* curled({ document: chart, request }, signal, pull) {
+  const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
   for (const time_limit_s of PATIENCE_S) {
-    const { id, rows, columns, converged, notes } = await api.curl({ ...studio.request, time_limit_s }, signal);
-    const words = converged ? "As it lies, without friction" : "As it lies: a preview, still moving";
-    yield { pose: "lying", id, rows, columns, converged, words, note: notes[0] };
+    const { id, rows, columns, converged, notes } = await api.curl({ ...request, outline, pull, time_limit_s }, signal);
+    yield { id, rows, columns, converged, note: notes[0] };
   }
 }
 

@@ -6,11 +6,13 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from knitcore import showing
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.errors import Cancelled, InputError
+from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.shell.relax import settle
 from knitcore.shell.rolled import start
@@ -19,10 +21,17 @@ from knitcore.shell.sheet import Sheet, sheet_of
 MAX_STITCHES = 10_000
 """Largest piece that is calculated."""
 TIME_LIMIT_S = 120.0
+_BETWEEN = 3
+"""Stitches that a pull needs: two in the clamps, one between."""
+_SHAKEN_MM = 1e-3
 _STRIPS = 0.3
 """Share of it that each of the two strips may take with which the descent begins."""
 STRIP = 4.0
 """Width of the edge strip whose curl is reported, in thicknesses."""
+PULLED_NOTE = (
+    "Pulled between clamps: the curl of the free edges against the pull. The cloth's stiffness is "
+    "that of small strains, so that forces are those of the stretch test, and not of this shape."
+)
 NOTE = (
     "Without friction, set and weight: edges roll and folds close as far as they can; real fabric "
     "does so only in part. Rely on the direction of curls and folds, and on which fabrics lie "
@@ -49,6 +58,8 @@ class CurledPiece:
     converged : whether every corner is in equilibrium; where it is not, the shape is a preview.
     residual : largest force on a corner, over the force that turns two stitches by a radian.
     seconds : CPU time.
+    stitches : (rows, columns), False where the piece has none; None if it has all. Corners without
+        a stitch mean nothing, and `curl_course_mm` and `curl_wale_mm` are NaN for such a piece.
     """
 
     chart: StitchChart
@@ -64,7 +75,17 @@ class CurledPiece:
     converged: bool
     residual: float
     seconds: float
+    stitches: NDArray[np.bool_] | None = None
     notes: tuple[str, ...] = (NOTE,)
+
+    @property
+    def used(self) -> NDArray[np.bool_]:
+        """(rows + 1, columns + 1) whether a stitch has this corner."""
+        found = np.ones(self.corners_mm.shape[:2], dtype=bool)
+        if self.stitches is not None:
+            around = np.pad(self.stitches, 1)
+            found = around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1]
+        return found
 
     def _repr_html_(self) -> str:
         step = max(1, max(self.corners_mm.shape[:2]) // 30)
@@ -76,40 +97,69 @@ class CurledPiece:
         return showing.figure(picture, f"{size}; towards the face: {ends}", *self.notes)
 
 
+@dataclass(frozen=True)
+class Pull:
+    """Two clamps that hold the outermost rows (wale) or columns (course) and move apart.
+
+    Attributes
+    ----------
+    direction : of the pull.
+    strain : from clamp to clamp.
+    """
+
+    direction: Direction
+    strain: float
+
+
 def curl(
     chart: StitchChart,
     material: Material,
     *,
+    stitches: NDArray[np.bool_] | None = None,
+    pull: Pull | None = None,
     time_limit_s: float = TIME_LIMIT_S,
     cancelled: Cancelled | None = None,
 ) -> CurledPiece:
-    """The shape at rest of a piece with free edges.
+    """The shape at rest of a piece whose edges are free, or free beside two clamps.
 
     Parameters
     ----------
     chart : the whole piece, from the face side.
+    stitches : (rows, columns) False where the piece has none; the chart goes on there as beside it.
+    pull : by clamps, if any.
     time_limit_s : CPU time after which the current shape is returned, not converged.
     cancelled : called before every step; True stops with CancelledError.
 
     Raises
     ------
     InputError
-        If the piece is too large, or the material lacks data that the yarn level needs.
+        If the piece is too large or has no stitch, or the material lacks data for the yarn level.
     ConvergenceError
         If a fabric of the material does not relax at the yarn level.
     CancelledError
         If ``cancelled`` says so.
     """
-    check_size(chart)
+    check_size(chart, stitches)
+    if pull is not None and min(chart.rows, chart.columns) < _BETWEEN:
+        raise InputError("chart", "is too small for clamps.", f"Give {_BETWEEN} rows and columns.")
     sheet = sheet_of(chart, material)
     clock = time.process_time()
-    begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancelled=cancelled)
+    held = None
+    if pull is None:
+        begin = start(sheet, time_limit_s=_STRIPS * time_limit_s, cancelled=cancelled)
+    else:
+        begin, held = _pulled(sheet, pull)
+        sheet = sheet.clamped(held)
+    if stitches is not None:
+        sheet = sheet.cut(stitches)
     left = time_limit_s - (time.process_time() - clock)
-    found = settle(sheet, begin, time_limit_s=left, cancelled=cancelled)
+    found = settle(sheet, begin, held=held, time_limit_s=left, cancelled=cancelled)
     shape = (chart.rows + 1, chart.columns + 1, 3)
-    corners = aligned(found.x, sheet).reshape(shape)
+    placed = found.x if pull else aligned(found.x, sheet)
+    corners = placed.reshape(shape)
     strip = STRIP * sheet.thickness_mm
-    width, height, depth = np.ptp(corners, axis=(0, 1))
+    width, height, depth = np.ptp(placed[sheet.used], axis=0)
+    whole = stitches is None or bool(stitches.all())
     return CurledPiece(
         chart=chart,
         corners_mm=corners,
@@ -118,17 +168,35 @@ def curl(
         width_mm=float(width),
         height_mm=float(height),
         depth_mm=float(depth),
-        curl_course_mm=standing_out_mm(corners, strip),
+        curl_course_mm=standing_out_mm(corners, strip) if whole else np.nan,
         # columns for rows turns the face to the other side
-        curl_wale_mm=-standing_out_mm(corners.transpose(1, 0, 2), strip),
+        curl_wale_mm=-standing_out_mm(corners.transpose(1, 0, 2), strip) if whole else np.nan,
         energy_n_mm=found.energy_n_mm,
         converged=found.converged,
         residual=found.residual,
         seconds=time.process_time() - clock,
+        stitches=stitches,
+        notes=(NOTE,) if pull is None else (PULLED_NOTE, NOTE),
     )
 
 
-def check_size(chart: StitchChart) -> None:
+def _pulled(sheet: Sheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
+    """The flat sheet stretched evenly between clamps, and which corners these hold, (corners,)."""
+    axis = pull.direction.axis
+    grid = np.arange(len(sheet.flat_mm)).reshape(sheet.rows + 1, sheet.columns + 1)
+    lines = grid if axis == 1 else grid.T
+    at = sheet.flat_mm[lines, axis].mean(axis=1)
+    middle = 0.5 * (at[1:] + at[:-1])
+    longer = pull.strain * (middle[-1] - middle[0])
+    x = sheet.flat_mm.copy()
+    x[:, axis] += longer * np.clip((sheet.flat_mm[:, axis] - at[1]) / (at[-2] - at[1]), 0.0, 1.0)
+    held = np.zeros(len(x), dtype=bool)
+    held[lines[[0, 1, -2, -1]]] = True
+    x[~held] += _SHAKEN_MM * np.random.default_rng(0).standard_normal((np.count_nonzero(~held), 3))
+    return x, held
+
+
+def check_size(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
     """InputError if a piece is larger than what is calculated."""
     if chart.rows * chart.columns > MAX_STITCHES:
         raise InputError(
@@ -136,12 +204,16 @@ def check_size(chart: StitchChart) -> None:
             f"it has {chart.rows * chart.columns} stitches.",
             f"Give a piece of at most {MAX_STITCHES} stitches.",
         )
+    if stitches is not None and (stitches.shape != chart.purl.shape or not stitches.any()):
+        raise InputError(
+            "outline", "does not fit the chart.", "Give as many cells, one stitch at least."
+        )
 
 
 def aligned(x: Array, sheet: Sheet) -> Array:
     """A shape turned and moved so that it is nearest to the flat sheet (Kabsch 1976)."""
-    middle = x - x.mean(axis=0)
-    left, _, right = np.linalg.svd(middle.T @ sheet.flat_mm)
+    middle = x - x[sheet.used].mean(axis=0)
+    left, _, right = np.linalg.svd(middle[sheet.used].T @ sheet.flat_mm[sheet.used])
     proper = np.diag([1.0, 1.0, np.linalg.det(left @ right)])
     return np.asarray(middle @ left @ proper @ right)
 

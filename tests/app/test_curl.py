@@ -19,6 +19,7 @@ from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.share import solid_glb
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.formats.design import DesignFile, write_design
 
 STRIP = {"fabric": "stockinette", "columns": 12, "rows": 3}
 FIELDS = {
@@ -38,6 +39,38 @@ def test_curl_over_rest(client: TestClient) -> None:
     assert np.ptp(curled["corners_mm"], axis=(0, 1))[0] == pytest.approx(
         curled["width_mm"], abs=2e-3
     )
+
+
+def test_a_shaped_piece_over_rest_and_as_a_solid(client: TestClient) -> None:
+    outline = "..xxxx..\n.xxxxxx.\nxxxxxxxx"
+    body = {
+        "chart": {"fabric": "garter", "columns": 8, "rows": 3},
+        "material": "acrylic",
+        "outline": outline,
+        "corners": True,
+    }
+    told = client.post("/api/v1/curl", json=body).json()
+    assert told["converged"]
+    assert told["curl_course_mm"] is None
+    assert [at is None for at in told["corners_mm"][3]] == [True] * 2 + [False] * 5 + [True] * 2
+    view = {name: body[name] for name in ("chart", "material", "outline")}
+    solid = client.post("/api/v1/views/solid", json=view | {"curl": {"id": told["id"]}})
+    assert solid.status_code == 200, solid.text
+
+
+def test_a_shaped_design_and_clamps_at_the_command_line(tmp_path: Path) -> None:
+    design = tmp_path / "shaped.json"
+    knits, outline = "\n".join(["KKKKKK"] * 3), "..xx..\nxxxxxx\nxxxxxx"
+    shaped = DesignFile(name="Shaped", material="acrylic", chart=knits, outline=outline)
+    design.write_text(write_design(shaped))
+    out = tmp_path / "shaped.glb"
+    arguments = ["curl", str(design), "--material", "acrylic", "--strain", "0.1", "--json"]
+    result = CliRunner().invoke(main, [*arguments, "--out", str(out)])
+    assert result.exit_code == 0, result.stderr
+    told = json.loads(result.stdout)
+    assert told["curl_wale_mm"] is None
+    assert "between clamps" in told["notes"][0]
+    assert out.stat().st_size > 1000
 
 
 @pytest.mark.parametrize("kind", [".npz", ".glb"])

@@ -139,6 +139,19 @@ def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page)
 
 
 @pytest.mark.slow
+def test_the_free_edges_of_a_stretched_fabric_curl(flat_studio: Page) -> None:
+    flat_studio.click("#stretch-run")
+    expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
+    flat_studio.click("#stretch-more")
+    flat_studio.check("#stretch-curling")
+    expect(flat_studio.locator(".fabric-caption")).to_contain_text("free edges curl")
+    with flat_studio.expect_request(
+        lambda r: "/views/" in r.url and '"curl":null' in (r.post_data or "")
+    ):
+        flat_studio.uncheck("#stretch-curling")
+
+
+@pytest.mark.slow
 def test_the_chart_is_worn_on_a_limb_of_the_girths_given(flat_studio: Page) -> None:
     flat_studio.click("#tab-limb")
     expect(flat_studio.locator(".limb-girths input")).to_have_count(4)

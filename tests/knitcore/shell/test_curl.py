@@ -8,9 +8,9 @@ import pytest
 from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
-from knitcore.fabric import Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
-from knitcore.shell.curl import CurledPiece, curl
+from knitcore.shell.curl import CurledPiece, Pull, curl
 
 ACRYLIC = material("acrylic")
 
@@ -116,3 +116,50 @@ def test_a_piece_too_large_is_refused() -> None:
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(CancelledError):
         curl(StitchChart.parse("K").tile(9, 9), ACRYLIC, cancelled=lambda: True)
+
+
+def test_pulled_between_clamps_the_free_sides_curl_and_the_more_so_the_less_it_is_pulled() -> None:
+    chart = StitchChart.parse("K").tile(20, 12)
+    little, much = (
+        curl(chart, ACRYLIC, pull=Pull(Direction.WALE, strain)) for strain in (0.05, 0.3)
+    )
+    assert little.converged
+    assert much.converged
+    assert little.curl_course_mm < much.curl_course_mm < -0.5 * much.thickness_mm
+    ends = much.corners_mm[[0, 1, -2, -1]]
+    np.testing.assert_allclose(ends[..., 2], 0.0, atol=1e-12)
+    flat = much.flat_mm[..., 1]
+    between = 0.5 * (flat[-1, 0] + flat[-2, 0] - flat[0, 0] - flat[1, 0])
+    assert np.ptp(much.corners_mm[..., 1]) == pytest.approx(np.ptp(flat) + 0.3 * between)
+
+
+def test_pulled_along_the_rows_top_and_bottom_curl_to_the_front() -> None:
+    chart = StitchChart.parse("K").tile(16, 12)
+    piece = curl(chart, ACRYLIC, pull=Pull(Direction.COURSE, 0.2))
+    assert piece.converged
+    assert piece.curl_wale_mm > 0.5 * piece.thickness_mm
+
+
+def test_a_shaped_piece_is_the_rectangle_without_what_lies_outside() -> None:
+    """With every stitch nothing changes; without a corner the rest keeps its size."""
+    chart = StitchChart.of_fabric(Fabric.GARTER, rows=10, columns=10)
+    every = curl(chart, ACRYLIC, stitches=np.ones((10, 10), dtype=bool))
+    np.testing.assert_allclose(every.corners_mm, curl(chart, ACRYLIC).corners_mm, atol=1e-9)
+    inside = np.tri(10, dtype=bool)[:, ::-1]
+    piece = curl(chart, ACRYLIC, stitches=inside)
+    assert piece.converged
+    assert np.isnan(piece.curl_course_mm)
+    assert np.count_nonzero(piece.used) == 55 + 21
+    steps = np.linalg.norm(np.diff(piece.corners_mm[:, -1], axis=0), axis=1)
+    whole = np.linalg.norm(np.diff(every.corners_mm[:, -1], axis=0), axis=1)
+    np.testing.assert_allclose(steps, whole, rtol=2e-3)
+
+
+def test_an_outline_of_another_size_is_refused() -> None:
+    with pytest.raises(InputError, match="does not fit"):
+        curl(StitchChart.parse("K").tile(4, 4), ACRYLIC, stitches=np.ones((3, 4), dtype=bool))
+
+
+def test_clamps_need_a_stitch_between_them() -> None:
+    with pytest.raises(InputError, match="too small for clamps"):
+        curl(StitchChart.parse("KK"), ACRYLIC, pull=Pull(Direction.WALE, 0.1))
