@@ -27,7 +27,7 @@ from knitcore.materials.refitted import COLUMNS, CONSTANTS, CURVE, DEVIATIONS
 from knitcore.materials.uncertainty import Z_SCORE, CurveUncertainty, LawUncertainty
 from knitcore.measure.stretch_test import StretchTest
 from knitcore.measure.uniaxial import Reduction, fit_law
-from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
+from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 from knitcore.swatch.clamp_correction import ClampCorrection, converted
 from knitcore.swatch.measured_strip import MeasuredStrip
 from knitcore.swatch.strip_fit import StripFit, fit_strips
@@ -83,7 +83,7 @@ class LeftOutFabrics:
 
 def carried(folder: Path) -> LeftOutFabrics:
     """Each of acrylic's fabrics from its published law and the other fabrics' correction."""
-    tests = {(f, d): read(folder, f, d, Gauge.CLAMPS) for f in Fabric for d in Direction}
+    tests = {(f, d): read(folder, f, d, Marks.CLAMPS) for f in Fabric for d in Direction}
     published = load_library(Laws.PUBLISHED)["acrylic"]
     return left_out(
         published.fabrics,
@@ -99,16 +99,16 @@ def corrections_of(
     """What turns each published law into one of clamp-to-clamp strain."""
     return {
         (f, d): ClampCorrection.of(
-            read(folder, f, d, Gauge.CENTRE), tests[f, d], published.law(f), d
+            read(folder, f, d, Marks.CENTRE), tests[f, d], published.law(f), d
         )
         for f, d in tests
     }
 
 
-def read(folder: Path, fabric: Fabric, direction: Direction, gauge: Gauge) -> StretchTest:
+def read(folder: Path, fabric: Fabric, direction: Direction, marks: Marks) -> StretchTest:
     """A raw test of acrylic, with its width corrected."""
     name = f"outputData_Acrylic Yarn {fabric.title()} {AXES[direction]}.h5"
-    test = read_stretch_test(folder / name, gauge=gauge)
+    test = read_stretch_test(folder / name, marks=marks)
     wrong = fabric is Fabric.GARTER and direction is Direction.COURSE
     return test.with_width(GARTER_WIDTH_MM) if wrong else test
 
@@ -119,7 +119,7 @@ def main() -> None:
     options.add_argument("--check", action="store_true")
     given = options.parse_args()
     published = load_library(Laws.PUBLISHED)["acrylic"]
-    tests = {(f, d): read(given.tests, f, d, Gauge.CLAMPS) for f in Fabric for d in Direction}
+    tests = {(f, d): read(given.tests, f, d, Marks.CLAMPS) for f in Fabric for d in Direction}
     strips = {key: MeasuredStrip.of(test, key[1]) for key, test in tests.items()}
     corrections = corrections_of(given.tests, tests, published)
     print("published over clamp-to-clamp strain, waist over published")

@@ -21,7 +21,7 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, save_law
 from knitcore.measure.stretch_test import stated_direction
 from knitcore.measure.uniaxial import Reduction, fit_files
-from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
+from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 from knitcore.swatch.calibration import Calibration, ForceCurve
 from knitcore.swatch.calibration import calibrate as calibrated
 from knitcore.swatch.comparison import Edges, compare
@@ -76,7 +76,7 @@ def _calibration(request: CalibrateRequest, context: Context) -> Calibration:
             law = fit_files(tests[0], tests[1], reduction=Reduction.UNIFORM).law
         if tests:
             chosen = tests[request.direction.axis] if len(tests) == 2 else tests[0]
-            test = read_stretch_test(chosen, gauge=Gauge.CLAMPS)
+            test = read_stretch_test(chosen, marks=Marks.CLAMPS)
             if stated_direction(test) not in (None, request.direction):
                 raise InputError(
                     "tests",
@@ -89,7 +89,7 @@ def _calibration(request: CalibrateRequest, context: Context) -> Calibration:
 
 def _course_first(tests: list[Path]) -> list[Path]:
     """Two tests in the order course, wale; swapped if the files say so."""
-    stated = [stated_direction(read_stretch_test(path, gauge=Gauge.CLAMPS)) for path in tests]
+    stated = [stated_direction(read_stretch_test(path, marks=Marks.CLAMPS)) for path in tests]
     if Direction.WALE is stated[0] or Direction.COURSE is stated[1]:
         return tests[::-1]
     return tests

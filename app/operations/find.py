@@ -20,7 +20,7 @@ from app.results.atlases import EXTENTS, Extent, atlas_of
 from knitcore.design.atlas import Atlas, load_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import Candidate, find_fabric
-from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Limb, Quantity, Target
+from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Quantity, Target, WornTube
 from knitcore.errors import InputError
 from knitcore.materials import load_library
 
@@ -56,7 +56,7 @@ class TargetInput(RequestModel):
 
     def target(self) -> Target:
         """As the library knows it."""
-        return self.into(Target, limb=self.limb.into(Limb) if self.limb else None)
+        return self.into(Target, limb=self.limb.into(WornTube) if self.limb else None)
 
 
 class LimitsInput(RequestModel):

@@ -10,7 +10,7 @@ import pytest
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
 from knitcore.measure.uniaxial import fit_files
-from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
+from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, pull
 from knitcore.swatch.calibration import ForceCurve, calibrate
 from knitcore.swatch.comparison import Edges, compare
@@ -45,7 +45,7 @@ def test_a_law_refitted_from_tests_gives_the_clamp_force(study_data: Path) -> No
         study_data / "uniaxial" / f"outputData_Acrylic Yarn Garter {axis}.h5" for axis in "XY"
     )
     law = fit_files(course, wale).law
-    curve = ForceCurve.of_test(read_stretch_test(wale, gauge=Gauge.CLAMPS), 40 / 127)
+    curve = ForceCurve.of_test(read_stretch_test(wale, marks=Marks.CLAMPS), 40 / 127)
     strain = np.arange(0.3, 0.71, 0.1)
     sheet = Sheet(QuarterGrid.uniform(60, 20, curve.width_mm, curve.length_mm), [law], SheetModel())
     test = pull(sheet, Direction.WALE, strain)

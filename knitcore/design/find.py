@@ -13,13 +13,13 @@ from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.cost import CostLimits, KnittingCost
-from knitcore.design.targets import Limb, Quantity, Target, values_of
+from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import Interval, Laws
 from knitcore.materials.library import INCONSISTENT
 
-__all__ = ["Candidate", "FoundFabrics", "Limb", "Quantity", "Target", "find_fabric"]
+__all__ = ["Candidate", "FoundFabrics", "Quantity", "Target", "WornTube", "find_fabric"]
 
 _LONG = 24
 """Longest key that is spelt out in a sentence."""

@@ -58,8 +58,8 @@ class Quantity(StrEnum):
 
 
 @dataclass(frozen=True)
-class Limb:
-    """A tube on a limb.
+class WornTube:
+    """A tube and how far a limb stretches it.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Target:
     tolerance: float = 0.10
     weight: float = 1.0
     load_n_per_mm: float = USUAL_LOAD_N_PER_MM
-    limb: Limb | None = None
+    limb: WornTube | None = None
 
     def __post_init__(self) -> None:
         for name in ("value", "tolerance", "weight"):
@@ -219,7 +219,7 @@ def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:
     return value, low, high
 
 
-def _pressures_mmhg(atlas: Atlas, direction: Direction, limb: Limb) -> tuple[Array, Array]:
+def _pressures_mmhg(atlas: Atlas, direction: Direction, limb: WornTube) -> tuple[Array, Array]:
     """Pressures of a tube, the lower and the higher of axially free and axially fixed.
 
     As :func:`knitcore.mechanics.pressure.limb_pressure`, with the repeats' curves: free across,

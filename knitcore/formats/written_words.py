@@ -44,7 +44,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Stitch:
+class WrittenStitch:
     """A stitch of a row: purled or knitted, how it is made ("" if just worked), of which yarn."""
 
     purl: bool
@@ -63,10 +63,10 @@ class Work:
 
     first: int
     last: int
-    stitches: tuple[Stitch, ...]
+    stitches: tuple[WrittenStitch, ...]
 
 
-Stitches = tuple[Stitch, ...]
+Stitches = tuple[WrittenStitch, ...]
 
 
 def taken(stitches: Stitches) -> int:
@@ -156,7 +156,7 @@ def _yarn_words(line: Line, words: str, worked: int, yarns: int) -> Stitches:
         part, room = words[name.end() : stop], worked - taken(stitches)
         read = _words(line, part, room) if len(names) == 1 else _items(line, part, room)
         yarn = known.index(name[1].upper())
-        stitches += tuple(Stitch(s.purl, s.form, yarn) for s in read)
+        stitches += tuple(WrittenStitch(s.purl, s.form, yarn) for s in read)
     return stitches
 
 
@@ -190,7 +190,7 @@ def _items(line: Line, words: str, worked: int) -> Stitches:
     while rest:
         bracket, run, shaped = (p.match(rest) for p in (_BRACKET, _STITCHES, _SHAPED))
         if rest.lower() in ("knit", "purl"):
-            found = (Stitch(rest.lower() == "purl"),) * (worked - taken(stitches))
+            found = (WrittenStitch(rest.lower() == "purl"),) * (worked - taken(stitches))
             used = len(rest)
         elif bracket is not None:
             inside = _items(line, bracket[1], worked)
@@ -201,9 +201,9 @@ def _items(line: Line, words: str, worked: int) -> Stitches:
         elif shaped is not None:
             form = shaped[1].lower()
             purl = form in ("ssp", "p2tog", "p3tog", "m1p")
-            found, used = (Stitch(purl, form),), shaped.end()
+            found, used = (WrittenStitch(purl, form),), shaped.end()
         elif run is not None:
-            found, used = (Stitch(run[1].lower() == "p"),) * int(run[2]), run.end()
+            found, used = (WrittenStitch(run[1].lower() == "p"),) * int(run[2]), run.end()
         else:
             raise line.wrong(
                 f"{rest[:30]!r} cannot be read.",

@@ -37,7 +37,7 @@ from knitcore.materials.uncertainty import LawUncertainty
 from knitcore.measure.law_fit import ALPHA_SHARE_LIMIT, DirectionFit, fit_direction
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
-from knitcore.measure.uniaxial_files import Gauge, read_stretch_test
+from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 
 BINS = 40
 """Strain intervals of a pull in the uniform reduction."""
@@ -57,9 +57,9 @@ class Reduction(StrEnum):
     RECOMMENDED = "recommended"
 
     @property
-    def gauge(self) -> Gauge:
+    def marks(self) -> Marks:
         """Which tracked points give the strain along the pull."""
-        return Gauge.CENTRE if self is Reduction.PUBLISHED else Gauge.CLAMPS
+        return Marks.CENTRE if self is Reduction.PUBLISHED else Marks.CLAMPS
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,7 @@ def fit_files(
         If a file cannot be used, or the two do not belong together.
     """
     tests = [
-        read_stretch_test(path, gauge=reduction.gauge, file_format=file_format)
+        read_stretch_test(path, marks=reduction.marks, file_format=file_format)
         for path in (course, wale)
     ]
     return fit_law(tests[0], tests[1], reduction=reduction)

@@ -50,7 +50,7 @@ WIDER_THAN_CLAMPED = 1.2
 _RIGHT, _LEFT, _BOTTOM, _TOP, _CENTRE, _CLAMP_BOTTOM, _CLAMP_TOP = range(7)
 
 
-class Gauge(StrEnum):
+class Marks(StrEnum):
     """Between which tracked points the strain along the pull is read.
 
     ``centre`` (centre of the fabric to the lower clamp) reproduces the published numbers;
@@ -63,18 +63,18 @@ class Gauge(StrEnum):
     @property
     def points(self) -> tuple[int, int]:
         """Indices of the two tracked points."""
-        return (_CENTRE, _CLAMP_BOTTOM) if self is Gauge.CENTRE else (_CLAMP_BOTTOM, _CLAMP_TOP)
+        return (_CENTRE, _CLAMP_BOTTOM) if self is Marks.CENTRE else (_CLAMP_BOTTOM, _CLAMP_TOP)
 
 
 def read_stretch_test(
-    path: Path, *, gauge: Gauge = Gauge.CLAMPS, file_format: str | None = None
+    path: Path, *, marks: Marks = Marks.CLAMPS, file_format: str | None = None
 ) -> StretchTest:
     """A test from a file; the format is taken from the content unless it is given.
 
     Parameters
     ----------
     path : HDF5, CSV or workbook.
-    gauge : for HDF5, which points give the strain along the pull.
+    marks : for HDF5, which points give the strain along the pull.
     file_format : ``"h5"``, ``"csv"`` (any table) or None.
 
     Raises
@@ -97,16 +97,16 @@ def read_stretch_test(
         )
     if file_format == "csv" and actual == "h5":
         raise InputError(path.name, "is an HDF5 file, not a CSV.", "Use the format h5.")
-    return _read_hdf5(path, gauge) if actual == "h5" else _read_table(path)
+    return _read_hdf5(path, marks) if actual == "h5" else _read_table(path)
 
 
 # -- HDF5 ----------------------------------------------------------------------------------------
 
 
-def _read_hdf5(path: Path, gauge: Gauge) -> StretchTest:
+def _read_hdf5(path: Path, marks: Marks) -> StretchTest:
     try:
         with h5py.File(path, "r") as file:
-            return _test_from_hdf5(path.name, file, gauge)
+            return _test_from_hdf5(path.name, file, marks)
     except UnicodeDecodeError:
         raise _not_utf_8(path.name) from None
     except (OSError, RuntimeError, KeyError) as error:
@@ -126,7 +126,7 @@ def _not_utf_8(name: str) -> InputError:
     )
 
 
-def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
+def _test_from_hdf5(name: str, file: h5py.File, marks: Marks) -> StretchTest:
     if any(isinstance(key, bytes) for key in file):  # h5py's form of a name it cannot decode
         raise _not_utf_8(name)
     videos = sorted(
@@ -156,7 +156,7 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
     runs: list[StretchRun] = []
     first: _Tracked | None = None
     for _, key in videos:
-        tracked = _tracked(name, file, key, gauge, notes)
+        tracked = _tracked(name, file, key, marks, notes)
         if tracked is None:
             continue
         first = first or tracked
@@ -192,7 +192,7 @@ def _test_from_hdf5(name: str, file: h5py.File, gauge: Gauge) -> StretchTest:
 
 @dataclass(frozen=True, eq=False)
 class _Tracked:
-    """Lengths in pixels along the gauge, between the clamps and across, and the force in N."""
+    """Lengths in pixels between the marks, between the clamps and across, and the force in N."""
 
     along: Array
     clamps: Array
@@ -222,7 +222,7 @@ def _sound(runs: list[StretchRun], notes: list[str]) -> list[StretchRun]:
 
 
 def _tracked(
-    name: str, file: h5py.File, key: str, gauge: Gauge, notes: list[str]
+    name: str, file: h5py.File, key: str, marks: Marks, notes: list[str]
 ) -> _Tracked | None:
     """The frames that are tracked, or None."""
     force = _numbers(name, file, f"{key}/forces").ravel()
@@ -243,7 +243,7 @@ def _tracked(
             "The file is cut off or mixes two pulls; give forces and points of the same frames.",
         )
     force, points = force[:frames], points[:, :, :frames]
-    used = points[[_RIGHT, _LEFT, *gauge.points]]
+    used = points[[_RIGHT, _LEFT, *marks.points]]
     # A point that leaves the image sticks to its border.
     lost = ~np.all((used > 0) & (used < MAX_PIXEL), axis=(0, 1))
     unread = ~(np.abs(force) < MAX_FORCE_N)
@@ -259,7 +259,7 @@ def _tracked(
         notes.append(f"{key}: {int((~good).sum())} of {frames} frames are left out.")
     along, clamps, across = (
         np.hypot(*(points[first] - points[second]))[good]
-        for first, second in (gauge.points, Gauge.CLAMPS.points, (_RIGHT, _LEFT))
+        for first, second in (marks.points, Marks.CLAMPS.points, (_RIGHT, _LEFT))
     )
     if min(along[0], across[0]) <= 0:
         raise InputError(

@@ -128,7 +128,7 @@ def fit_tests(
         If ``cancelled`` returned True.
     """
     tests = [
-        read_stretch_test(path, gauge=reduction.gauge, file_format=file_format)
+        read_stretch_test(path, marks=reduction.marks, file_format=file_format)
         for path in (course, wale)
     ]
     widths = (width_course_mm, width_wale_mm)

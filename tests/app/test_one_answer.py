@@ -16,7 +16,7 @@ from knitcore import Direction, Fabric, StitchChart, curve, predict, strip_test
 from knitcore.answer.answer import Answer
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas
-from knitcore.design.targets import Limb, Quantity, Target, values_of
+from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.formats import report
 from knitcore.formats.chart_key import ChartStyle
 from knitcore.formats.drawing import Label, Page
@@ -176,7 +176,7 @@ def test_a_target_pressure_agrees_with_the_pressure_command(
         "--direction", str(direction), "--rest-mm", "200", "--worn-mm", "250",
     )  # fmt: skip
     middle = float(np.sqrt(np.prod(told["mmhg"])))
-    target = Target(Quantity(f"pressure_{direction}_mmhg"), middle, limb=Limb(200.0, 250.0))
+    target = Target(Quantity(f"pressure_{direction}_mmhg"), middle, limb=WornTube(200.0, 250.0))
     value, _, _ = values_of(atlas, target)
     assert value[0] == pytest.approx(middle, rel=0.01)
 

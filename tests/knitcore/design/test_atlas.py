@@ -16,7 +16,7 @@ from knitcore.batch import run_batch
 from knitcore.design.atlas import CURVES, FORMAT, VALUES, Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import AT_ONCE, build_atlas, parts_folder
 from knitcore.design.cost import CostLimits, knitting_cost
-from knitcore.design.find import Limb, Quantity, Target, find_fabric
+from knitcore.design.find import Quantity, Target, WornTube, find_fabric
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.law.uniaxial import strain_at_stress
@@ -118,7 +118,7 @@ def test_a_wanted_pressure_is_that_of_the_pressure_model(
     expected = limb_pressure(ACRYLIC.law(fabric), direction, 200.0, worn_mm).mmhg
     quantity = Quantity.PRESSURE_COURSE if direction is Direction.COURSE else Quantity.PRESSURE_WALE
     middle = float(np.sqrt(expected.low * expected.high))
-    target = Target(quantity, middle, 0.05, limb=Limb(200.0, worn_mm))
+    target = Target(quantity, middle, 0.05, limb=WornTube(200.0, worn_mm))
     found = find_fabric([ATLAS], [target], count=len(ATLAS))
     key = ATLAS.keys[ATLAS.index_of(StitchChart.of_fabric(fabric, rows=2, columns=2)) or 0]
     own = next(c for c in found.candidates if c.repeat == key)
@@ -154,7 +154,7 @@ def test_one_quantity_at_two_loads_is_two_targets() -> None:
 
 
 def test_a_limb_beyond_the_lock_up_gives_nan() -> None:
-    target = Target(Quantity.PRESSURE_WALE, 20.0, limb=Limb(100.0, 900.0))
+    target = Target(Quantity.PRESSURE_WALE, 20.0, limb=WornTube(100.0, 900.0))
     found = find_fabric([ATLAS], [target])
     assert not found.reached
     assert "no repeat stretches so far" in found.message
@@ -308,7 +308,7 @@ def test_other_yarns_are_searched_too() -> None:
         (lambda: Target(Quantity.ANISOTROPY, 1.0, weight=float("inf")), "targets.anisotropy"),
         (lambda: Target(Quantity.PRESSURE_WALE, 20.0), "targets.pressure_wale_mmhg"),
         (lambda: Target(Quantity.STRETCH_WALE, 0.1, load_n_per_mm=9), "targets.stretch_wale"),
-        (lambda: Limb(200.0, 200.0), "limb"),
+        (lambda: WornTube(200.0, 200.0), "limb"),
     ],
 )
 def test_unusable_targets_are_refused(make: object, field: str) -> None:

@@ -3,7 +3,7 @@
 from knitcore.chart import StitchChart
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.find import find_fabric
-from knitcore.design.targets import Limb, Quantity, Target
+from knitcore.design.targets import Quantity, Target, WornTube
 from knitcore.materials import material
 
 REPEATS = [StitchChart.parse(text) for text in ("K", "K\nP", "KP", "KP\nPK", "KKP\nPPK")]
@@ -12,7 +12,7 @@ REPEATS = [StitchChart.parse(text) for text in ("K", "K\nP", "KP", "KP\nPK", "KK
 def test_a_fabric_whose_figures_contradict_each_other_never_ranks_first() -> None:
     """Acrylic garter course-wise, as published, is the stiffest: its width was misread."""
     atlas = build_atlas(material("acrylic:published"), REPEATS)
-    limb = Limb(200.0, 250.0)
+    limb = WornTube(200.0, 250.0)
     pressures = {}
     for quantity in (Quantity.PRESSURE_COURSE, Quantity.PRESSURE_WALE):
         target = Target(quantity, 1000.0, limb=limb)
