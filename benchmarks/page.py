@@ -1,4 +1,4 @@
-"""The page as users experience it: first paint, strokes, and the size of its scripts.
+"""The page as users experience it: first paint, first cloth, strokes, and the size of its scripts.
 
 Headless Chromium without a GPU, against its own service on this machine. The time from an event to
 its paint is the browser's (Event Timing, in steps of 8 ms, shorter ones count as 8). Strokes are
@@ -30,6 +30,7 @@ RUNS = int(os.environ.get("RUNS", "5"))
 STROKES = int(os.environ.get("STROKES", "20"))
 FORCED = "--use-angle=swiftshader"
 MIN_MS = 8.0
+FIRST_MS = 10_000
 
 WATCH = """() => {
     window.measured = [];
@@ -38,9 +39,25 @@ WATCH = """() => {
             window.measured.push([name, startTime, duration]);
     }).observe({ type: "event", durationThreshold: 16 });
 }"""
+FROM_THE_START = """if (parent === window) {
+    window.cloth = {};
+    window.blocked = [];
+    const note = (what) =>
+        requestAnimationFrame(() => setTimeout(() => (cloth[what] ??= performance.now())));
+    const loaded = ({ target }) => target.className === "fabric-still" && note("still");
+    document.addEventListener("load", loaded, true);
+    const shown = () => document.querySelector(".fabric[data-live]") && note("live");
+    const all = { subtree: true, childList: true, attributeFilter: ["data-live"] };
+    new MutationObserver(shown).observe(document, all);
+    new PerformanceObserver((list) => {
+        for (const { duration } of list.getEntries()) blocked.push(duration);
+    }).observe({ type: "longtask", buffered: true });
+}"""
 PAINTED = """() => ({
     first: performance.getEntriesByName("first-contentful-paint")[0]?.startTime,
     studio: performance.getEntriesByName("studio")[0]?.startTime,
+    still: cloth.still ?? cloth.live,
+    live: cloth.live,
 })"""
 
 
@@ -74,15 +91,48 @@ def weight() -> None:
 def first_paint(browser: Browser, url: str) -> None:
     """Cold visits: nothing is cached, the example is painted and stretched."""
     visits = []
-    for _ in range(RUNS):
-        context = browser.new_context(viewport={"width": 1440, "height": 900})
-        page = context.new_page()
-        page.goto(url)
-        page.wait_for_function(f"() => Object.values(({PAINTED})()).every(Number.isFinite)")
+    for _ in range(RUNS + 1):
+        page = new_visit(browser, url)
+        page.wait_for_function(
+            f"() => Object.values(({PAINTED})()).every(Number.isFinite)", timeout=60_000
+        )
         visits.append(page.evaluate(PAINTED))
-        context.close()
+        page.context.close()
+    visits = visits[1:]  # the first one finds a service that has computed nothing yet
     report("first paint of a cold visit, median", median(visits, "first"), "ms", 1500)
     report("chart ready to paint on, median", median(visits, "studio"), "ms", 1500)
+    for visit in visits:
+        visit |= {what: visit[what] - visit["first"] for what in ("still", "live")}
+    report("first cloth after first paint, median", median(visits, "still"), "ms", 1500)
+    report("… that can be turned", median(visits, "live"), "ms", 3000)
+
+
+def new_visit(browser: Browser, url: str) -> Page:
+    """The page in a browser that was never here before."""
+    page = browser.new_context(viewport={"width": 1440, "height": 900}).new_page()
+    page.add_init_script(FROM_THE_START)
+    page.goto(url)
+    return page
+
+
+def first_strokes(browser: Browser, url: str) -> None:
+    """Strokes from the moment that the chart is ready until ten seconds after the visit began."""
+    painted: list[float] = []
+    blocked: list[float] = []
+    for _ in range(RUNS):
+        page = new_visit(browser, url)
+        page.wait_for_function("() => performance.getEntriesByName('studio').length")
+        page.evaluate(WATCH)
+        rng = random.Random(3)
+        while page.evaluate("performance.now()") < FIRST_MS:
+            stroke(page, rng)
+        events = page.evaluate("window.measured")
+        painted += [max(ms, MIN_MS) for name, _, ms in events if name.startswith("pointer")]
+        blocked += page.evaluate("window.blocked")
+        page.context.close()
+    report("events of strokes in the first ten seconds, p95", p95(painted or [MIN_MS]), "ms", 100)
+    report("… the longest", max(painted, default=MIN_MS), "ms", 100)
+    report("… longest task of the page's thread", max(blocked, default=0.0), "ms", 100)
 
 
 def median(visits: list[dict[str, float]], what: str) -> float:
@@ -108,22 +158,27 @@ def open_chart(browser: Browser, url: str, side: int) -> Page:
     return page
 
 
+def stroke(page: Page, rng: random.Random) -> None:
+    """A short one somewhere in the middle of the chart, and a moment to see it."""
+    box = page.locator("#chart").bounding_box()
+    assert box
+    x = box["x"] + box["width"] * rng.uniform(0.3, 0.7)
+    y = box["y"] + box["height"] * rng.uniform(0.3, 0.7)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 30, y + 5, steps=4)
+    page.mouse.up()
+    page.wait_for_timeout(200)
+
+
 def strokes(page: Page) -> tuple[list[float], list[float]]:
     """From each event of a stroke to its paint: the whole strokes' worst, and the last event's."""
     page.evaluate(WATCH)
-    box = page.locator("#chart").bounding_box()
-    assert box
     rng = random.Random(1)
     worst, last = [], []
     for _ in range(STROKES):
-        x = box["x"] + box["width"] * rng.uniform(0.3, 0.7)
-        y = box["y"] + box["height"] * rng.uniform(0.3, 0.7)
         start = page.evaluate("performance.now()")
-        page.mouse.move(x, y)
-        page.mouse.down()
-        page.mouse.move(x + 30, y + 5, steps=4)
-        page.mouse.up()
-        page.wait_for_timeout(200)
+        stroke(page, rng)
         events = page.evaluate("start => window.measured.filter(([, at]) => at >= start)", start)
         painted = [ms for name, _, ms in events if name in ("pointerdown", "pointermove")]
         ended = [ms for name, _, ms in events if name == "pointerup"]
@@ -161,6 +216,7 @@ def main() -> None:
             own = [flag for flag in FLAGS if flag != FORCED]
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=own)
             first_paint(browser, service.url)
+            first_strokes(browser, service.url)
             painting(browser, service.url)
             browser.close()
             print(f"forced to draw whole frames ({FORCED})")
