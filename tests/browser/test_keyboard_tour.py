@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
+from knitcore import Fabric, material
 from tests.browser.conftest import CHART, wait_for_numbers
 from tests.browser.page import kept_chart, number
 
@@ -23,7 +24,10 @@ def tab_to(page: Page, selector: str) -> None:
 def command(page: Page, words: str) -> None:
     """Choose a command by its name."""
     page.keyboard.press("Control+k")
+    expect(page.locator("#command-search")).to_be_focused()
     page.keyboard.type(words)
+    first = page.locator("#palette-dialog [role=option]").first
+    expect(first).to_contain_text(words, ignore_case=True)
     page.keyboard.press("Enter")
     expect(page.locator("#palette-dialog")).to_be_hidden()
 
@@ -33,6 +37,7 @@ def test_ten_tasks_are_done_with_keys_alone(flat_studio: Page) -> None:
     page, keys = flat_studio, flat_studio.keyboard
 
     # 1 paint a stitch, 2 undo and redo it
+    expect(page.locator("#ink-garter")).to_be_visible()
     tab_to(page, "#chart")
     keys.press("ArrowRight")
     keys.press("Enter")
@@ -49,7 +54,8 @@ def test_ten_tasks_are_done_with_keys_alone(flat_studio: Page) -> None:
     keys.press("Enter")
     assert len(set(kept_chart(page).split("\n"))) == 2
     wait_for_numbers(page)
-    assert number(page, "#modulus-course") == pytest.approx(0.135, rel=0.01)
+    garter = material("acrylic").law(Fabric.GARTER)
+    assert number(page, "#modulus-course") == pytest.approx(garter.modulus_course, rel=0.01)
 
     # 5 another yarn, 6 another colouring
     command(page, "Pearl cotton")

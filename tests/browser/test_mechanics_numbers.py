@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials import MeasuredCurve, material, save_material_file
 from tests.browser.conftest import wait_for_numbers
 from tests.browser.page import Chart, kept_chart
@@ -117,10 +118,11 @@ def test_measured_curves_of_an_own_material_are_drawn_as_points(
 
 @pytest.mark.slow
 def test_a_target_for_a_region_fills_only_that_region(visitor: Page, service: str) -> None:
+    garter = material("acrylic").law(Fabric.GARTER)
     page = open_design(visitor, service, regions=[LEFT])
     page.keyboard.press("Shift+W")
     page.click("#part-regions")
-    fill_first_part(page, course="0.135", wale="0.079")  # garter's
+    fill_first_part(page, garter)
     lines = kept_chart(page).split("\n")
     assert [line[6:] for line in lines] == [line[6:] for line in RIBBED.split("\n")]
     inner = {line[:5] for line in lines}
@@ -128,6 +130,7 @@ def test_a_target_for_a_region_fills_only_that_region(visitor: Page, service: st
 
 
 def test_a_target_for_a_selection_fills_only_the_selection(visitor: Page, service: str) -> None:
+    garter = material("acrylic").law(Fabric.GARTER)
     page = open_design(visitor, service, outline=WAISTED)
     chart = Chart(page)
     page.click("#tool-select")
@@ -138,7 +141,7 @@ def test_a_target_for_a_selection_fills_only_the_selection(visitor: Page, servic
     page.keyboard.press("Shift+W")
     page.click("#part-add")
     expect(page.locator(".part-count")).to_have_text("48 sts")
-    fill_first_part(page, course="0.135", wale="0.079")
+    fill_first_part(page, garter)
     before, after = RIBBED.split("\n"), kept_chart(page).split("\n")
     outside = [line[:2] + line[8:] for line in after]
     assert outside == [line[:2] + line[8:] for line in before]
@@ -153,10 +156,10 @@ def test_a_target_for_a_shaped_chart_covers_only_its_stitches(visitor: Page, ser
     expect(page.locator(".part-count")).to_have_text("104 sts")
 
 
-def fill_first_part(page: Page, *, course: str, wale: str) -> None:
-    """Give a target to the only part, fill it and keep that."""
-    page.fill("#part-0-course", course)
-    page.fill("#part-0-wale", wale)
+def fill_first_part(page: Page, law: ConstitutiveLaw) -> None:
+    """Give the moduli of a law to the only part, fill it and keep that."""
+    page.fill("#part-0-course", f"{law.modulus_course:.4f}")
+    page.fill("#part-0-wale", f"{law.modulus_wale:.4f}")
     page.click("#fill-run")
     expect(page.locator("#fill-answer")).to_contain_text("On the chart now")
     page.click("#fill-keep")
