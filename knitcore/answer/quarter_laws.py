@@ -22,7 +22,9 @@ one force, and all lines are strained alike.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
@@ -62,14 +64,15 @@ class QuarterLaws:
         has the law of another one.
     patch : (rows, columns) number of each stitch's patch.
     scale : (rows, columns, 2) width and height of the stitches over those of their phases.
-    log_sd : (2, stresses) standard deviation of the logarithm of stress course-wise and wale-wise,
-        at :data:`SPREAD_AT`: the model's own error, not that of the pure fabrics' laws.
+    log_sd : gives the standard deviation of the logarithm of stress course-wise and wale-wise,
+        (2, stresses) at :data:`SPREAD_AT`: the model's own error, not that of the pure fabrics'
+        laws.
     """
 
     laws: tuple[ConstitutiveLaw, ...]
     patch: NDArray[np.intp]
     scale: Array
-    log_sd: Array
+    log_sd: Callable[[], Array]
 
 
 def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) -> QuarterLaws:
@@ -88,7 +91,6 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
         int(patches.columns[-1]),
     )  # of the repeat, if it has several patches
     number = np.zeros(extent, dtype=np.intp)
-    spread = np.zeros((2, len(SPREAD_AT)))
     for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
         for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
             here = slice(below, above), slice(left, right)
@@ -98,14 +100,28 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
                 laws += _own_laws(cells, material)
                 continue
             laws += _fitted_laws(cells, answer, material, even)
-            share = (above - below) * (right - left) / number.size
-            for direction in Direction:
-                spread[direction.axis] += share * _own_log_sd(cells, answer, material, direction)
     whole = np.ix_(
         *(np.arange(n) % period for n, period in zip(chart.purl.shape, extent, strict=True))
     )
     scale = _scale(chart, phases, patches, material)
-    return QuarterLaws(tuple(laws), number[whole], scale, spread)
+    own_error = partial(_stress_log_sd, chart, material)
+    return QuarterLaws(tuple(laws), number[whole], scale, own_error)
+
+
+def _stress_log_sd(chart: StitchChart, material: Material) -> Array:
+    """The mean of the patches; of those that grow with the chart, so that it changes as little."""
+    spread = np.zeros((2, len(SPREAD_AT)))
+    if pure_fabric(chart) is not None:
+        return spread
+    patches, phases = patches_of(chart, material), quarter_phases(chart)
+    rows, columns = patches.rows, patches.columns
+    for (below, above), line in zip(pairwise(rows), patches.answers, strict=True):
+        for (left, right), answer in zip(pairwise(columns), line, strict=True):
+            cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
+            share = (above - below) * (right - left) / (rows[-1] * columns[-1])
+            for direction in Direction:
+                spread[direction.axis] += share * _own_log_sd(cells, answer, material, direction)
+    return spread
 
 
 def _scale(
@@ -137,7 +153,7 @@ def flat_laws(chart: StitchChart, material: Material) -> QuarterLaws:
     """
     laws = tuple(_own_laws(quarter_phases(chart), material))
     shape = chart.purl.shape
-    none = np.zeros((2, len(SPREAD_AT)))
+    none = partial(np.zeros, (2, len(SPREAD_AT)))
     return QuarterLaws(laws, np.zeros(shape, dtype=np.intp), np.ones((*shape, 2)), none)
 
 
@@ -174,29 +190,40 @@ def _own_log_sd(
 def _fitted_laws(
     cells: NDArray[np.uint8], answer: Answer, material: Material, even: bool
 ) -> list[ConstitutiveLaw]:
+    """Laws of the phases with which a patch does what its answer says.
+
+    A phase keeps its couplings kappa as far as it is as stiff as in its pure fabric: cloth that
+    unfolds first has little strain in its yarn. So a patch that is all but pure has nearly the
+    laws of its pure fabric.
+    """
     records = _records(cells, material)
     shear = np.array([r.law.shear_modulus for r in records])
     growth = np.array([r.law.shear_stiffening for r in records])
-    fits = []
+    constants = np.zeros((2, len(records), 3))  # Young's modulus, alpha, beta
     for direction in Direction:
         strains = answer.along(direction).strain(STRESSES)
         if even:
-            fits.append([_fitted(strains)] * len(records))
+            constants[direction.axis] = _fitted(strains)
             continue
         parts = 1 / _flat_strains(cells, records, direction)
-        fits.append(
-            [
-                _fitted(strains * (1 + parts * law_strains(r.law, direction, STRESSES)) / 2)
-                for r in records
-            ]
-        )
-    most_yx, most_xy = (max(answer.along(d).poisson, 0.0) for d in Direction)
+        constants[direction.axis] = [
+            _fitted(strains * (1 + parts * law_strains(r.law, direction, STRESSES)) / 2)
+            for r in records
+        ]
+    alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
+    own = np.array([[_constants(r.law, d) for r in records] for d in Direction])
+    kept = np.minimum((constants / alone)[..., 0].min(axis=0), 1.0)[:, None]
+    kappa = kept * [(r.law.kappa_xx, r.law.kappa_yy) for r in records]
+    regained = kept * np.log(np.divide(own, alone, out=np.ones_like(own), where=alone * own > 0))
     if even:
-        shear[:] = np.exp(_shares(cells) @ np.log(shear))
-        growth[:] = _shares(cells) @ growth
+        shares = _shares(cells)
+        shear[:], growth[:] = np.exp(shares @ np.log(shear)), shares @ growth
+        kappa[:], regained[:] = shares @ kappa, (shares @ regained)[:, None]
+    constants *= np.exp(regained)
+    most_yx, most_xy = (max(answer.along(d).poisson, 0.0) for d in Direction)
     found = []
-    for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), shear_modulus, grown in zip(
-        *fits, shear.tolist(), growth.tolist(), strict=True
+    for (modulus_x, alpha_x, beta_x), (modulus_y, alpha_y, beta_y), coupled, modulus, grown in zip(
+        *(values.tolist() for values in (*constants, kappa, shear, growth)), strict=True
     ):
         # One coupling for both, as an energy needs; neither contraction is more than the answer's.
         nu_xy = min(most_xy, most_yx * modulus_y / modulus_x)
@@ -212,11 +239,26 @@ def _fitted_laws(
                 alpha_yy=alpha_y,
                 beta_xx=beta_x,
                 beta_yy=beta_y,
-                shear_modulus=shear_modulus,
+                shear_modulus=modulus,
+                kappa_xx=coupled[0],
+                kappa_yy=coupled[1],
                 shear_stiffening=grown,
             )
         )
     return found
+
+
+def _constants(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
+    """Young's modulus (N/mm), alpha and beta (N/mm) of a law."""
+    if direction is Direction.COURSE:
+        return law.modulus_course, law.alpha_xx, law.beta_xx
+    return law.modulus_wale, law.alpha_yy, law.beta_yy
+
+
+@lru_cache(maxsize=64)
+def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, float, float]:
+    """The constants that a law has by :func:`_fitted`, which knows no kappa."""
+    return _fitted(law_strains(law, direction, STRESSES))
 
 
 def _flat_strains(

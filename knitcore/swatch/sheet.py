@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,9 +72,7 @@ class Sheet:
     grid : the mesh.
     laws : laws by code (``grid.law_of_cell``); codes that do not occur may repeat any law.
     model : the energy model and its assumptions.
-    stress_log_sd : (2, stresses) model error of the laws of a chart's cells, beyond the uncertainty
-        of their material, as in :class:`knitcore.answer.quarter_laws.QuarterLaws`; None where there
-        is none.
+    log_sd : gives :attr:`stress_log_sd`, as in :class:`knitcore.answer.quarter_laws.QuarterLaws`.
 
     Examples
     --------
@@ -88,13 +87,13 @@ class Sheet:
         grid: QuarterGrid,
         laws: Sequence[ConstitutiveLaw],
         model: SheetModel,
-        stress_log_sd: Array | None = None,
+        log_sd: Callable[[], Array] | None = None,
     ) -> None:
         if int(grid.law_of_cell.max()) >= len(laws):
             raise InputError("laws", "a cell has no law.", "Give a law for every code of the grid.")
         self.grid = grid
         self.model = model
-        self.stress_log_sd = stress_log_sd
+        self._log_sd = log_sd
         self.laws = tuple(model.prepare(law) for law in laws)
         self.parameters = model.parameters(laws)
         self._cells = Cells(
@@ -109,11 +108,18 @@ class Sheet:
 
     def with_grid(self, grid: QuarterGrid) -> Sheet:
         """A sheet of the same laws and model on another grid."""
-        return Sheet(grid, self.laws, self.model, self.stress_log_sd)
+        return Sheet(grid, self.laws, self.model, self._log_sd)
 
     def with_model(self, model: SheetModel) -> Sheet:
         """The same grid and laws (symmetric already) under another model."""
-        return Sheet(self.grid, self.laws, model, self.stress_log_sd)
+        return Sheet(self.grid, self.laws, model, self._log_sd)
+
+    @cached_property
+    def stress_log_sd(self) -> Array | None:
+        """Model error of the laws of a chart's cells, (2, stresses), beyond the uncertainty of
+        their material; None where there is none.
+        """
+        return None if self._log_sd is None else self._log_sd()
 
     @property
     def at_rest(self) -> Sheet:

@@ -275,3 +275,55 @@ def test_a_sheet_that_wrinkles_has_none() -> None:
     test = strip_test(HALVES, ACRYLIC, "wale", 0.1, steps=1, draw_in=True)
     with pytest.raises(InputError, match="wrinkles"):
         StripSpread(test, ACRYLIC)
+
+
+CLOTHS = ["K", "K/P", "KP", "KP/PK", "KKPP", "K/K/P/P", "KKKKPPPP", "KPKK/KKKP"]
+
+
+def interval_widths(chart: StitchChart, direction: str, strain: float, scale: float) -> np.ndarray:
+    """Logarithm of the force; of the widths of intervals of force, waist and utilisation."""
+    acrylic = material("acrylic")
+    size = chart_sheet(chart, acrylic).grid
+    width, length = scale * size.width_mm, scale * size.length_mm
+    test = strip_test(chart, acrylic, direction, strain, steps=2, width_mm=width, length_mm=length)
+    spread = StripSpread(test, acrylic).at(-1)
+    found = [test.stress_n_per_mm[-1], spread.waist_sd, np.nanmean(spread.utilisation_sd)]
+    return np.append(np.log(found), 2 * Z_SCORE * spread.force_log_sd)
+
+
+@given(
+    cloth=st.sampled_from(CLOTHS),
+    side=st.integers(10, 13),
+    direction=st.sampled_from(list(Direction)),
+    strain=st.floats(0.03, 0.2),
+    change=st.sampled_from(["strain", "gauge", "stitch", "row"]),
+)
+@settings(max_examples=6, deadline=None)
+def test_intervals_change_as_little_as_what_they_are_about(
+    cloth: str, side: int, direction: Direction, strain: float, change: str
+) -> None:
+    """3 % more strain or gauge, one stitch or one row more."""
+    chart = StitchChart.parse(cloth).resized(side, side)
+    purl = chart.purl.copy()
+    purl[side // 2, side // 2] ^= change == "stitch"
+    one = interval_widths(chart, direction, strain, 1.0)
+    other = interval_widths(
+        StitchChart.parse(cloth).resized(side + 1, side) if change == "row" else StitchChart(purl),
+        direction,
+        strain * (1.03 if change == "strain" else 1.0),
+        1.03 if change == "gauge" else 1.0,
+    )
+    force, *widths = np.abs(other - one)
+    most = {"strain": 0.1, "gauge": 0.02, "stitch": 31 / side**2, "row": 0.15}[change]
+    assert max(widths) < most + force
+
+
+@pytest.mark.parametrize("rows", [16, 32])
+def test_a_patch_more_does_not_change_the_interval_of_the_force(rows: int) -> None:
+    """A ribbed hem below seed stitch, at the sizes from which a chart has one patch more."""
+    hem, body = (StitchChart.parse(text).resized(rows // 3, rows) for text in ("KKPP", "KP/PK"))
+    widths = []
+    for more in (0, 1):
+        above = body.resized(rows + more - rows // 3, rows).purl
+        widths.append(interval_widths(StitchChart([*hem.purl, *above]), "wale", 0.1, 1.0)[-1])
+    assert abs(widths[1] - widths[0]) < 0.25
