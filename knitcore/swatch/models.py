@@ -13,7 +13,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from operator import attrgetter
 
@@ -23,24 +23,7 @@ from numpy.typing import NDArray
 from knitcore.errors import InputError
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation
 
-LAW = np.dtype(
-    [
-        (name, float)
-        for name in (
-            "stiffness_xxxx",
-            "stiffness_yyyy",
-            "stiffness_xxyy",
-            "shear_modulus",
-            "alpha_xx",
-            "alpha_yy",
-            "beta_xx",
-            "beta_yy",
-            "kappa_xx",
-            "kappa_yy",
-            "shear_stiffening",
-        )
-    ]
-)
+LAW = np.dtype([(f.name, float) for f in fields(ConstitutiveLaw) if f.name != "stiffness_yyxx"])
 """A symmetric law as the kernel reads it; attributes of ConstitutiveLaw by name."""
 
 
