@@ -157,7 +157,7 @@ def check_run(run: StretchRun, *, first_row: int = 1) -> None:
         if np.ptp(values) == 0:
             raise InputError(
                 f"{run.name}, {name}",
-                f"is {values[0]:.4g} in every row.",
+                "is the same in every row.",
                 "Give the readings of a pull from rest to the largest force.",
             )
     along, across = run.strain_along, run.strain_across

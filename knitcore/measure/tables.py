@@ -36,13 +36,25 @@ def read_table(path: Path, header: str) -> pd.DataFrame:
         texts = [[str(cell) for cell in (*row, *[""] * width)][:width] for row in rows]
         return pd.DataFrame(texts, columns=[str(name) for name in names], dtype=str)
     try:
-        return pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
+        table = pd.read_csv(path, skipinitialspace=True, dtype=str, engine="c")
+    except UnicodeDecodeError:
+        raise InputError(
+            path.name, "is not text in UTF-8.", "Save it as CSV in UTF-8, or as XLSX."
+        ) from None
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         raise InputError(
             path.name,
             f"cannot be read as CSV ({str(error).strip()}).",
             f"Give a header line {header} and comma-separated numbers.",
         ) from None
+    for separator, name in ((";", "semicolons"), ("\t", "tabs")):
+        if separator in str(table.columns[0]):
+            raise InputError(
+                path.name,
+                f"has {name} between its columns.",
+                "Save it with commas between columns and decimal points, or as XLSX.",
+            )
+    return table
 
 
 def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2) -> Array:

@@ -315,7 +315,7 @@ def test_readings_that_never_change_are_refused(tmp_path: Path) -> None:
     header = "strain_along,strain_across,force_n,width_mm"
     still = tmp_path / "course.csv"
     still.write_text("\n".join([header, *rows]))
-    with pytest.raises(InputError, match=r"strain_along.*0\.2 in every row"):
+    with pytest.raises(InputError, match=r"strain_along.*the same in every row"):
         fit_files(still, good)
 
 
@@ -356,6 +356,21 @@ def test_optional_lengths_of_a_csv_are_read_and_checked(tmp_path: Path, name: st
     written.write_text(written.read_text().replace(",60", ",6", 1))
     with pytest.raises(InputError, match=f"column {name}"):
         read_stretch_test(written)
+
+
+@pytest.mark.parametrize(
+    ("content", "problem"),
+    [
+        (b"strain_along;strain_across;force_n;width_mm\n0,1;0;1;70\n", "semicolons"),
+        (b"strain_along\tforce_n\n0.1\t1\n", "tabs"),
+        ("strain_along,größe\n0.1,1\n".encode("latin-1"), "not text in UTF-8"),
+    ],
+)
+def test_other_kinds_of_csv_are_named(tmp_path: Path, content: bytes, problem: str) -> None:
+    path = tmp_path / "x.csv"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=problem):
+        read_stretch_test(path)
 
 
 def test_points_outside_the_sample_are_refused(tmp_path: Path) -> None:
