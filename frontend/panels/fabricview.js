@@ -52,7 +52,7 @@ export function fabricview(host, studio, view) {
   frame.setAttribute("sandbox", "allow-scripts");
   const status = h("div", { class: "fabric-status", role: "status" });
   const caption = h("div", { class: "fabric-caption" });
-  const still = new Still();
+  const still = new Still(frame);
   const drawing = { slow: false, held: false };
   /** @param {{pass: string} | {hold: boolean}} message */
   const tellFrame = (message) => frame.contentWindow?.postMessage(message, "*");

@@ -13,6 +13,11 @@ const WIDEST = 1600;
 const HIGHEST = 1200;
 
 export class Still {
+  /** @param {HTMLElement} frame of the live view, in whose place it stands */
+  constructor(frame) {
+    this.frame = frame;
+  }
+
   root = h("img", { class: "fabric-still", alt: "", hidden: true });
   /** What was asked for last. */
   #asked = "";
@@ -53,7 +58,7 @@ export class Still {
 
   /** @param {ViewRequest} wish */
   async #drawn(wish) {
-    const { clientWidth, clientHeight } = /** @type {HTMLElement} */ (this.root.parentElement);
+    const { clientWidth, clientHeight } = this.frame;
     const width = Math.max(16, Math.min(WIDEST, clientWidth));
     const height = Math.max(16, Math.min(HIGHEST, clientHeight));
     const answer = await fetched(`/views/still?width=${width}&height=${height}`, { method: "POST", body: wish });
