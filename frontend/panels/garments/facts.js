@@ -52,7 +52,7 @@ function regions({ regions: all }, unit) {
       h(
         "tr",
         {},
-        ...["Region", "Stitches", "At rest", "Yarn", "Gives 1/Y, mm/N"].map((words) =>
+        ...["Region", "Stitches", "At rest", "Yarn", "Extensibility, mm/N"].map((words) =>
           h("th", { scope: "col" }, words),
         ),
       ),
