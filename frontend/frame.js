@@ -21,7 +21,7 @@
   const TURNING = 0.5;
   /** How long something new takes to be drawn. */
   const NEWS_MS = 1500;
-  /** Side of the small picture that tells whether something is drawn. */
+  /** Side of the small picture that shows whether something is drawn. */
   const SAMPLE = 24;
   /** Drawn without a GPU: smoothing edges would take three times as long as all the rest. */
   const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;

@@ -88,7 +88,7 @@ class Extension:
                 raise self.error(f"it offers a {type(one).__name__}, not a {kind.__name__}")
             if not IDENTIFIER.fullmatch(one.identifier):
                 raise self.error(
-                    f"{one.identifier!r} is no identifier (lower-case letters, digits, hyphens)"
+                    f"{one.identifier!r} is not an identifier (lower-case letters, digits, hyphens)"
                 )
         return found
 

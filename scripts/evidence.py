@@ -91,10 +91,10 @@ def stretch(folder: Path) -> list[str]:
     figure(pulls)
     lines += [
         f"- every pull predicted from the others: {Summary.of([p.other_sample for p in pulls])};",
-        "  with the part of the interval that pulls of one sample do not share (without the",
-        f"  reading of its width): {Summary.of([p.same_sample for p in pulls])}.",
-        "- every fabric from its published law and the other fabrics' correction, as cotton's four",
-        f"  are, its own raw tests unseen: {carried(folder)}.",
+        "  with only that part of the interval in which pulls of one sample differ (without the",
+        f"  error of reading its width): {Summary.of([p.same_sample for p in pulls])}.",
+        "- every fabric without its own raw tests, from its published law and the correction",
+        f"  found on the other fabrics, as cotton's four are predicted: {carried(folder)}.",
         "",
         "![Pulls predicted from the others](figures/left-out-pulls.svg)",
         "",
@@ -204,9 +204,9 @@ def pressures(folder: Path) -> list[str]:
                 )
     lines += [
         "",
-        f"{inside} of {total} measured ranges meet the interval. The refitted laws rest on these",
-        "tests, so this shows the arithmetic and the narrowing, not a new sample. *Not shown*: a",
-        "pressure measured on a limb, friction, and relaxation with time.",
+        f"{inside} of {total} measured ranges overlap the interval. The refitted laws rest on",
+        "these tests, so this shows the arithmetic and the narrowing, not a new sample. *Not",
+        "shown*: a pressure measured on a limb, friction, and relaxation with time.",
         "",
     ]
     return lines
@@ -405,12 +405,12 @@ def shear(folder: Path) -> list[str]:
     lines = [
         "## Shear",
         "",
-        "Graded single jersey cut at 45° (Do, Tan, Ramos, Kiendl, Weeger, Composites Part B 2020,",
-        "CC BY 4.0). Laws from the same cloth pulled straight; the shear modulus, as a share of",
-        "the geometric mean of Young's moduli, is the one that has the measured force at 10 %.",
-        "On the bias both directions stretch at once. How each then stiffens the other (κ) cannot",
-        "be seen in straight pulls, so it is that of the library's acrylic stockinette, which was",
-        "found in its own tests. Simulated over measured force:",
+        "Graded single jersey cut at 45° (Do, Tan, Ramos, Kiendl, Weeger, Composites Part B",
+        "2020, CC BY 4.0). The laws are fitted to the same cloth pulled straight; the shear",
+        "modulus, given as a share of the geometric mean of Young's moduli, is matched to the",
+        "force at 10 %. On the bias both directions stretch at once. How each then stiffens the",
+        "other (κ) cannot be seen in straight pulls, so it is that of the library's acrylic",
+        "stockinette, which was found in its own tests. Simulated over measured force:",
         "",
         "| | Poisson's ratio, length assumed | shear modulus | " + strains(),
         "|---|---|---|" + "---|" * len(STRAINS),

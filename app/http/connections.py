@@ -140,7 +140,7 @@ class Connection(HttpToolsProtocol):
         super().handle_websocket_upgrade()
 
     def data_received(self, data: bytes) -> None:
-        """Read on, unless too much has come that is no body."""
+        """Read on, unless too much has come that is not a body."""
         self._beside_bytes += len(data)
         super().data_received(data)
         too_much = self._beside_bytes > MAX_BESIDE_BYTES + self._body_bytes

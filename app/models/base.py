@@ -32,7 +32,7 @@ class MissingError(InputError):
 
 
 class InvalidRequestError(Exception):
-    """A body that is no request of its address."""
+    """A body that is not a request of its address."""
 
     def __init__(self, errors: list[Any]) -> None:
         super().__init__(errors)

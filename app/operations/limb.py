@@ -105,8 +105,8 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     Raises
     ------
     InputError
-        If the places do not increase, some have a `rest_mm` and others none, the chart is no tube,
-        or the material lacks a fabric of the chart.
+        If the places do not increase, some have a `rest_mm` and others none, the chart is not
+        a tube, or the material lacks a fabric of the chart.
     """
     rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
     if not rests:

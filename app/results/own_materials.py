@@ -76,7 +76,7 @@ def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Mat
     Raises
     ------
     InputError
-        If the document is no material, or the user keeps too many.
+        If the document is not a material, or the user keeps too many.
     """
     document.to_material()
     mine = _kept_by(owner, data_dir)

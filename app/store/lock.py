@@ -24,7 +24,7 @@ def held(database: Database, process: str, at: str = "") -> Iterator[None]:
     ----------
     database : the data.
     process : name of this process.
-    at : its address, which a second one tells its user.
+    at : its address, which a second service shows its user.
 
     Raises
     ------

@@ -20,7 +20,7 @@ FABRIC_COLOURS: dict[Fabric, str] = {
 }
 
 UNDYED = "d8c6ab"
-"""Of wool, where a yarn's name tells no colour."""
+"""Of wool, where a yarn's name holds no colour."""
 MAKERS_COLOURS = {
     "white": "f1ede4",
     "black": "2b2a2c",
@@ -49,7 +49,7 @@ VIK = (
 
 
 def named_colour(name: str) -> tuple[int, int, int]:
-    """The colour that the name of a yarn tells; that of undyed wool if it tells none.
+    """The colour in the name of a yarn; that of undyed wool if there is none.
 
     Examples
     --------

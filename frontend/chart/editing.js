@@ -1,5 +1,5 @@
 /**
- * How the chart is looked at and what is in the hand: state of the editor that is no part of the
+ * How the chart is looked at and what is in the hand: state of the editor that is not part of the
  * design.
  *
  * @import {ChartDocument} from "../core/document.js"

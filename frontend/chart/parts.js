@@ -12,7 +12,7 @@
 import { edgePath, edgesOf } from "./edges.js";
 
 /**
- * Paint over cells that are no stitches.
+ * Paint over cells that are not stitches.
  *
  * @param {CanvasRenderingContext2D} context
  * @param {Viewport} view

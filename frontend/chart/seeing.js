@@ -1,5 +1,5 @@
 /**
- * How the fabric and its mechanics are looked at: state of the panels that is no part of the design.
+ * How the fabric and its mechanics are looked at: state of the panels that is not part of the design.
  *
  * @import {Cell} from "../core/raster.js"
  * @import {Direction} from "../types.js"

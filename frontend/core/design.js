@@ -1,6 +1,6 @@
 /**
  * The design document, version 2: the project file, what the service keeps, and what this page
- * holds. The same fields as in the Python library, checked here too, so that a broken file is told
+ * holds. The same fields as in the Python library, checked here too, so that a broken file is reported
  * in words and changes nothing.
  *
  * @import {DesignDocument, DesignLayout, DesignRegion, DesignRepeat} from "../types.js"

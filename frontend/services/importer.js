@@ -50,7 +50,7 @@ export async function importText(context, text, name = "Pasted.txt") {
  *
  * @param {ActionContext} context
  * @param {string} text
- * @returns {Promise<Problem | null | undefined>} undefined if it is no yarn file
+ * @returns {Promise<Problem | null | undefined>} undefined if it is not a yarn file
  */
 async function importYarn({ studio }, text) {
   if (!text.includes("knitcore-material")) return undefined;
@@ -61,7 +61,7 @@ async function importYarn({ studio }, text) {
     await adopt(studio, document);
     return null;
   } catch (error) {
-    if (error instanceof SyntaxError) return undefined; // told as a damaged project file
+    if (error instanceof SyntaxError) return undefined; // reported as a damaged project file
     if (!(error instanceof ApiError)) throw error;
     return { ...error.problem, title: "This yarn cannot be added" };
   }

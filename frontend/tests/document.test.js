@@ -68,7 +68,7 @@ test("a shape being dragged leaves only its last form", () => {
   assert.equal(chart.grid.text, "PKK");
 });
 
-test("a stroke that changes nothing, and one that is given up, are no steps", () => {
+test("a stroke that changes nothing, and one that is given up, are not steps", () => {
   const chart = new ChartDocument(Grid.fromText("PK"));
   stroke(chart, [[0, 1]]);
   chart.begin();

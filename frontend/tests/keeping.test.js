@@ -154,7 +154,7 @@ test("lists merge item by item", () => {
   );
 });
 
-test("the order of fields is no difference", () => {
+test("the order of fields makes no difference", () => {
   const [one, other] = [
     { name: "Mine", motif: "KP" },
     { motif: "KP", name: "Mine" },

@@ -5,7 +5,7 @@ import { problemBox } from "./dialog.js";
 
 /**
  * @template T
- * @param {HTMLElement} status where a problem is told; emptied first
+ * @param {HTMLElement} status where a problem is shown; emptied first
  * @param {() => Promise<T>} work
  * @param {() => unknown} [again] what "Try again" does, where more than the work depends on it
  * @returns {Promise<T | null>} null if it failed

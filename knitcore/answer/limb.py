@@ -98,7 +98,7 @@ def on_limb(
     along : the chart's answer for a pull around the limb.
     at_mm : increasing places along the limb at which girths are given, two at least.
     girths_mm, rests_mm : of the limb and of the unworn tube there.
-    places : at which the fit is told.
+    places : at which the fit is given.
 
     Raises
     ------

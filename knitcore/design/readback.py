@@ -2,7 +2,7 @@
 
 The local moduli of a stitch depend on how many of its course-wise and of its wale-wise segments
 are odd: 0, 1 or 2 of each, nine kinds. At the left edge both course-wise segments are alike, so
-the first count tells the first segment, and each further count tells the next one. So a map that
+the first count determines the first segment, and each further count the next one. So a map that
 is exactly some chart's has one chart, up to swapping all knits and purls.
 
 A map may also be only near a chart's own: the segments of every row are those of least deviation

@@ -7,7 +7,7 @@ length, give the measured force and the measured waist at the measured clamp-to-
 both tests at once (least squares, priors on kappa and the shear modulus, to which tests along
 course and wale are hardly sensitive). The waist is read where the test reads it, between two points
 inside the cloth or its edges, and up to a constant: at the start of a pull cloth that curls or has
-ridges becomes flat, and thereby wider, which is no strain. Where the distance of the clamps is
+ridges becomes flat, and thereby wider, which is not strain. Where the distance of the clamps is
 unknown the ends are left free to narrow, so that the strip strains evenly.
 :mod:`knitcore.swatch.strip_errors` estimates the errors of the result.
 """

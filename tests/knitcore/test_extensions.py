@@ -94,7 +94,7 @@ class TestExample:
     [
         ("bad_knitting:fails", "OSError: no licence"),
         ("bad_knitting:numbers", "offers a int, not a Pattern"),
-        ("bad_knitting:nameless", "'No Name' is no identifier"),
+        ("bad_knitting:nameless", "'No Name' is not an identifier"),
         ("bad_knitting:garter", "garter exists already"),
         ("bad_knitting:absent", "AttributeError"),
         ("no_such_module:patterns", "ModuleNotFoundError"),

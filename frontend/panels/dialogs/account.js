@@ -17,7 +17,7 @@ import { dialog } from "../../widgets/dialog.js";
 const count = (n) => n.toLocaleString("en");
 /** @param {number} unit @returns {(n: number) => string} */
 const decimal = (unit) => (n) => (n / unit).toFixed(1);
-/** Limits that are told, in words, and how their numbers are written. */
+/** Limits that are shown, in words, and how their numbers are written. */
 const LIMITS = /** @type {const} */ ([
   ["designs", "Designs, with those deleted in the last 30 days", count],
   ["kept_bytes", "Designs and their versions, MB", decimal(1e6)],

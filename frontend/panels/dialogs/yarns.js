@@ -27,7 +27,7 @@ export function create(studio) {
       if (!chosen) return;
       file.value = "";
       const document = read(await chosen.text());
-      if (!isYarnFile(document)) return say("This is no yarn", `${chosen.name} is not a material file of Knitcore.`);
+      if (!isYarnFile(document)) return say("This is not a yarn", `${chosen.name} is not a material file of Knitcore.`);
       if (await attempt(status, () => adopt(studio, document))) element.close();
     },
   });

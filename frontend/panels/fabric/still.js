@@ -39,7 +39,7 @@ export class Still {
         shown();
       }
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the live view asks for the same, and tells
+      if (!(error instanceof ApiError)) throw error; // the live view asks for the same, and reports it
     } finally {
       this.#busy = false;
     }

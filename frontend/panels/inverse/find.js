@@ -17,7 +17,7 @@ import { numberField } from "../../widgets/fields.js";
 
 /**
  * @typedef {{id: string, label: string, short: string, unit: string, start: number, percent?: boolean,
- *   needs?: "load" | "limb", difference?: boolean}} Quantity `difference`: its tolerance is no share
+ *   needs?: "load" | "limb", difference?: boolean}} Quantity `difference`: its tolerance is not a share
  */
 
 /** @type {Quantity[]} */
