@@ -441,7 +441,7 @@ def shear(folder: Path) -> list[str]:
         "one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the table is",
         "no proof of it; the yarn level's shear modulus of acrylic stockinette, the same within",
         "9 % to an angle of 0.1, agrees with it (4 %).",
-        "The level is the weak point. This jersey has a share of "
+        "Less certain is the modulus at rest. This jersey has a share of "
         f"{min(matched[name]):.2f} to {max(matched[name]):.2f}, the library's acrylic, from its",
         f"tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of three",
         "to five either way. *Not shown*: width (50 mm is",
