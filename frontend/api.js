@@ -199,6 +199,34 @@ export const api = {
   limb: (body, signal) => call("/limb", { method: "POST", body, signal }),
 
   /**
+   * @param {import("./types.js").HangRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").HangResult>}
+   */
+  hang: (body, signal) => call("/hang", { method: "POST", body, signal }),
+
+  /**
+   * @param {import("./types.js").OverhangRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").OverhangResult>}
+   */
+  overhang: (body, signal) => call("/overhang", { method: "POST", body, signal }),
+
+  /**
+   * @param {import("./types.js").DrapeRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").DrapeResult>}
+   */
+  drape: (body, signal) => call("/drape", { method: "POST", body, signal }),
+
+  /**
+   * @param {import("./types.js").BorderRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").BorderResult>}
+   */
+  border: (body, signal) => call("/border", { method: "POST", body, signal }),
+
+  /**
    * Run something in the background.
    *
    * @param {string} kind

@@ -32,6 +32,7 @@ const SETTINGS = {
   rectangles: false,
   tool: "pencil",
   size: 1,
+  weight: 0.5,
 };
 
 /** Girths of a limb that a tube of the chart sits on firmly, over its size at rest. */
@@ -70,6 +71,8 @@ export class Studio {
     this.overlay = new Signal(OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1]);
     this.rectangles = new Signal(settings.rectangles);
     this.seeing = new Seeing();
+    /** Of the yarn, g/m. */
+    this.weight = new Signal(settings.weight);
 
     this.prediction = new Signal(
       /** @type {PredictionState} */ ({ value: null, busy: false, problem: null, scope: "chart" }),
@@ -95,6 +98,7 @@ export class Studio {
     });
     this.rectangles.listen((rectangles) => saveSettings({ rectangles }));
     this.tool.listen(({ id }) => saveSettings({ tool: id }));
+    this.weight.listen((weight) => saveSettings({ weight }));
     this.size.listen((size) => saveSettings({ size }));
   }
 

@@ -6,7 +6,8 @@
  *
  * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
  *   has them, or one of its own
- * @typedef {"flat" | "lying" | "worn"} Pose of the fabric in 3D: held flat, as it lies, on the body
+ * @typedef {"flat" | "lying" | "worn" | "hung"} Pose of the fabric in 3D: held flat, as it lies, on the
+ *   body, hanging from its top edge
  * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
  *   note: string}} Posed a shape that was computed, and what to say of it
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
@@ -17,7 +18,7 @@ import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../core/store.js";
 
 /** Names of the poses. @type {Record<Pose, string>} */
-export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body" };
+export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body", hung: "Hanging" };
 
 const SETTINGS = {
   yarnColours: /** @type {YarnColours} */ ("chart"),

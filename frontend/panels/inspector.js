@@ -14,11 +14,12 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { curvePlot } from "../plots/curve.js";
 import { rigidityPlot } from "../plots/rigidity.js";
+import { drape } from "./drape.js";
 import { limb } from "./limb.js";
 import { problemText } from "../widgets/problem.js";
 
 const COUNT_MS = 80;
-const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb"]);
+const PLOTS = /** @type {const} */ (["rigidity", "curve", "limb", "drape"]);
 /** @typedef {(typeof PLOTS)[number]} Plot */
 
 /**
@@ -45,12 +46,14 @@ export function inspector(host, studio) {
   const rigidity = h("div", { class: "plot", id: "plot-rigidity" });
   const curve = h("div", { class: "plot", id: "plot-curve" });
   const worn = h("div", { class: "limb", id: "plot-limb" });
-  const plots = { rigidity, curve, limb: worn };
+  const weighed = h("div", { class: "limb", id: "plot-drape" });
+  const plots = { rigidity, curve, limb: worn, drape: weighed };
   /** @type {Record<Plot, () => void>} */
   const draw = {
     rigidity: rigidityPlot(rigidity, studio),
     curve: curvePlot(curve, studio),
     limb: limb(worn, studio),
+    drape: drape(weighed, studio),
   };
 
   /** @param {Plot} id @param {string} label */
@@ -74,6 +77,7 @@ export function inspector(host, studio) {
     rigidity: tab("rigidity", "Stiffness"),
     curve: tab("curve", "Stress–strain"),
     limb: tab("limb", "On a limb"),
+    drape: tab("drape", "Drape"),
   };
   const pulls = h("div", {
     class: "segmented small curve-pulls",

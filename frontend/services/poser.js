@@ -10,7 +10,7 @@
 import { ApiError, api, isAbort } from "../api.js";
 import { along } from "../core/directions.js";
 import { Latest } from "../core/latest.js";
-import { figure } from "../core/format.js";
+import { figure, percent } from "../core/format.js";
 import { outlineText } from "../core/snapshot.js";
 import { REST } from "../studio.js";
 
@@ -19,7 +19,7 @@ const DELAY_MS = 150;
 const PATIENCE_S = [0.15, 40];
 
 /** @type {Record<string, (studio: Studio, signal: AbortSignal) => AsyncGenerator<Posed>>} */
-const SHAPES = { lying, worn, pulled };
+const SHAPES = { lying, worn, pulled, hung };
 
 /** @param {Studio} studio */
 export function startPoser(studio) {
@@ -55,6 +55,7 @@ export function startPoser(studio) {
   };
   const again = () => wanted() !== "flat" && ask();
   pose.listen(ask);
+  studio.weight.listen(() => pose.value === "hung" && ask());
   limb.listen(() => pose.value === "worn" && ask());
   studio.step.listen((step) => {
     if (step !== REST) pose.value = "flat"; // it is pulled
@@ -80,6 +81,19 @@ async function* pulled(studio, signal) {
   const words = `Stretched ${along(direction)} by ${(100 * strain).toFixed(0)} %, free edges curl`;
   for await (const found of curled(studio, signal, { direction, strain })) {
     yield { ...found, pose: "pulled", words: found.converged ? words : `${words}: a preview` };
+  }
+}
+
+/** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
+async function* hung(studio, signal) {
+  const { rows, columns } = studio.document.grid;
+  const asked = { ...studio.request, linear_density_g_per_m: studio.weight.value };
+  for (const time_limit_s of PATIENCE_S) {
+    const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.hang({ ...asked, time_limit_s }, signal);
+    const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
+    const filled = studio.document.shaped ? ", its outline filled" : "";
+    const words = `Hanging${filled}: ${figure(weight_g, 2)} g, ${length}${converged ? "" : ": a preview"}`;
+    yield { pose: "hung", id, rows, columns, converged, words, note: notes[0] };
   }
 }
 

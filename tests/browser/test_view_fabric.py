@@ -139,6 +139,18 @@ def test_a_fabric_that_was_stretched_is_also_shown_as_it_lies(flat_studio: Page)
 
 
 @pytest.mark.slow
+def test_the_weight_of_the_yarn_hangs_the_fabric_and_bends_it_over_an_edge(
+    flat_studio: Page,
+) -> None:
+    flat_studio.click("#tab-drape")
+    flat_studio.fill("#drape-weight", "0.4")
+    flat_studio.click("#drape-overhang")
+    expect(flat_studio.locator("#drape-answer")).to_contain_text("Bending length")
+    flat_studio.click("#drape-hang")
+    expect(flat_studio.locator(".fabric-caption")).to_contain_text("stitches")
+
+
+@pytest.mark.slow
 def test_the_free_edges_of_a_stretched_fabric_curl(flat_studio: Page) -> None:
     flat_studio.click("#stretch-run")
     expect(flat_studio.locator("#stretch-slider")).to_be_enabled()
