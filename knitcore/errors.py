@@ -60,7 +60,7 @@ class UnravelledError(KnitcoreError):
 
 
 class CancelledError(KnitcoreError):
-    """The caller's cancellation callback asked the computation to stop."""
+    """The caller stopped the computation."""
 
 
 def check_cancelled(cancelled: Cancelled | None) -> None:

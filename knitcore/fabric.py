@@ -25,7 +25,7 @@ class Direction(Choice):
 
 
 class Fabric(Choice):
-    """A fabric whose connecting segments are all alike course-wise and all alike wale-wise.
+    """A pure fabric: connecting segments are all alike course-wise, and all alike wale-wise.
 
     The paper's Fig. 3c-j: stockinette has even segments both ways, garter odd ones wale-wise, rib
     (1x1) odd ones course-wise, seed odd ones both ways.

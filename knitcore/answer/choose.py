@@ -32,7 +32,7 @@ def choose(
     gauge: RelaxedSize | None = None,
     swept: SweptChart | None = None,
 ) -> Answer:
-    """Answer for a chart of a material.
+    """What a chart of a material does: relaxed size, moduli and curves, with intervals and source.
 
     Parameters
     ----------

@@ -74,7 +74,15 @@ def curve(
     *,
     gauge: RelaxedSize | None = None,
 ) -> ChartCurve:
-    """Strain of a chart at increasing stresses (N/mm).
+    """Stress and strain of a chart that is free to narrow, with 90 % intervals.
+
+    Parameters
+    ----------
+    chart : a repeat, or a swatch that may cut its last repeat off.
+    material : one yarn on one setting.
+    direction : of the pull.
+    stress_n_per_mm : increasing stresses at which strains are given, N/mm.
+    gauge : measured relaxed size of the chart's mean stitch, if known.
 
     Raises
     ------
