@@ -11,11 +11,14 @@ from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
 from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.swatch.measured_strip import MeasuredStrip
+from knitcore.swatch.strip_fit import flattening
 
 
 @pytest.mark.parametrize("fabric", Fabric)
 def test_the_library_reproduces_acrylics_raw_tests(study_data: Path, fabric: Fabric) -> None:
-    """Force within 10 % at .05, .1 and .2 N/mm, waist within .04, course and wale."""
+    """Force within 10 % at .05, .1 and .2 N/mm; waist within .05, and within .02 beside what the
+    cloth widens as it becomes flat at the start of the pull.
+    """
     law = material("acrylic").law(fabric)
     for direction, axis in zip(Direction, "XY", strict=True):
         path = study_data / "uniaxial" / f"outputData_Acrylic Yarn {fabric.title()} {axis}.h5"
@@ -27,4 +30,7 @@ def test_the_library_reproduces_acrylics_raw_tests(study_data: Path, fabric: Fab
         at = np.interp((0.05, 0.1, 0.2), stress, strip.strain)
         force, narrowing = strip.simulate(law, at)
         assert force / (0.05, 0.1, 0.2) == pytest.approx(np.ones(3), abs=0.1)
-        assert narrowing == pytest.approx(np.interp(at, strip.strain, waist), abs=0.04)
+        measured = np.interp(at, strip.strain, waist)
+        assert narrowing == pytest.approx(measured, abs=0.05)
+        flat = flattening(strip.simulate(law)[1], waist)
+        assert narrowing + flat == pytest.approx(measured, abs=0.02)
