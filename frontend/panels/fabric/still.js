@@ -22,6 +22,8 @@ export class Still {
   /** What was asked for last. */
   #asked = "";
   #busy = false;
+  /** Grows with each design: a picture of the one before is not shown any more. */
+  #design = 0;
 
   /** At most one is being drawn; of the wishes meanwhile only the last is. @param {ViewRequest} wish @param {() => void} shown */
   async draw(wish, shown) {
@@ -30,9 +32,10 @@ export class Still {
     this.#asked = asked;
     if (this.#busy) return;
     this.#busy = true;
+    const design = this.#design;
     try {
       const content = await this.#drawn(wish);
-      if (this.#asked) {
+      if (design === this.#design) {
         URL.revokeObjectURL(this.root.src);
         this.root.src = URL.createObjectURL(content);
         this.root.hidden = false;
@@ -43,7 +46,7 @@ export class Still {
     } finally {
       this.#busy = false;
     }
-    if (!["", asked].includes(this.#asked)) {
+    if (this.#asked && (this.#asked !== asked || design !== this.#design)) {
       const next = JSON.parse(this.#asked);
       this.#asked = "";
       await this.draw(next, shown);
@@ -52,6 +55,7 @@ export class Still {
 
   /** The live view is there, or another design. */
   clear() {
+    this.#design++;
     this.#asked = "";
     this.root.hidden = true;
   }
