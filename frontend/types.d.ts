@@ -873,7 +873,7 @@ export interface Extensions {
   extensions: ExtensionResult[];
 }
 
-/** A fabric whose connecting segments are all alike course-wise and all alike wale-wise. */
+/** A pure fabric: connecting segments are all alike course-wise, and all alike wale-wise. */
 export type Fabric = "stockinette" | "garter" | "rib" | "seed";
 
 /** A stretch, free across. */
