@@ -74,6 +74,7 @@ export class Run {
   say(problem) {
     this.#problem.hidden = false;
     this.#problem.replaceChildren(icon("warning"), problemText(problem));
+    this.#problem.scrollIntoView({ block: "nearest" }); // it may lie below a long form
   }
 
   /** Give it up; the service stops it too. */
