@@ -2725,8 +2725,7 @@ export interface YarnDocument {
   compression_exponent: number | null;
   diameter_mm: number | null;
   friction: number | null;
-  friction_low: number | null;
-  friction_high: number | null;
+  friction_interval: [number, number] | null;
 }
 
 /** A yarn by its parameters. */

@@ -2971,8 +2971,7 @@ class YarnDocument(BaseModel):
     compression_exponent: float | None = None
     diameter_mm: float | None = None
     friction: float | None = None
-    friction_low: float | None = None
-    friction_high: float | None = None
+    friction_interval: tuple[float, float] | None = None
 
 
 class YarnResult(BaseModel):

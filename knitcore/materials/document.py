@@ -273,19 +273,15 @@ class YarnDocument(_Model):
     compression_exponent: Annotated[float, Field(gt=1, le=20)] | None = None
     diameter_mm: Annotated[float, Field(gt=0, le=50)] | None = None
     friction: Friction | None = None
-    friction_low: Friction | None = None
-    friction_high: Friction | None = None
+    friction_interval: tuple[Friction, Friction] | None = None
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        ends = self.friction_low, self.friction_high
-        if ends == (None, None):
+        if self.friction_interval is None:
             return self
-        if self.friction is None:
-            raise ValueError("give friction with its interval")
-        low, high = (self.friction if end is None else end for end in ends)
-        if not low <= self.friction <= high:
-            raise ValueError("friction must lie from friction_low to friction_high")
+        low, high = self.friction_interval
+        if self.friction is None or not low <= self.friction <= high:
+            raise ValueError("give friction_interval as [low, high], with friction between them")
         return self
 
 

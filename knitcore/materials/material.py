@@ -61,8 +61,8 @@ class Yarn:
         unmeasured).
     diameter_mm : nominal diameter, from the wraps per inch (25.4 mm / WPI). Inside a fabric the
         yarn is squeezed: see :attr:`FabricRecord.yarn_diameter_mm`.
-    friction, friction_low, friction_high : coefficient of friction of yarn on yarn and the ends of
-        its interval (None if unmeasured; that of the fibre is used then).
+    friction, friction_interval : coefficient of friction of yarn on yarn, with its 90 % interval
+        (None if unmeasured; that of the fibre is used then).
     """
 
     fibre: str = ""
@@ -73,8 +73,7 @@ class Yarn:
     compression_exponent: float | None = None
     diameter_mm: float | None = None
     friction: float | None = None
-    friction_low: float | None = None
-    friction_high: float | None = None
+    friction_interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ class YarnFriction:
 def yarn_friction(of: Material) -> YarnFriction:
     """The coefficient of friction of a material's yarn: its own, or by the first fibre it names.
 
-    An end of the interval that a measured yarn does not give is the coefficient itself.
+    A coefficient that is given without an interval is taken as exact.
 
     Examples
     --------
@@ -64,10 +64,8 @@ def yarn_friction(of: Material) -> YarnFriction:
     """
     own = of.yarn
     if own.friction is not None:
-        low, high = (
-            own.friction if e is None else e for e in (own.friction_low, own.friction_high)
-        )
-        return YarnFriction(own.friction, low, high, "given with the material")
+        ends = own.friction_interval or (own.friction, own.friction)
+        return YarnFriction(own.friction, *ends, "given with the material")
     fibre = own.fibre.lower()
     named = [(fibre.find(name), name) for name in _STATIC_AND_KINETIC if name in fibre]
     static, kinetic = _STATIC_AND_KINETIC[min(named)[1]] if named else _UNLISTED

@@ -189,9 +189,9 @@ def test_a_missing_file_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "yarn",
     [
-        {"friction_low": 0.1},
-        {"friction": 0.1, "friction_low": 0.2},
-        {"friction": 0.3, "friction_high": 0.2},
+        {"friction_interval": [0.1, 0.2]},
+        {"friction": 0.1, "friction_interval": [0.2, 0.3]},
+        {"friction": 0.2, "friction_interval": [0.3, 0.1]},
         {"friction": 3.0},
     ],
 )

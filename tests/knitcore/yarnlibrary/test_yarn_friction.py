@@ -27,7 +27,9 @@ def test_the_first_fibre_that_is_named_decides(name, high, listed):
 
 def test_a_measured_coefficient_goes_before_that_of_the_fibre():
     cotton = material("cotton")
-    measured = replace(cotton, yarn=replace(cotton.yarn, friction=0.2, friction_high=0.3))
+    measured = replace(
+        cotton, yarn=replace(cotton.yarn, friction=0.2, friction_interval=(0.2, 0.3))
+    )
     friction = yarn_friction(measured)
     assert (friction.low, friction.coefficient, friction.high) == (0.2, 0.2, 0.3)
     assert "given" in friction.source
