@@ -18,8 +18,8 @@ from knitcore.shell.cloth import Cloth
 from knitcore.shell.relax import settle
 
 WIDTH_MM = 25.0
-MAX_BENDING_LENGTHS = 5.0
-"""Longest overhang; farther out the strip hangs straight down."""
+MIN_BENDING_LENGTHS, MAX_BENDING_LENGTHS = 0.1, 5.0
+"""Shortest and longest overhang: on a shorter one nothing falls, on a longer one it hangs down."""
 _RECTANGLES = 40
 """Along the overhang."""
 _CLAMPED = 2
@@ -69,17 +69,19 @@ def overhang(
     Raises
     ------
     InputError
-        If the overhang is longer than five bending lengths.
+        If the overhang is shorter than a tenth of the bending length or longer than five.
     CancelledError
         If ``cancelled`` says so.
     """
     expected = cloth.bending_length_mm(axis)
     length = 2.0 * expected if overhang_mm is None else overhang_mm
-    if not 0.0 < length <= MAX_BENDING_LENGTHS * expected:
+    shortest, longest = MIN_BENDING_LENGTHS * expected, MAX_BENDING_LENGTHS * expected
+    if not shortest <= length <= longest:
+        falls = "do not bend" if length < shortest else "hang straight down"
         raise InputError(
             "overhang_mm",
-            f"{length:g} mm hang straight down: the bending length is {expected:.0f} mm.",
-            f"Give more than 0 and at most {MAX_BENDING_LENGTHS * expected:.0f} mm.",
+            f"{length:g} mm {falls}: the bending length is {expected:.0f} mm.",
+            f"Give {shortest:.1f} to {longest:.0f} mm.",
         )
     strip = cloth.turned() if axis else cloth
     size = length / _RECTANGLES, WIDTH_MM / _ACROSS

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from typing import Any
 
+import httpx2 as httpx
+import jsonschema_rs
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
@@ -21,6 +24,17 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     service.kill()
 
 
+def _faults(documented: dict[str, Any], case: Any, response: Any) -> list[str]:
+    """Where an answer is not as documented; Schemathesis cannot read `prefixItems`."""
+    answers = documented["paths"][case.operation.path][case.operation.method]["responses"]
+    media = response.headers.get("content-type", [""])[0]
+    found = answers[str(response.status_code)].get("content", {}).get(media, {})
+    if "schema" not in found or not media.endswith("json"):
+        return []
+    whole = found["schema"] | {"components": documented["components"]}
+    return [error.message for error in jsonschema_rs.iter_errors(whole, response.json())]
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(150)
 def test_every_answer_is_documented(url: str) -> None:
@@ -28,8 +42,10 @@ def test_every_answer_is_documented(url: str) -> None:
     from schemathesis.specs.openapi import checks
 
     schema = schemathesis.openapi.from_url(f"{url}/openapi.json")
+    documented = httpx.get(f"{url}/openapi.json").json()
     strange: list[str] = []
     count = 0
+    answered: set[tuple[str, int]] = set()
     for found in schema.get_all_operations():
         operation = found.ok()
 
@@ -49,12 +65,11 @@ def test_every_answer_is_documented(url: str) -> None:
             assert response.status_code < 500 or response.status_code == 503, response.text
             case.validate_response(
                 response,
-                checks=[
-                    checks.status_code_conformance,
-                    checks.content_type_conformance,
-                    checks.response_schema_conformance,
-                ],
+                checks=[checks.status_code_conformance, checks.content_type_conformance],
             )
+            faults = _faults(documented, case, response)
+            assert not faults, faults
+            answered.add((case.operation.label, response.status_code))
 
         try:
             run()
@@ -64,3 +79,4 @@ def test_every_answer_is_documented(url: str) -> None:
             strange.append(f"{operation.label}: {error}")
     assert not strange, "\n\n".join(strange)
     assert count > 100
+    assert len({label for label, status in answered if status < 400}) > 30

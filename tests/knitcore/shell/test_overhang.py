@@ -50,7 +50,9 @@ def test_the_curl_of_the_fabric_is_left_out() -> None:
     assert overhang(rolled, 0).angle_rad == pytest.approx(overhang(CLOTH, 0).angle_rad, rel=1e-6)
 
 
-@pytest.mark.parametrize("length", [0.0, 61.0])
-def test_a_strip_that_hangs_straight_down_is_refused(length: float) -> None:
-    with pytest.raises(InputError, match="straight down"):
+@pytest.mark.parametrize(("length", "problem"), [(1e-9, "do not bend"), (61.0, "straight down")])
+def test_a_strip_that_does_not_bend_or_hangs_straight_down_is_refused(
+    length: float, problem: str
+) -> None:
+    with pytest.raises(InputError, match=problem):
         overhang(CLOTH, 0, length)
