@@ -25,7 +25,7 @@ def also_wrong(error: RequestValidationError, request: Request) -> Iterator[Inpu
     wrong = [place[1:] for place in (fault["loc"] for fault in error.errors()) if len(place) > 1]
     if isinstance(body, dict) and "kind" in body and isinstance(body.get("request"), dict):
         jobs = {get_args(job.model_fields["kind"].annotation)[0]: job for job in get_args(model)}
-        job = jobs.get(body["kind"])
+        job = jobs.get(str(body["kind"]))
         body, model = body["request"], job.model_fields["request"].annotation if job else None
         wrong = [place[2:] for place in wrong]
     if not (isinstance(body, dict) and isinstance(model, type) and issubclass(model, BaseModel)):

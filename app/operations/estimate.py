@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from app.cli.options import out_option
 from app.models.base import UNIT, Ends, RequestModel, ResultModel
@@ -91,7 +91,13 @@ class EstimateResult(ResultModel):
 
 
 def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
-    """Extension under load, moduli and laws of a yarn's four fabrics, with 90 % intervals."""
+    """Extension under load, moduli and laws of a yarn's four fabrics, with 90 % intervals.
+
+    Raises
+    ------
+    InputError
+        If no fabric can have the estimated law.
+    """
     del context
     swatches = [
         MeasuredSwatch(s.fabric, law_from_mapping(s.law).law, s.loop_length_mm, s.setting)
@@ -115,8 +121,21 @@ def _result(found: YarnEstimate) -> EstimateResult:
             fabric: FabricEstimateResult.of(f, **_values(f)) for fabric, f in found.fabrics.items()
         },
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,
-        material=MaterialDocument.from_material(estimated_material(found, "estimated")),
+        material=_document(found),
     )
+
+
+def _document(found: YarnEstimate) -> MaterialDocument:
+    try:
+        return MaterialDocument.from_material(estimated_material(found, "estimated"))
+    except ValidationError as error:
+        fault = error.errors()[0]
+        raise InputError(
+            "loop_length_mm",
+            f"with this bending modulus gives a fabric that cannot be: {fault['loc'][-1]},"
+            f" {fault['msg'].lower()}.",
+            "Compare both numbers with their units, mm and N·mm².",
+        ) from error
 
 
 def _values(found: FabricEstimate) -> dict[str, Any]:

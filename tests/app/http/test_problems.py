@@ -30,7 +30,14 @@ TESTS = {"a.csv", "b.csv"}
         ("/designs", {"name": ""}, "name", "Use 1 or more characters."),
         ("/designs", {"chart": "K"}, "name", "Give name"),
         ("/jobs", {"kind": "dance", "request": {}}, "kind", "Use one of 'atlas', 'bend'"),
+        ("/jobs", {"kind": [], "request": {}}, "kind", "Use one of 'atlas', 'bend'"),
         ("/jobs", {"request": {}}, "kind", "kind"),
+        (
+            "/estimate",
+            {"bending_modulus_n_mm2": 0.04, "loop_length_mm": 1},
+            "loop_length_mm",
+            "units",
+        ),
         ("/jobs", {"kind": "curve", "request": {"chart": "K"}}, "request.material", "Give"),
     ],
 )
