@@ -132,7 +132,7 @@ def _document(found: YarnEstimate) -> MaterialDocument:
         fault = error.errors()[0]
         raise InputError(
             "loop_length_mm",
-            f"with this bending modulus gives a fabric that cannot be: {fault['loc'][-1]},"
+            f"with this bending modulus gives a fabric that cannot exist: {fault['loc'][-1]},"
             f" {fault['msg'].lower()}.",
             "Compare both numbers with their units, mm and N·mm².",
         ) from error
