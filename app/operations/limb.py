@@ -24,7 +24,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
-from knitcore.shell.worn import WornTube, worn_tube
+from knitcore.shell.worn import TubeOnLimb, worn_tube
 
 MAX_STITCHES = 40_000
 """Of a chart that is itself the tube."""
@@ -127,7 +127,7 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
     return Viewed(LimbResult(**_fit(found, found, length), notes=[ELASTIC_MEAN]), None)
 
 
-def _tube(request: LimbRequest, context: Context) -> WornTube:
+def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
     chart = to_chart(request.chart)
     if chart.purl.size > MAX_STITCHES:
         raise InputError(
@@ -140,7 +140,7 @@ def _tube(request: LimbRequest, context: Context) -> WornTube:
     return worn_tube(chart, context.material(request.material), on, request.direction)
 
 
-def _of_tube(tube: WornTube, request: LimbRequest) -> LimbResult:
+def _of_tube(tube: TubeOnLimb, request: LimbRequest) -> LimbResult:
     told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
     return LimbResult(
         **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
@@ -151,7 +151,7 @@ def _of_tube(tube: WornTube, request: LimbRequest) -> LimbResult:
     )
 
 
-def _view(tube: WornTube, around: Direction) -> PosedView:
+def _view(tube: TubeOnLimb, around: Direction) -> PosedView:
     rows, columns = (n - 1 for n in tube.corners_mm.shape[:2])
     pressures = [place.pressure for place in tube.places]
     kpa = np.array([np.nan if p is None else (p.kpa.low + p.kpa.high) / 2 for p in pressures])

@@ -31,7 +31,7 @@ BARE = 0.12
 
 
 @dataclass(frozen=True, eq=False)
-class WornTube:
+class TubeOnLimb:
     """A tube on a limb, in space: the limb's axis along y (x if the columns run around it).
 
     Attributes
@@ -52,7 +52,7 @@ class WornTube:
 
 def worn_tube(
     chart: StitchChart, material: Material, limb: Limb, around: Direction = Direction.COURSE
-) -> WornTube:
+) -> TubeOnLimb:
     """The whole chart as a tube on a limb.
 
     Parameters
@@ -99,7 +99,7 @@ def worn_tube(
     if not by_row:
         corners, skin = (points[..., [1, 0, 2]] for points in (corners, skin))
         corners = corners.transpose(1, 0, 2)
-    return WornTube(corners, tuple(places), along_mm[-1], float(heights.sum()), skin)
+    return TubeOnLimb(corners, tuple(places), along_mm[-1], float(heights.sum()), skin)
 
 
 def _between(lines: Array) -> Array:
