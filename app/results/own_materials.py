@@ -2,13 +2,15 @@
 
 Every process reads them for itself, workers too. An identifier ends in a mark of the file's
 content, for designs, atlases and results of jobs are kept by it: a file that was changed is another
-material.
+material. What a user replaced through the service is still found, until it is replaced once more:
+somebody may be computing with it.
 """
 
 from __future__ import annotations
 
 import hashlib
 import logging
+import shutil
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from knitcore.materials.document import MaterialDocument
 
 FOLDER = "materials"
+REPLACED = "replaced"
+"""Folder within it of what users replaced last."""
 PREFIX = "own:"
 KINDS = (".json", ".yaml", ".yml")
 MAX_FILES = 200
@@ -39,8 +43,9 @@ def find_own_material(identifier: str, data_dir: Path) -> Material:
         If there is none of that identifier.
     """
     own = own_materials(data_dir)
-    if identifier in own:
-        return own[identifier]
+    for found in own, _materials_in(data_dir / FOLDER / REPLACED):
+        if identifier in found:
+            return found[identifier]
     stem = identifier.rpartition(".")[0]
     changed = any(other.rpartition(".")[0] == stem for other in own)
     raise InputError(
@@ -52,7 +57,10 @@ def find_own_material(identifier: str, data_dir: Path) -> Material:
 
 def own_materials(data_dir: Path) -> dict[str, Material]:
     """All materials in the folder, by identifier; files that hold none are logged and left out."""
-    folder = data_dir / FOLDER
+    return _materials_in(data_dir / FOLDER)
+
+
+def _materials_in(folder: Path) -> dict[str, Material]:
     if not folder.is_dir():
         return {}
     files = sorted(file for file in folder.iterdir() if file.suffix.lower() in KINDS)
@@ -83,7 +91,9 @@ def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Mat
     place = data_dir / FOLDER / f"{_tag(owner)}{document.identifier.replace(':', '_')}.json"
     if place not in mine and len(mine) >= MAX_KEPT:
         raise InputError("identifier", f"you keep {len(mine)} yarns.", "Remove one of them first.")
-    place.parent.mkdir(parents=True, exist_ok=True)
+    _replaced(place).parent.mkdir(parents=True, exist_ok=True)
+    if place in mine:
+        shutil.copyfile(place, _replaced(place))
     new = place.with_suffix(".new")
     new.write_text(document.model_dump_json(indent=1, exclude_defaults=True), encoding="utf-8")
     new.replace(place)
@@ -97,8 +107,14 @@ def remove_material(identifier: str, owner: str, data_dir: Path) -> bool:
         facts = file.stat()
         if _read(file, facts.st_mtime_ns, facts.st_size).identifier == identifier:
             file.unlink()
+            _replaced(file).unlink(missing_ok=True)
             return True
     return False
+
+
+def _replaced(file: Path) -> Path:
+    """Where the material is kept that ``file`` replaced."""
+    return file.parent / REPLACED / file.name
 
 
 def _kept_by(owner: str, data_dir: Path) -> list[Path]:

@@ -139,6 +139,23 @@ def test_a_material_is_added_used_given_back_and_removed(own: TestClient) -> Non
     assert own.post("/api/v1/predict", json=asked).status_code == 422
 
 
+def test_a_replaced_material_answers_those_who_compute_with_it(own: TestClient) -> None:
+    file = own.get("/api/v1/materials/acrylic/document").json() | {"identifier": "mine"}
+    names = [
+        own.post("/api/v1/materials", json=file | {"name": name}).json()["id"]
+        for name in ("First", "Second", "Third")
+    ]
+
+    def predicted(name: str) -> int:
+        return own.post("/api/v1/predict", json={"chart": "KP", "material": name}).status_code
+
+    assert [predicted(name) for name in names] == [422, 200, 200]
+    offered = {one["id"] for one in own.get("/api/v1/materials").json()["materials"]}
+    assert offered.isdisjoint(names[:2])
+    own.delete(f"/api/v1/materials/{names[2]}")
+    assert [predicted(name) for name in names] == [422, 422, 422]
+
+
 def test_only_who_added_a_material_removes_it(folder: Path) -> None:
     document = MaterialDocument.from_material(material("acrylic"))
     kept = keep_material(document, "ann", folder.parent)
