@@ -117,7 +117,7 @@ async def put_view(design: DesignId, body: ViewRequest, request: Request) -> Vie
 @router.put("/views/{design}/mark", status_code=204, summary="Outline stitches")
 async def put_mark(design: DesignId, body: MarkRequest, request: Request) -> None:
     """Outline stitches on both sides of the fabric; without a box nothing is outlined."""
-    box = body.box.into(Box) if body.box else None
+    box = body.box.pass_to(Box) if body.box else None
     await asyncio.to_thread(_view(design, request).writer.mark, box)
 
 

@@ -1,8 +1,8 @@
 """Commands made of operations: an option for every field of the request.
 
 A chart becomes the argument CHART with ``--size``, a file an argument or an option that names it, a
-group of fields (such as a gauge) an option for each of them. Exceptions to these rules are in
-the operation's :class:`~app.operations.registry.Command`.
+group of fields (such as a gauge) an option for each of them; options leave out the unit N/mm.
+Exceptions to these rules are in the operation's :class:`~app.operations.registry.Command`.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user_data_dir
+from app.models.base import UNIT
 from app.models.charts import IS_REPEAT
 from app.models.uploads import UploadedFile
 from app.operations.context import Context
-from app.operations.perform import carried_out
+from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
@@ -46,7 +47,8 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
         request = options.request(given)
         run: Callable[..., Any] = described.run or operation.run
         run = partial(run, **_taken(described.run, given))
-        result = carried_out(run, request, context)
+        found = carried_out(run, request, context)
+        result = found.result if isinstance(found, Viewed) else found
         emit(result, "\n".join(described.lines(result)), as_json=given["as_json"])
         for remark in () if given["as_json"] else _remarks(result):
             click.echo(remark, err=True)  # the result may be piped on
@@ -152,7 +154,7 @@ class _Options:
         return asked
 
     def _named(self, field: str) -> str:
-        option = self._described.names.get(field) or field.replace("_", "-")
+        option = self._described.names.get(field) or field.removesuffix(UNIT).replace("_", "-")
         return option.removeprefix("--")
 
     def _of(self, name: str, field: FieldInfo) -> Iterator[click.Parameter]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import fields
-from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
+from collections.abc import Callable, Mapping
+from inspect import signature
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import (
     BaseModel,
@@ -20,10 +20,7 @@ from pydantic.config import JsonDict
 
 from knitcore.errors import InputError
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-OfLibrary = TypeVar("OfLibrary", bound="DataclassInstance")
+T = TypeVar("T")
 UNIT = "_n_per_mm"
 
 
@@ -64,10 +61,14 @@ class RequestModel(BaseModel):
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
-    def into(self, kind: type[OfLibrary], **more: Any) -> OfLibrary:
-        """A dataclass of the library, made from the fields that both have and the values given."""
-        mine = {f.name: getattr(self, f.name) for f in fields(kind) if hasattr(self, f.name)}
-        return kind(**mine | more)
+    def pass_to(self, function: Callable[..., T], *first: Any, **more: Any) -> T:
+        """What a function or a class of the library makes of these fields and the values given.
+
+        A parameter that is not given takes the field of its name, or of its name and the unit N/mm.
+        """
+        names = list(signature(function).parameters)[len(first) :]
+        mine = {n: f for n in names for f in (n, n + UNIT) if f in type(self).model_fields}
+        return function(*first, **{n: getattr(self, f) for n, f in mine.items()} | more)
 
 
 class NoRequest(RequestModel):

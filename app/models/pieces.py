@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import Field
 
 from app.models.base import Floats, RequestModel, ResultModel
-from app.models.charts import MaterialName, RepeatInput
+from app.models.charts import MaterialName, RepeatInput, to_repeat
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from knitcore.errors import InputError
@@ -17,6 +18,7 @@ from knitcore.piece import Condition, CutPiece, Held, PieceTest, Pulled, Sewn, T
 from knitcore.piece.mesh import DEFAULT_ELEMENTS, size_for
 from knitcore.piece.outline import MAX_CORNERS
 
+T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000
 """Most elements times steps over REST, about a minute; the command line accepts more."""
 MAX_CONDITIONS = 50
@@ -39,7 +41,7 @@ class HeldInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return self.into(Held)
+        return self.pass_to(Held)
 
 
 class PulledInput(RequestModel):
@@ -52,7 +54,7 @@ class PulledInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return self.into(Pulled)
+        return self.pass_to(Pulled)
 
 
 class TractionInput(RequestModel):
@@ -65,7 +67,7 @@ class TractionInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return self.into(Traction)
+        return self.pass_to(Traction)
 
 
 class SewnInput(RequestModel):
@@ -77,7 +79,7 @@ class SewnInput(RequestModel):
 
     def condition(self) -> Condition:
         """As the library has it."""
-        return self.into(Sewn)
+        return self.pass_to(Sewn)
 
 
 ConditionInput = Annotated[
@@ -107,7 +109,7 @@ class PieceInput(RequestModel):
 
     def piece(self) -> CutPiece:
         """As the library has it."""
-        return self.into(CutPiece)
+        return self.pass_to(CutPiece)
 
 
 class PieceTestRequest(LawsRequest):
@@ -142,15 +144,16 @@ class PieceTestRequest(LawsRequest):
                 f"Use at least {least:.3g} mm, fewer steps, or the command line.",
             )
 
-    def options(self, context: Context) -> dict[str, Any]:
-        """Options of every test in the library."""
-        return {
-            "steps": self.steps,
-            "shear_modulus": self.shear_modulus_n_per_mm,
-            "mesh_mm": self.mesh_mm,
-            "progress": context.progress,
-            "cancelled": context.cancelled,
-        }
+    def pull(self, test: Callable[..., T], context: Context, **more: Any) -> T:
+        """A test of the library on cloth of the chart."""
+        return self.pass_to(
+            test,
+            to_repeat(self.chart),
+            context.material(self.material),
+            progress=context.progress,
+            cancelled=context.cancelled,
+            **more,
+        )
 
 
 class PieceTestResult(ResultModel):

@@ -57,13 +57,7 @@ def bending(request: BendingRequest, context: Context) -> BendingResult:
     """Traces each photo and fits the heavy elastica."""
     del context
     with stored(request.images) as paths:
-        found = measure_bending(
-            paths,
-            linear_density_g_per_m=request.linear_density_g_per_m,
-            length_mm=request.length_mm,
-            px_per_mm=request.px_per_mm,
-        )
-    return BendingResult.of(found)
+        return BendingResult.of(request.pass_to(measure_bending, paths))
 
 
 def _lines(r: BendingResult) -> list[str]:

@@ -7,7 +7,6 @@ from typing import Literal
 from pydantic import Field
 
 from app.models.base import EndsOfList, Floats
-from app.models.charts import to_repeat
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -51,15 +50,7 @@ def bias(request: BiasRequest, context: Context) -> BiasResult:
     InputError, CancelledError
     """
     request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
-    test = bias_test(
-        to_repeat(request.chart),
-        context.material(request.material),
-        request.strain,
-        width_mm=request.width_mm,
-        length_mm=request.length_mm,
-        angle_deg=request.angle_deg,
-        **request.options(context),
-    )
+    test = request.pull(bias_test, context)
     ends = interval(test.force_n, test.force_log_sd)
     return BiasResult.of(test, force_interval_n=ends, **of_test(test.test))
 
@@ -86,6 +77,5 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Pull a strip of CHART cut at an angle to its rows, on the bias by default.",
-        names={"shear_modulus_n_per_mm": "--shear-modulus"},
     ),
 )

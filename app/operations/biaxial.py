@@ -7,7 +7,6 @@ from typing import Literal
 from pydantic import Field
 
 from app.models.base import EndsOfList, Floats
-from app.models.charts import to_repeat
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -47,16 +46,7 @@ def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
     InputError, CancelledError
     """
     request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
-    test = biaxial_test(
-        to_repeat(request.chart),
-        context.material(request.material),
-        request.strain_x,
-        request.strain_y,
-        width_mm=request.width_mm,
-        length_mm=request.length_mm,
-        grain_deg=request.grain_deg,
-        **request.options(context),
-    )
+    test = request.pull(biaxial_test, context)
     return BiaxialResult.of(
         test,
         force_x_interval_n=interval(test.force_x_n, test.force_x_log_sd),
@@ -89,6 +79,5 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Pull all four edges of a rectangle of CHART outwards.",
-        names={"shear_modulus_n_per_mm": "--shear-modulus"},
     ),
 )

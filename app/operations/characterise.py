@@ -200,7 +200,7 @@ def _plan(yarn: Material | YarnInput | None, options: CharacteriseOptions) -> Ya
     if yarn is None:
         raise InputError("material", "is missing.", "Name a material, or give a yarn.")
     del asked["tensions"]  # of a material's own lengths
-    return plan_for_yarn(yarn.name, yarn.into(YarnModel), **asked)
+    return plan_for_yarn(yarn.name, yarn.pass_to(YarnModel), **asked)
 
 
 def _result(table: YarnTable) -> CharacteriseResult:

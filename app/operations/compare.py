@@ -54,10 +54,10 @@ def compare(request: CompareRequest, context: Context) -> CompareResult:
     """
     field = request.chosen(load(request.field))
     law, model = _law_and_model(request, context)
-    found = compared(field, law, request.direction, edges=request.edges, model=model)
+    found = request.pass_to(compared, field, law, model=model)
     return CompareResult.of(
         found,
-        edges=request.edges,
+        request,
         model=model.energy,
         messages=[found.problem] if found.problem else [],
     )

@@ -95,12 +95,7 @@ def _command(
     if not tests:
         problem = f"{request.yarn!r} is not among the tests."
         raise InputError("yarn", problem, f"Use one of {known}.")
-    samples = [
-        fit_compression(
-            test, diameter_mm=request.diameter_mm, probe_width_mm=request.probe_width_mm
-        )
-        for test in tests
-    ]
+    samples = [request.pass_to(fit_compression, test) for test in tests]
     means = average_compression(samples)
     alone = means[0] if len(means) == 1 else None
     notes = [] if alone else [f"{known} have no common k and p; ask for one yarn to get one pair."]

@@ -86,12 +86,12 @@ def _curled(request: CurlRequest, context: Context) -> CurledPiece:
     stitches = None if request.outline is None else outline_marks(request.outline)
     if stitches is not None and stitches.shape == chart.purl.shape and stitches.any():
         chart = ShapedChart(chart, stitches).continued()
-    return curl_piece(
+    return request.pass_to(
+        curl_piece,
         chart,
         material,
         stitches=stitches,
-        pull=None if request.pull is None else request.pull.into(Pull),
-        time_limit_s=request.time_limit_s,
+        pull=None if request.pull is None else request.pull.pass_to(Pull),
         cancelled=context.cancelled,
     )
 

@@ -56,19 +56,13 @@ def drape(request: DrapeRequest, context: Context) -> DrapeResult:
     InputError, ConvergenceError, CancelledError
     """
     cloth = request.cloth(to_repeat(request.chart), context)
-    found = drape_cloth(
-        cloth,
-        piece_mm=request.piece_mm,
-        disc_mm=request.disc_mm,
-        across=request.across,
-        cancelled=context.cancelled,
-    )
+    found = request.pass_to(drape_cloth, cloth, cancelled=context.cancelled)
     return DrapeResult.of(
         found,
+        cloth,
         coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),
-        weight_g_per_m2=cloth.weight_g_per_m2,
         corners_mm=corners_of(found.corners_mm, np.isfinite(found.corners_mm[..., 0]))
         if request.corners
         else None,

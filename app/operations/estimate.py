@@ -103,14 +103,7 @@ def estimate(request: EstimateRequest, context: Context) -> EstimateResult:
         MeasuredSwatch(s.fabric, law_from_mapping(s.law).law, s.loop_length_mm, s.setting)
         for s in request.swatches
     ]
-    return _result(
-        estimate_yarn(
-            request.bending_modulus_n_mm2,
-            request.loop_length_mm,
-            swatches,
-            product_setting=request.product_setting,
-        )
-    )
+    return _result(request.pass_to(estimate_yarn, swatches=swatches))
 
 
 def _result(found: YarnEstimate) -> EstimateResult:
@@ -202,12 +195,8 @@ def _command(
         )
     product = _lengths(lengths, "loop_length_mm")
     own = _lengths(swatch_lengths, "swatch_loop_length_mm") if swatch_lengths else {}
-    made = estimate_yarn(
-        request.bending_modulus_n_mm2,
-        product,
-        [_swatch(text, own, product, swatch_setting, context) for text in swatches],
-        product_setting=request.product_setting,
-    )
+    measured = [_swatch(text, own, product, swatch_setting, context) for text in swatches]
+    made = request.pass_to(estimate_yarn, loop_length_mm=product, swatches=measured)
     if out is not None:
         identifier = out.stem.lower().replace(" ", "-")
         save_material_file(estimated_material(made, identifier), out)

@@ -100,7 +100,7 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
 
 
 def _export(chart: StitchChart, request: ExportRequest, context: Context) -> ExportedFile:
-    options = request.into(ExportOptions, layout=request)
+    options = request.pass_to(ExportOptions, layout=request)
     return export_chart(chart, request.to, context.material(request.material), options)
 
 

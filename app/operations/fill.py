@@ -28,7 +28,7 @@ from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
-from knitcore.design.fill import FilledField, fill_field
+from knitcore.design.fill import fill_field
 from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
@@ -146,15 +146,13 @@ def fill(request: FillRequest, context: Context) -> FillResult:
 
 
 def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) -> FillResult:
-    found: FilledField = fill_field(
+    found = request.pass_to(
+        fill_field,
         *wanted,
         context.material(request.material),
         atlas,
         kept=None if request.chart is None else StitchChart.parse(request.chart),
         stitch=None if request.outline is None else outline_marks(request.outline),
-        smallest_patch=request.smallest_patch,
-        seed=request.seed,
-        check=request.check,
         progress=context.share,
         cancelled=context.cancelled,
     )
@@ -170,12 +168,7 @@ def _wanted(request: FillRequest) -> Maps:
         raise InputError("wishes", "are given together with maps.", "Give either.")
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
-    return wanted_maps(
-        [wish.wish() for wish in request.wishes],
-        request.rows,
-        request.columns,
-        smallest_patch=request.smallest_patch,
-    )
+    return request.pass_to(wanted_maps, [wish.wish() for wish in request.wishes])
 
 
 def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:

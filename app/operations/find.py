@@ -56,7 +56,7 @@ class TargetInput(RequestModel):
 
     def target(self) -> Target:
         """As the library knows it."""
-        return self.into(Target, limb=self.limb.into(WornTube) if self.limb else None)
+        return self.pass_to(Target, limb=self.limb.pass_to(WornTube) if self.limb else None)
 
 
 class LimitsInput(RequestModel):
@@ -147,8 +147,8 @@ def _ranked(
 ) -> FindResult:
     """The best of some atlases, and of other yarns if nothing in those meets the targets."""
     targets = [target.target() for target in request.targets]
-    limits = request.limits.into(CostLimits) if request.limits else None
-    found = find_fabric(atlases, targets, count=request.count, limits=limits)
+    limits = request.limits.pass_to(CostLimits) if request.limits else None
+    found = request.pass_to(find_fabric, atlases, targets, limits=limits)
     message, elsewhere = found.message, list[Candidate]()
     if others and not found.reached:
         best = [

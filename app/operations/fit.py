@@ -103,14 +103,8 @@ def fit(request: FitRequest, context: Context) -> FitResult:
 
 def _fit(request: FitRequest, context: Context) -> LawFit:
     with stored([request.test_course, request.test_wale]) as (course, wale):
-        return fit_tests(
-            course,
-            wale,
-            reduction=request.reduction,
-            file_format=request.format,
-            width_course_mm=request.width_course_mm,
-            width_wale_mm=request.width_wale_mm,
-            cancelled=context.cancelled,
+        return request.pass_to(
+            fit_tests, course, wale, file_format=request.format, cancelled=context.cancelled
         )
 
 

@@ -141,10 +141,12 @@ class Glove(Template):
 
     def plan(self, **yarn: Any) -> GarmentPlan:
         """Its plan in a yarn."""
-        hand = self.into(
+        hand = self.pass_to(
             Hand,
-            thumb=self.thumb.into(Finger) if self.thumb else _HAND.thumb,
-            fingers=tuple(f.into(Finger) for f in self.fingers) if self.fingers else _HAND.fingers,
+            thumb=self.thumb.pass_to(Finger) if self.thumb else _HAND.thumb,
+            fingers=tuple(f.pass_to(Finger) for f in self.fingers)
+            if self.fingers
+            else _HAND.fingers,
         )
         return glove(hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
 
@@ -256,15 +258,14 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         if count is None
         else GaugeSet.of_material(material, count.gauge(), count.fabric)
     )
-    plan = request.garment.plan(
-        material=material, gauges=gauges, linear_density_tex=request.linear_density_tex
-    )
+    tex = request.linear_density_tex
+    plan = request.garment.plan(material=material, gauges=gauges, linear_density_tex=tex)
     return GarmentResult.of(
         plan,
         plan.shaped,
         plan.shaped.chart,
         chart=plan.shaped.chart.text,
-        regions=_regions(plan, material, request.linear_density_tex),
+        regions=_regions(plan, material, tex),
         gauges=[_gauge(fabric, gauge) for fabric, gauge in gauges.gauges.items()],
         worn=[_worn(place) for place in plan.worn],
         yarn_m=plan.yarn.length_m,
@@ -273,7 +274,7 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         yarn_interval_g=plan.yarn.mass_interval_g,
         interval_source=SWATCH_ERRORS if count else MATERIAL_ERRORS,
         warnings=[misfit.text for misfit in plan.misfits],
-        design=design_of_plan(plan, request.material, intarsia=request.intarsia),
+        design=request.pass_to(design_of_plan, plan),
     )
 
 

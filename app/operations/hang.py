@@ -49,14 +49,8 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
 
     Edges curl against the weight. Pieces may have up to 10,000 stitches.
     """
-    found = hang_piece(
-        to_chart(request.chart),
-        context.material(request.material),
-        linear_density_g_per_m=request.linear_density_g_per_m,
-        by=request.by,
-        time_limit_s=request.time_limit_s,
-        cancelled=context.cancelled,
-    )
+    chart, material = to_chart(request.chart), context.material(request.material)
+    found = request.pass_to(hang_piece, chart, material, cancelled=context.cancelled)
     result = HangResult.of(
         found,
         id=OPERATION.key(request),
@@ -65,10 +59,6 @@ def hang(request: HangRequest, context: Context) -> Viewed[HangResult]:
         notes=[FRICTIONLESS],
     )
     return Viewed(result, PosedView(found.corners_mm.astype(np.float32)))
-
-
-def _hung(request: HangRequest, context: Context) -> HangResult:
-    return hang(request, context).result
 
 
 def _lines(r: HangResult) -> list[str]:
@@ -95,6 +85,5 @@ OPERATION = Operation(
         _lines,
         help="How the whole piece CHART hangs under its weight.",
         names={"corners": None},
-        run=_hung,
     ),
 )

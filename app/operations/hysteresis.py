@@ -116,10 +116,9 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
     )
 
     def rubbed(friction: float) -> tuple[loops.Hysteresis, tuple[loops.RestSize, ...]]:
-        found = loops.hysteresis(
-            relaxed, request.direction, request.max_strain, friction,
-            points=request.points, cycles=request.cycles, cancelled=context.cancelled,
-        )  # fmt: skip
+        found = request.pass_to(
+            loops.hysteresis, relaxed, coefficient=friction, cancelled=context.cancelled
+        )
         if not request.rest_sizes:
             return found, ()
         return found, loops.rest_sizes(relaxed, friction, cancelled=context.cancelled)
@@ -187,7 +186,7 @@ def _text(r: HysteresisResult) -> list[str]:
             f"rest, {rest.history:18}{rest.course_mm:6.3f} × {rest.wale_mm:.3f} mm a stitch"
             f"{_between(rest.course_interval_mm, '.2f')}{_between(rest.wale_interval_mm, '.2f')}"
         )
-    return [*lines, *(f"note: {note}" for note in r.notes)]
+    return lines
 
 
 OPERATION = Operation(

@@ -142,11 +142,10 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
 
 def _of_tube(tube: TubeOnLimb, request: LimbRequest) -> LimbResult:
     told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
-    return LimbResult(
+    return LimbResult.of(
+        tube,
         **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
         id=OPERATION.key(request),
-        length_mm=tube.length_mm,
-        relaxed_length_mm=tube.relaxed_length_mm,
         notes=[ELASTIC_MEAN, FREE_ALONG],
     )
 
@@ -208,13 +207,13 @@ def _girths(girths: tuple[str, ...]) -> dict[str, Any]:
 
 
 @out_option("--out", help="Write the tube on the limb to FILE.glb.", suffixes=(".glb",))
-def _and_write(request: LimbRequest, context: Context, out: Path | None) -> LimbResult:
+def _and_write(request: LimbRequest, context: Context, out: Path | None) -> Viewed[LimbResult]:
     if out is not None:
         if any(girth.rest_mm is not None for girth in request.girths):
             raise InputError("out", "needs a tube that is the whole chart.", "Leave REST out.")
         chart, material = to_chart(request.chart), context.material(request.material)
         out.write_bytes(write_curled_glb(chart, _tube(request, context).corners_mm, material))
-    return limb(request, context).result
+    return limb(request, context)
 
 
 def _lines(r: LimbResult) -> list[str]:

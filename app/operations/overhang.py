@@ -56,9 +56,9 @@ def overhang(request: OverhangRequest, context: Context) -> OverhangResult:
     found = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
     return OverhangResult.of(
         found,
+        cloth,
         angle_deg=math.degrees(found.angle_rad),
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
-        weight_g_per_m2=cloth.weight_g_per_m2,
         corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
         notes=notes_of(cloth),
     )

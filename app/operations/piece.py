@@ -86,12 +86,10 @@ def piece(request: PieceRequest, context: Context) -> PieceResult:
 def _test(request: PieceRequest, material: Material, context: Context) -> PieceTest:
     cut = request.piece.piece()
     request.check(cut, context)
-    options = request.options(context)
-    cloth = cloth_under(
-        cut, to_repeat(request.chart), material, shear_modulus=options.pop("shear_modulus")
-    )
+    cloth = request.pass_to(cloth_under, cut, to_repeat(request.chart), material)
     conditions = [given.condition() for given in request.piece.conditions]
-    return solve(cut, cloth, conditions, **options)
+    told = {"progress": context.progress, "cancelled": context.cancelled}
+    return request.pass_to(solve, cut, cloth, conditions, **told)
 
 
 def _result(request: PieceRequest, test: PieceTest, material: Material) -> PieceResult:
@@ -203,7 +201,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Load a piece of any outline, cut from cloth of CHART, at its edges.",
-        names={"shear_modulus_n_per_mm": "--shear-modulus", "piece": None},
+        names={"piece": None},
         fields=_piece_file,
         run=_command,
     ),

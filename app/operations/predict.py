@@ -92,8 +92,7 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
     segments = segment_map(chart)
     return PredictResult.of(
         found,
-        rows=chart.rows,
-        columns=chart.columns,
+        chart,
         segments={direction: segments.counts(direction) for direction in Direction},
         notes=[*notes, *found.notes],
         measures=[
@@ -125,11 +124,6 @@ def _lines(r: PredictResult) -> list[str]:
             for m in r.measures
         ),
     ]
-
-
-def _measured(measure: MeasureResult) -> str:
-    value = "unknown" if measure.value is None else f"{measure.value:.4g} {measure.unit}"
-    return f"{measure.identifier:15} {value}"
 
 
 def _relaxed(r: PredictResult) -> str:

@@ -137,7 +137,6 @@ def _of_law(
     return PressureResult.of(
         found,
         mmhg_with_law_spread=widened,
-        tension_n_per_mm=found.tension_n_per_mm,
         rest_mm=rest,
         worn_mm=worn,
         lock_up_share=found.utilisation,

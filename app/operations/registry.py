@@ -58,7 +58,7 @@ class Command:
     group: str = ""
     names: Mapping[str, str | None] = field(default_factory=dict)
     fields: Callable[..., Mapping[str, Any]] | None = None
-    run: Callable[..., BaseModel] | None = None
+    run: Callable[..., BaseModel | Viewed[Any]] | None = None
     request: type[BaseModel] | None = None
 
 

@@ -146,7 +146,7 @@ def _unmirrored(
         found = without_mirrors(cell, cancelled=context.cancelled)
     except (ConvergenceError, UnravelledError):
         return None, ("Without its mirror symmetries no shape was found.",)
-    told = UnmirroredResult.of(found.state, minimum=found.minimum)
+    told = UnmirroredResult.of(found.state, found)
     if found.minimum:
         return told, ()
     return told, (

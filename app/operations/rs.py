@@ -67,7 +67,7 @@ def rs(request: RSRequest, context: Context) -> RSResult:
                 for d, s in segments.items()
             },
         )
-    return RSResult(material=request.material, fabrics=fabrics, interval_source=RS_ERRORS)
+    return RSResult.of(request, fabrics=fabrics, interval_source=RS_ERRORS)
 
 
 def _lines(result: RSResult) -> list[str]:

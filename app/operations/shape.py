@@ -81,15 +81,11 @@ def shape(request: ShapeRequest, context: Context) -> ShapeResult:
 
 
 def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResult:
-    found = fill_shape(
+    found = request.pass_to(
+        fill_shape,
         np.array([np.nan if w is None else w for w in request.width], dtype=float),
-        request.across,
-        request.direction,
-        request.strain,
-        context.material(request.material),
-        atlas,
-        smallest_band=request.smallest_band,
-        seed=request.seed,
+        material=context.material(request.material),
+        atlas=atlas,
         progress=context.share,
         cancelled=context.cancelled,
     )

@@ -179,18 +179,12 @@ def _test(
 ) -> tuple[StripTest, StretchMargins]:
     material = context.material(request.material)
     total = request.steps + len(sampled_steps(request.steps))
-    test = strip_test(
+    test = request.pass_to(
+        strip_test,
         chart,
         material,
-        request.direction,
-        request.strain,
-        steps=request.steps,
-        clamps=request.clamps,
-        model=request.model,
-        shear_modulus=request.shear_modulus_n_per_mm,
         stitch=None if request.outline is None else outline_marks(request.outline),
-        width_mm=request.width_mm,
-        length_mm=request.length_mm,
+        laws=None,  # those that the request chooses are in the material
         cancelled=context.cancelled,
         progress=lambda done, _: context.progress(done, total),
     )
@@ -320,12 +314,10 @@ def _nearest(chart: StitchChart, test: StripTest) -> NearestLockUp | None:
     grid = test.sheet.grid
     column = int(np.searchsorted(grid.column_lines[::2], spot.x_mm))
     row = int(np.searchsorted(grid.row_lines[::2], spot.y_mm))
-    return NearestLockUp(
-        utilisation=spot.utilisation,
+    return NearestLockUp.of(
+        spot,
         row=min(max(row, 1), chart.rows) - 1,
         column=min(max(column, 1), chart.columns) - 1,
-        direction=spot.direction,
-        fabric=spot.fabric,
     )
 
 
@@ -379,7 +371,6 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Pull CHART between two clamps: a simulated strip test, not a certified one.",
-        names={"shear_modulus_n_per_mm": "--shear-modulus"},
         run=_command,
     ),
 )

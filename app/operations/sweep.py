@@ -132,9 +132,9 @@ def _result(
     return SweepResult.of(
         main,
         zero,
+        request,
         strain_interval=(main.strain / factor, main.strain * factor),
         interval_source=YARN_LEVEL_ERRORS,
-        branch=request.branch,
         law=None if law is None else SweptLaw.of(law, law.law),
         converged=main.converged and len(main.strain) == request.points,
         seconds=seconds,

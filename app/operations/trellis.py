@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import Field
 
 from app.models.base import EndsOfList, Floats
-from app.models.charts import to_repeat
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -48,14 +47,7 @@ def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
     InputError, CancelledError
     """
     request.check(CutPiece.rectangle(request.side_mm, request.side_mm), context)
-    test = trellis_test(
-        to_repeat(request.chart),
-        context.material(request.material),
-        math.radians(request.angle_deg),
-        side_mm=request.side_mm,
-        grain_deg=request.grain_deg,
-        **request.options(context),
-    )
+    test = request.pull(trellis_test, context, shear_angle=math.radians(request.angle_deg))
     return TrellisResult.of(
         test,
         angle_deg=np.degrees(test.shear_angle),
@@ -86,6 +78,5 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Shear a square of CHART in a hinged frame (picture frame).",
-        names={"shear_modulus_n_per_mm": "--shear-modulus"},
     ),
 )

@@ -243,6 +243,25 @@ def test_a_result_reads_the_attributes_of_what_was_found() -> None:
     assert Numbers.model_validate_json(numbers.model_dump_json()) == numbers
 
 
+class Pull(RequestModel):
+    """A request with a unit in a name."""
+
+    strain: float
+    shear_modulus_n_per_mm: float
+    steps: int = 3
+
+
+def test_a_request_passes_its_fields_to_the_library() -> None:
+    def pull(
+        chart: str, strain: float, *, shear_modulus: float, steps: int = 10, mesh: float = 1.0
+    ) -> tuple[str, float, float, int, float]:
+        return chart, strain, shear_modulus, steps, mesh
+
+    asked = Pull(strain=0.2, shear_modulus_n_per_mm=0.03)
+    assert asked.pass_to(pull, "KP") == ("KP", 0.2, 0.03, 3, 1.0)
+    assert asked.pass_to(pull, "KP", 0.4, mesh=2.0, steps=5) == ("KP", 0.4, 0.03, 5, 2.0)
+
+
 def test_a_command_loads_no_other_operation() -> None:
     code = (
         "import sys; from app.operations.registry import operation_of_command as made; made('rs');"
