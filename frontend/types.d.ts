@@ -1009,7 +1009,7 @@ export interface FillRequest {
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
   repeats?: "small" | "all";
-  /** Smallest side of a patch. */
+  /** Smallest side of a patch, where its part is not smaller. */
   smallest_patch?: number;
   /** The same seed gives the same chart. */
   seed?: number;
@@ -1785,6 +1785,12 @@ export interface PatchResult {
   /** Of the patch in the finite swatch; null if it was not pulled. */
   swatch_course: number | null;
   swatch_wale: number | null;
+  /** Of the patch, in the finite swatch if it was pulled there. */
+  modulus_course_n_per_mm: number;
+  /** 90 %; holds the interval of a large cloth of the repeat, too. */
+  modulus_course_interval_n_per_mm: [number, number];
+  modulus_wale_n_per_mm: number;
+  modulus_wale_interval_n_per_mm: [number, number];
 }
 
 /** A repeat with a name. */

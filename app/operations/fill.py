@@ -12,7 +12,7 @@ from pydantic import Field
 
 from app.cli.common import resolve_chart
 from app.cli.options import atlas_option, design_option, write_design_of
-from app.models.base import Known, RequestModel, ResultModel
+from app.models.base import Ends, Known, RequestModel, ResultModel
 from app.models.charts import (
     ChartLines,
     ChartText,
@@ -29,12 +29,12 @@ from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas
 from knitcore.design.fill import fill_field
-from knitcore.design.wishes import Wish, wanted_maps
+from knitcore.design.wishes import Parts, Wish, wanted_maps
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
 
-Maps = tuple[NDArray[np.float64], NDArray[np.float64]]
+Maps = tuple[NDArray[np.float64], NDArray[np.float64], Parts | None]
 
 MAPS = ("modulus_course_n_per_mm", "modulus_wale_n_per_mm")
 MAX_STITCHES = 40_000
@@ -89,7 +89,9 @@ class FillRequest(LawsRequest):
     )
     outline: OutlineInput = None
     repeats: Extent = "small"
-    smallest_patch: int = Field(4, ge=1, le=100, description="Smallest side of a patch.")
+    smallest_patch: int = Field(
+        4, ge=1, le=100, description="Smallest side of a patch, where its part is not smaller."
+    )
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
     check: bool = Field(
         True,
@@ -110,6 +112,14 @@ class PatchResult(ResultModel):
         description="Of the patch in the finite swatch; null if it was not pulled."
     )
     swatch_wale: Known
+    modulus_course_n_per_mm: float = Field(
+        description="Of the patch, in the finite swatch if it was pulled there."
+    )
+    modulus_course_interval_n_per_mm: Ends = Field(
+        description="90 %; holds the interval of a large cloth of the repeat, too."
+    )
+    modulus_wale_n_per_mm: float
+    modulus_wale_interval_n_per_mm: Ends
 
 
 class FillResult(ResultModel):
@@ -146,11 +156,14 @@ def fill(request: FillRequest, context: Context) -> FillResult:
 
 
 def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) -> FillResult:
+    course, wale, parts = wanted
     found = request.pass_to(
         fill_field,
-        *wanted,
+        course,
+        wale,
         context.material(request.material),
         atlas,
+        parts=parts,
         kept=None if request.chart is None else StitchChart.parse(request.chart),
         stitch=None if request.outline is None else outline_marks(request.outline),
         progress=context.share,
@@ -163,7 +176,7 @@ def _wanted(request: FillRequest) -> Maps:
     maps = {name: getattr(request, name) for name in MAPS}
     if request.wishes is None:
         course, wale = (_array(rows, name) for name, rows in maps.items())
-        return course, wale
+        return course, wale, None
     if any(rows is not None for rows in maps.values()):
         raise InputError("wishes", "are given together with maps.", "Give either.")
     if request.rows is None or request.columns is None:
@@ -193,7 +206,7 @@ def _command(
     atlas: Path | None,
     out: Path | None,
 ) -> FillResult:
-    wanted = read_wanted_moduli(target)
+    wanted = *read_wanted_moduli(target), None
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
     table = atlas_of(request.material, request.repeats, context, atlas)

@@ -464,7 +464,7 @@ class FillRequest(TypedDict):
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     repeats: NotRequired[Literal["small", "all"]]
     smallest_patch: NotRequired[int]
-    """Smallest side of a patch."""
+    """Smallest side of a patch, where its part is not smaller."""
     seed: NotRequired[int]
     """The same seed gives the same chart."""
     check: NotRequired[bool]
@@ -2395,6 +2395,12 @@ class PatchResult(BaseModel):
     swatch_course: float | None
     """Of the patch in the finite swatch; null if it was not pulled."""
     swatch_wale: float | None
+    modulus_course_n_per_mm: float
+    """Of the patch, in the finite swatch if it was pulled there."""
+    modulus_course_interval_n_per_mm: tuple[float, float]
+    """90 %; holds the interval of a large cloth of the repeat, too."""
+    modulus_wale_n_per_mm: float
+    modulus_wale_interval_n_per_mm: tuple[float, float]
 
 
 class PatternResult(BaseModel):

@@ -9,6 +9,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.fabric import Direction
+from knitcore.materials.uncertainty import Interval
 
 OFF = 0.10
 """Relative deviation above which a stitch counts as off."""
@@ -27,6 +28,9 @@ class Patch:
         ones, minus one; NaN without a target.
     swatch_course, swatch_wale : the same for the patch in the finite swatch, where its size and its
         neighbours have an effect; NaN without a target, or if it was not pulled.
+    modulus_course_n_per_mm, modulus_wale_n_per_mm : of the patch in the swatch, if it was pulled;
+        their 90 % intervals hold those of a large cloth of the repeat, too, which is cut off at
+        the patch's edge.
     """
 
     repeat: str
@@ -35,8 +39,12 @@ class Patch:
     column: int
     deviation_course: float
     deviation_wale: float
-    swatch_course: float = float("nan")
-    swatch_wale: float = float("nan")
+    swatch_course: float
+    swatch_wale: float
+    modulus_course_n_per_mm: float
+    modulus_course_interval_n_per_mm: Interval
+    modulus_wale_n_per_mm: float
+    modulus_wale_interval_n_per_mm: Interval
 
 
 def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) -> list[str]:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
+from knitcore.design.atlas_build import entry_of, predict_repeat
 from knitcore.design.explain import OFF, Patch, unreached
 from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
@@ -29,6 +30,7 @@ from knitcore.design.progress import Progress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.errors import Cancelled, InputError
 from knitcore.materials import Material
+from knitcore.materials.uncertainty import Interval
 from knitcore.mechanics.local import LocalModuli, local_moduli, stitch_table
 from knitcore.swatch.grid import check_cloth
 
@@ -83,6 +85,7 @@ def fill_field(
     material: Material,
     atlas: Atlas,
     *,
+    parts: Labels | None = None,
     kept: StitchChart | None = None,
     stitch: NDArray[np.bool_] | None = None,
     smallest_patch: int = 4,
@@ -99,11 +102,13 @@ def fill_field(
         there is no target.
     material : one yarn for the whole chart.
     atlas : of that material.
+    parts : (rows, columns) numbers from 0 of the parts that were wished for one by one, as
+        :func:`knitcore.design.wishes.wanted_maps` gives; a part narrower than a patch is one patch.
     kept : a chart whose stitches without a target stay as they are; the others are fitted to them
         and judged among them. Without it all stitches are filled.
     stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere there is no target
         and no neighbour. All by default.
-    smallest_patch : smallest side of a patch in stitches.
+    smallest_patch : smallest side of a patch in stitches, where its part is not smaller.
     seed : of the order in which stitches are tried.
     check : pull the chart in the finite swatch, and choose again where the result differs.
     progress : called with the share done.
@@ -132,7 +137,9 @@ def fill_field(
         raise InputError(
             "atlas", f"it is of {atlas.material}, not of {material.identifier}.", "Build its atlas."
         )
-    fill = _Fill(wanted, kept, stitch, material, atlas, seed, Progress(progress, cancelled))
+    if parts is None:
+        parts = np.zeros(wanted.shape[1:], dtype=np.intp)
+    fill = _Fill(wanted, parts, kept, stitch, material, atlas, seed, Progress(progress, cancelled))
     return fill.run(smallest_patch, check=check and wanted[0].size <= MAX_CHECKED)
 
 
@@ -160,6 +167,7 @@ class _Fill:
     def __init__(
         self,
         wanted: Array,
+        parts: Labels,
         kept: StitchChart | None,
         stitch: NDArray[np.bool_] | None,
         material: Material,
@@ -169,6 +177,7 @@ class _Fill:
     ) -> None:
         inside = np.ones(wanted.shape[1:], dtype=bool) if stitch is None else stitch
         self._wanted = np.where(inside, wanted, np.nan)
+        self._parts = parts
         self._material, self._atlas, self._stitch = material, atlas, inside
         no_wish = np.isnan(self._wanted).all(axis=0)
         self._fixed = ~inside if kept is None else no_wish
@@ -187,7 +196,7 @@ class _Fill:
             return self._read_back(own, "The map is exactly that of a chart, which was read back.")
         uneven = unevenness(self._atlas, self._table)
         chosen, cost = wanted_labels(self._atlas, uneven, *self._wanted)
-        labels = smooth(cost, smallest_patch)
+        labels = smooth(cost, smallest_patch, self._parts)
         effective = self._atlas.log_moduli[chosen[labels]].transpose(2, 0, 1)
         patches = connected(np.where(self._fixed, len(chosen), labels))
         count = len(np.unique(patches[~self._fixed]))
@@ -324,12 +333,24 @@ class _Fill:
         off, there = np.expm1(moduli - wishes), np.full(moduli.shape, np.nan)
         if check:
             there = np.expm1(moduli + trial.factors - wishes)
+        judged = self._judged(trial.choices, trial.factors)
         regions = []
         for patch, choice in enumerate(trial.choices):
             cells = patches == patch
-            place = int(cells.sum()), *map(int, np.argwhere(cells)[0])
-            regions.append(Patch(choice.repeat.key, *place, *off[patch], *there[patch]))
-        judged = self._judged(trial.choices, trial.factors)
+            row, column = map(int, np.argwhere(cells)[0])
+            regions.append(
+                Patch(
+                    choice.repeat.key,
+                    int(cells.sum()),
+                    row,
+                    column,
+                    float(off[patch, 0]),
+                    float(off[patch, 1]),
+                    float(there[patch, 0]),
+                    float(there[patch, 1]),
+                    *self._moduli(choice, judged[patch]),
+                )
+            )
         self._progress.look(1.0)
         return FilledField(
             trial.chart,
@@ -339,6 +360,18 @@ class _Fill:
             self._off_share(_spread(judged, patches) - self._wanted),
             tuple(unreached(regions, wishes, np.expm1(judged - wishes), self._atlas.log_moduli)),
         )
+
+    def _moduli(self, choice: _Choice, judged: Array) -> tuple[float, Interval, float, Interval]:
+        """Moduli of a patch, with intervals from those of a large cloth to those of the patch."""
+        entry = self._atlas.index_of(choice.repeat)
+        row = (
+            entry_of(predict_repeat(choice.repeat, self._material)).values
+            if entry is None
+            else self._atlas.values[entry].tolist()
+        )
+        course, wale = np.exp(judged).tolist()
+        by_course, by_wale = np.exp(judged - choice.log_moduli).tolist()
+        return course, _reaching(row[1:3], by_course), wale, _reaching(row[4:6], by_wale)
 
     def _beside_kept(self, chart: StitchChart) -> StitchChart:
         """The chart, or its K/P exchange, where there are targets; the kept chart elsewhere."""
@@ -369,6 +402,12 @@ def _spread(values: Array, patches: Labels) -> Array:
     """(2, rows, columns) of values (patches, 2); NaN at stitches that are kept."""
     known = np.vstack([values, np.full(2, np.nan)])
     return known[patches].transpose(2, 0, 1)
+
+
+def _reaching(ends: Sequence[float], factor: float) -> Interval:
+    """The interval of a large cloth, widened as far as the factor of a small patch moves it."""
+    low, high = ends
+    return Interval(low * min(factor, 1.0), high * max(factor, 1.0))
 
 
 def _extent(cells: NDArray[np.bool_]) -> tuple[int, int]:

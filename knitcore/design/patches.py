@@ -65,11 +65,12 @@ def wanted_labels(
     return chosen, cost + price[chosen, None, None]
 
 
-def smooth(cost: Array, smallest: int) -> Labels:
+def smooth(cost: Array, smallest: int, parts: Labels) -> Labels:
     """Labels (rows, columns) of low cost in patches of at least smallest x smallest stitches.
 
     Starts from the cheapest label of every stitch, lets neighbours agree where that costs little,
-    and gives patches that are too small to their cheapest neighbour.
+    and gives patches that are too small to their cheapest neighbour in the same part. A part that
+    is itself smaller is one patch: its repeat is cut off at its edge.
     """
     labels: Labels = cost.argmin(axis=0)
     if len(cost) == 1:
@@ -82,7 +83,7 @@ def smooth(cost: Array, smallest: int) -> Labels:
         if np.array_equal(updated, labels):
             break
         labels = updated
-    return _absorb(labels, cost, smallest)
+    return _absorb(labels, cost, smallest, connected(parts))
 
 
 def connected(labels: Labels) -> Labels:
@@ -102,26 +103,28 @@ def _neighbours_like(labels: Labels, label: int) -> NDArray[np.intp]:
     return total
 
 
-def _absorb(labels: Labels, cost: Array, smallest: int) -> Labels:
+def _absorb(labels: Labels, cost: Array, smallest: int, parts: Labels) -> Labels:
     """Give patches that are too small to the neighbour that suits them best, smallest first."""
     labels = labels.copy()
-    rows = min(smallest, labels.shape[0])
-    columns = min(smallest, labels.shape[1])
+    least = np.minimum(smallest, _sides(parts))
+    areas = np.bincount(parts.ravel())
     while True:
-        patches = connected(labels)
-        boxes = ndimage.find_objects(patches + 1)
+        patches = connected(labels + len(cost) * parts)
         sizes = np.bincount(patches.ravel())
-        small = [
-            index
-            for index, (row, column) in enumerate(boxes)
-            if sizes[index] < rows * columns
-            or row.stop - row.start < rows
-            or column.stop - column.start < columns
-        ]
-        if not small or len(sizes) == 1:
+        part = parts.ravel()[np.unique(patches, return_index=True)[1]]
+        sides = _sides(patches)
+        too_small = (sizes < least[part].prod(axis=1)) | (sides < least[part]).any(axis=1)
+        small = np.flatnonzero(too_small & (sizes < areas[part])).tolist()
+        if not small:
             return labels
         index = min(small, key=lambda i: (sizes[i], i))
         cells = patches == index
-        beside = ndimage.binary_dilation(cells) & ~cells
+        beside = ndimage.binary_dilation(cells) & ~cells & (parts == parts[cells][0])
         choices = np.unique(labels[beside])
         labels[cells] = choices[np.argmin(cost[choices][:, cells].sum(axis=1))]
+
+
+def _sides(numbered: Labels) -> Labels:
+    """(numbers, 2) rows and columns that each number extends over."""
+    boxes = ndimage.find_objects(numbered + 1)
+    return np.array([[side.stop - side.start for side in box] for box in boxes], dtype=np.intp)

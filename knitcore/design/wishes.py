@@ -13,6 +13,8 @@ from knitcore.arrays import Array
 from knitcore.chart import check_size
 from knitcore.errors import InputError
 
+Parts = NDArray[np.intp]
+
 
 @dataclass(frozen=True)
 class Wish:
@@ -31,22 +33,21 @@ class Wish:
     wale_n_per_mm: float | None
 
 
-def wanted_maps(
-    wishes: Sequence[Wish], rows: int, columns: int, *, smallest_patch: int = 1
-) -> tuple[Array, Array]:
-    """Maps (rows, columns) of the target moduli, NaN where there is none.
+def wanted_maps(wishes: Sequence[Wish], rows: int, columns: int) -> tuple[Array, Array, Parts]:
+    """Maps (rows, columns) of the target moduli, NaN where there is none, and of the parts.
+
+    Stitches with the same number in the map of parts are wanted alike by the same wishes.
 
     Raises
     ------
     InputError
-        If a part lies outside the chart, is narrower than a patch, or contradicts another.
+        If a part lies outside the chart, or contradicts another.
     """
     check_size(rows, columns)
     maps = np.full((2, rows, columns), np.nan)
     owner = np.full((2, rows, columns), -1)
     for number, wish in enumerate(wishes):
         cells = _cells(wish, rows, columns)
-        _check_width(wish, cells, smallest_patch)
         for axis, value in enumerate((wish.course_n_per_mm, wish.wale_n_per_mm)):
             if value is None:
                 continue
@@ -55,7 +56,8 @@ def wanted_maps(
                 _refuse(wish, wishes[int(owner[axis][other][0])], other, axis)
             maps[axis][cells] = value
             owner[axis][cells] = number
-    return maps[0], maps[1]
+    parts = (owner[0] + 1) * (len(wishes) + 1) + owner[1] + 1
+    return maps[0], maps[1], parts
 
 
 def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:
@@ -79,17 +81,6 @@ def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:
             "Give N/mm above 0.",
         )
     return cells
-
-
-def _check_width(wish: Wish, cells: NDArray[np.bool_], smallest: int) -> None:
-    extents = [int(np.ptp(np.flatnonzero(cells.any(axis=axis)))) + 1 for axis in (1, 0)]
-    for extent, whole, name in zip(extents, cells.shape, ("rows", "columns"), strict=True):
-        if extent < min(smallest, whole):
-            raise InputError(
-                "wishes",
-                f"“{wish.name}” has {extent} {name}: no patch of {smallest} fits.",
-                f"Make it larger, or allow patches of {extent}.",
-            )
 
 
 def _refuse(wish: Wish, other: Wish, cells: NDArray[np.bool_], axis: int) -> None:

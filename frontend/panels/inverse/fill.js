@@ -300,7 +300,7 @@ export function fillTab(studio) {
         "details",
         {},
         h("summary", {}, "Which patterns, and how near they come"),
-        found.patches.length > 0 && patchTable(found),
+        found.patches.length > 0 && patchTable(found, wished),
         ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, message)),
       ),
     );
@@ -368,32 +368,41 @@ function against(now, wanted) {
   return `${more}${share > 1 ? "stiffer" : "softer"} than wanted`;
 }
 
-/** @param {FillResult} found */
-function patchTable({ patches }) {
+/** @param {FillResult} found @param {Part[]} wished */
+function patchTable({ patches, columns }, wished) {
   const rows = patches.toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
-  /** @param {number | null} share */
-  const away = (share) => (share === null ? "any" : against(1 + share, 1));
+  /** @param {{row: number, column: number}} patch */
+  const partOf = ({ row, column }) => wished.find(({ cells }) => cells.includes(row * columns + column));
+  /** @param {number} value @param {[number, number]} ends @param {number | null | undefined} wanted */
+  const stiffness = (value, [low, high], wanted) =>
+    h(
+      "td",
+      {},
+      h("div", { class: "figures" }, `${figure(value)} (${figure(low)} to ${figure(high)})`),
+      wanted && h("div", { class: "muted" }, against(value, wanted)),
+    );
   return h(
     "table",
     { class: "inverse-numbers patches" },
     h(
       "thead",
       {},
-      h("tr", {}, ...["Pattern", "Stitches", "Rows", "Columns"].map((text) => h("th", { scope: "col" }, text))),
+      h("tr", {}, ...["Part", "Pattern", "Along rows", "Along columns"].map((text) => h("th", { scope: "col" }, text))),
     ),
     h(
       "tbody",
       {},
-      ...rows.map((p) =>
-        h(
+      ...rows.map((patch) => {
+        const part = partOf(patch);
+        return h(
           "tr",
           {},
-          h("td", { class: "patch-name" }, repeatPicture(p.repeat, 36), nameOf(p.repeat)),
-          h("td", { class: "figures" }, figure(p.stitches)),
-          h("td", {}, away(p.deviation_course)),
-          h("td", {}, away(p.deviation_wale)),
-        ),
-      ),
+          h("td", {}, part?.name ?? "", h("div", { class: "muted" }, `${patch.stitches} sts`)),
+          h("td", { class: "patch-name" }, repeatPicture(patch.repeat, 36), nameOf(patch.repeat)),
+          stiffness(patch.modulus_course_n_per_mm, patch.modulus_course_interval_n_per_mm, part?.course),
+          stiffness(patch.modulus_wale_n_per_mm, patch.modulus_wale_interval_n_per_mm, part?.wale),
+        );
+      }),
     ),
   );
 }

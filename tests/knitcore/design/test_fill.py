@@ -8,6 +8,7 @@ from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import connected
+from knitcore.design.wishes import Wish, wanted_maps
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
@@ -128,6 +129,29 @@ def test_patches_are_not_too_small(smallest: int) -> None:
         assert np.ptp(rows) + 1 >= smallest
         assert np.ptp(columns) + 1 >= smallest
         assert field.regions[patch].stitches == len(rows)
+
+
+@pytest.mark.parametrize("columns", [1, 3])
+def test_a_part_narrower_than_a_patch_is_filled(columns: int) -> None:
+    """Its repeat is cut off at the part's edge; the stitches beside it stay."""
+    garter = ACRYLIC.law(Fabric.GARTER)
+    cuff = Wish(
+        "cuff",
+        tuple((row, 0, columns) for row in range(12)),
+        garter.modulus_course,
+        garter.modulus_wale,
+    )
+    course, wale, parts = wanted_maps([cuff], 12, 10)
+    knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 12, 10)
+    field = fill_field(course, wale, ACRYLIC, ATLAS, parts=parts, kept=knit)
+    (region,) = field.regions
+    assert region.stitches == 12 * columns
+    assert region.repeat == "P/K"
+    assert not field.chart.purl[:, columns:].any()
+    assert field.chart.purl[:, :columns].mean() == pytest.approx(0.5)
+    large, interval = garter.modulus_course, region.modulus_course_interval_n_per_mm
+    assert interval.low <= min(large, region.modulus_course_n_per_mm)
+    assert interval.high >= max(large, region.modulus_course_n_per_mm)
 
 
 def test_stitches_without_a_target_are_not_constrained() -> None:
