@@ -23,17 +23,26 @@ BASKET = "\n".join(["KKKKPPPP"] * 4 + ["PPPPKKKK"] * 4)
 MIURA = "\n".join(
     ("K" * s + "P" * 6 + "K" * (12 - 6 - s)) for s in (*range(7), *range(5, 0, -1)) for _ in "12"
 )
+FRAMED = "\n".join(
+    "".join("P" if row % 2 and not (4 <= row < 24 and 4 <= at < 18) else "K" for at in range(22))
+    for row in range(28)
+)
 PIECES = {
     "stockinette, 20 x 20": StitchChart.parse("K").tile(20, 20),
     "stockinette, 8 x 30": StitchChart.parse("K").tile(30, 8),
     "stockinette, 30 x 2": StitchChart.parse("K").tile(2, 30),
     "2x2 rib": StitchChart.parse("KKPP").tile(24, 6),
     "6x6 rib": StitchChart.parse("K" * 6 + "P" * 6).tile(20, 3),
+    "4x2 rib": StitchChart.parse("KKKKPP").tile(24, 4),
+    "5x1 rib": StitchChart.parse("KKKKKP").tile(24, 4),
     "3x3 welt": StitchChart.parse("P\nP\nP\nK\nK\nK").tile(4, 20),
     "seed": StitchChart.of_fabric("seed", rows=16, columns=12),
     "4x4 basket": StitchChart.parse(BASKET).tile(3, 3),
     "shifted stripes": StitchChart.parse(MIURA).tile(2, 2),
+    "stockinette in garter": StitchChart.parse(FRAMED),
 }
+ACROSS = 4
+"""Pieces beside each other."""
 
 
 def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
@@ -73,13 +82,13 @@ def drawn(corners_mm: Array, purl: NDArray[np.bool_]) -> Image.Image:
 
 def main() -> None:
     """Write the picture."""
-    sheet = Image.new("RGB", (3 * SIDE, 3 * (SIDE + 22)), "white")
+    sheet = Image.new("RGB", (ACROSS * SIDE, -(-len(PIECES) // ACROSS) * (SIDE + 22)), "white")
     pen = ImageDraw.Draw(sheet)
     for place, (name, chart) in enumerate(PIECES.items()):
         piece = curl(chart, material("acrylic"))
         size = f"{piece.width_mm:.0f} x {piece.height_mm:.0f} x {piece.depth_mm:.0f} mm"
         print(name, size, "" if piece.converged else "NOT converged", f"{piece.seconds:.1f} s")
-        at = (place % 3) * SIDE, (place // 3) * (SIDE + 22)
+        at = (place % ACROSS) * SIDE, (place // ACROSS) * (SIDE + 22)
         sheet.paste(drawn(piece.corners_mm, chart.purl), at)
         pen.text((at[0] + 12, at[1] + SIDE), f"{name}: {size}", fill=(40, 40, 40))
     colours = sheet.quantize(128)

@@ -14,6 +14,7 @@ from knitcore.chart import StitchChart
 from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
+from knitcore.shell.folds import balances
 from knitcore.shell.relax import settle
 from knitcore.shell.rolled import start
 from knitcore.shell.sheet import Sheet, sheet_of
@@ -31,6 +32,10 @@ STRIP = 4.0
 PULLED_NOTE = (
     "Pulled between clamps: the curl of the free edges against the pull. The cloth's stiffness is "
     "that of small strains, so that forces are those of the stretch test, and not of this shape."
+)
+UNBALANCED_NOTE = (
+    "Knits and purls of its ribs or welts do not balance, so that it rolls up as a whole, as bend "
+    "says of the repeat, too. Laid flat it has the size that predict gives."
 )
 NOTE = (
     "Without friction, set and weight: edges roll and folds close as far as they can; real fabric "
@@ -176,7 +181,11 @@ def curl(
         residual=found.residual,
         seconds=time.process_time() - clock,
         stitches=stitches,
-        notes=(NOTE,) if pull is None else (PULLED_NOTE, NOTE),
+        notes=(
+            *(() if pull is None else (PULLED_NOTE,)),
+            *(() if balances(chart) else (UNBALANCED_NOTE,)),
+            NOTE,
+        ),
     )
 
 

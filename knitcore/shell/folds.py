@@ -22,7 +22,7 @@ from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.phases import quarter_phases
 
-MIN_FOLD = 0.3
+MIN_FOLD = 0.2
 """Share of its length by which a row of opposed runs would fold by itself, at least. For the
 resolver baskets have about the size of flat cloth; they pillow all the same, about as much as
 relaxed baskets at the yarn level."""
@@ -34,7 +34,8 @@ class Folds:
 
     Parameters
     ----------
-    share : (rows, columns) of the free turn of stockinette that a stitch has.
+    share : (rows, columns, 2) of the free turn of stockinette that a stitch has, along the rows and
+        along the columns.
     sizes_mm : (rows, columns, 2) width and height.
     """
 
@@ -62,8 +63,9 @@ def folds_of(chart: StitchChart, material: Material, free: Array) -> Folds:
     count = np.where(folded, run, 2)
     turn = np.minimum(np.sqrt(24.0 * (1.0 - span) / (count**2 - 1.0)), np.pi / count)
     # what folds in one direction does not roll up in the other
-    share = np.where(folded, turn / free, 1.0).min(axis=-1).clip(max=1.0)
-    turn = np.where(folded, share[..., None] * free, 0.0)
+    share = np.where(folded, turn / free, 1.0).clip(max=1.0)
+    share = np.where(folded, share, share[..., ::-1])
+    turn = np.where(folded, share * free, 0.0)
     folds_to = np.sinc(0.5 * count * turn / np.pi) / np.sinc(0.5 * turn / np.pi)
     # a sheet that is to fold in both directions would have to stretch, and hardly gets narrower
     both = folded.all(axis=-1, keepdims=True)
@@ -79,6 +81,70 @@ def turning(chart: StitchChart) -> NDArray[np.int8]:
     return np.where(any_of, np.where(chart.purl, -1, 1), 0).astype(np.int8)
 
 
+@dataclass(frozen=True, eq=False)
+class _Runs:
+    """Stitches of a row, side by side, that turn to one side; numbered along the rows.
+
+    Parameters
+    ----------
+    of : (rows, columns) number of a stitch's run.
+    count : (runs,) stitches.
+    first, last : (runs,) whether it begins or ends a row.
+    turns : (runs,) whether its stitches turn at all.
+    """
+
+    of: NDArray[np.int64]
+    count: NDArray[np.int64]
+    first: NDArray[np.bool_]
+    last: NDArray[np.bool_]
+    turns: NDArray[np.bool_]
+
+    @classmethod
+    def along(cls, side: NDArray[np.int8]) -> _Runs:
+        rows, columns = side.shape
+        begins = np.ones((rows, columns), dtype=bool)
+        begins[:, 1:] = side[:, 1:] != side[:, :-1]
+        start = np.flatnonzero(begins)
+        count = np.diff(np.append(start, rows * columns))
+        return cls(
+            (np.cumsum(begins.ravel()) - 1).reshape(rows, columns), count, start % columns == 0,
+            (start + count) % columns == 0, side.ravel()[start] != 0,
+        )  # fmt: skip
+
+    @property
+    def single(self) -> NDArray[np.bool_]:
+        """(runs,) whether it is one stitch that does not turn, but opposes its neighbours."""
+        return np.asarray(~self.turns & (self.count == 1) & ~self.first & ~self.last)
+
+    @property
+    def opposed(self) -> NDArray[np.bool_]:
+        """(runs,) whether it lies between others that hold it."""
+        holds = self.turns | self.single
+        before = np.where(self.first | ~np.roll(holds, 1), 0, np.roll(self.count, 1))
+        after = np.where(self.last | ~np.roll(holds, -1), 0, np.roll(self.count, -1))
+        shorter = self.count <= np.maximum(before, after)
+        return np.asarray(self.turns & (((before > 0) & (after > 0)) | shorter))
+
+    @property
+    def amid(self) -> NDArray[np.bool_]:
+        """(runs,) whether it is opposed, and what is beside it is opposed, too, or single."""
+        before, after = self.neighbours
+        folds = self.opposed | self.single
+        return np.asarray(self.opposed & folds[before] & folds[after])
+
+    @property
+    def neighbours(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """(runs,) those before and after it; at an edge twice the only one, or itself."""
+        own = np.arange(len(self.count))
+        before, after = np.where(self.first, own, own - 1), np.where(self.last, own, own + 1)
+        return np.where(self.first, after, before), np.where(self.last, before, after)
+
+    def around(self, of_runs: Array) -> Array:
+        """(runs,) sum over a run and half of either neighbour."""
+        before, after = self.neighbours
+        return np.asarray(of_runs + 0.5 * (of_runs[before] + of_runs[after]))
+
+
 def opposed(side: NDArray[np.int8]) -> NDArray[np.int64]:
     """Lengths of the runs of stitches of a row that turn to one side, between others that turn to
     the other, (rows, columns).
@@ -87,16 +153,46 @@ def opposed(side: NDArray[np.int8]) -> NDArray[np.int64]:
     more of them, such as a border, do not. A run at an edge is opposed if it is no longer than the
     one beside it. 0 where nothing opposes.
     """
-    rows, columns = side.shape
-    begins = np.ones((rows, columns), dtype=bool)
-    begins[:, 1:] = side[:, 1:] != side[:, :-1]
-    run = np.cumsum(begins.ravel()) - 1
-    start = np.flatnonzero(begins)
-    count = np.diff(np.append(start, rows * columns))
-    first, last = start % columns == 0, (start + count) % columns == 0
-    turns = side.ravel()[start] != 0
-    holds = turns | ((count == 1) & ~first & ~last)
-    before = np.where(first | ~np.roll(holds, 1), 0, np.roll(count, 1))
-    after = np.where(last | ~np.roll(holds, -1), 0, np.roll(count, -1))
-    held = np.where((before > 0) & (after > 0), True, count <= np.maximum(before, after))
-    return np.asarray(np.where(turns & held, count, 0)[run].reshape(rows, columns))
+    runs = _Runs.along(side)
+    return np.asarray(np.where(runs.opposed, runs.count, 0)[runs.of])
+
+
+def rest_turns(side: NDArray[np.int8], turn: Array, free: Array, stiffness: Array) -> Array:
+    """Turn at rest of every line between neighbours of a row, (rows, columns - 1), rad.
+
+    Fabric that lies flat turns back at the lines between opposed runs as far as it turns within
+    them. Where knits and purls do not balance, as in a 5x1 rib, the mean moment that is left rolls
+    up the whole, unless it folds across, too.
+
+    Parameters
+    ----------
+    side : (rows, columns), see :func:`turning`.
+    turn, free : (rows, columns - 1) turns within runs, less for folds, and where nothing opposes.
+    stiffness : (rows, columns - 1) of the lines, N·mm.
+    """
+    runs = _Runs.along(side)
+    left, right = runs.of[:, :-1], runs.of[:, 1:]
+    inside = left == right
+
+    def sums(lines: Array) -> Array:
+        return np.bincount(left[inside], lines[inside], minlength=len(runs.count)).astype(float)
+
+    folded = np.where(runs.opposed, sums(turn), 0.0)
+    flat = np.where(inside, turn, -0.5 * (folded[left] + folded[right]))
+    mean = runs.around(sums(stiffness * free)) / runs.around(runs.count.astype(float))
+    mean[~runs.amid] = 0.0
+    count = np.maximum(runs.amid[left].astype(int) + runs.amid[right], 1)
+    whole = (mean[left] + mean[right]) / count / stiffness
+    across = opposed(side.T).T > 0
+    return np.asarray(flat + np.where(across[:, 1:] | across[:, :-1], 0.0, whole))
+
+
+def balances(chart: StitchChart) -> bool:
+    """Whether no part of a chart folds and rolls up at the same time."""
+    return all(_balances(side) for side in (turning(chart), turning(chart).T))
+
+
+def _balances(side: NDArray[np.int8]) -> bool:
+    inside = np.where(side[:, 1:] == side[:, :-1], side[:, 1:], 0).astype(float)
+    like = np.ones_like(inside)
+    return not np.any(rest_turns(side, 0.0 * like, inside, like)[inside != 0.0])

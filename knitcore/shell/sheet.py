@@ -28,7 +28,7 @@ from knitcore.materials import Material
 from knitcore.phases import quarter_phases
 from knitcore.shell import kernels
 from knitcore.shell.bends import Bend, bends_of
-from knitcore.shell.folds import folds_of
+from knitcore.shell.folds import folds_of, rest_turns, turning
 
 Ints = NDArray[np.int64]
 
@@ -214,8 +214,9 @@ def sheet_of(chart: StitchChart, material: Material) -> Sheet:
     quarter_size = size.reshape(-1, 2).repeat(4, axis=0)
     area = 0.25 * quarter_size.prod(axis=1, keepdims=True)
     membrane = np.concatenate([quarter_size, area * of.membrane[by_stitch].reshape(-1, 4)], axis=1)
-    along = _turning(chart.purl, phases, of, folds.share)
-    across = _turning(chart.purl.T, phases.T, of.turned(), folds.share.T)
+    side = turning(chart)
+    along = _turning(side, chart.purl, phases, of, folds.share[..., 0])
+    across = _turning(side.T, chart.purl.T, phases.T, of.turned(), folds.share[..., 1].T)
     rigidity = np.sqrt(of.rigidity_n_mm.prod(axis=1))[by_stitch].mean(axis=1)
     twisting = 4.0 * TWIST * rigidity / size.reshape(-1, 2).prod(axis=1)
     mean = size.mean(axis=(0, 1))
@@ -302,7 +303,11 @@ class _Fabrics:
 
 
 def _turning(
-    purl: NDArray[np.bool_], phases: NDArray[np.uint8], of: _Fabrics, share: Array
+    side: NDArray[np.int8],
+    purl: NDArray[np.bool_],
+    phases: NDArray[np.uint8],
+    of: _Fabrics,
+    share: Array,
 ) -> Array:
     """Parameters of the lines between neighbours of a row, those of the rows one after another."""
     sign = np.where(purl, -1.0, 1.0).repeat(2, axis=0).repeat(2, axis=1)
@@ -311,14 +316,15 @@ def _turning(
     def beside(values: Array) -> Array:
         """Mean over the four quarters that meet at a line."""
         inner = values[:, 1:-1].reshape(rows, 2, columns - 1, 2)
-        return np.asarray(inner.mean(axis=(1, 3)).ravel())
+        return np.asarray(inner.mean(axis=(1, 3)))
 
     length = beside(of.size_mm[phases][..., 0])
     width = beside(of.size_mm[phases][..., 1])
     rigidity = beside(of.rigidity_n_mm[phases][..., 0])
-    free = length * beside(sign * of.curvature_per_mm[phases][..., 0])
     closed = 2.0 * np.arctan(length / of.thickness_mm)
+    wanted = length * beside(sign * of.curvature_per_mm[phases][..., 0])
+    free = np.clip(wanted, -closed, closed)
     stiffness = rigidity * width / length
-    shared = 0.5 * (share[:, 1:] + share[:, :-1]).ravel()
-    rest = shared * np.clip(free, -closed, closed)
-    return np.stack([stiffness, rest, closed, 0.25 * length**2], axis=-1)
+    turn = 0.5 * (share[:, 1:] + share[:, :-1]) * free
+    rest = np.clip(rest_turns(side, turn, free, stiffness), -closed, closed)
+    return np.stack([stiffness, rest, closed, 0.25 * length**2], axis=-1).reshape(-1, 4)

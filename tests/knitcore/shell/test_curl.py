@@ -10,7 +10,9 @@ from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
-from knitcore.shell.curl import CurledPiece, Pull, curl
+from knitcore.shell.curl import UNBALANCED_NOTE, CurledPiece, Pull, curl
+from knitcore.shell.relax import settle
+from knitcore.shell.sheet import sheet_of
 
 ACRYLIC = material("acrylic")
 
@@ -83,6 +85,28 @@ def test_folds_are_as_wide_and_high_as_the_relaxed_fabric(
         ends = line[[chart.purl.shape[axis], -1 - chart.purl.shape[axis]]]
         count = len(line) - 1 - 2 * chart.purl.shape[axis]
         assert np.linalg.norm(ends[1] - ends[0]) / count == pytest.approx(along.relaxed_mm, rel=0.1)
+
+
+@pytest.mark.parametrize("repeat", ["KKP", "KKKKPP", "KKKKKP"])
+def test_ribs_that_do_not_balance_are_as_wide_as_predicted_when_laid_flat(repeat: str) -> None:
+    """One column in every repeat is kept in the plane; as it lies such a rib rolls to the back."""
+    wide, chart = len(repeat), StitchChart.parse(repeat).tile(8, 4)
+    sheet = sheet_of(chart, ACRYLIC)
+    held = np.zeros((chart.rows + 1, chart.columns + 1, 3), dtype=bool)
+    held[:, ::wide, 2] = True
+    held = held.reshape(-1, 3)
+    begin = sheet.flat_mm + 1e-3 * np.random.default_rng(0).standard_normal(sheet.flat_mm.shape)
+    begin[held] = 0.0
+    flat = settle(sheet, begin, held=held)
+    assert flat.converged
+    line = flat.x.reshape(chart.rows + 1, chart.columns + 1, 3)[:, :, 0].mean(axis=0)
+    width = (line[3 * wide] - line[wide]) / (2 * wide)
+    predicted = choose(StitchChart.parse(repeat), ACRYLIC).course.relaxed_mm
+    assert width == pytest.approx(predicted, rel=0.1)
+    piece = curl(chart, ACRYLIC)
+    assert piece.converged
+    assert piece.curl_course_mm < 0.0
+    assert UNBALANCED_NOTE in piece.notes
 
 
 def test_welts_draw_in_along_the_columns() -> None:

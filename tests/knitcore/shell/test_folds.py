@@ -9,7 +9,7 @@ from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric
 from knitcore.materials import material
-from knitcore.shell.folds import folds_of, opposed, turning
+from knitcore.shell.folds import balances, folds_of, opposed, rest_turns, turning
 
 ACRYLIC = material("acrylic")
 FREE = np.array([1.8, 1.1])
@@ -42,8 +42,33 @@ def test_a_wide_rib_turns_over_to_the_width_of_its_surroundings() -> None:
     """The polygon of its panels spans what the resolver says."""
     chart = StitchChart.parse("KKKKPPPP").tile(16, 4)
     found = folds_of(chart, ACRYLIC, FREE)
-    turn = found.share[8, 13] * FREE[0]
+    turn = found.share[8, 13, 0] * FREE[0]
     at = turn * (np.arange(4) - 1.5)
     span = found.sizes_mm[8, 13, 0] * np.cos(at).mean()
     assert span == pytest.approx(neighbourhood_sizes(chart, ACRYLIC)[8, 13, 0], rel=1e-9)
     assert turn < np.pi / 4
+
+
+@pytest.mark.parametrize("row", ["KKKKPP", "KKKKKP", "KKPP", "KKKPP"])
+def test_ribs_turn_back_between_their_panels_as_far_as_within(row: str) -> None:
+    side = turning(StitchChart.parse(row).tile(3, 4))
+    inside = np.where(side[:, 1:] == side[:, :-1], side[:, 1:], 0.0)
+    turns = rest_turns(side, 0.3 * inside, 0.0 * inside, np.ones_like(inside))
+    inner = slice(len(row), 2 * len(row))
+    assert turns[1, inner].sum() == pytest.approx(0.0, abs=1e-12)
+    assert np.all(turns[1, inner][inside[1, inner] > 0] == 0.3)
+
+
+def test_what_does_not_balance_rolls_up_evenly() -> None:
+    side = turning(StitchChart.parse("KKKKKP").tile(3, 4))
+    inside = np.where(side[:, 1:] == side[:, :-1], side[:, 1:], 0.0)
+    turns = rest_turns(side, 0.0 * inside, inside, np.ones_like(inside))
+    assert np.allclose(turns[1, 6:12], 4 / 6)
+
+
+@pytest.mark.parametrize(
+    ("row", "balanced"), [("KKPP", True), ("KKKKPP", False), ("KKKKKP", False), ("K", True)]
+)
+def test_ribs_of_as_many_knits_as_purls_balance(row: str, balanced: bool) -> None:
+    chart = StitchChart.parse(row).tile(6, 4)
+    assert balances(chart) is balanced
