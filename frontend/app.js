@@ -11,7 +11,7 @@ import { Ink } from "./core/ink.js";
 import { Latest } from "./core/latest.js";
 import { motifGrid } from "./core/motif.js";
 import { loadDesign, loadHistory, newIdentifier, saveSettings } from "./core/store.js";
-import { byId, firstPaint, isTyping } from "./dom.js";
+import { byId, firstPaint, isTyping, nextTask } from "./dom.js";
 import { openAddressed } from "./keeping/address.js";
 import { Keeper } from "./keeping/keeper.js";
 import { sharePlaces } from "./keeping/places.js";
@@ -99,10 +99,11 @@ split(byId("split-rows"), "--inspector-height", {
 listenToKeys(context, isTyping);
 listenToImports(context, isTyping);
 
+await nextTask(); // the page is there; asking the service need not be part of the same long task
 const predictAgain = startPredictor(studio);
 // The 3D view starts in a process of its own, while the page is painted.
 const showAgain = fabricview(byId("fabric"), studio, view);
-/** The plots are heavy: the chart is there to be painted on before they come. */
+/** The numbers come second: the chart is there to be painted on before they come. */
 void firstPaint().then(async () => {
   performance.mark("studio");
   void keeper.catchUp();

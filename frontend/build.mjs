@@ -101,6 +101,9 @@ const files = [
 ];
 for (const { name, contents } of files) await put(name, contents);
 await put("icon.svg", await readFile(join(ROOT, "icon.svg")));
+// plotly for lines and points alone: what else it can draw would keep the page from painting for half a second
+const PLOTLY = "plotly.js-basic-dist-min/plotly-basic.min.js";
+await put("plotly.min.js", await readFile(join(ROOT, "node_modules", PLOTLY)));
 const inFrame = ["frame.js", "yarn.js"];
 for (const name of inFrame) {
   const { code } = await transform(await readFile(join(ROOT, name), "utf8"), { minify: true, target: "es2022" });
@@ -146,7 +149,14 @@ const sizes = {
 await put("sizes.json", `${JSON.stringify(sizes, null, 2)}\n`);
 await put("index.html", page);
 
-const current = new Set(["index.html", "icon.svg", ...inFrame, "sizes.json", ...files.map(({ name }) => name)]);
+const current = new Set([
+  "index.html",
+  "icon.svg",
+  "plotly.min.js",
+  ...inFrame,
+  "sizes.json",
+  ...files.map(({ name }) => name),
+]);
 for (const name of await readdir(DIST)) {
   if (current.has(name.replace(/\.gz$/, ""))) continue;
   const { mtimeMs } = await stat(join(DIST, name)).catch(() => ({ mtimeMs: Date.now() }));

@@ -73,3 +73,16 @@ export function firstPaint() {
     setTimeout(soon, 500);
   });
 }
+
+/** Until what waits has had its turn: input, and painting if it is due. */
+export function nextTask() {
+  return new Promise((resolve) => setTimeout(resolve));
+}
+
+/** Until the page has nothing to do, or for two seconds. */
+export function idle() {
+  return new Promise((resolve) => {
+    if ("requestIdleCallback" in window) requestIdleCallback(resolve, { timeout: 2000 });
+    else setTimeout(resolve, 500);
+  });
+}

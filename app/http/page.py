@@ -40,13 +40,16 @@ def serve_page(app: FastAPI) -> None:
     async def page(request: Request) -> Response:
         return packed(folder / "index.html", request.headers, CHECK_AGAIN)
 
-    @app.get("/static/plotly.min.js", include_in_schema=False)
-    async def plotly_script(request: Request) -> Response:
-        if not takes_gzip(request.headers):
-            return FileResponse(PLOTLY_SCRIPT, headers={"Cache-Control": ONE_DAY})
-        content = await run_in_threadpool(_packed_plotly)
-        headers = {"Cache-Control": ONE_DAY, "Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
-        return Response(content, media_type="text/javascript", headers=headers)
+    if not built:  # the bundle has a smaller one
+
+        @app.get("/static/plotly.min.js", include_in_schema=False)
+        async def plotly_script(request: Request) -> Response:
+            if not takes_gzip(request.headers):
+                return FileResponse(PLOTLY_SCRIPT, headers={"Cache-Control": ONE_DAY})
+            content = await run_in_threadpool(_packed_plotly)
+            headers = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
+            headers["Cache-Control"] = ONE_DAY
+            return Response(content, media_type="text/javascript", headers=headers)
 
     app.mount("/static", PageFiles(folder, FOR_EVER if built else CHECK_AGAIN), name="static")
 

@@ -12,7 +12,7 @@ import { ApiError, api, isAbort } from "../api.js";
 import { Latest } from "../core/latest.js";
 import { FABRICS } from "../core/segments.js";
 import { scopeOf } from "../services/scope.js";
-import { loadPlotly } from "./plotly.js";
+import { drawPlot, loadPlotly } from "./plotly.js";
 
 /** The service is asked this long after a change. */
 const DELAY_MS = 300;
@@ -47,10 +47,7 @@ export function curvePlot(host, studio) {
     delete host.dataset.problem;
     if (host.hidden || !host.clientWidth) return;
     ({ clientWidth: width, clientHeight: height } = host);
-    await plotly.react(host, traces(studio, answer?.curve ?? null), stressStrainLayout(width, height), {
-      displayModeBar: false,
-      responsive: false,
-    });
+    await drawPlot(host, traces(studio, answer?.curve ?? null), stressStrainLayout(width, height));
     drawn = true;
   };
   const ask = () => {

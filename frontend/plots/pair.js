@@ -6,14 +6,13 @@
  */
 
 import { stressStrainLayout } from "./curve.js";
-import { loadPlotly } from "./plotly.js";
+import { drawPlot } from "./plotly.js";
 
 /**
  * @param {HTMLElement} host
  * @param {{name: string, colour: string, curve: CurveResult}[]} curves colour: name of a custom property
  */
 export async function drawPair(host, curves) {
-  const plotly = await loadPlotly();
   const style = getComputedStyle(document.documentElement);
   const end = Math.max(...curves.map(({ curve }) => 100 * Math.max(...curve.strain)));
   const traces = curves.flatMap(({ name, colour: property, curve }) => {
@@ -41,8 +40,5 @@ export async function drawPair(host, curves) {
       },
     ]);
   });
-  await plotly.react(host, traces, stressStrainLayout(host.clientWidth, host.clientHeight), {
-    displayModeBar: false,
-    responsive: false,
-  });
+  await drawPlot(host, traces, stressStrainLayout(host.clientWidth, host.clientHeight));
 }
