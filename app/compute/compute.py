@@ -145,7 +145,10 @@ class Compute:
             return future.result()
         except BrokenProcessPool as error:
             log.warning("a worker process died")
+            idle = place.share is None
             place.replace()
+            if idle:
+                raise NotBegunError("The worker died before it began.") from error
             raise WorkerDiedError("The process of this computation died.") from error
 
     def check_room(self, owner: str) -> None:

@@ -24,6 +24,11 @@ def add(a: int, b: int, *, cancelled: Callable[[], bool]) -> int:
     return a + b
 
 
+def pid(*, cancelled: object) -> int:
+    """Of the worker."""
+    return os.getpid()
+
+
 def priority(*, cancelled: object) -> tuple[int, int]:
     """Scheduling policy and niceness of the worker."""
     return os.sched_getscheduler(0), os.nice(0)

@@ -12,7 +12,7 @@ from starlette.websockets import WebSocketDisconnect
 from app.http import tokens
 from app.http.identity import current_user
 from app.http.passes import Passes
-from tests.app.http.test_security import _as, _guarded, _tokens
+from tests.app.http.test_security import bearing, guarded_service, tokens_of
 
 BODY = {"chart": "KP", "material": "acrylic"}
 FRAME = {"Origin": "null"}
@@ -50,12 +50,12 @@ def test_a_pass_ends_with_the_token_it_was_asked_with(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tokens, "REMEMBERED_S", 0.0)
-    with _guarded(require_login=True, data_dir=tmp_path) as lab:
-        made = _tokens(lab).create("ada")
-        url = lab.put("/api/v1/views/of-ada", json=BODY, headers=_as(made.token)).json()["url"]
+    with guarded_service(require_login=True, data_dir=tmp_path) as lab:
+        made = tokens_of(lab).create("ada")
+        url = lab.put("/api/v1/views/of-ada", json=BODY, headers=bearing(made.token)).json()["url"]
         path = url.replace("/#", "?pass=")
         _watch(lab, "knit.example", path)
-        _tokens(lab).revoke(made.id)
+        tokens_of(lab).revoke(made.id)
         _refused(lab, "knit.example", path)
 
 

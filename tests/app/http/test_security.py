@@ -34,7 +34,7 @@ TOKEN = "a-long-enough-token"
 
 
 @contextlib.contextmanager
-def _guarded(**settings: Any) -> Iterator[TestClient]:
+def guarded_service(**settings: Any) -> Iterator[TestClient]:
     chosen = Settings(
         **{"host": "0.0.0.0", "allowed_hosts": ("knit.example",), "workers": 1} | settings
     )
@@ -44,22 +44,22 @@ def _guarded(**settings: Any) -> Iterator[TestClient]:
 
 @pytest.fixture(scope="module")
 def guarded() -> Iterator[TestClient]:
-    with _guarded(token=TOKEN) as client:
+    with guarded_service(token=TOKEN) as client:
         yield client
 
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A service where everybody has a token of their own."""
-    with _guarded(require_login=True, data_dir=tmp_path_factory.mktemp("lab")) as client:
+    with guarded_service(require_login=True, data_dir=tmp_path_factory.mktemp("lab")) as client:
         yield client
 
 
-def _tokens(client: TestClient) -> Tokens:
+def tokens_of(client: TestClient) -> Tokens:
     return Tokens(client.app.state.database)  # type: ignore[attr-defined]
 
 
-def _as(token: str) -> dict[str, str]:
+def bearing(token: str) -> dict[str, str]:
     return {"Authorization": f"Bearer {token}"}
 
 
@@ -96,8 +96,8 @@ def test_without_the_token_nothing_is_served(guarded: TestClient) -> None:
 
 
 def test_the_token_opens_as_header_and_as_link(guarded: TestClient) -> None:
-    assert guarded.get("/api/v1/patterns", headers=_as(TOKEN)).status_code == 200
-    wrong = _as("another-long-token")
+    assert guarded.get("/api/v1/patterns", headers=bearing(TOKEN)).status_code == 200
+    wrong = bearing("another-long-token")
     assert guarded.get("/api/v1/patterns", headers=wrong).status_code == 401
 
     link = guarded.get(f"/?token={TOKEN}", follow_redirects=False)
@@ -126,41 +126,41 @@ def test_a_forged_session_opens_nothing(guarded: TestClient, cookie: str) -> Non
 
 
 def test_another_token_in_the_settings_ends_sessions(tmp_path: Path) -> None:
-    with _guarded(token=TOKEN, data_dir=tmp_path) as client:
+    with guarded_service(token=TOKEN, data_dir=tmp_path) as client:
         client.get(f"/?token={TOKEN}")
         cookies = dict(client.cookies)
         assert client.get("/api/v1/patterns").status_code == 200
-    with _guarded(token="another-long-enough-one", data_dir=tmp_path) as client:
+    with guarded_service(token="another-long-enough-one", data_dir=tmp_path) as client:
         client.cookies.update(cookies)
         assert client.get("/api/v1/patterns").status_code == 401
 
 
 def test_wrong_tokens_are_slowed_down_and_lock_out_no_user() -> None:
-    with _guarded(token=TOKEN) as client:
-        answers = [client.get("/api/v1/patterns", headers=_as(f"guess-{n}")) for n in range(25)]
+    with guarded_service(token=TOKEN) as client:
+        answers = [client.get("/api/v1/patterns", headers=bearing(f"guess-{n}")) for n in range(25)]
         codes = [answer.status_code for answer in answers]
         assert codes == [401] * LOGIN_FAILURES + [429] * (25 - LOGIN_FAILURES)
         assert answers[-1].headers["retry-after"] == "10"
-        assert client.get("/api/v1/patterns", headers=_as(TOKEN)).status_code == 200
+        assert client.get("/api/v1/patterns", headers=bearing(TOKEN)).status_code == 200
         assert client.get("/api/v1/patterns").status_code == 401  # who has no token is told so
 
 
 def test_wrong_tokens_of_a_neighbour_close_no_session() -> None:
-    with _guarded(token=TOKEN) as client:
+    with guarded_service(token=TOKEN) as client:
         client.get(f"/?token={TOKEN}")
         cookies = dict(client.cookies)
         client.cookies.clear()
         for n in range(25):
-            last = client.get("/api/v1/patterns", headers=_as(f"guess-{n}"))
+            last = client.get("/api/v1/patterns", headers=bearing(f"guess-{n}"))
         assert last.status_code == 429
         client.cookies.update(cookies)
         assert client.get("/api/v1/patterns").status_code == 200
-        wrong = client.get("/api/v1/patterns", headers=_as("guess"))
+        wrong = client.get("/api/v1/patterns", headers=bearing("guess"))
         assert wrong.status_code == 429  # who brings a token is not let in by a session
 
 
 def test_users_see_only_their_own(lab: TestClient) -> None:
-    ada, bob = (_as(_tokens(lab).create(name).token) for name in ("ada", "bob"))
+    ada, bob = (bearing(tokens_of(lab).create(name).token) for name in ("ada", "bob"))
     design = {"name": "secret", "material": "acrylic", "chart": "KP"}
     made = lab.post("/api/v1/designs", json=design, headers=ada).json()["id"]
     assert lab.get(f"/api/v1/designs/{made}", headers=ada).status_code == 200
@@ -189,7 +189,7 @@ def test_users_see_only_their_own(lab: TestClient) -> None:
 
 def test_views_are_private_too(lab: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(relay, "OPENING_S", 0.1)
-    ada, bob = (_as(_tokens(lab).create(name).token) for name in ("ada", "bob"))
+    ada, bob = (bearing(tokens_of(lab).create(name).token) for name in ("ada", "bob"))
     body = {"chart": "KP", "material": "acrylic"}
     assert lab.put("/api/v1/views/one-name", json=body, headers=ada).status_code == 200
     with (
@@ -216,14 +216,14 @@ def test_tokens_are_revoked_expire_and_are_kept_as_hashes(
     lab: TestClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.http.tokens.REMEMBERED_S", 0.0)
-    tokens = _tokens(lab)
+    tokens = tokens_of(lab)
     made, short = tokens.create("eve", "laptop"), tokens.create("eve", days=1e-9)
-    assert lab.get("/api/v1/patterns", headers=_as(made.token)).status_code == 200
-    assert lab.get("/api/v1/patterns", headers=_as(short.token)).status_code == 401
+    assert lab.get("/api/v1/patterns", headers=bearing(made.token)).status_code == 200
+    assert lab.get("/api/v1/patterns", headers=bearing(short.token)).status_code == 401
     lab.get(f"/?token={made.token}")
     assert lab.get("/api/v1/patterns").status_code == 200
     tokens.revoke(made.id)
-    assert lab.get("/api/v1/patterns", headers=_as(made.token)).status_code == 401
+    assert lab.get("/api/v1/patterns", headers=bearing(made.token)).status_code == 401
     assert lab.get("/api/v1/patterns").status_code == 401  # the session ends with its token
     lab.cookies.clear()
     with lab.app.state.database.read() as connection:  # type: ignore[attr-defined]
@@ -246,8 +246,8 @@ def test_the_token_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_client_over_its_rate_learns_when_to_retry(tmp_path: Path) -> None:
-    with _guarded(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
-        ada, bob = (_as(_tokens(client).create(name).token) for name in ("ada", "bob"))
+    with guarded_service(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
+        ada, bob = (bearing(tokens_of(client).create(name).token) for name in ("ada", "bob"))
         first = client.get("/api/v1/patterns", headers=ada)
         assert (first.headers["ratelimit-limit"], first.headers["ratelimit-remaining"]) == (
             "2",

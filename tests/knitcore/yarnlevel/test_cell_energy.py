@@ -24,7 +24,7 @@ CASES = [
 ]
 
 
-def _energy(text, kind):
+def energy_of(text, kind):
     cell = kind(StitchChart.parse(text), SplineGrid(8, 3))
     energy = CellEnergy(cell, YARN, np.full(cell.rows, 11.3), Convention.PUBLISHED)
     state = start_state(cell, 11.3, 0.6)
@@ -74,7 +74,7 @@ def _rod_of_ellipse(wobble):
 
 @pytest.mark.parametrize(("text", "kind"), CASES)
 def test_gradient_and_hessian_agree_with_differences(text, kind):
-    energy, state = _energy(text, kind)
+    energy, state = energy_of(text, kind)
     curve = energy.curve(state)
     pairs, start = energy.pairs(curve, state, 2.4)
     tension = np.linspace(-0.1, 0.2, energy.cell.rows)
@@ -115,7 +115,7 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
 
 @pytest.mark.parametrize("text", ["K", "KP", "PK\nKP", "KKPP", "PPKK\nPPKK\nKKPP\nKKPP"])
 def test_the_mirrored_cell_has_the_energy_of_the_whole_repeat(text):
-    small, state = _energy(text, mirrored_cell)
+    small, state = energy_of(text, mirrored_cell)
     chart = StitchChart.parse(text)
     whole = plain_cell(chart.tile(1, 2) if chart.columns == 1 else chart, SplineGrid(8, 3))
     large = CellEnergy(whole, YARN, np.full(whole.rows, 11.3), Convention.PUBLISHED)
@@ -130,7 +130,7 @@ def test_the_mirrored_cell_has_the_energy_of_the_whole_repeat(text):
 
 
 def test_neighbours_are_complete_and_listed_once():
-    energy, state = _energy("KKP\nPKK", plain_cell)
+    energy, state = energy_of("KKP\nPKK", plain_cell)
     cell, curve = energy.cell, energy.curve(state)
     reach = 1.9
     pairs, start = energy.pairs(curve, state, reach)
@@ -159,7 +159,7 @@ def test_neighbours_are_complete_and_listed_once():
 
 
 def test_thin_yarn_is_not_stiffened_by_the_constant_of_worsted_yarn():
-    energy, _ = _energy("K", mirrored_cell)
+    energy, _ = energy_of("K", mirrored_cell)
     assert energy.regularisation_n_mm4 == 0.002
     lace = CellEnergy(
         energy.cell, YarnModel(0.0035, 6e-3, 2.6, 0.3, 0.1), np.array([5.5]), Convention.PUBLISHED

@@ -14,7 +14,7 @@ from knitcore.yarnlevel.samples import sample
 from knitcore.yarnlevel.solver import COURSE
 from knitcore.yarnlevel.spline import SplineGrid
 
-from .test_cell_energy import CASES, _energy
+from .test_cell_energy import CASES, energy_of
 
 GRID = SplineGrid(12, 3)
 
@@ -41,7 +41,7 @@ def forces(states):
 
 @pytest.mark.parametrize(("text", "kind"), CASES)
 def test_gradient_and_hessian_agree_with_differences(text, kind):
-    energy, state = _energy(text, kind)
+    energy, state = energy_of(text, kind)
     curve = energy.curve(state)
     size = state[-2], state[-1]
     pairs, _ = energy.pairs(curve, state, 2.0)
@@ -79,7 +79,7 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
 
 
 def test_turning_the_fabric_rubs_nothing():
-    energy, state = _energy("KKP\nPKK", CASES[3][1])
+    energy, state = energy_of("KKP\nPKK", CASES[3][1])
     curve = energy.curve(state)
     pairs, _ = energy.pairs(curve, state, 2.0)
     # an image across would not turn with the cell
