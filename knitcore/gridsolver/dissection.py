@@ -96,7 +96,7 @@ class GridFactor:
         self._fixed_numbers = np.flatnonzero(fixed)
         self._boxes: list[_Box] = []
         self._size = 0
-        self._build(columns, rows)
+        self._append(columns, rows, 0, columns, 0, rows)
         self._factor: Block = np.empty(0)
         self._work: Block = np.empty(0)
         self._single = True
@@ -228,49 +228,48 @@ class GridFactor:
         self._second = _concatenate(
             [box.eliminated for box in self._boxes[self._half_way : len(self._boxes) - 1]]
         )
-        # A Schur complement waits for its parent; below it are those of the boxes around it.
         self._work_size = 0
+        self._place(len(self._boxes) - 1, 0)
 
-        def place(number: int, base: int) -> None:
-            self._table[number, 7] = base
-            base += len(self._boxes[number].border) ** 2
-            self._work_size = max(self._work_size, base)
-            for child in self._boxes[number].children:
-                if number == len(self._boxes) - 1:
-                    base = self._work_size  # the branches of the root do not share room
-                place(child, base)
-                base += len(self._boxes[child].border) ** 2
+    def _place(self, number: int, base: int) -> None:
+        """Give the Schur complement of a box room in the work space: it waits for its parent, and
+        below it are those of the boxes around it.
+        """
+        self._table[number, 7] = base
+        base += len(self._boxes[number].border) ** 2
+        self._work_size = max(self._work_size, base)
+        for child in self._boxes[number].children:
+            if number == len(self._boxes) - 1:
+                base = self._work_size  # the branches of the root do not share room
+            self._place(child, base)
+            base += len(self._boxes[child].border) ** 2
 
-        place(len(self._boxes) - 1, 0)
-
-    def _build(self, columns: int, rows: int) -> None:
-        """Append the boxes of the tree in the order of their elimination."""
-
-        def visit(x0: int, x1: int, y0: int, y1: int) -> int:
-            sides = (x0 > 0, x1 < columns, y0 > 0, y1 < rows)
-            shape = _shape(x1 - x0, y1 - y0, sides, columns)
-            children = []
-            if shape.halves:
-                if x1 - x0 >= y1 - y0:
-                    middle = (x0 + x1) // 2
-                    children = [visit(x0, middle, y0, y1), visit(middle, x1, y0, y1)]
-                else:
-                    middle = (y0 + y1) // 2
-                    children = [visit(x0, x1, y0, middle), visit(x0, x1, middle, y1)]
-            first = 2 * (y0 * (columns + 1) + x0)
-            box = _Box(
-                shape,
-                tuple(children),
-                y0 * columns + x0,
-                shape.eliminated + first,
-                shape.border + first,
-                self._size,
-            )
-            self._size += len(box.eliminated) * (len(box.eliminated) + len(box.border))
-            self._boxes.append(box)
-            return len(self._boxes) - 1
-
-        visit(0, columns, 0, rows)
+    def _append(self, columns: int, rows: int, x0: int, x1: int, y0: int, y1: int) -> int:
+        """Append a box of cells after those that it is cut into; its number in this order, that of
+        the elimination.
+        """
+        sides = (x0 > 0, x1 < columns, y0 > 0, y1 < rows)
+        shape = _shape(x1 - x0, y1 - y0, sides, columns)
+        halves: tuple[tuple[int, int, int, int], ...] = ()
+        if shape.halves and x1 - x0 >= y1 - y0:
+            middle = (x0 + x1) // 2
+            halves = (x0, middle, y0, y1), (middle, x1, y0, y1)
+        elif shape.halves:
+            middle = (y0 + y1) // 2
+            halves = (x0, x1, y0, middle), (x0, x1, middle, y1)
+        children = tuple(self._append(columns, rows, *half) for half in halves)
+        first = 2 * (y0 * (columns + 1) + x0)
+        box = _Box(
+            shape,
+            children,
+            y0 * columns + x0,
+            shape.eliminated + first,
+            shape.border + first,
+            self._size,
+        )
+        self._size += len(box.eliminated) * (len(box.eliminated) + len(box.border))
+        self._boxes.append(box)
+        return len(self._boxes) - 1
 
 
 @cache

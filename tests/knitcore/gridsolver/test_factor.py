@@ -1,5 +1,8 @@
 """Factorisations on a grid: nested dissection against SciPy."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -55,3 +58,15 @@ def test_an_indefinite_cell_is_found_in_either_branch(cell):
         factor.factorise(cells)
     factor.factorise(good)
     assert factor.solve(np.ones(2 * 131**2))[[0, 2]] == pytest.approx([1.0, 0.5])
+
+
+def test_a_factor_dropped_gives_its_memory_back_at_once():
+    """Those of large charts take a gigabyte, too much to wait for the garbage collector."""
+    gc.disable()
+    try:
+        factor = GridFactor(3, 2, np.zeros(24, dtype=bool))
+        left = weakref.ref(factor)
+        del factor
+        assert left() is None
+    finally:
+        gc.enable()
