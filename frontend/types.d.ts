@@ -12,6 +12,8 @@ export interface AtlasRequest {
 
 /** An atlas as columns, for the rigidity-rigidity scatter. */
 export interface AtlasResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "atlas";
   material: string;
   repeats: string[];
@@ -151,6 +153,8 @@ export interface BiasRequest {
 
 /** A simulated strip test at an angle, not a certified one. */
 export interface BiasResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
@@ -199,6 +203,8 @@ export interface BiaxialRequest {
 
 /** A simulated biaxial test: edges stay straight and slide along themselves. */
 export interface BiaxialResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
@@ -564,6 +570,8 @@ export interface CurveRequest {
 
 /** Strain at each stress, transverse direction free. */
 export interface CurveResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "curve";
   stress_n_per_mm: number[];
   strain: number[];
@@ -800,6 +808,8 @@ export interface EstimateRequest {
 
 /** All four fabrics of the yarn. */
 export interface EstimateResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   fabrics: Partial<Record<Fabric, FabricEstimateResult>>;
   /** None if all fabrics are measured. */
   left_out: LeftOutResult | null;
@@ -1046,6 +1056,8 @@ export interface FindRequest {
 
 /** Ranked repeats, the surest first. */
 export interface FindResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "find";
   reached: boolean;
   message: string;
@@ -1162,6 +1174,8 @@ export interface GarmentRequest {
 
 /** A garment as a chart with an outline. */
 export interface GarmentResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   name: string;
   rows: number;
   columns: number;
@@ -1181,8 +1195,6 @@ export interface GarmentResult {
   /** 90 % interval. */
   yarn_interval_m: [number, number];
   yarn_interval_g: [number, number] | null;
-  /** Source of the intervals. */
-  interval_source: string;
   notes: string[];
   /** Notes on borders between regions of different gauge. */
   warnings: string[];
@@ -1326,6 +1338,8 @@ export interface HysteresisRequest {
 
 /** Cycles of pulling and letting go, and what is left of them. */
 export interface HysteresisResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "hysteresis";
   direction: Direction;
   /** Coefficient of friction that was used. */
@@ -1545,6 +1559,8 @@ export interface LimbRequest {
 
 /** Fit along the limb; no medical class. */
 export interface LimbResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "limb";
   places: LimbPlaceResult[];
   /** Where the tube is nearest to its lock-up. */
@@ -1840,6 +1856,8 @@ export interface PieceRequest {
 
 /** Equilibria of a piece under a growing load. */
 export interface PieceResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;
@@ -1885,6 +1903,8 @@ export interface PredictRequest {
 
 /** Effective elastic constants of the whole chart at small strain, with 90 % intervals. */
 export interface PredictResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   extensibility_course_mm_per_n: number;
   extensibility_wale_mm_per_n: number;
   modulus_course_n_per_mm: number;
@@ -1944,6 +1964,8 @@ export interface PressureRequest {
 
 /** Mean pressure; no medical class. */
 export interface PressureResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   /** Mean pressure, from axially free to axially fixed. */
   mmhg: [number, number];
   kpa: [number, number];
@@ -2024,10 +2046,10 @@ export interface RSRequest {
 
 /** The four fabrics of a yarn. */
 export interface RSResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   material: string;
   fabrics: Partial<Record<Fabric, RSFabricResult>>;
-  /** Source of the intervals. */
-  interval_source: string;
 }
 
 /** The connecting segments of one direction. */
@@ -2108,6 +2130,8 @@ export interface RelaxRequest {
 
 /** The shape of least energy, free of force or held; sizes and energies of one stitch. */
 export interface RelaxResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "relax";
   branch: Branch;
   convention: Convention;
@@ -2119,8 +2143,6 @@ export interface RelaxResult {
   /** 90 % interval for knitted cloth; null for a width that was held. */
   cell_course_interval_mm: [number, number] | null;
   cell_wale_interval_mm: [number, number] | null;
-  /** Source of the intervals. */
-  interval_source: string;
   energy_n_mm: number;
   bending_share: number;
   contact_share: number;
@@ -2366,6 +2388,8 @@ export interface StitchKinds {
 
 /** Values for all 16 kinds of stitch. */
 export interface StitchTableResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   codes: StitchKind[];
 }
 
@@ -2396,6 +2420,8 @@ export interface StretchRequest {
 
 /** The curve of a test, with fields at its stitches. */
 export interface StretchResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   strain: number[];
   force_n: number[];
   force_interval_n: [number[], number[]];
@@ -2472,14 +2498,14 @@ export interface SweepRequest {
 
 /** A stretch, free across; sizes and energies of one stitch. */
 export interface SweepResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "sweep";
   direction: Direction;
   branch: Branch;
   strain: number[];
   /** Of knitted cloth, at each stress. */
   strain_interval: [number[], number[]];
-  /** Source of the interval. */
-  interval_source: string;
   transverse_strain: number[];
   stress_n_per_mm: number[];
   energy_n_mm: number[];
@@ -2569,6 +2595,8 @@ export interface TrellisRequest {
 
 /** A simulated trellis (picture frame) test. */
 export interface TrellisResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   /** Energy stored in the cloth. */
   energy_n_mm: number[];
   converged: boolean;

@@ -96,6 +96,12 @@ class ResultModel(BaseModel):
         return value if isinstance(value, Mapping | BaseModel) else _attributes(cls, value)
 
 
+class IntervalResult(ResultModel):
+    """A result, or a part of one, with 90 % intervals."""
+
+    interval_source: str = Field(description="What the 90 % intervals rest on.")
+
+
 def _attributes(model: type[BaseModel], source: object) -> dict[str, Any]:
     found = {}
     for name in model.model_fields:

@@ -8,15 +8,17 @@ from typing import Annotated, Any, Literal, TypeVar
 import numpy as np
 from pydantic import Field
 
-from app.models.base import Floats, RequestModel, ResultModel
+from app.models.base import Floats, IntervalResult, RequestModel
 from app.models.charts import MaterialName, RepeatInput, to_repeat
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from knitcore.errors import InputError
+from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.piece import Condition, CutPiece, Held, PieceTest, Pulled, Sewn, Traction
 from knitcore.piece.mesh import DEFAULT_ELEMENTS, size_for
 from knitcore.piece.outline import MAX_CORNERS
+from knitcore.swatch.uncertainty import interval_source
 
 T = TypeVar("T")
 MAX_ELEMENT_STEPS = 40_000
@@ -156,7 +158,7 @@ class PieceTestRequest(LawsRequest):
         )
 
 
-class PieceTestResult(ResultModel):
+class PieceTestResult(IntervalResult):
     """Fields that all tests of pieces share; lists have a value per step."""
 
     energy_n_mm: Floats = Field(description="Energy stored in the cloth.")
@@ -170,7 +172,7 @@ class PieceTestResult(ResultModel):
     messages: list[str]
 
 
-def of_test(test: PieceTest) -> dict[str, Any]:
+def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
     """Fields of every result, from the library's test."""
     past = bool(test.found) and test.is_past_the_law()
     told = (
@@ -179,6 +181,7 @@ def of_test(test: PieceTest) -> dict[str, Any]:
     )
     return {
         "energy_n_mm": test.energy_n_mm,
+        "interval_source": interval_source(test.energy.cloth.sheet, material),
         "converged": test.converged,
         "seconds": test.seconds,
         "nodes": test.nodes_mm.shape[1],

@@ -11,13 +11,13 @@ import click
 from pydantic import BeforeValidator, Field
 
 from app.cli.options import out_option
-from app.models.base import ResultModel
+from app.models.base import IntervalResult
 from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
-from knitcore.design.atlas import VALUES, Atlas
+from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import improve_atlas
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM
@@ -41,7 +41,7 @@ class AtlasRequest(LawsRequest):
     repeats: Extent = Field("small", description=EXTENTS)
 
 
-class AtlasResult(ResultModel):
+class AtlasResult(IntervalResult):
     """An atlas as columns, for the rigidity-rigidity scatter."""
 
     kind: Literal["atlas"] = "atlas"
@@ -76,6 +76,7 @@ def _result(found: Atlas) -> AtlasResult:
     return AtlasResult.of(
         found,
         repeats=found.keys,
+        interval_source=INTERVAL_SOURCE,
         **{name: found.column(name) for name in COLUMNS},
         **{
             f"modulus_{d}_interval_n_per_mm": [

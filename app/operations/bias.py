@@ -52,7 +52,9 @@ def bias(request: BiasRequest, context: Context) -> BiasResult:
     request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
     test = request.pull(bias_test, context)
     ends = interval(test.force_n, test.force_log_sd)
-    return BiasResult.of(test, force_interval_n=ends, **of_test(test.test))
+    return BiasResult.of(
+        test, force_interval_n=ends, **of_test(test.test, context.material(request.material))
+    )
 
 
 def _lines(r: BiasResult) -> list[str]:

@@ -51,7 +51,7 @@ def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
         test,
         force_x_interval_n=interval(test.force_x_n, test.force_x_log_sd),
         force_y_interval_n=interval(test.force_y_n, test.force_y_log_sd),
-        **of_test(test.test),
+        **of_test(test.test, context.material(request.material)),
     )
 
 

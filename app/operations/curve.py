@@ -8,7 +8,7 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.models.base import EARLIER_NAME, EndsOfList, Floats, ResultModel
+from app.models.base import EARLIER_NAME, EndsOfList, Floats, IntervalResult
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.checks import Check
 from app.models.gauge import GaugeInput
@@ -35,7 +35,7 @@ class CurveRequest(LawsRequest):
     gauge: GaugeInput | None = None
 
 
-class CurveResult(ResultModel):
+class CurveResult(IntervalResult):
     """Strain at each stress, transverse direction free."""
 
     kind: Literal["curve"] = "curve"
@@ -82,7 +82,7 @@ def _lines(r: CurveResult) -> list[str]:
     lines += [
         f"{s:8.4f} {e:8.4f}   {a:.4f} to {b:.4f}" for s, e, a, b in zip(*columns, strict=True)
     ]
-    return [*lines, f"source: {r.provenance}"]
+    return [*lines, f"source: {r.provenance}", f"90 % intervals: {r.interval_source}"]
 
 
 OPERATION = Operation(

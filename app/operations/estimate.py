@@ -9,7 +9,7 @@ import click
 from pydantic import Field, ValidationError
 
 from app.cli.options import out_option
-from app.models.base import UNIT, Ends, RequestModel, ResultModel
+from app.models.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
 from app.models.laws import LawResult
 from app.operations.context import Context
 from app.operations.estimate_report import (
@@ -22,6 +22,7 @@ from app.operations.estimate_report import (
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.estimate.estimate import (
+    INTERVAL_SOURCE,
     FabricEstimate,
     MeasuredSwatch,
     YarnEstimate,
@@ -81,7 +82,7 @@ class FabricEstimateResult(ResultModel):
     measured: bool
 
 
-class EstimateResult(ResultModel):
+class EstimateResult(IntervalResult):
     """All four fabrics of the yarn."""
 
     fabrics: dict[Fabric, FabricEstimateResult]
@@ -113,6 +114,7 @@ def _result(found: YarnEstimate) -> EstimateResult:
         fabrics={
             fabric: FabricEstimateResult.of(f, **_values(f)) for fabric, f in found.fabrics.items()
         },
+        interval_source=INTERVAL_SOURCE,
         left_out=left_out(measured) if len(measured) < len(Fabric) else None,
         material=_document(found),
     )

@@ -10,14 +10,14 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field
 
-from app.models.base import Ends, Known, KnownEnds, RequestModel, ResultModel
+from app.models.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatText
 from app.models.checks import Check
 from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of
-from knitcore.design.atlas import Atlas, load_atlas
+from knitcore.design.atlas import INTERVAL_SOURCE, Atlas, load_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import Candidate, find_fabric
 from knitcore.design.targets import USUAL_LOAD_N_PER_MM, Quantity, Target, WornTube
@@ -115,7 +115,7 @@ class CandidateResult(ResultModel):
     curl: float = Field(description="Knits minus purls over all stitches; far from 0 it curls.")
 
 
-class FindResult(ResultModel):
+class FindResult(IntervalResult):
     """Ranked repeats, the surest first."""
 
     kind: Literal["find"] = "find"
@@ -163,6 +163,7 @@ def _ranked(
     return FindResult.of(
         found,
         message=message,
+        interval_source=INTERVAL_SOURCE,
         searched=sum(len(atlas) for atlas in atlases),
         candidates=[_candidate(c) for c in found.candidates],
         elsewhere=[_candidate(c) for c in elsewhere],

@@ -10,7 +10,7 @@ import click
 from pydantic import Field
 
 from app.cli.options import out_option
-from app.models.base import Ends, RequestModel, ResultModel
+from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText
 from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.context import Context
@@ -220,7 +220,7 @@ class WornResult(ResultModel):
     warnings: list[str]
 
 
-class GarmentResult(ResultModel):
+class GarmentResult(IntervalResult):
     """A garment as a chart with an outline."""
 
     name: str
@@ -238,7 +238,6 @@ class GarmentResult(ResultModel):
     yarn_g: float | None
     yarn_interval_m: Ends = Field(description="90 % interval.")
     yarn_interval_g: Ends | None
-    interval_source: str = Field(description="Source of the intervals.")
     notes: list[str]
     warnings: list[str] = Field(description="Notes on borders between regions of different gauge.")
     design: DesignFile = Field(description="The garment as a project file, ready to edit.")

@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.models.base import Ends, Floats, ResultModel
+from app.models.base import Ends, Floats, IntervalResult, ResultModel
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.context import Context
@@ -66,7 +66,7 @@ class RestSizeResult(ResultModel):
     wale_interval_mm: Ends | None = None
 
 
-class HysteresisResult(ResultModel):
+class HysteresisResult(IntervalResult):
     """Cycles of pulling and letting go, and what is left of them."""
 
     kind: Literal["hysteresis"] = "hysteresis"
@@ -130,6 +130,9 @@ def hysteresis(request: HysteresisRequest, context: Context) -> HysteresisResult
         found,
         friction=coefficient,
         friction_interval=(known.low, known.high) if given is None else None,
+        interval_source=f"The interval of friction, {known.source}."
+        if given is None
+        else "No intervals: the request gave the coefficient of friction.",
         friction_source=known.source if given is None else "given",
         legs=[LoopLeg.of(leg) for leg in found.legs],
         lost_per_cycle_interval_n_per_mm=_ends(h.lost_per_cycle_n_per_mm for h, _ in runs),

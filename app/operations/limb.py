@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from app.cli.options import out_option
-from app.models.base import Ends, RequestModel, ResultModel
+from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
 from app.models.posed import Body, PosedView
@@ -23,6 +23,7 @@ from knitcore.answer.limb import MAX_GIRTHS, PLACES, Limb, LimbPlace, on_limb
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb
+from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.mechanics.pressure import ELASTIC_MEAN, MMHG_PER_KPA
 from knitcore.shell.worn import TubeOnLimb, worn_tube
 
@@ -78,7 +79,7 @@ class LimbPlaceResult(ResultModel):
     problem: str = Field(description="Why there is no pressure, such as a loose fit.")
 
 
-class LimbResult(ResultModel):
+class LimbResult(IntervalResult):
     """Fit along the limb; no medical class."""
 
     kind: Literal["limb"] = "limb"
@@ -109,14 +110,15 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         a tube, or the material lacks a fabric of the chart.
     """
     rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
+    answer = choose(to_chart(request.chart), context.material(request.material))
+    source = in_a_sentence(answer.stretch_errors)
     if not rests:
         tube = _tube(request, context)
-        return Viewed(_of_tube(tube, request), _view(tube, request.direction))
+        return Viewed(_of_tube(tube, request, source), _view(tube, request.direction))
     if len(rests) < len(request.girths):
         raise InputError(
             "girths", "some places have a rest_mm and others none.", "Give it for all, or for none."
         )
-    answer = choose(to_chart(request.chart), context.material(request.material))
     found = on_limb(
         answer.along(request.direction),
         [g.at_mm for g in request.girths],
@@ -124,7 +126,8 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         rests,
     )
     length = found[-1].at_mm - found[0].at_mm
-    return Viewed(LimbResult(**_fit(found, found, length), notes=[ELASTIC_MEAN]), None)
+    fit = _fit(found, found, length)
+    return Viewed(LimbResult(**fit, interval_source=source, notes=[ELASTIC_MEAN]), None)
 
 
 def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
@@ -140,11 +143,12 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
     return worn_tube(chart, context.material(request.material), on, request.direction)
 
 
-def _of_tube(tube: TubeOnLimb, request: LimbRequest) -> LimbResult:
+def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
     told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
     return LimbResult.of(
         tube,
         **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
+        interval_source=source,
         id=OPERATION.key(request),
         notes=[ELASTIC_MEAN, FREE_ALONG],
     )

@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
-from app.models.base import Ends, Floats, MissingError, RequestModel, ResultModel
+from app.models.base import (
+    Ends,
+    Floats,
+    IntervalResult,
+    MissingError,
+    RequestModel,
+    ResultModel,
+)
 from app.models.charts import MaterialName
 from app.models.laws import ElasticConstants, Extensibility, LawResult, Moduli
 from app.operations.context import Context
@@ -16,6 +23,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials import FabricRecord, Material
 from knitcore.materials.document import CurveDocument
+from knitcore.materials.uncertainty import in_a_sentence
 from knitcore.mechanics.local import StitchTable, stitch_table
 
 CURVE_POINTS = 60
@@ -71,7 +79,7 @@ class StitchKind(Moduli, Extensibility):
     fractions: dict[Fabric, float] = Field(description="Shares of the four phases.")
 
 
-class StitchTableResult(ResultModel):
+class StitchTableResult(IntervalResult):
     """Values for all 16 kinds of stitch."""
 
     codes: list[StitchKind]
@@ -133,7 +141,7 @@ def material(request: MaterialRequest, context: Context) -> MaterialDetail:
         description=description(found),
         notes=[found.note] if found.note else [],
         fabrics={fabric: _detail(record) for fabric, record in found.fabrics.items()},
-        stitch_table=_table(stitch_table(found)) if found.is_complete else None,
+        stitch_table=_table(stitch_table(found), found) if found.is_complete else None,
         curves={
             fabric: {d: _curve(record.law, d) for d in Direction}
             for fabric, record in found.fabrics.items()
@@ -183,7 +191,7 @@ def _curve(law: ConstitutiveLaw, direction: Direction) -> LawCurve:
     return LawCurve.of(strain=np.round(curve.strain, 5), stress_n_per_mm=np.round(curve.stress, 6))
 
 
-def _table(table: StitchTable) -> StitchTableResult:
+def _table(table: StitchTable, of: Material) -> StitchTableResult:
     kinds = []
     for code in range(len(table.fractions)):
         values = {}
@@ -195,7 +203,8 @@ def _table(table: StitchTable) -> StitchTableResult:
             values[f"modulus_{d}_interval_n_per_mm"] = (low[code], high[code])
         fractions = dict(zip(PHASES, table.fractions[code].tolist(), strict=True))
         kinds.append(StitchKind.of(code=code, fractions=fractions, **values))
-    return StitchTableResult(codes=kinds)
+    errors = in_a_sentence(record.uncertainty.source for record in of.fabrics.values())
+    return StitchTableResult(codes=kinds, interval_source=errors)
 
 
 OPERATION = Operation(

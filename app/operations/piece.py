@@ -108,7 +108,7 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
         test.piece,
         edges=edges,
         shape=_shape(test) if request.fields and test.found else None,
-        **of_test(test),
+        **of_test(test, material),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.models.base import Ends, Known, ResultModel
+from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
 from app.models.extensions import ExtensionName
 from app.models.gauge import GaugeInput
@@ -50,7 +50,7 @@ class SegmentCountsResult(ResultModel):
     odd: int
 
 
-class PredictResult(ElasticConstants, Extensibility):
+class PredictResult(ElasticConstants, Extensibility, IntervalResult):
     """Effective elastic constants of the whole chart at small strain, with 90 % intervals."""
 
     rows: int = Field(description="Size of the chart that the constants describe.")
@@ -119,6 +119,7 @@ def _lines(r: PredictResult) -> list[str]:
         f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
         f"stitch at rest  {_relaxed(r)}",
         f"source          {r.provenance} ({r.method})",
+        f"90 % intervals  {r.interval_source}",
         *(
             f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
             for m in r.measures

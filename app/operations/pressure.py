@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 from pydantic import Field
 
-from app.models.base import Ends, ResultModel
+from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
 from app.operations.context import Context
@@ -22,13 +22,21 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, law_from_mapping, load_law
 from knitcore.law.constitutive import ConstitutiveLaw
-from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_deviation
+from knitcore.materials.uncertainty import (
+    Z_SCORE,
+    Interval,
+    LawUncertainty,
+    in_a_sentence,
+    log_deviation,
+)
 from knitcore.mechanics.pressure import (
     ELASTIC_MEAN,
     MMHG_PER_KPA,
     limb_pressure,
     rest_circumference,
 )
+
+NO_INTERVAL = "No interval: the law comes without standard errors."
 
 
 class PressureRequest(LawsRequest):
@@ -48,7 +56,7 @@ class PressureRequest(LawsRequest):
     law: dict[str, float] | None = Field(None, description="Constants of a law, by name.")
 
 
-class PressureResult(ResultModel):
+class PressureResult(IntervalResult):
     """Mean pressure; no medical class."""
 
     mmhg: Ends = Field(description="Mean pressure, from axially free to axially fixed.")
@@ -104,6 +112,7 @@ def _of_answer(answer: Answer, request: PressureRequest) -> PressureResult:
         rest_mm_for_target=sizes,
         warnings=[ELASTIC_MEAN],
         law_source=str(answer.provenance),
+        interval_source=in_a_sentence(answer.stretch_errors),
     )
 
 
@@ -113,7 +122,8 @@ def _of_file(file: LawFile, request: PressureRequest) -> PressureResult:
     uncertainty = None
     if error is not None:
         spread = log_deviation(file.law.modulus(direction), error)
-        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, file.source)
+        told = "standard error of the modulus in the law's file"
+        uncertainty = LawUncertainty(spread, spread, 0.0, 0.0, told)
     tested = file.largest_strain.get(direction)
     return _of_law(file.law, request, uncertainty=uncertainty, source=file.source, tested=tested)
 
@@ -142,6 +152,7 @@ def _of_law(
         lock_up_share=found.utilisation,
         rest_mm_for_target=sizes,
         law_source=source,
+        interval_source=in_a_sentence([uncertainty.source]) if uncertainty else NO_INTERVAL,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from app.cli.options import loop_lengths
-from app.models.base import Ends, Known, ResultModel
+from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -59,7 +59,7 @@ class UnmirroredResult(ResultModel):
     cell_wale_mm: float
 
 
-class RelaxResult(ResultModel):
+class RelaxResult(IntervalResult):
     """The shape of least energy, free of force or held; sizes and energies of one stitch."""
 
     kind: Literal["relax"] = "relax"
@@ -73,7 +73,6 @@ class RelaxResult(ResultModel):
         description="90 % interval for knitted cloth; null for a width that was held."
     )
     cell_wale_interval_mm: Ends | None
-    interval_source: str = Field(description="Source of the intervals.")
     energy_n_mm: float
     bending_share: float
     contact_share: float

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.models.base import Ends, RequestModel, ResultModel
+from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import Moduli
 from app.operations.context import Context
@@ -42,12 +42,11 @@ class RSFabricResult(Moduli):
     segments: dict[Direction, RSSegment]
 
 
-class RSResult(ResultModel):
+class RSResult(IntervalResult):
     """The four fabrics of a yarn."""
 
     material: str
     fabrics: dict[Fabric, RSFabricResult]
-    interval_source: str = Field(description="Source of the intervals.")
 
 
 def rs(request: RSRequest, context: Context) -> RSResult:

@@ -13,7 +13,7 @@ from pydantic import Field
 from scipy.ndimage import distance_transform_edt
 
 from app.cli.options import out_option
-from app.models.base import EndsOfList, Floats, ResultModel
+from app.models.base import EndsOfList, Floats, IntervalResult, ResultModel
 from app.models.charts import ChartInput, Column, MaterialName, OutlineInput, Row, to_chart
 from app.models.laws import LawsRequest
 from app.operations.context import Context
@@ -89,7 +89,7 @@ class NearestLockUp(ResultModel):
     fabric: str
 
 
-class StretchCurve(ResultModel):
+class StretchCurve(IntervalResult):
     """A simulated strip test (geometry after ISO 20932-1), not a certified test."""
 
     strain: Floats
@@ -205,6 +205,7 @@ def _curve(
     return StretchCurve.of(
         test,
         test.sheet.grid,
+        interval_source=margins.source,
         force_interval_n=(
             test.force_n / margins.force_factor,
             test.force_n * margins.force_factor,
@@ -352,7 +353,7 @@ def _lines(curve: StretchCurve) -> list[str]:
             f"nearest to lock-up: {spot.utilisation:.0%} {spot.direction}-wise in {spot.fabric}, "
             f"row {spot.row + 1}, stitch {spot.column + 1}"
         )
-    return lines
+    return [*lines, f"90 % intervals: {curve.interval_source}"]
 
 
 OPERATION = Operation(

@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from app.cli.options import loop_lengths
-from app.models.base import EndsOfList, Floats, ResultModel
+from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.laws import ElasticConstants
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
@@ -63,7 +63,7 @@ class SweptLaw(ElasticConstants):
     rms_wale_n_per_mm: float
 
 
-class SweepResult(ResultModel):
+class SweepResult(IntervalResult):
     """A stretch, free across; sizes and energies of one stitch."""
 
     kind: Literal["sweep"] = "sweep"
@@ -71,7 +71,6 @@ class SweepResult(ResultModel):
     branch: Branch
     strain: Floats
     strain_interval: EndsOfList = Field(description="Of knitted cloth, at each stress.")
-    interval_source: str = Field(description="Source of the interval.")
     transverse_strain: Floats
     stress_n_per_mm: Floats
     energy_n_mm: Floats

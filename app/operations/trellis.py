@@ -52,7 +52,7 @@ def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
         test,
         angle_deg=np.degrees(test.shear_angle),
         force_interval_n=interval(test.force_n, test.force_log_sd),
-        **of_test(test.test),
+        **of_test(test.test, context.material(request.material)),
     )
 
 

@@ -1191,6 +1191,8 @@ class YarnInput(TypedDict):
 class AtlasResult(BaseModel):
     """An atlas as columns, for the rigidity-rigidity scatter."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["atlas"] = "atlas"
     material: str
     repeats: list[str]
@@ -1289,6 +1291,8 @@ class BendingResult(BaseModel):
 class BiasResult(BaseModel):
     """A simulated strip test at an angle, not a certified one."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     energy_n_mm: list[float]
     """Energy stored in the cloth."""
     converged: bool
@@ -1313,6 +1317,8 @@ class BiasResult(BaseModel):
 class BiaxialResult(BaseModel):
     """A simulated biaxial test: edges stay straight and slide along themselves."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     energy_n_mm: list[float]
     """Energy stored in the cloth."""
     converged: bool
@@ -1553,6 +1559,8 @@ class CurveDocument(BaseModel):
 class CurveResult(BaseModel):
     """Strain at each stress, transverse direction free."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["curve"] = "curve"
     stress_n_per_mm: list[float]
     strain: list[float]
@@ -1715,6 +1723,8 @@ class EdgesResult(BaseModel):
 class EstimateResult(BaseModel):
     """All four fabrics of the yarn."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     fabrics: dict[Fabric, FabricEstimateResult]
     left_out: LeftOutResult | None
     """None if all fabrics are measured."""
@@ -1888,6 +1898,8 @@ class FillResult(BaseModel):
 class FindResult(BaseModel):
     """Ranked repeats, the surest first."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["find"] = "find"
     reached: bool
     message: str
@@ -1957,6 +1969,8 @@ class FrameErrorResult(BaseModel):
 class GarmentResult(BaseModel):
     """A garment as a chart with an outline."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     name: str
     rows: int
     columns: int
@@ -1976,8 +1990,6 @@ class GarmentResult(BaseModel):
     yarn_interval_m: tuple[float, float]
     """90 % interval."""
     yarn_interval_g: tuple[float, float] | None
-    interval_source: str
-    """Source of the intervals."""
     notes: list[str]
     warnings: list[str]
     """Notes on borders between regions of different gauge."""
@@ -2021,6 +2033,8 @@ class HangResult(BaseModel):
 class HysteresisResult(BaseModel):
     """Cycles of pulling and letting go, and what is left of them."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["hysteresis"] = "hysteresis"
     direction: Direction
     friction: float
@@ -2204,6 +2218,8 @@ class LimbPlaceResult(BaseModel):
 class LimbResult(BaseModel):
     """Fit along the limb; no medical class."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["limb"] = "limb"
     places: list[LimbPlaceResult]
     tightest_mm: float
@@ -2422,6 +2438,8 @@ class Patterns(BaseModel):
 class PieceResult(BaseModel):
     """Equilibria of a piece under a growing load."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     energy_n_mm: list[float]
     """Energy stored in the cloth."""
     converged: bool
@@ -2443,6 +2461,8 @@ class PieceResult(BaseModel):
 class PredictResult(BaseModel):
     """Effective elastic constants of the whole chart at small strain, with 90 % intervals."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     extensibility_course_mm_per_n: float
     extensibility_wale_mm_per_n: float
     modulus_course_n_per_mm: float
@@ -2482,6 +2502,8 @@ class PredictResult(BaseModel):
 class PressureResult(BaseModel):
     """Mean pressure; no medical class."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     mmhg: tuple[float, float]
     """Mean pressure, from axially free to axially fixed."""
     kpa: tuple[float, float]
@@ -2534,10 +2556,10 @@ class RSFabricResult(BaseModel):
 class RSResult(BaseModel):
     """The four fabrics of a yarn."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     material: str
     fabrics: dict[Fabric, RSFabricResult]
-    interval_source: str
-    """Source of the intervals."""
 
 
 class RSSegment(BaseModel):
@@ -2592,6 +2614,8 @@ class RegionResult(BaseModel):
 class RelaxResult(BaseModel):
     """The shape of least energy, free of force or held; sizes and energies of one stitch."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["relax"] = "relax"
     branch: Branch
     convention: Convention
@@ -2603,8 +2627,6 @@ class RelaxResult(BaseModel):
     cell_course_interval_mm: tuple[float, float] | None
     """90 % interval for knitted cloth; null for a width that was held."""
     cell_wale_interval_mm: tuple[float, float] | None
-    interval_source: str
-    """Source of the intervals."""
     energy_n_mm: float
     bending_share: float
     contact_share: float
@@ -2772,12 +2794,16 @@ class StitchKinds(BaseModel):
 class StitchTableResult(BaseModel):
     """Values for all 16 kinds of stitch."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     codes: list[StitchKind]
 
 
 class StretchResult(BaseModel):
     """The curve of a test, with fields at its stitches."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     strain: list[float]
     force_n: list[float]
     force_interval_n: tuple[list[float], list[float]]
@@ -2806,14 +2832,14 @@ class StretchResult(BaseModel):
 class SweepResult(BaseModel):
     """A stretch, free across; sizes and energies of one stitch."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["sweep"] = "sweep"
     direction: Direction
     branch: Branch
     strain: list[float]
     strain_interval: tuple[list[float], list[float]]
     """Of knitted cloth, at each stress."""
-    interval_source: str
-    """Source of the interval."""
     transverse_strain: list[float]
     stress_n_per_mm: list[float]
     energy_n_mm: list[float]
@@ -2862,6 +2888,8 @@ class SweptLaw(BaseModel):
 class TrellisResult(BaseModel):
     """A simulated trellis (picture frame) test."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     energy_n_mm: list[float]
     """Energy stored in the cloth."""
     converged: bool

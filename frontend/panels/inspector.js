@@ -148,7 +148,7 @@ export function inspector(host, studio) {
     source.hidden = !value;
     if (value) {
       const open = source.open;
-      const notes = [part.note, ...(value.notes?.length ? value.notes : ["Interval: 90 %."])].filter(Boolean);
+      const notes = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
       source.replaceChildren(
         h("summary", { id: "provenance", title: "Where these numbers come from" }, value.provenance),
         h("ul", { class: "notes" }, ...notes.map((note) => h("li", {}, note))),

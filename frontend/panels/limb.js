@@ -125,7 +125,7 @@ export function limb(host, studio) {
   const answer = h("div", { class: "limb-answer", role: "status", id: "limb-answer" });
   /** @param {LimbResult} found */
   const show = (found) => {
-    const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm } = found;
+    const { places, tightest_mm, loose_mm, length_mm, relaxed_length_mm, interval_source } = found;
     const pressed = places.filter(({ mmhg }) => mmhg);
     const ends = (/** @type {"mmhg" | "mmhg_with_spread"} */ name) => {
       const all = pressed.map((place) => /** @type {[number, number]} */ (place[name]));
@@ -146,7 +146,13 @@ export function limb(host, studio) {
         "p",
         { class: "limb-pressure" },
         h("span", { class: "value figures" }, pressed.length ? `${range(ends("mmhg"))} mmHg` : "No pressure"),
-        pressed.length ? h("span", { class: "muted figures" }, `90 % interval ${range(ends("mmhg_with_spread"))}`) : "",
+        pressed.length
+          ? h(
+              "span",
+              { class: "muted figures", title: interval_source },
+              `90 % interval ${range(ends("mmhg_with_spread"))}`,
+            )
+          : "",
       ),
       pressurePlot(places),
       h("p", { class: "muted figures" }, words.filter(Boolean).join(" ")),

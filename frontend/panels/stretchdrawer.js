@@ -174,7 +174,12 @@ export function stretchdrawer(host, studio, stretcher) {
         "div",
         { title: hint },
         h("dt", {}, term),
-        h("dd", {}, text, interval && h("span", { class: "interval", title: "90 % interval" }, interval)),
+        h(
+          "dd",
+          {},
+          text,
+          interval && h("span", { class: "interval", title: `90 % interval: ${value.interval_source}` }, interval),
+        ),
       );
     figures.replaceChildren(
       pair("Stretch", percent(value.strain[i]), "Clamp to clamp, along the pull"),

@@ -19,6 +19,7 @@ from knitcore.materials.uncertainty import Interval, log_interval, normal_interv
 
 GAUGE = "gauge"
 """Name of the source of a relaxed size given by the caller."""
+GAUGE_ERRORS = ("the gauge as given",)
 
 
 SHOWN_STRESS_N_PER_MM = 0.2
@@ -130,6 +131,8 @@ class Answer:
     provenance : the source; for a chart in patches the least certain of theirs.
     method : how the answer was found, in words.
     relaxed_source : where the relaxed size comes from.
+    stretch_errors, size_errors : what the intervals of moduli, Poisson's ratios and curves rest
+        on, and those of the relaxed size.
     notes : remarks for the user, in sentences.
     """
 
@@ -139,7 +142,14 @@ class Answer:
     provenance: Source
     method: str
     relaxed_source: str
+    stretch_errors: tuple[str, ...]
+    size_errors: tuple[str, ...]
     notes: tuple[str, ...] = ()
+
+    @property
+    def interval_source(self) -> str:
+        """What the intervals rest on, in words."""
+        return f"Stretch: {'; '.join(self.stretch_errors)}. Size: {'; '.join(self.size_errors)}."
 
     def along(self, direction: Direction) -> Along:
         """The answer for a pull in a direction."""
@@ -151,7 +161,9 @@ class Answer:
             replace(self.along(d), relaxed_mm=relaxed.extent_mm(d), relaxed_log_sd=relaxed.log_sd)
             for d in Direction
         )
-        return replace(self, course=course, wale=wale, relaxed_source=GAUGE)
+        return replace(
+            self, course=course, wale=wale, relaxed_source=GAUGE, size_errors=GAUGE_ERRORS
+        )
 
     def modulus_n_per_mm(self, direction: Direction) -> float:
         """Young's modulus in a direction."""
@@ -182,7 +194,7 @@ class Answer:
             showing.rectangles([("extensibility", *give)], "mm/N"),
         )
         extensible = f"The rectangle is the extensibility: {give[0]:.3g} × {give[1]:.3g} mm/N."
-        told = f"{self.provenance}: {self.method}. Intervals cover 90 %."
+        told = f"{self.provenance}: {self.method}. 90 % intervals: {self.interval_source}"
         table = showing.table(head, rows)
         return showing.figure(table + pictures, extensible, told, *self.notes)
 

@@ -16,6 +16,7 @@ from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
+from knitcore.materials.uncertainty import in_a_sentence
 
 DEFAULT_STRESS_N_PER_MM = tuple(float(s) for s in np.linspace(0.0, 0.3, 31))
 
@@ -31,6 +32,7 @@ class ChartCurve:
     strain_low, strain_high : 90 % interval of the strain at each stress.
     stress_low, stress_high : the same of the stress (N/mm) at each strain; at most 10 N/mm.
     provenance : source of the curve.
+    interval_source : what its intervals rest on, in words.
     """
 
     stress_n_per_mm: Array
@@ -40,12 +42,14 @@ class ChartCurve:
     stress_low: Array
     stress_high: Array
     provenance: Source
+    interval_source: str
 
     def _repr_html_(self) -> str:
         ends = self.strain_low, self.strain_high
         drawn = [(str(self.provenance), self.strain, self.stress_n_per_mm, ends)]
         picture = showing.curves(drawn, "strain", "stress, N/mm")
-        return showing.figure(picture, "The band is the 90 % interval of the strain.")
+        band = f"The band is the 90 % interval of the strain. {self.interval_source}"
+        return showing.figure(picture, band)
 
 
 def increasing(stress_n_per_mm: ArrayLike) -> Array:
@@ -108,4 +112,5 @@ def curve(
         *along.strain_interval(stress),
         *along.stress_interval(strain),
         answer.provenance,
+        in_a_sentence(answer.stretch_errors),
     )

@@ -17,6 +17,7 @@ CURL = (
 GAUGE_LOG_SD = 0.08
 """Standard deviation of the logarithm of a pure fabric's size: one aspect ratio is used for all
 yarns, and those of two yarns differ by up to 17 % (``materials/data/aspect.csv``)."""
+GAUGE_SD_SOURCE = "one aspect ratio of stitches for all yarns (8 %)"
 
 _SOURCES = {Origin.SIMULATED: Source.SWEPT, Origin.ESTIMATED: Source.ESTIMATED}
 
@@ -30,7 +31,6 @@ def measured(fabric: Fabric, material: Material) -> Answer:
         If the material has no such fabric.
     """
     record = material.record(fabric)
-    spread = record.uncertainty
     notes = [CURL] if fabric is Fabric.STOCKINETTE else []
     course, wale = (_along(record, direction) for direction in Direction)
     return Answer(
@@ -38,8 +38,10 @@ def measured(fabric: Fabric, material: Material) -> Answer:
         wale,
         record.law.shear_modulus,
         _SOURCES.get(record.origin, Source.MEASURED),
-        f"law of {fabric}, {record.origin}; uncertainty: {spread.source}",
+        f"law of {fabric}, {record.origin}",
         "gauge of the pure fabric",
+        (record.uncertainty.source,),
+        (GAUGE_SD_SOURCE,),
         (*notes, *([material.note] if material.note else [])),
     )
 

@@ -8,10 +8,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from knitcore.answer.answer import GAUGE, Along, Answer, Source
+from knitcore.answer.answer import GAUGE, GAUGE_ERRORS, Along, Answer, Source
 from knitcore.answer.densities import Densities
 from knitcore.answer.learned import LearnedAnswer, SweptChart, packaged_model
-from knitcore.answer.measured import CURL, GAUGE_LOG_SD
+from knitcore.answer.measured import CURL, GAUGE_LOG_SD, GAUGE_SD_SOURCE
 from knitcore.answer.mixture import Mixture
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
@@ -29,6 +29,9 @@ SWEPT = (
     "From a yarn-level simulation of this chart, which has no friction or set: the initial stretch "
     "and the draw-in are the least certain."
 )
+LEARNED_ERRORS = "charts left out of the learning"
+KNITTED = "29 knitted swatches (KnitDB)"
+SWEPT_ERRORS = "how far yarn-level charts of the same densities differ"
 _LOOP_SPREAD = 1.15
 
 
@@ -61,8 +64,10 @@ def mixed(
     shares = ", ".join(f"{share:.0%} {record.fabric}" for share, record in parts)
     source = Source.LEARNED if gauge is None else Source.LEARNED_OF_SIZE
     taught, note = "learned from yarn-level simulations of mixed charts", LEARNED
+    errors = LEARNED_ERRORS
     if swept is not None:
         source, taught, note = Source.SWEPT, "from a yarn-level stretch of this chart", SWEPT
+        errors = SWEPT_ERRORS
     return Answer(
         course,
         wale,
@@ -70,8 +75,14 @@ def mixed(
         source,
         f"{shares} mixed in {repeat.columns} x {repeat.rows} stitches, with a correction {taught}",
         ("learned" if swept is None else "yarn level") if gauge is None else GAUGE,
+        tuple(dict.fromkeys([errors, *(record.uncertainty.source for _, record in parts)])),
+        _size_errors(errors, learned.mixture) if gauge is None else GAUGE_ERRORS,
         (note, *_notes(learned.mixture, material)),
     )
+
+
+def _size_errors(learned: str, mixture: Mixture) -> tuple[str, ...]:
+    return (learned, *(() if mixture.simulated else (KNITTED,)), GAUGE_SD_SOURCE)
 
 
 def _along(

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,7 +79,11 @@ class Patches:
             return first
         flat, share = self._flat, self._share
         course, wale = (self._along(flat, share, direction) for direction in Direction)
-        # the least certain source, and the notes of all
+
+        def said(words: Callable[[Answer], tuple[str, ...]]) -> tuple[str, ...]:
+            return tuple(dict.fromkeys(chain.from_iterable(map(words, flat))))
+
+        # the least certain source, and the errors and notes of all
         source = next((a for a in flat if a.provenance.startswith("learned")), first)
         return replace(
             source,
@@ -88,7 +92,9 @@ class Patches:
             shear_modulus_n_per_mm=float(share @ [a.shear_modulus_n_per_mm for a in flat]),
             method=f"{len(self.answers[0])} x {len(self.answers)} patches, in series along the "
             "pull and side by side across it; mixed ones learned from yarn-level simulations",
-            notes=tuple(dict.fromkeys(note for answer in flat for note in answer.notes)),
+            stretch_errors=said(lambda answer: answer.stretch_errors),
+            size_errors=said(lambda answer: answer.size_errors),
+            notes=said(lambda answer: answer.notes),
         )
 
     def lines(self, direction: Direction) -> tuple[Answer, ...]:

@@ -55,6 +55,8 @@ VALUES = (
 """Columns of an atlas; low and high are ends of 90 % intervals. Relaxed sizes are of the mean
 stitch."""
 
+INTERVAL_SOURCE = "Each repeat's own answer; `predict` names what its intervals rest on."
+
 
 @dataclass(frozen=True)
 class Entry:

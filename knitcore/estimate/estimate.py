@@ -35,6 +35,7 @@ from knitcore.materials.measured import MeasuredCurve
 
 LOOP_LENGTH_TOLERANCE = 0.1
 """A swatch whose loop length differs by more than this is of another tightness."""
+INTERVAL_SOURCE = "Yarns of the library left out one at a time, the same fabrics of them measured."
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ c becomes sqrt(ln(1 + c²)), which has the same variance and never crosses zero.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from statistics import NormalDist
 
@@ -127,6 +128,18 @@ class LawUncertainty:
         first = 1 / (1 + (np.asarray(stress_n_per_mm, dtype=float) / QUIET_STRESS_N_PER_MM) ** 2)
         modulus, curve = self.log_modulus(direction), self.curve(direction).log_stress
         return np.sqrt(first * modulus**2 + (1 - first) * curve**2)
+
+
+def in_a_sentence(sources: Iterable[str]) -> str:
+    """What intervals rest on, each thing once.
+
+    Examples
+    --------
+    >>> in_a_sentence(["pulls left out", "an assumed shear modulus", "pulls left out"])
+    'Pulls left out; an assumed shear modulus.'
+    """
+    text = "; ".join(dict.fromkeys(sources))
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def log_deviation(value: float, standard_deviation: float) -> float:

@@ -13,7 +13,7 @@ from knitcore.errors import Cancelled, check_cancelled
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE
 from knitcore.swatch import Clamps, StripTest
-from knitcore.swatch.uncertainty import StripSpread
+from knitcore.swatch.uncertainty import StripSpread, interval_source
 
 SAMPLES = 5
 """Steps at which intervals are computed; between them they are interpolated over the strain (off by
@@ -29,12 +29,14 @@ class StretchMargins:
     force_factor : (steps,), factor between force or stress and either end of its interval.
     waist : (steps,).
     strain, utilisation : (steps, rows, columns) at the stitches; the strain along the pull.
+    source : what the intervals rest on, in words.
     """
 
     force_factor: Array
     waist: Array
     strain: Array
     utilisation: Array
+    source: str
 
 
 def sampled_steps(steps: int) -> list[int]:
@@ -83,4 +85,6 @@ def stretch_margins(
             return known
         return np.asarray(PchipInterpolator(test.strain[picked], known, axis=0)(test.strain))
 
-    return StretchMargins(np.exp(at_all_steps(0)), *(at_all_steps(kind) for kind in (1, 2, 3)))
+    force, waist, strain, utilisation = map(at_all_steps, range(4))
+    source = interval_source(test.sheet, material)
+    return StretchMargins(np.exp(force), waist, strain, utilisation, source)

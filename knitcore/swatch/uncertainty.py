@@ -38,7 +38,13 @@ from knitcore.gridsolver.dissection import GridFactor
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.law.stiffening import StiffeningForm
 from knitcore.materials.material import Material
-from knitcore.materials.uncertainty import Z_SCORE, Interval, LawUncertainty, log_interval
+from knitcore.materials.uncertainty import (
+    Z_SCORE,
+    Interval,
+    LawUncertainty,
+    in_a_sentence,
+    log_interval,
+)
 from knitcore.swatch.calibration import LOG_SHEAR_PRIOR
 from knitcore.swatch.fields import cell_strains, corner_means, stiffening_of, utilisation
 from knitcore.swatch.kernel import Nodes
@@ -49,6 +55,8 @@ from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask, waist_strain
 
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, for stitches of mixed quarters and of one fabric."""
+MODEL_ERRORS = "the mixture's own error, as for the chart's moduli"
+SHEAR_ASSUMED = "an assumed shear modulus, within a factor e"
 LOG_SHEAR_STIFFENING = 0.7
 """Standard deviation of the logarithm of the growth of the shear stiffness, found on one jersey."""
 STEP = 1e-3
@@ -211,9 +219,8 @@ def model_log_sd(sheet: Sheet) -> float:
 
 def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
     """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
-    codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth])
     found = np.zeros((len(sheet.laws), 2))
-    for code in codes:
+    for code in _codes(sheet):
         spread = material.record(PHASES[code % len(PHASES)]).uncertainty
         found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
     return found
@@ -227,8 +234,7 @@ def law_parameters(
     ``stress_n_per_mm`` is the approximate stress of the cloth.
     """
     found = []
-    codes = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
-    for code in codes:
+    for code in _codes(sheet):
         law, spread = (
             material.law(PHASES[code % len(PHASES)]),
             material.record(PHASES[code % len(PHASES)]).uncertainty,
@@ -243,16 +249,36 @@ def law_parameters(
             found.append(LawParameter(*_varied(sheet, [code], _sheared), spread.log_shear, 0.0))
             growth = _varied(sheet, [code], _stiffer_in_shear)
             found.append(LawParameter(*growth, LOG_SHEAR_STIFFENING, 0.0))
-    assumed = [
+    assumed = _of_assumed_shear(sheet, material)
+    if assumed:
+        found.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
+    return found
+
+
+def interval_source(sheet: Sheet, material: Material) -> str:
+    """What the intervals of a test of a sheet rest on, in words."""
+    used = {PHASES[code % len(PHASES)]: None for code in _codes(sheet)}
+    said = [material.record(fabric).uncertainty.source for fabric in used]
+    said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
+    said += [MODEL_ERRORS] if model_log_sd(sheet) else []
+    return in_a_sentence(said)
+
+
+def _codes(sheet: Sheet) -> list[int]:
+    """Codes of the laws that the cloth of a sheet follows."""
+    codes: list[int] = np.unique(sheet.grid.law_of_cell[sheet.grid.cloth]).tolist()
+    return codes
+
+
+def _of_assumed_shear(sheet: Sheet, material: Material) -> list[int]:
+    """Codes of the laws whose shear modulus is the assumed one."""
+    return [
         code
-        for code in codes
+        for code in _codes(sheet)
         if sheet.model.shear_modulus is None
         and material.record(PHASES[code % len(PHASES)]).uncertainty.log_shear is None
         and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
     ]
-    if assumed:
-        found.append(LawParameter(*_varied(sheet, assumed, _sheared), LOG_SHEAR_PRIOR[1], 0.0))
-    return found
 
 
 def _varied(

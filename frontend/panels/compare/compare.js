@@ -286,12 +286,12 @@ function fill(table, pair) {
           "tr",
           {},
           h("th", { scope: "row" }, label, unit && h("span", { class: "unit" }, unit)),
-          ...both.map(({ value, interval }) =>
+          ...both.map(({ value, interval }, k) =>
             h(
               "td",
               {},
               h("span", { class: "value" }, figure(value)),
-              h("span", { class: "interval" }, range(interval)),
+              h("span", { class: "interval", title: pair[k].predicted.interval_source }, range(interval)),
             ),
           ),
           h("td", { class: clear ? "clear" : "unclear" }, text, !clear && text.includes("%") && note()),

@@ -63,6 +63,42 @@ def test_an_interval_is_low_and_high_in_shape_and_unit_of_the_value_it_is_named_
     assert seen > 30
 
 
+def test_every_interval_names_its_source_in_its_own_result_or_in_the_one_around_it(
+    shapes: dict[str, Schema],
+) -> None:
+    """A material file is no result: it says what its user knows."""
+    parents: dict[str, set[str]] = {shape: set() for shape in shapes}
+    for shape, _, field, _ in _fields(shapes):
+        for inner in _named(field):
+            parents[inner].add(shape)
+
+    def named(shape: str) -> bool:
+        around = parents[shape] & results
+        return "interval_source" in shapes[shape]["properties"] or (
+            bool(around) and all(map(named, around))
+        )
+
+    results = {shape for shape in shapes if not shape.endswith(("Document", "Request", "Input"))}
+    with_intervals = {
+        shape
+        for shape, name, _, _ in _fields(shapes)
+        if shape in results and ("interval" in name or ("with" in name and "spread" in name))
+    }
+    assert len(with_intervals) > 20
+    assert [shape for shape in sorted(with_intervals) if not named(shape)] == []
+
+
+def _named(schema: Any) -> Iterator[str]:
+    """Names of the shapes that a schema refers to."""
+    if isinstance(schema, dict):
+        if "$ref" in schema:
+            yield schema["$ref"].rpartition("/")[2]
+        schema = list(schema.values())
+    if isinstance(schema, list):
+        for part in schema:
+            yield from _named(part)
+
+
 def test_no_interval_is_written_otherwise(shapes: dict[str, Schema]) -> None:
     """`FieldColours` has the ends of a colour map, which are no interval."""
     for shape, name, _, _ in _fields(shapes):

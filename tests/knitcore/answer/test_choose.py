@@ -271,3 +271,17 @@ def test_the_public_face():
         assert getattr(knitcore, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'moduli'"):
         _ = knitcore.moduli
+
+
+def test_an_answer_says_what_its_intervals_rest_on():
+    yarn = material("acrylic")
+    tests = yarn.record("garter").uncertainty.source
+    learned, gauge = "charts left out of the learning", RelaxedSize(3.0, 2.0)
+    garter, mixed = StitchChart.parse("K/P"), StitchChart.parse("KKPP")
+    assert predict(garter, yarn).stretch_errors == (tests,)
+    assert predict(mixed, yarn).stretch_errors == (learned, tests)
+    assert learned in predict(mixed, yarn).size_errors
+    assert predict(mixed, yarn, gauge=gauge).size_errors == ("the gauge as given",)
+    large = StitchChart.of_fabric("garter", 40, 40).purl.copy()
+    large[20:, ::2] ^= True
+    assert predict(StitchChart(large), yarn).stretch_errors == (learned, tests)

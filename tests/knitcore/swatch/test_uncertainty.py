@@ -20,7 +20,7 @@ from knitcore.materials.uncertainty import Z_SCORE, CurveUncertainty
 from knitcore.swatch import StripTest, chart_sheet, strip_test
 from knitcore.swatch.fields import Fields
 from knitcore.swatch.strip import Clamps
-from knitcore.swatch.uncertainty import StepSpread, StripSpread, model_log_sd
+from knitcore.swatch.uncertainty import StepSpread, StripSpread, interval_source, model_log_sd
 
 ACRYLIC = material("acrylic:published")
 SHEAR_N_PER_MM = 0.02
@@ -168,6 +168,10 @@ def test_the_assumed_shear_modulus_counts_and_a_given_one_does_not() -> None:
     spread = StripSpread(given_one, base).at(-1)
     assert spread.strain_yy_sd.max() == 0.0
     assert spread.force_log_sd == 0.0
+    assert interval_source(given_one.sheet, base) == "Made up."
+    assert interval_source(assumed.sheet, base).endswith(
+        "; an assumed shear modulus, within a factor e."
+    )
 
 
 def doubled(spread: LawUncertainty) -> LawUncertainty:
@@ -260,6 +264,7 @@ def test_the_composites_own_error_is_that_of_predictions() -> None:
     blocks = StitchChart(np.kron([[0, 1], [1, 0]], np.ones((40, 40))) > 0)
     assert 0.05 < model_log_sd(chart_sheet(blocks, ACRYLIC)) < 0.1
     assert model_log_sd(small) > 0.3
+    assert "the mixture's own error" in interval_source(small, ACRYLIC)
 
 
 def test_a_shaped_piece_has_intervals_where_it_has_cloth() -> None:
