@@ -1029,6 +1029,8 @@ export interface FillRequest {
 
 /** A chart, and how near it comes to the targets. */
 export interface FillResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
   kind: "fill";
   rows: number;
   columns: number;

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from app.cli.common import resolve_chart
 from app.cli.options import atlas_option, design_option, write_design_of
-from app.models.base import Ends, Known, RequestModel, ResultModel
+from app.models.base import Ends, IntervalResult, Known, RequestModel, ResultModel
 from app.models.charts import (
     ChartLines,
     ChartText,
@@ -27,7 +27,7 @@ from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart
-from knitcore.design.atlas import Atlas
+from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.wishes import Parts, Wish, wanted_maps
 from knitcore.errors import InputError
@@ -122,7 +122,7 @@ class PatchResult(ResultModel):
     modulus_wale_interval_n_per_mm: Ends
 
 
-class FillResult(ResultModel):
+class FillResult(IntervalResult):
     """A chart, and how near it comes to the targets."""
 
     kind: Literal["fill"] = "fill"
@@ -169,7 +169,13 @@ def _filled(request: FillRequest, wanted: Maps, atlas: Atlas, context: Context) 
         progress=context.share,
         cancelled=context.cancelled,
     )
-    return FillResult.of(found, found.chart, chart=found.chart.text, patches=found.regions)
+    return FillResult.of(
+        found,
+        found.chart,
+        interval_source=f"{INTERVAL_SOURCE} Widened to what a patch does in the finite swatch.",
+        chart=found.chart.text,
+        patches=found.regions,
+    )
 
 
 def _wanted(request: FillRequest) -> Maps:

@@ -1884,6 +1884,8 @@ class FigureResult(BaseModel):
 class FillResult(BaseModel):
     """A chart, and how near it comes to the targets."""
 
+    interval_source: str
+    """What the 90 % intervals rest on."""
     kind: Literal["fill"] = "fill"
     rows: int
     columns: int
