@@ -25,6 +25,8 @@ GAUGE_PER_BENDING = 100.0
 STIFF_GAUGE_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the last steps go without."""
+BLOCK = 12
+"""Unknowns in a block of the sparse Hessian: those of four control points."""
 PENALTY_PER_BENDING = 3e4
 """Stiffness of the augmented length constraint in units of B / L³."""
 
@@ -289,12 +291,11 @@ class CellEnergy:
             return Slope(gradient, lengths)
         size = self.cell.unknowns
         if sparse:
-            block = self.block
             at = kernels.laid_out(curve, layout.place, state[-2], state[-1])
             touching = kernels.touching_blocks(
-                at, state[-2], state[-1], pairs, layout, block, 2.0 * law.radius
+                at, state[-2], state[-1], pairs, layout, BLOCK, 2.0 * law.radius
             )
-            matrix = kernels.empty_tiles(touching, block, size - 2)
+            matrix = kernels.empty_tiles(touching, BLOCK, size - 2)
         else:
             matrix = kernels.one_tile(size)
         sizes, position, position_speed = kernels.contact_hessian(
@@ -314,11 +315,6 @@ class CellEnergy:
         if self.sliding is not None:
             kernels.friction_hessian(*rubbing, whole)
         return Slope(gradient, lengths, whole)
-
-    @property
-    def block(self) -> int:
-        """Unknowns in a block of the sparse Hessian: those of a third of a stitch."""
-        return self.cell.grid.controls
 
     def along_yarn(
         self, curve: Array, tension: Array, by_speed: Array

@@ -1,9 +1,9 @@
 """Cholesky factors of a sparse symmetric matrix made of square tiles: the multifrontal method.
 
 Stitches far apart do not touch, so the Hessian of a large cell is sparse. Which of them touch is
-not known beforehand, since fabric folds; the order of elimination is therefore found anew from the
-tiles that are there, always taking the block with the fewest neighbours (minimum degree). Blocks
-that are eliminated together own a dense front, and the dense work is done by BLAS.
+not known beforehand, since fabric folds; the fronts are therefore found from the tiles that are
+there, in an order of elimination by nested dissection. Blocks that are eliminated together own a
+dense front, and the dense work is done by BLAS.
 """
 
 from __future__ import annotations
@@ -40,9 +40,10 @@ class Front:
     children: tuple[tuple[int, Ints], ...]
 
 
-def elimination(touching: NDArray[np.bool_]) -> tuple[Front, ...]:
-    """The fronts, in the order of elimination, of a symmetric pattern (blocks, blocks)."""
-    order, first, border, border_first = _minimum_degree(touching.copy())
+def elimination(touching: NDArray[np.bool_], wanted: Ints) -> tuple[Front, ...]:
+    """The fronts of a symmetric pattern (blocks, blocks) in about the order wanted: blocks that
+    touch the same others are eliminated together."""
+    order, first, border, border_first = _eliminated(touching.copy(), wanted)
     rank = np.empty(len(order), np.int64)
     rank[order] = np.arange(len(order))
     owner = np.searchsorted(first, rank, side="right") - 1
@@ -172,8 +173,8 @@ class FrontalFactor:
 
 
 @numba.njit(cache=True)
-def _minimum_degree(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
-    touching: NDArray[np.bool_],
+def _eliminated(  # noqa: PLR0912, PLR0915 - compiled: one block after the other
+    touching: NDArray[np.bool_], wanted: Ints
 ) -> tuple[Ints, Ints, Ints, Ints]:
     """Order of elimination, first of each front in it, border blocks of all fronts, their firsts.
 
@@ -191,11 +192,9 @@ def _minimum_degree(  # noqa: PLR0912, PLR0915 - compiled: one block after the o
     border = np.empty(16 * n, np.int64)
     around = np.empty(n, np.int64)
     done = fronts = stored = 0
-    while done < n:
-        k = -1
-        for i in range(n):
-            if alive[i] and (k < 0 or degree[i] < degree[k]):
-                k = i
+    for k in wanted:
+        if not alive[k]:
+            continue
         count = 0
         for j in range(n):
             if alive[j] and touching[k, j]:
@@ -285,8 +284,14 @@ def _extend(
     remainder: Floats, places: Ints, own: int, size: int, upper: Floats, side: Floats, rest: Floats
 ) -> None:
     """Add what a child leaves of its border to its parent's front (lower triangles)."""
-    for q in range(places.shape[0]):
-        for p in range(q, places.shape[0]):
+    count = places.shape[0]
+    end = np.empty(count, np.int64)  # of the run of neighbours that a place belongs to
+    for p in range(count - 1, -1, -1):
+        last = p == count - 1 or places[p + 1] != places[p] + 1 or places[p + 1] == own
+        end[p] = p + 1 if last else end[p + 1]
+    for q in range(count):
+        p = q
+        while p < count:
             row, column = places[p], places[q]
             if row < own:
                 out = upper
@@ -297,6 +302,11 @@ def _extend(
                 out = rest
                 row -= own
                 column -= own
+            length = (end[p] - p) * size
             for n in range(size):
-                for m in range(size):
-                    out[row * size + m, column * size + n] += remainder[p * size + m, q * size + n]
+                # columns as views, so that the compiler knows that they are contiguous
+                to = out[row * size : row * size + length, column * size + n]
+                left = remainder[p * size : p * size + length, q * size + n]
+                for m in range(length):
+                    to[m] += left[m]
+            p = end[p]

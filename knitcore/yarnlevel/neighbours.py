@@ -21,7 +21,7 @@ _BINS = 3
 
 
 @numba.njit(cache=True)
-def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
+def neighbour_pairs(  # noqa: PLR0912, PLR0915 - compiled: bins, then pairs
     curve: NDArray[np.float64],
     place: NDArray[np.float64],
     cell: tuple[float, float],
@@ -56,27 +56,33 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
     bins_y = max(1, int(_BINS * height / reach))
     span_x = int(np.ceil(reach * bins_x / width))
     span_y = int(np.ceil(reach * bins_y / height))
-    x = np.empty(n)
-    y = np.empty(n)
-    z = curve[:, 0, 2].copy()
-    image_x = np.empty(n, np.int64)
-    image_y = np.empty(n, np.int64)
+    x, y, z = np.empty(n), np.empty(n), curve[:, 0, 2].copy()
+    image = np.empty((n, 2), np.int64)
     bin_of = np.empty(n, np.int64)
-    head = np.full(bins_x * bins_y, -1, np.int64)
-    following = np.empty(n, np.int64)
+    first = np.zeros(bins_x * bins_y + 1, np.int64)
     for i in range(n):
         full_x = curve[i, 0, 0] + cell[0] * place[i % samples]
         full_y = curve[i, 0, 1] + cell[1] * (i // samples)
-        image_x[i] = int(np.floor(full_x / width))
-        image_y[i] = int(np.floor(full_y / height))
-        x[i] = full_x - image_x[i] * width
-        y[i] = full_y - image_y[i] * height
+        image[i, 0] = int(np.floor(full_x / width))
+        image[i, 1] = int(np.floor(full_y / height))
+        x[i] = full_x - image[i, 0] * width
+        y[i] = full_y - image[i, 1] * height
         b = min(bins_y - 1, int(y[i] / height * bins_y)) * bins_x + min(
             bins_x - 1, int(x[i] / width * bins_x)
         )
         bin_of[i] = b
-        following[i] = head[b]
-        head[b] = i
+        first[b + 1] += 1
+    for b in range(bins_x * bins_y):
+        first[b + 1] += first[b]
+    # the samples bin by bin, in falling order, side by side in memory
+    sample = np.empty(n, np.int64)
+    there = np.empty((n, 3))
+    filled = first[:-1].copy()
+    for i in range(n - 1, -1, -1):
+        k = filled[bin_of[i]]
+        filled[bin_of[i]] += 1
+        sample[k] = i
+        there[k, 0], there[k, 1], there[k, 2] = x[i], y[i], z[i]
     capacity = 64 * n
     pairs = np.empty((capacity, 5), np.int32)
     start = np.zeros(n + 1, np.int64)
@@ -85,42 +91,49 @@ def neighbour_pairs(  # noqa: PLR0915 - compiled: bins, then pairs
     for i in range(n):
         start[i] = count
         by, bx = bin_of[i] // bins_x, bin_of[i] % bins_x
+        row_i, t_i = i // samples, place[i % samples]
         for v in range(by - span_y, by + span_y + 1):
             lift = v // bins_y
             for u in range(bx - span_x, bx + span_x + 1):
                 shift = u // bins_x
                 across_x = shift * width - x[i]
                 up_y = lift * height - y[i]
-                j = head[(v - lift * bins_y) * bins_x + (u - shift * bins_x)]
-                while j >= i:  # a bin lists its samples in falling order
-                    dx = x[j] + across_x
-                    dy = y[j] + up_y
+                b = (v - lift * bins_y) * bins_x + (u - shift * bins_x)
+                for k in range(first[b], first[b + 1]):
+                    j = sample[k]
+                    if j < i:
+                        break
+                    dx = there[k, 0] + across_x
+                    dy = there[k, 1] + up_y
                     left = square - dx * dx - dy * dy
-                    if left > 0.0:
-                        across = shift - image_x[j] + image_x[i]
-                        up = lift - image_y[j] + image_y[i]
-                        flip = 1
-                        if mirror[0] < 0 and across % 2 != 0:
-                            flip = -flip
-                        if mirror[1] < 0 and up % 2 != 0:
-                            flip = -flip
-                        dz = flip * z[j] - z[i]
-                        if dz * dz < left and (j > i or across > 0 or (across == 0 and up > 0)):
-                            same = j // samples + up * rows == i // samples
-                            along = abs(place[j % samples] + across * wales - place[i % samples])
-                            if not (same and along <= exclusion):
-                                if count == capacity:
-                                    capacity *= 2
-                                    grown = np.empty((capacity, 5), np.int32)
-                                    grown[:count] = pairs[:count]
-                                    pairs = grown
-                                pairs[count, 0] = i
-                                pairs[count, 1] = j
-                                pairs[count, 2] = across
-                                pairs[count, 3] = up
-                                pairs[count, 4] = flip
-                                count += 1
-                    j = following[j]
+                    if left <= 0.0:
+                        continue
+                    across = shift - image[j, 0] + image[i, 0]
+                    up = lift - image[j, 1] + image[i, 1]
+                    flip = 1
+                    if mirror[0] < 0 and across % 2 != 0:
+                        flip = -flip
+                    if mirror[1] < 0 and up % 2 != 0:
+                        flip = -flip
+                    dz = flip * there[k, 2] - z[i]
+                    if dz * dz >= left or (j == i and (across, up) <= (0, 0)):
+                        continue
+                    row_j = j // samples
+                    if row_j + up * rows == row_i:
+                        along = abs(place[j - row_j * samples] + across * wales - t_i)
+                        if along <= exclusion:
+                            continue
+                    if count == capacity:
+                        capacity *= 2
+                        grown = np.empty((capacity, 5), np.int32)
+                        grown[:count] = pairs[:count]
+                        pairs = grown
+                    pairs[count, 0] = i
+                    pairs[count, 1] = j
+                    pairs[count, 2] = across
+                    pairs[count, 3] = up
+                    pairs[count, 4] = flip
+                    count += 1
     start[n] = count
     return pairs[:count], start
 

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
+from knitcore.yarnlevel.dissection import dissected
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.fronts import Front, Room, elimination
 from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System
@@ -170,6 +171,7 @@ class _Descent:
         dense_only = energy.slides or energy.sliding is not None
         self.sparse = energy.cell.stitches >= _SPARSE_FROM and not dense_only
         self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
+        self.order: NDArray[np.int64] | None = None
         self.fronts: tuple[NDArray[np.bool_], tuple[Front, ...]] | None = None
         self.room = Room()
         self.lowest = 0.0
@@ -241,8 +243,11 @@ class _Descent:
     def _system(self, slope: Slope) -> System:
         if slope.sparse is None:
             return DenseSystem(slope, self.energy.penalty, self.free, self.single)
-        if self.fronts is None or not np.array_equal(self.fronts[0], slope.sparse.touching):
-            self.fronts = slope.sparse.touching, elimination(slope.sparse.touching)
+        touching = slope.sparse.touching
+        if self.order is None:
+            self.order = dissected(touching)
+        if self.fronts is None or not np.array_equal(self.fronts[0], touching):
+            self.fronts = touching, elimination(touching, self.order)
         return SparseSystem(slope, self.energy.penalty, self.free, self.fronts[1], self.room)
 
     def _factorise(self, system: System) -> None:

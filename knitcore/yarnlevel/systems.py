@@ -35,10 +35,17 @@ class System(ABC):
         self._free = free
         self._held = np.flatnonzero(~free)
         self._damping = 0.0
+        self._by_tension: Array | None = None
 
-    @abstractmethod
     def factorise(self, damping: float) -> bool:
         """Factor of the damped matrix; False where it is not positive definite."""
+        self._damping = damping
+        self._by_tension = None
+        return self._factorised(damping)
+
+    @abstractmethod
+    def _factorised(self, damping: float) -> bool:
+        """See ``factorise``."""
 
     @abstractmethod
     def _through_factor(self, right: Array) -> Array:
@@ -67,16 +74,23 @@ class System(ABC):
         return curvature, v / np.abs(v).max()
 
     def solve(self, slope: Slope, excess: Array, remaining: Array) -> tuple[Array, Array]:
-        """Step to the prescribed lengths, and the change of the tensions."""
+        """Step to the prescribed lengths, and the change of the tensions.
+
+        What the tensions do is solved for once with each factor: later steps with it meet the
+        lengths just as well.
+        """
         lengths = slope.lengths[:, self._free]
         missing = excess + slope.lengths[:, self._held] @ remaining
-        gradient = self._downhill_gradient(slope, excess, remaining)
-        both = self._through_factor(np.column_stack([-gradient, lengths.T]))
-        downhill, by_tension = both[:, 0], both[:, 1:]
-        schur, missed = lengths @ by_tension, lengths @ downhill + missing
+        uphill = self._downhill_gradient(slope, excess, remaining)[:, None]
+        if self._by_tension is None:
+            both = self._through_factor(np.column_stack([uphill, lengths.T]))
+            uphill, self._by_tension = both[:, 0], both[:, 1:]
+        else:
+            uphill = self._through_factor(uphill)[:, 0]
+        schur, missed = lengths @ self._by_tension, missing - lengths @ uphill
         change = np.asarray(np.linalg.solve(schur, missed), dtype=float)
         step = np.empty(len(self._free))
-        step[self._free] = downhill - by_tension @ change
+        step[self._free] = -uphill - self._by_tension @ change
         step[self._held] = remaining
         return step, change
 
@@ -111,9 +125,7 @@ class DenseSystem(System):
                 trans_a=True, overwrite_c=True,
             )  # fmt: skip
 
-    def factorise(self, damping: float) -> bool:
-        """Cholesky factor of the damped matrix; False where it is not positive definite."""
-        self._damping = damping
+    def _factorised(self, damping: float) -> bool:
         matrix = self._hessian.T
         if len(self._held):
             matrix = matrix[np.ix_(self._free, self._free)]
@@ -164,9 +176,7 @@ class SparseSystem(System):
         self._sizes = np.flatnonzero(free[-2:])
         self._beside = slope.sparse.sizes[self._sizes, :-2].T
 
-    def factorise(self, damping: float) -> bool:
-        """Factor of the damped matrix; False where it is not positive definite."""
-        self._damping = damping
+    def _factorised(self, damping: float) -> bool:
         with one_blas_thread():
             if not self._factor.factorise(damping):
                 return False

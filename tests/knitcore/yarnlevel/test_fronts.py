@@ -32,7 +32,7 @@ def _ring_with_chords():
 
 def test_every_block_is_eliminated_once_and_borders_come_later():
     touching, _, _ = _ring_with_chords()
-    fronts = elimination(touching)
+    fronts = elimination(touching, np.arange(len(touching)))
     order = np.concatenate([front.own for front in fronts])
     assert sorted(order) == list(range(len(touching)))
     rank = np.argsort(order)
@@ -43,7 +43,7 @@ def test_every_block_is_eliminated_once_and_borders_come_later():
 @pytest.mark.parametrize("damping", [0.0, 5.0])
 def test_solves_like_a_dense_solver(damping):
     touching, matrix, dense = _ring_with_chords()
-    factor = FrontalFactor(matrix, elimination(touching), Room())
+    factor = FrontalFactor(matrix, elimination(touching, np.arange(len(touching))), Room())
     assert factor.factorise(damping)
     right = np.random.default_rng(5).standard_normal((UNKNOWNS, 2))
     expected = np.linalg.solve(dense + damping * np.eye(UNKNOWNS), right)
@@ -55,7 +55,7 @@ def test_tells_an_indefinite_matrix_and_how_much_damping_it_takes():
     matrix.tiles[matrix.where[4, 4]] -= 20.0 * np.eye(SIZE)
     dense[4 * SIZE : 5 * SIZE, 4 * SIZE : 5 * SIZE] -= 20.0 * np.eye(SIZE)
     lowest = np.linalg.eigvalsh(dense)[0]
-    factor = FrontalFactor(matrix, elimination(touching), Room())
+    factor = FrontalFactor(matrix, elimination(touching, np.arange(len(touching))), Room())
     assert lowest < 0.0
     assert not factor.factorise(0.0)
     assert not factor.factorise(-0.99 * lowest)
