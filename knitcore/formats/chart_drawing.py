@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
 from knitcore.formats.chart_key import (
+    FAINT,
     GRID,
     HEAVY,
     INK,
@@ -116,19 +117,31 @@ def _overview(piece: Piece, style: ChartStyle, parts: list[_Part], first: int) -
     whole = _Part(piece, style, range(chart.rows), range(chart.columns), cell)
     yield from whole.header()
     yield from whole.silhouette()
+    yield whole.purls(FAINT)
     yield from whole.region_borders()
     for number, part in enumerate(parts, start=first + 1):
         left, top = whole.x(part.columns.start), whole.y(part.rows.stop - 1)
         width, height = cell * len(part.columns), cell * style.aspect * len(part.rows)
         yield Box(left, top, width, height, stroke=HEAVY, line_width=0.3)
         middle = left + width / 2
-        yield Label(middle, top + height / 2 + 1.0, f"page {number}", 4.0, "middle")
+        yield from _on_a_plate(middle, top + height / 2 + 1.0, f"page {number}", 4.0)
     for region in style.regions:
         rows, columns = np.nonzero(region.cells)
         if len(rows):
             x = whole.x(int(columns.min())) + 1.0
-            yield Label(x, whole.y(int(rows.max())) + 3.2, region.name, SMALL_MM)
+            top = whole.y(int(rows.max()))
+            yield from _on_a_plate(x, top + 3.6, region.name, SMALL_MM, "start")
     yield from key_shapes(piece, style, whole.bottom + 10.0)
+
+
+def _on_a_plate(
+    x: float, y: float, text: str, size: float, anchor: str = "middle"
+) -> Iterator[Shape]:
+    """A label that can be read above lines and dots."""
+    width = 0.55 * size * len(text) + size / 2
+    left = x - width / 2 if anchor == "middle" else x - size / 4
+    yield Box(left, y - 0.95 * size, width, 1.3 * size, fill="#ffffff")
+    yield Label(x, y, text, size, anchor)
 
 
 @dataclass(frozen=True)
@@ -194,7 +207,7 @@ class _Part:
         yield Box(self._left, self._top, self._width, self._height, fill="#ffffff")
         yield from self._colours()
         yield from self._grid()
-        yield self._purls()
+        yield self.purls(INK)
         yield from self._no_stitches()
         yield from self.region_borders()
         if self.style.repeats:
@@ -247,7 +260,8 @@ class _Part:
         yield Strokes(tuple(fine), GRID, 0.15)
         yield Strokes(tuple(tenth), TENTH, 0.3)
 
-    def _purls(self) -> Dots:
+    def purls(self, colour: str) -> Dots:
+        """A dot in each purl."""
         window = (self.chart.purl & self.piece.shaped.stitch)[
             self.rows.start : self.rows.stop, self.columns.start : self.columns.stop
         ]
@@ -255,7 +269,7 @@ class _Part:
         x = self._left + self.cell * (columns + 0.5)
         y = self._top + self._row_height * (len(self.rows) - 0.5 - rows)
         radius = round(0.22 * min(self.cell, self._row_height), 3)
-        return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, INK)
+        return Dots(tuple(zip(x.tolist(), y.tolist(), strict=True)), radius, colour)
 
     def silhouette(self) -> Iterator[Shape]:
         """The piece as one tone."""

@@ -19,9 +19,11 @@ MARGIN_MM = 12.0
 KEY_MM = 24.0
 KEY_LINE_MM = 5.0
 NOTE_CHARACTERS, NOTE_LINES = 110, 14
+REGIONS_IN_A_LINE, REGION_MM = 4, 46.0
 TINT = 0.55
 """Share of a yarn's colour in its stitches; the rest is white."""
-INK, GRID, TENTH, HEAVY, NO_STITCH = "#222222", "#b5b0a8", "#55504a", "#b3322b", "#d9d5ce"
+INK, TENTH, GRID, FAINT = "#222222", "#55504a", "#b5b0a8", "#cfc9c0"
+HEAVY, NO_STITCH = "#b3322b", "#d9d5ce"
 SMALL_MM = 2.5
 """Smallest type: 7 pt, readable at arm's length."""
 
@@ -83,7 +85,14 @@ def is_coloured(piece: Piece) -> bool:
 def key_height(piece: Piece, style: ChartStyle) -> float:
     """Room that the key takes below a chart."""
     yarns = len(piece.yarns) if is_coloured(piece) else 0
-    return KEY_MM + KEY_LINE_MM * (yarns + len(style.repeats) + len(_note_lines(style)))
+    lines = yarns + len(style.repeats) + len(_region_lines(style)) + len(_note_lines(style))
+    return KEY_MM + KEY_LINE_MM * lines
+
+
+def _region_lines(style: ChartStyle) -> list[tuple[RegionMark, ...]]:
+    """The regions, as many to a line as there is room for."""
+    starts = range(0, len(style.regions), REGIONS_IN_A_LINE)
+    return [style.regions[k : k + REGIONS_IN_A_LINE] for k in starts]
 
 
 def _note_lines(style: ChartStyle) -> list[str]:
@@ -136,6 +145,12 @@ def key_shapes(piece: Piece, style: ChartStyle, y: float) -> Iterator[Shape]:
     for mark in style.repeats:
         yield Box(MARGIN_MM, y - 3.0, 4.0, 4.0, stroke=HEAVY, line_width=0.7)
         yield Label(MARGIN_MM + 6.0, y, mark.words)
+        y += KEY_LINE_MM
+    for regions in _region_lines(style):
+        for index, region in enumerate(regions):
+            x = MARGIN_MM + index * REGION_MM
+            yield Box(x, y - 3.0, 4.0, 4.0, stroke=region.colour, line_width=0.6)
+            yield Label(x + 6.0, y, textwrap.shorten(region.name, 22, placeholder="…"))
         y += KEY_LINE_MM
     for line in _note_lines(style):
         yield Label(MARGIN_MM, y, line, 2.8)

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageChops
 
-from knitcore.answer.answer import Answer
+from knitcore.answer.answer import Answer, Source
 from knitcore.answer.choose import choose
 from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.arrays import Array
@@ -32,7 +32,6 @@ from knitcore.formats.chart_key import (
     tinted,
 )
 from knitcore.formats.drawing import Box, Label, Page, Photo, Shape
-from knitcore.formats.report import LOCAL_ASSUMPTIONS, assumptions
 from knitcore.formats.written import written_sections
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.materials import Interval, Material
@@ -47,6 +46,8 @@ MAX_PHOTO_BYTES, MAX_PHOTO_PIXELS = 4_000_000, 4096
 MAX_SECTIONS = 24
 """Rows of designs with more borders between regions are written without sections."""
 PULL_N_PER_MM = 0.05
+_FAINT = 16
+"""Differences of a channel, of 255, that are still the ground of a photo."""
 _EM = 0.5
 """Mean width of a letter over the size of its type."""
 
@@ -68,6 +69,31 @@ _ABBREVIATIONS = {
     "m1": "make one: lift the strand between two stitches and knit it twisted",
     "m1p": "make one: lift the strand between two stitches and purl it twisted",
 }
+
+_RESTS_ON: dict[Source | None, tuple[str, ...]] = {
+    None: (
+        "Sizes are those of the fabrics of this yarn, stitch by stitch. Where fabrics meet they "
+        "are in part assumed: such borders were not knitted and measured.",
+    ),
+    Source.MEASURED: ("This fabric was knitted of this yarn, measured at rest and stretched.",),
+    Source.ESTIMATED: (
+        "This yarn was not knitted and stretched: its sizes and stretch are estimated from its "
+        "tests and from other yarns.",
+    ),
+    Source.SWEPT: (
+        "Size and stretch were computed from the yarn, loop by loop; nothing was knitted.",
+    ),
+    Source.LEARNED: (
+        "Stockinette, garter, rib and seed were knitted of this yarn, measured and stretched. "
+        "Their mixture in this chart was not: it is computed, with what simulations of other "
+        "charts have taught.",
+    ),
+    Source.LEARNED_OF_SIZE: (
+        "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "
+        "and seed of this yarn, with what simulations of other charts have taught.",
+    ),
+}
+"""What the numbers of an answer rest on, in a knitter's words; None for a piece with an outline."""
 
 
 def pattern_pages(
@@ -98,13 +124,13 @@ def pattern_pages(
     flow.title(style.title or "Untitled")
     flow.text(f"{piece.shaped.stitches} stitches in {piece.chart.rows} rows; {facts.finished}.")
     if photo is not None:
-        flow.photo(photo)
+        flow.photo(photo, "The cloth as it was computed, not a photograph.")
     _materials(flow, piece, material, yarn_facts)
     _gauge(flow, facts)
     if style.note:
         flow.heading("Notes")
         for paragraph in style.note.splitlines():
-            flow.text(paragraph)
+            flow.text(paragraph, bullet=True)
     _parts(flow, facts, style.regions)
     opening, sections = written_sections(
         piece,
@@ -193,15 +219,17 @@ class _Flow:
         self.text(text, bold=True)
 
     def text(
-        self, text: str, left: float = 0.0, *, bold: bool = False, colour: str | None = None
+        self, text: str, *, bold: bool = False, colour: str | None = None, bullet: bool = False
     ) -> None:
-        """A paragraph; a box of a colour in front of it if one is given."""
-        indent = left + (6.0 if colour else 0.0)
+        """A paragraph; a box of a colour, or a bullet, in front of it if asked for."""
+        indent = 6.0 if colour else 3.0 if bullet else 0.0
         for index, line in enumerate(_wrapped(text, BODY_MM, A4_MM[0] - 2 * MARGIN_MM - indent)):
             self._room(BODY_MM * LINE)
             self._y += BODY_MM * LINE
             if colour and not index:
-                self.draw(Box(MARGIN_MM + left, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
+                self.draw(Box(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
+            if bullet and not index:
+                self.draw(Label(MARGIN_MM, self._y, "•", BODY_MM))
             self.draw(Label(MARGIN_MM + indent, self._y, line, BODY_MM, bold=bold))
 
     def row(
@@ -221,14 +249,15 @@ class _Flow:
         for text, place in zip(cells, places, strict=True):
             self.draw(Label(MARGIN_MM + place, self._y, text, BODY_MM, bold=bold))
 
-    def photo(self, png: bytes) -> None:
-        """A picture as large as its box allows."""
+    def photo(self, png: bytes, caption: str) -> None:
+        """A picture as large as its box allows, and a line below it."""
         png, (width, height) = _photo(png)
         scale = min(PHOTO_MM[0] / width, PHOTO_MM[1] / height)
         self._y += 4.0
         left = (A4_MM[0] - scale * width) / 2
         self.draw(Photo(left, self._y, scale * width, scale * height, png))
-        self._y += scale * height
+        self._y += scale * height + 4.0
+        self.draw(Label(A4_MM[0] / 2, self._y, caption, SMALL_MM, "middle"))
 
     def draw(self, shape: Shape) -> None:
         self._pages[-1].append(shape)
@@ -244,7 +273,7 @@ def _wrapped(text: str, size: float, width: float) -> list[str]:
 
 
 def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
-    """The picture on white paper, its file free of anything else, and its size in pixels."""
+    """The picture on white paper without its empty edges, and its size in pixels."""
     if len(png) > MAX_PHOTO_BYTES:
         raise InputError(
             "photo", f"it has {len(png)} bytes.", f"Send at most {MAX_PHOTO_BYTES:,} bytes."
@@ -263,9 +292,24 @@ def _photo(png: bytes) -> tuple[bytes, tuple[int, int]]:
         raise
     except (Image.DecompressionBombError, OSError, SyntaxError, ValueError):
         raise InputError("photo", "it is not a readable PNG.", "Send a PNG picture.") from None
+    shown = _without_empty_edges(flat.convert("RGB"))
     buffer = io.BytesIO()
-    flat.convert("RGB").save(buffer, "PNG")
-    return buffer.getvalue(), flat.size
+    shown.save(buffer, "PNG")
+    return buffer.getvalue(), shown.size
+
+
+def _without_empty_edges(image: Image.Image) -> Image.Image:
+    """The part of a picture that differs from its corner, with a small margin."""
+    ground = Image.new("RGB", image.size, image.getpixel((0, 0)))
+    box = ImageChops.difference(image, ground).point(lambda value: 255 * (value > _FAINT)).getbbox()
+    if box is None:
+        return image
+    left, top, right, bottom = box
+    width, height = image.size
+    rim = round(0.03 * max(width, height))
+    return image.crop(
+        (max(left - rim, 0), max(top - rim, 0), min(right + rim, width), min(bottom + rim, height))
+    )
 
 
 def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequence[str]) -> None:
@@ -278,6 +322,7 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
         name = f"{yarn_name(index)}: {own.name}" if is_coloured(piece) else own.name
         flow.text(": ".join(filter(None, (name.capitalize(), facts))), colour=tinted(own.colour))
     flow.text("Lengths are for the stitches alone: add tails, cast-on and a swatch.")
+    flow.text("Needles of the size with which a swatch has the gauge below.")
 
 
 def _gauge(flow: _Flow, facts: _Facts) -> None:
@@ -383,7 +428,7 @@ def _instructions(
             span = f"{row} {start + 1}" if stop == start + 1 else f"{row}s {start + 1}–{stop}"
             flow.subheading(f"{span}: {', '.join(map(_short, here)) or 'between the parts'}")
         for line in lines:
-            flow.text(line)
+            flow.text(re.sub(r"(?<=\d)-(?=\d)", "–", line))
 
 
 def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
@@ -399,13 +444,14 @@ def _finishing(flow: _Flow, facts: _Facts, style: ChartStyle) -> None:
 
 def _evidence(flow: _Flow, facts: _Facts) -> None:
     flow.heading("What the numbers rest on")
-    found = facts.answer
-    said = LOCAL_ASSUMPTIONS if found is None else assumptions(found)
-    if found is not None:
-        flow.text(f"Source: {found.provenance}; size at rest: {found.relaxed_source}.")
-    for sentence in said:
-        flow.text(sentence)
-    flow.text("Knit a swatch: where its gauge differs, it is right and this pattern is not.")
+    source = None if facts.answer is None else facts.answer.provenance
+    for sentence in (*_RESTS_ON[source], *(() if facts.answer is None else facts.answer.notes)):
+        flow.text(sentence, bullet=True)
+    for sentence in (
+        "The report of this design has all numbers, their intervals and methods.",
+        "Knit a swatch: where its gauge differs, it is right and this pattern is not.",
+    ):
+        flow.text(sentence, bullet=True)
 
 
 def _footed(page: Page, text: str) -> Page:

@@ -230,14 +230,14 @@ def _notes(
         "Knit the wrist support on 2.0 mm needles (US 0) and all else on 2.75 mm (US 2), as the "
         "study did: each row changes needles at the support's edges."
         if material.sample == STUDY_GLOVE
-        else "The paper's glove has the wrist support on 2.0 mm needles and all else on 2.75 mm; "
-        f"{STUDY_GLOVE} was measured so, {material.identifier} on one needle size."
+        else "The study's glove has its wrist support on 2.0 mm needles and all else on 2.75 mm. "
+        f"The material {STUDY_GLOVE} was measured so, {material.identifier} on one needle size."
     ]
     wanted = garter.rows_for(hand.palm_circumference_mm * (1 + ease))
     if abs(rows / wanted - 1) > PALM_TOLERANCE:
         notes.append(
-            f"The fingers need {rows} rows around the hand, its circumference {wanted} rows of "
-            "garter: ease the palm, or change the fingers' circumferences."
+            f"The fingers need {rows} rows around the hand, the palm's circumference {wanted} rows "
+            "of garter: change the ease of the palm, or the circumferences of the fingers."
         )
     return tuple(notes)
 

@@ -129,9 +129,9 @@ def misfits(
                 continue
             larger, smaller = (a, b) if sizes[0] > sizes[1] else (b, a)
             text = (
-                f"{regions[larger].name} lies {words[0]} {regions[smaller].name} and its "
-                f"{words[1]} are {difference:.0%} {words[2]}: the edge will pucker or draw in "
-                "unless one of them is knitted on other needles or with short rows."
+                f"“{regions[larger].name}” lies {words[0]} “{regions[smaller].name}” and its "
+                f"{words[1]} are {100 * difference:.0f} % {words[2]}: the edge will pucker or draw "
+                "in unless one of them is knitted on other needles or with short rows."
             )
             count = int(np.count_nonzero((edges == [[a], [b]]).all(axis=0)))
             found.append(RegionMisfit(regions[a].name, regions[b].name, count, difference, text))

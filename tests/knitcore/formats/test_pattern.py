@@ -68,8 +68,8 @@ def test_nothing_in_a_pattern_is_smaller_than_7_points_or_off_its_page(
 
 
 def test_the_rows_of_all_parts_together_are_the_chart(pages: tuple[Page, ...]) -> None:
-    found = [label.text for label in labels(pages)]
-    rows = [text for text in found if re.match(r"Rows? \d+(-\d+)?( \(..\))?: ", text)]
+    found = [label.text for label in labels(pages) if not label.bold]
+    rows = [text for text in found if re.match(r"Rows? \d+(–\d+)?( \(..\))?: ", text)]
     text = "\n".join([write_rows(CHART).splitlines()[0], *rows, "Bind off."])
     assert read_rows(text) == CHART
 
@@ -77,6 +77,16 @@ def test_the_rows_of_all_parts_together_are_the_chart(pages: tuple[Page, ...]) -
 def test_the_photo_keeps_its_proportions(pages: tuple[Page, ...]) -> None:
     (photo,) = (shape for shape in pages[0].shapes if isinstance(shape, Photo))
     assert photo.width / photo.height == pytest.approx(4 / 3)
+
+
+def test_a_photo_loses_its_empty_edges() -> None:
+    buffer = io.BytesIO()
+    image = Image.new("RGB", (400, 300), "white")
+    image.paste("#336699", (100, 100, 200, 150))
+    image.save(buffer, "PNG")
+    pages = pattern_pages(Piece.plain(CHART), ACRYLIC, STYLE, photo=buffer.getvalue())
+    (photo,) = (shape for shape in pages[0].shapes if isinstance(shape, Photo))
+    assert Image.open(io.BytesIO(photo.png)).size == (124, 74)
 
 
 def test_an_outlined_piece_has_the_sizes_of_its_parts_alone() -> None:

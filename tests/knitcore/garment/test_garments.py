@@ -203,7 +203,7 @@ def test_different_gauges_are_reported_where_they_meet() -> None:
     found = misfits(regions, [Gauge(3.0, 3.0), Gauge(2.0, 2.0)], stitch)
     assert [(m.first, m.second, m.stitches) for m in found] == [("a", "b", 4)]
     assert found[0].difference == pytest.approx(0.5)
-    assert "a lies beside b and its rows are 50% higher" in found[0].text
+    assert "“a” lies beside “b” and its rows are 50 % higher" in found[0].text
     assert misfits(regions, [Gauge(3.0, 3.0), Gauge(2.0, 2.8)], stitch) == ()
 
 
