@@ -29,7 +29,7 @@ from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
-from knitcore.design.wishes import Parts, Wish, wanted_maps
+from knitcore.design.wishes import Parts, Wish, wanted_maps, wished_parts
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli
 from knitcore.garment.shaped import outline_marks
@@ -187,7 +187,8 @@ def _wanted(request: FillRequest) -> Maps:
         raise InputError("wishes", "are given together with maps.", "Give either.")
     if request.rows is None or request.columns is None:
         raise InputError("rows", "the size of the chart is missing.", "Give rows and columns.")
-    return request.pass_to(wanted_maps, [wish.wish() for wish in request.wishes])
+    wishes = [wish.wish() for wish in request.wishes]
+    return *request.pass_to(wanted_maps, wishes), request.pass_to(wished_parts, wishes)
 
 
 def _array(rows: list[list[float | None]] | None, name: str) -> NDArray[np.float64]:

@@ -102,8 +102,8 @@ def fill_field(
         there is no target.
     material : one yarn for the whole chart.
     atlas : of that material.
-    parts : (rows, columns) numbers from 0 of the parts that were wished for one by one, as
-        :func:`knitcore.design.wishes.wanted_maps` gives; a part narrower than a patch is one patch.
+    parts : (rows, columns) numbers from 0 of the parts that were wished for one by one
+        (:func:`knitcore.design.wishes.wished_parts`); a part narrower than a patch is one patch.
     kept : a chart whose stitches without a target stay as they are; the others are fitted to them
         and judged among them. Without it all stitches are filled.
     stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere there is no target

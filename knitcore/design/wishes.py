@@ -33,10 +33,8 @@ class Wish:
     wale_n_per_mm: float | None
 
 
-def wanted_maps(wishes: Sequence[Wish], rows: int, columns: int) -> tuple[Array, Array, Parts]:
-    """Maps (rows, columns) of the target moduli, NaN where there is none, and of the parts.
-
-    Stitches with the same number in the map of parts are wanted alike by the same wishes.
+def wanted_maps(wishes: Sequence[Wish], rows: int, columns: int) -> tuple[Array, Array]:
+    """Maps (rows, columns) of the target moduli, NaN where there is none.
 
     Raises
     ------
@@ -56,8 +54,23 @@ def wanted_maps(wishes: Sequence[Wish], rows: int, columns: int) -> tuple[Array,
                 _refuse(wish, wishes[int(owner[axis][other][0])], other, axis)
             maps[axis][cells] = value
             owner[axis][cells] = number
-    parts = (owner[0] + 1) * (len(wishes) + 1) + owner[1] + 1
-    return maps[0], maps[1], parts
+    return maps[0], maps[1]
+
+
+def wished_parts(wishes: Sequence[Wish], rows: int, columns: int) -> Parts:
+    """(rows, columns) numbers from 0, equal where the same wishes apply.
+
+    Raises
+    ------
+    InputError
+        If a part lies outside the chart.
+    """
+    check_size(rows, columns)
+    parts = np.zeros((rows, columns), dtype=np.intp)
+    for wish in wishes:
+        numbers = np.unique(2 * parts + _cells(wish, rows, columns), return_inverse=True)[1]
+        parts = numbers.reshape(rows, columns)
+    return parts
 
 
 def _cells(wish: Wish, rows: int, columns: int) -> NDArray[np.bool_]:

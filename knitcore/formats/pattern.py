@@ -84,9 +84,8 @@ _RESTS_ON: dict[Source | None, tuple[str, ...]] = {
         "Size and stretch were computed from the yarn, loop by loop; nothing was knitted.",
     ),
     Source.LEARNED: (
-        "Stockinette, garter, rib and seed were knitted of this yarn, measured and stretched. "
-        "Their mixture in this chart was not: it is computed, with what simulations of other "
-        "charts have taught.",
+        "Size and stretch are computed from stockinette, garter, rib and seed of this yarn, with "
+        "what simulations of other charts have taught; this chart was not knitted.",
     ),
     Source.LEARNED_OF_SIZE: (
         "The size at rest is your own gauge. The stretch is computed from stockinette, garter, rib "

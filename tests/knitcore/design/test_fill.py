@@ -8,7 +8,7 @@ from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
 from knitcore.design.patches import connected
-from knitcore.design.wishes import Wish, wanted_maps
+from knitcore.design.wishes import Wish, wanted_maps, wished_parts
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction
 from knitcore.materials import material
@@ -141,7 +141,8 @@ def test_a_part_narrower_than_a_patch_is_filled(columns: int) -> None:
         garter.modulus_course,
         garter.modulus_wale,
     )
-    course, wale, parts = wanted_maps([cuff], 12, 10)
+    course, wale = wanted_maps([cuff], 12, 10)
+    parts = wished_parts([cuff], 12, 10)
     knit = StitchChart.of_fabric(Fabric.STOCKINETTE, 12, 10)
     field = fill_field(course, wale, ACRYLIC, ATLAS, parts=parts, kept=knit)
     (region,) = field.regions

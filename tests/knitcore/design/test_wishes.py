@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from knitcore import InputError
-from knitcore.design.wishes import Wish, wanted_maps
+from knitcore.design.wishes import Wish, wanted_maps, wished_parts
 
 
 def box(name: str, rows: range, columns: range, course: float | None, wale: float | None) -> Wish:
@@ -14,7 +14,7 @@ def box(name: str, rows: range, columns: range, course: float | None, wale: floa
 
 def test_parts_become_maps() -> None:
     slope = Wish("slope", tuple((row, row, 6 - row) for row in range(6)), 0.1, None)
-    course, wale, _ = wanted_maps([slope, box("top", range(6, 8), range(8), None, 0.2)], 8, 8)
+    course, wale = wanted_maps([slope, box("top", range(6, 8), range(8), None, 0.2)], 8, 8)
     assert np.nansum(course) == pytest.approx(0.1 * 21)
     assert np.isnan(wale[:6]).all()
     assert (wale[6:] == 0.2).all()
@@ -23,10 +23,17 @@ def test_parts_become_maps() -> None:
 def test_the_same_target_twice_is_not_a_contradiction() -> None:
     one = box("one", range(4), range(4), 0.1, None)
     other = box("other", range(2, 6), range(2, 6), 0.1, 0.2)
-    course, wale, parts = wanted_maps([one, other], 8, 8)
+    course, wale = wanted_maps([one, other], 8, 8)
     assert np.count_nonzero(~np.isnan(course)) == 28
     assert np.count_nonzero(~np.isnan(wale)) == 16
-    assert len(np.unique(parts)) == 3  # of one alone, of both, of the other, and of none
+
+
+def test_stitches_of_the_same_wishes_are_one_part() -> None:
+    one = box("one", range(4), range(4), 0.1, None)
+    other = box("other", range(2, 6), range(2, 6), None, 0.2)
+    parts = wished_parts([one, other], 8, 8)
+    assert sorted(np.bincount(parts.ravel()).tolist()) == [4, 12, 12, 36]
+    assert parts[2, 2] == parts[3, 3] != parts[0, 0]
 
 
 def test_contradictions_are_named_with_both_parts_and_where() -> None:
