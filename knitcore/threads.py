@@ -1,7 +1,7 @@
 """One thread for small matrices.
 
 At the sizes of these blocks a second BLAS thread only waits, and waiting threads occupy cores that
-other work needs: times of up to 200 times were measured.
+other work needs: computations were up to 200 times slower.
 """
 
 from __future__ import annotations

@@ -45,7 +45,8 @@ def _endpoint(operation: Operation[Any, Any]) -> Callable[..., Any]:
     async def post(body: BaseModel | Undecoded, request: Request) -> Any:
         answers: Answers = request.app.state.answers
         wanted = body.content if isinstance(body, Undecoded) else body
-        if isinstance(wanted, BaseModel) and not operation.heavy and size_of(wanted) <= MAX_LIGHT:
+        heavy = operation.heavy or operation.job
+        if isinstance(wanted, BaseModel) and not heavy and size_of(wanted) <= MAX_LIGHT:
             gate: Gate = request.app.state.light_work
             async with gate.turn(current_user.get()):
                 return await run_in_threadpool(light, wanted, request)

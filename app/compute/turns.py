@@ -1,4 +1,4 @@
-"""Turns: a few places, given to many users one after the other."""
+"""Turns: a few places, which many users get one after the other."""
 
 from __future__ import annotations
 

@@ -2,8 +2,8 @@
 
 uvicorn limits time only after an answer, and neither heads nor frames of websockets. A client that
 sends nothing, or a head or a body byte by byte, would keep its connection, and a file handle of the
-service, for ever; an endless head would fill the memory; bodies in crumbs, requests sent ahead and
-pings would hold up the event loop.
+service, for ever; an endless head would fill the memory; bodies in tiny pieces, pipelined requests
+and pings would hold up the event loop.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Answers as they are sent: compressed by the worker, because they are mostly digits."""
+"""Answers as they are sent. They are mostly digits, so workers compress them."""
 
 from __future__ import annotations
 

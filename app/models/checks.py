@@ -1,8 +1,8 @@
 """Parts of a request that the library can judge one by one.
 
-A computation stops at the first input that it cannot use. When it has, :func:`all_faults` looks at
-the parts that it did not come to, so that a caller learns at once of a wrong chart, a wrong
-material and wrong stresses. A request that is in order costs nothing more.
+A computation stops at the first input that it cannot use. Then :func:`all_faults` checks the parts
+that it did not reach, so that a caller learns at once of a wrong chart, a wrong material and wrong
+stresses. A valid request costs nothing more.
 """
 
 from __future__ import annotations

@@ -150,7 +150,6 @@ OPERATION = Operation(
     tag="design",
     summary="Predicted constants of all small repeats of a material",
     example={"material": "acrylic"},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

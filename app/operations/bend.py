@@ -198,7 +198,6 @@ OPERATION = Operation(
     tag="yarn level",
     summary="Bending, curl and shear of a repeat at the yarn level",
     example={"chart": "K", "material": "acrylic"},
-    heavy=True,
     job=True,
     command=Command(
         _lines, help="Bending rigidity, curl and shear of the repeat CHART, without friction."

@@ -83,7 +83,6 @@ OPERATION = Operation(
         "linear_density_g_per_m": 0.5,
         "length_mm": 120.0,
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

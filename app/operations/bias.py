@@ -74,7 +74,6 @@ OPERATION = Operation(
     tag="pieces",
     summary="Pull a strip cut at an angle",
     example={"chart": "K", "material": "acrylic", "strain": 0.2, "steps": 2, "mesh_mm": 10},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -74,7 +74,6 @@ OPERATION = Operation(
     tag="pieces",
     summary="Pull a rectangle in both directions",
     example={"chart": "K\nP", "material": "acrylic", "strain_x": 0.2, "strain_y": 0.1, "steps": 2},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

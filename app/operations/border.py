@@ -99,7 +99,6 @@ OPERATION = Operation(
     tag="mechanics",
     summary="How wide a border keeps a piece flat",
     example={"chart": "K", "material": "acrylic", "linear_density_g_per_m": 0.5, "border": "rib"},
-    heavy=True,
     job=True,
     command=Command(_lines, help="How wide a border keeps a piece of CHART flat on a table."),
 )

@@ -148,7 +148,6 @@ OPERATION = Operation(
         "material": "acrylic",
         "fabric": "garter",
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

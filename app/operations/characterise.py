@@ -358,7 +358,6 @@ OPERATION = Operation(
     tag="yarn level",
     summary="The pure fabrics of a yarn at many stitch settings",
     example={"material": "acrylic", "fabrics": ["garter"], "tensions": [1.0]},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -92,7 +92,6 @@ OPERATION = Operation(
         "material": "acrylic",
         "fabric": "garter",
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -125,7 +125,6 @@ OPERATION = Operation(
     tag="measure",
     summary="Contact constants from compression tests",
     example={"file": example_file("my-yarn-1.csv"), "diameter_mm": 2.0},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

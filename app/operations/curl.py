@@ -153,7 +153,6 @@ OPERATION = Operation(
     tag="mechanics",
     summary="How a piece curls and folds",
     example={"chart": {"fabric": "stockinette", "columns": 6, "rows": 4}, "material": "acrylic"},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -95,7 +95,6 @@ OPERATION = Operation(
         "direction": "wale",
         "stress_n_per_mm": [0.0, 0.05, 0.1],
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

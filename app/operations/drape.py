@@ -93,7 +93,6 @@ OPERATION = Operation(
         "linear_density_g_per_m": 0.5,
         "across": 10,
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

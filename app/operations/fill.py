@@ -239,7 +239,6 @@ OPERATION = Operation(
         "modulus_course_n_per_mm": [[0.2, 0.2, 0.2, 0.2], [0.2, 0.2, 0.2, 0.2]],
         "modulus_wale_n_per_mm": [[None, None, None, None], [None, None, None, None]],
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

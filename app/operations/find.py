@@ -286,7 +286,6 @@ OPERATION = Operation(
         "targets": [{"quantity": "modulus_course_n_per_mm", "value": 0.2, "tolerance": 0.1}],
         "count": 1,
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

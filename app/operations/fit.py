@@ -179,7 +179,6 @@ OPERATION = Operation(
         "test_course": example_file("course.csv"),
         "test_wale": example_file("wale.csv"),
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

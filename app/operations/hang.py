@@ -79,7 +79,6 @@ OPERATION = Operation(
         "material": "acrylic",
         "linear_density_g_per_m": 0.5,
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

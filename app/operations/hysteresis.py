@@ -197,7 +197,6 @@ OPERATION = Operation(
     tag="yarn level",
     summary="Loading, unloading and rest sizes of a repeat with friction",
     example={"chart": "K", "material": "acrylic", "points": 4, "rest_sizes": False},
-    heavy=True,
     job=True,
     command=Command(
         _text,

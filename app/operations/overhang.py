@@ -78,7 +78,6 @@ OPERATION = Operation(
     tag="mechanics",
     summary="Peirce's bending length: a strip over the edge of a table",
     example={"chart": "K/P", "material": "acrylic", "linear_density_g_per_m": 0.5},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -196,7 +196,6 @@ OPERATION = Operation(
             ],
         },
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -75,8 +75,8 @@ class Operation(Generic[Request, Result]):
     tag : heading in the API's reference.
     example : a small request, which the reference shows and the tests send.
     path : address under ``/api/v1``; None if it is a job only.
-    heavy : whether it always takes long enough to need a worker process; others go there with
-        large charts only.
+    heavy : whether it always takes long enough to need a worker process, as every job does; others
+        go there with large charts only.
     job : whether it can run in the background.
     command : on the command line, where its name is that of the module.
     """

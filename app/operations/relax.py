@@ -178,7 +178,6 @@ OPERATION = Operation(
     tag="yarn level",
     summary="Relax a repeat at the yarn level",
     example={"chart": "K\nP", "material": "acrylic"},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

@@ -143,7 +143,6 @@ OPERATION = Operation(
         "across": 6,
         "width": [0.9, 0.9, 0.9, 0.9, 0.9, 0.9, 0.9, 0.9],
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

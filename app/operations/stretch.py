@@ -367,7 +367,6 @@ OPERATION = Operation(
         "strain": 0.3,
         "steps": 3,
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

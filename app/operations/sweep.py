@@ -181,7 +181,6 @@ OPERATION = Operation(
         "max_strain": 0.1,
         "points": 3,
     },
-    heavy=True,
     job=True,
     command=Command(
         _lines,

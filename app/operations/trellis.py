@@ -73,7 +73,6 @@ OPERATION = Operation(
     tag="pieces",
     summary="Shear a square in a hinged frame",
     example={"chart": "K", "material": "acrylic", "angle_deg": 20, "steps": 2},
-    heavy=True,
     job=True,
     command=Command(
         _lines,

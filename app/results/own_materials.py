@@ -1,9 +1,9 @@
 """The user's own materials: files in the folder ``materials`` of the data folder.
 
 Every process reads them for itself, workers too. An identifier ends in a mark of the file's
-content, for designs, atlases and results of jobs are kept by it: a file that was changed is another
-material. What a user replaced through the service is still found, until it is replaced once more:
-somebody may be computing with it.
+content, because designs, atlases and results of jobs refer to it: a file that was changed is
+another material. The state that a user replaced last is still found, because somebody may be
+computing with it.
 """
 
 from __future__ import annotations

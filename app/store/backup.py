@@ -1,5 +1,7 @@
-"""A backup is one compressed file of JSON lines: it can be read in ten years, and moved between
-SQLite and PostgreSQL."""
+"""Backups: one compressed file of JSON lines, which any program can read.
+
+The same file moves an installation between SQLite and PostgreSQL.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Messages that a browser may send into a view: camera, clicks, and a picture it was asked for.
 
-viser reads every message with all that it holds, in the service's own process. So the relay passes
-on nothing else than the page needs, nothing large, and no picture: that is checked by its header,
-kept as it came, and a single pixel goes on in its place.
+viser decodes every message in full, in the service's own process. So the relay passes on only what
+the page needs, nothing large, and no picture: a picture is checked by its header and kept as it
+came, and a single pixel is passed on in its place.
 """
 
 from __future__ import annotations
