@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache
 from itertools import chain, pairwise, product
 
 import numpy as np
@@ -52,11 +52,13 @@ class Patches:
     ----------
     rows, columns : where patches begin and end, from 0; one more than there are patches.
     answers : of each patch, [row][column].
+    alike : share of the whole chart in the densities of each patch.
     """
 
     rows: NDArray[np.intp]
     columns: NDArray[np.intp]
     answers: tuple[tuple[Answer, ...], ...]
+    alike: float = 1.0
 
     @property
     def _flat(self) -> list[Answer]:
@@ -176,8 +178,6 @@ def patches_of(
     material: Material,
     gauge: RelaxedSize | None = None,
     swept: SweptChart | None = None,
-    *,
-    gradual: bool = True,
 ) -> Patches:
     """A chart in patches, each with its answer.
 
@@ -187,8 +187,6 @@ def patches_of(
     gauge : measured relaxed size of the whole chart's mean stitch, if known.
     swept : sweep of its repeat on the yarn level, if there is one; a simulated material has those
         of the packaged samples.
-    gradual : whether the answer is to change little with each row more. A swatch, whose textures
-        have positions, does not use this: its patches are of one size and their own windows.
 
     Raises
     ------
@@ -205,26 +203,22 @@ def patches_of(
     whole = densities(repeat)
     if swept is not None or max(repeat.rows, repeat.columns) <= SIDE:
         return _one(chart, mixed(repeat, whole, material, gauge, swept))
-    cuts = _cuts if gradual else _even_cuts
-    rows, columns = cuts(repeat.rows), cuts(repeat.columns)
+    rows, columns = _cuts(repeat.rows), _cuts(repeat.columns)
     cells = product(pairwise(rows.tolist()), pairwise(columns.tolist()))
     parts = [repeat.region(slice(*up), slice(*along)) for up, along in cells]
-    found = _densities_of(repeat, whole, rows, columns, SIDE if gradual else 0)
-    if gradual:  # a chart slightly larger than one patch gets almost the answer of one patch
-        found = found.towards(whole, max(2 - max(repeat.rows, repeat.columns) / SIDE, 0.0))
-    pure = cache(partial(measured, material=material))
+    found = _densities_of(repeat, whole, rows, columns)
+    # a chart slightly larger than one patch gets almost the answer of one patch
+    alike = max(2 - max(repeat.rows, repeat.columns) / SIDE, 0.0)
+    found = found.towards(whole, alike)
 
     def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
-        flat = []
-        for part, own, size in zip(parts, found, sizes, strict=True):
-            fabric = None if gradual else pure_fabric(part)
-            if fabric is None:
-                flat.append(mixed(part, own, material, size))
-            else:
-                flat.append(pure(fabric) if size is None else pure(fabric).with_size(size))
+        flat = [
+            mixed(part, own, material, size)
+            for part, own, size in zip(parts, found, sizes, strict=True)
+        ]
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
-        return Patches(rows, columns, tuple(lines))
+        return Patches(rows, columns, tuple(lines), alike)
 
     free = answered([None] * len(parts))
     if gauge is None:
@@ -259,22 +253,16 @@ def _cuts(stitches: int) -> NDArray[np.intp]:
     return np.unique(np.clip(np.append(inside.round(), [0, stitches]), 0, stitches)).astype(np.intp)
 
 
-def _even_cuts(stitches: int) -> NDArray[np.intp]:
-    count = min(-(-stitches // SIDE), MAX_SIDE)
-    return np.linspace(0, stitches, count + 1).round().astype(np.intp)
-
-
 def _densities_of(
     repeat: StitchChart,
     whole: Densities,
     rows: NDArray[np.intp],
     columns: NDArray[np.intp],
-    least: int,
 ) -> Densities:
-    """Densities of the patches, row by row: means over the window of each, which has at least so
-    many stitches a side, moved so that the mean of all patches is the whole repeat's.
+    """Densities of the patches, row by row: means over the window of each, moved so that the mean
+    of all patches is the whole repeat's.
     """
-    up, along = _windows(rows, least), _windows(columns, least)
+    up, along = _windows(rows), _windows(columns)
     own = densities_of(repeat.purl, lambda values: (up @ values.astype(float) @ along.T).ravel())
     counts = np.outer(np.diff(rows), np.diff(columns)).ravel()
     shares, excess, straight, ways = (
@@ -284,11 +272,11 @@ def _densities_of(
     return Densities(_shares(shares), excess, np.clip(straight, 0.0, 1.0), _shares(ways))
 
 
-def _windows(cuts: NDArray[np.intp], least: int) -> Array:
+def _windows(cuts: NDArray[np.intp]) -> Array:
     """(patches, stitches) weights that take the mean over the window of each patch."""
     weights = np.zeros((len(cuts) - 1, end := int(cuts[-1])))
     for own, (low, high) in zip(weights, pairwise(cuts.tolist()), strict=True):
-        size = min(max(least, high - low), end)
+        size = min(max(SIDE, high - low), end)
         start = min(max((low + high - size) // 2, 0), end - size)
         own[start : start + size] = 1 / size
     return weights

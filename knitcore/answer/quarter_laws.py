@@ -2,16 +2,18 @@
 
 The quarter grid with the pure fabrics' own laws and sizes is the flat composite, without folds. So
 each patch of a mixed chart (:mod:`knitcore.answer.patches`) gets laws of its own. At every stress
-the strain of a phase is half the patch's own and half the phase's part in the flat composite,
+a phase's strain over the patch's lies between 1 and what it is in the flat composite,
 
-    strain_p = answer (1 + strain_p of the pure fabric / strain of the flat composite) / 2,
+    strain_p = answer (1 + c (strain_p of the pure fabric / strain of the flat composite - 1)),
 
 and laws are fitted to that. Phases in series then add up to the answer, and the quarters that
-stretch most in the flat composite still do, by half as much: neighbours within a patch restrain
-each other (and neighbouring cells that differed as much as the pure fabrics would be crushed).
+stretch most in the flat composite still do. In fine textures c is a half: neighbours restrain each
+other (and neighbouring cells that differed as much as the pure fabrics would be crushed). With the
+share of wide areas of one phase it rises to 1. Like the answers, these parts pass gradually from
+those of the whole chart to those of its patches.
 Stitch sizes are those of their surroundings (:mod:`knitcore.answer.neighbourhood`), scaled
 to the answer's relaxed size. Poisson's ratios are the answer's, or less where one
-energy for both directions requires it. A patch of one pure fabric keeps its own law.
+energy for both directions requires it. A piece of one pure fabric keeps its own law.
 
 Finite elements larger than a stitch take even laws instead: one for all quarters of a patch, with
 the patch's own strains.
@@ -22,13 +24,14 @@ one force, and all lines are strained alike.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter, minimum_filter
 
 from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
@@ -50,6 +53,8 @@ SPREAD_AT: Array = np.array([0.005, 0.02, 0.05, 0.1, 0.2, 0.4])
 _FINE: Array = np.concatenate([[0.0], np.geomspace(1e-4, 8.0, 200)])
 _LOCKED: Array = np.concatenate([np.linspace(0.3, 0.9, 25), np.linspace(0.905, 0.995, 19)])
 """Shares of the lock-up strain that the largest of the strains may be."""
+_WIDE = 9
+"""Quarter cells a side of an area of one phase that counts as wide: two stitches around one."""
 _MAX_POISSON = 0.9
 """Limit of the product of both Poisson ratios, so that the law is stable."""
 
@@ -83,44 +88,43 @@ def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) 
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    patches = patches_of(chart, material, gradual=False)
+    if pure_fabric(chart) is not None:
+        return flat_laws(chart, material)
+    patches = patches_of(chart, material)
     phases = quarter_phases(chart)
+    scale = _scale(chart, phases, patches, material)
+    whole = _parts(phases, material)
     laws: list[ConstitutiveLaw] = []
-    extent = (
-        int(patches.rows[-1]),
-        int(patches.columns[-1]),
-    )  # of the repeat, if it has several patches
-    number = np.zeros(extent, dtype=np.intp)
+    # of the repeat, if it has several patches
+    number = np.zeros((patches.rows[-1], patches.columns[-1]), dtype=np.intp)
+    for here, cells, answer in _each(patches, phases):
+        number[here] = len(laws) // len(PHASES)
+        parts = patches.alike * whole + (1 - patches.alike) * _parts(cells, material)
+        laws += _fitted_laws(cells, answer, material, None if even else parts)
+    everywhere = np.ix_(
+        *(np.arange(n) % period for n, period in zip(chart.purl.shape, number.shape, strict=True))
+    )
+    own_error = partial(_stress_log_sd, phases, patches, material)
+    return QuarterLaws(tuple(laws), number[everywhere], scale, own_error)
+
+
+def _each(
+    patches: Patches, phases: NDArray[np.uint8]
+) -> Iterator[tuple[tuple[slice, slice], NDArray[np.uint8], Answer]]:
+    """Stitches, quarter cells and answer of each patch."""
     for (below, above), line in zip(pairwise(patches.rows), patches.answers, strict=True):
         for (left, right), answer in zip(pairwise(patches.columns), line, strict=True):
-            here = slice(below, above), slice(left, right)
             cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
-            number[here] = len(laws) // len(PHASES)
-            if pure_fabric(chart.region(*here)) is not None:
-                laws += _own_laws(cells, material)
-                continue
-            laws += _fitted_laws(cells, answer, material, even)
-    whole = np.ix_(
-        *(np.arange(n) % period for n, period in zip(chart.purl.shape, extent, strict=True))
-    )
-    scale = _scale(chart, phases, patches, material)
-    own_error = partial(_stress_log_sd, chart, material)
-    return QuarterLaws(tuple(laws), number[whole], scale, own_error)
+            yield (slice(below, above), slice(left, right)), cells, answer
 
 
-def _stress_log_sd(chart: StitchChart, material: Material) -> Array:
-    """The mean of the patches; of those that grow with the chart, so that it changes as little."""
-    spread = np.zeros((2, len(SPREAD_AT)))
-    if pure_fabric(chart) is not None:
-        return spread
-    patches, phases = patches_of(chart, material), quarter_phases(chart)
-    rows, columns = patches.rows, patches.columns
-    for (below, above), line in zip(pairwise(rows), patches.answers, strict=True):
-        for (left, right), answer in zip(pairwise(columns), line, strict=True):
-            cells = phases[2 * below : 2 * above, 2 * left : 2 * right]
-            share = (above - below) * (right - left) / (rows[-1] * columns[-1])
-            for direction in Direction:
-                spread[direction.axis] += share * _own_log_sd(cells, answer, material, direction)
+def _stress_log_sd(phases: NDArray[np.uint8], patches: Patches, material: Material) -> Array:
+    """The mean of the patches."""
+    spread, all_cells = np.zeros((2, len(SPREAD_AT))), 4 * patches.rows[-1] * patches.columns[-1]
+    for _, cells, answer in _each(patches, phases):
+        for direction in Direction:
+            own = _own_log_sd(cells, answer, material, direction)
+            spread[direction.axis] += own * (cells.size / all_cells)
     return spread
 
 
@@ -131,8 +135,6 @@ def _scale(
 
     Each stitch folds by its surroundings, so that a hem is narrower than the cloth above it.
     """
-    if pure_fabric(chart) is not None:
-        return np.ones((*chart.purl.shape, 2))
     folds = neighbourhood_folds(chart, material)
     records = _records(phases, material)
     for direction in Direction:
@@ -188,9 +190,10 @@ def _own_log_sd(
 
 
 def _fitted_laws(
-    cells: NDArray[np.uint8], answer: Answer, material: Material, even: bool
+    cells: NDArray[np.uint8], answer: Answer, material: Material, parts: Array | None
 ) -> list[ConstitutiveLaw]:
-    """Laws of the phases with which a patch does what its answer says.
+    """Laws of the phases with which a patch does what its answer says, even ones if no parts of
+    the phases are given.
 
     A phase keeps its couplings kappa as far as it is as stiff as in its pure fabric: cloth that
     unfolds first has little strain in its yarn. So a patch that is all but pure has nearly the
@@ -202,20 +205,16 @@ def _fitted_laws(
     constants = np.zeros((2, len(records), 3))  # Young's modulus, alpha, beta
     for direction in Direction:
         strains = answer.along(direction).strain(STRESSES)
-        if even:
+        if parts is None:
             constants[direction.axis] = _fitted(strains)
             continue
-        parts = 1 / _flat_strains(cells, records, direction)
-        constants[direction.axis] = [
-            _fitted(strains * (1 + parts * law_strains(r.law, direction, STRESSES)) / 2)
-            for r in records
-        ]
+        constants[direction.axis] = [_fitted(strains * part) for part in parts[direction.axis]]
     alone = np.array([[_fitted_alone(r.law, d) for r in records] for d in Direction])
     own = np.array([[_constants(r.law, d) for r in records] for d in Direction])
     kept = np.minimum((constants / alone)[..., 0].min(axis=0), 1.0)[:, None]
     kappa = kept * [(r.law.kappa_xx, r.law.kappa_yy) for r in records]
     regained = kept * np.log(np.divide(own, alone, out=np.ones_like(own), where=alone * own > 0))
-    if even:
+    if parts is None:
         shares = _shares(cells)
         shear[:], growth[:] = np.exp(shares @ np.log(shear)), shares @ growth
         kappa[:], regained[:] = shares @ kappa, (shares @ regained)[:, None]
@@ -261,10 +260,23 @@ def _fitted_alone(law: ConstitutiveLaw, direction: Direction) -> tuple[float, fl
     return _fitted(law_strains(law, direction, STRESSES))
 
 
-def _flat_strains(
+def _parts(cells: NDArray[np.uint8], material: Material) -> Array:
+    """(2, phases, stresses) strains of the phases at :data:`STRESSES` over those of cloth of these
+    cells: half as far from 1 as in the flat composite, or as far in wide areas of one phase.
+    """
+    records = _records(cells, material)
+    wide = maximum_filter(cells, _WIDE) == minimum_filter(cells, _WIDE)
+    contrast = (1 + wide.mean()) / 2
+    found = []
+    for direction in Direction:
+        strains = np.array([law_strains(r.law, direction, STRESSES) for r in records])
+        found.append(1 + contrast * (strains / _flat_strain(cells, records, direction) - 1))
+    return np.array(found)
+
+
+def _flat_strain(
     cells: NDArray[np.uint8], records: list[FabricRecord], direction: Direction
 ) -> Array:
-    """Strains of the flat composite at :data:`STRESSES`."""
     lines = cells if direction is Direction.COURSE else cells.T
     along, across = (np.array([_size(r, d) for r in records]) for d in (direction, direction.other))
     counts = np.stack([(lines == phase).sum(axis=1) for phase in range(4)], axis=1)

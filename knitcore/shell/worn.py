@@ -78,7 +78,7 @@ def worn_tube(
     if not by_row:
         sizes = sizes.transpose(1, 0, 2)[..., ::-1]
     rests, heights = sizes[..., 0].sum(axis=1), sizes[..., 1].mean(axis=1)
-    answers = patches_of(chart, material, gradual=False).lines(around)
+    answers = patches_of(chart, material).lines(around)
     places, along_mm = [], [0.0]
     for line, (rest, height) in enumerate(zip(rests.tolist(), heights.tolist(), strict=True)):
         answer = answers[line % len(answers)].along(around)
