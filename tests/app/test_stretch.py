@@ -134,9 +134,9 @@ def test_the_full_model_reports_where_its_law_is_extrapolated(client: TestClient
     answer = client.post("/api/v1/stretch", json=body).json()
     assert answer["converged"]
     (message,) = answer["messages"]
-    assert message.startswith("From a strain of 0.9 on")
+    assert message.startswith("From a strain of 0.8 on")
     assert "extrapolated" in message
-    before = client.post("/api/v1/stretch", json=body | {"strain": 0.8, "steps": 8}).json()
+    before = client.post("/api/v1/stretch", json=body | {"strain": 0.7, "steps": 7}).json()
     assert before["messages"] == []
 
 
