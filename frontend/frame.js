@@ -3,8 +3,7 @@
  * cookies, and in most browsers a process of its own. It talks to the page around by messages:
  *
  *   page to frame    {pass} the right to watch, {hold} whether frames wait while somebody paints
- *   frame to page    {view: "loaded" | "started" | "seen" | "none" where the browser draws nothing in
- *                    3D}, {slow} whether drawing takes long
+ *   frame to page    {view: "loaded" | "seen" | "none" where the browser draws nothing in 3D}, {slow} whether drawing takes long
  *
  * A plain script without imports: the service puts it into viser's page.
  */
@@ -63,16 +62,23 @@
 
   const Threads = Worker;
   window.Worker = class extends Threads {
+    /** Once an attempt has failed the client begins a new one every second and drops the one before. A busy
+     * machine needs longer, and would never be connected: an attempt has the time the client allows it. */
+    #connecting = false;
+
     /** @param {string | URL} url @param {WorkerOptions} [options] */
     constructor(url, options) {
       super(plain(url), { ...options, type: "classic" });
       this.addEventListener("message", ({ data }) => {
         if (data.type === "message_batch") wake(true);
+        if (data.type === "connected" || data.type === "closed") this.#connecting = false;
       });
     }
 
     /** @param {any} message @param {any} [rest] @override */
     postMessage(message, rest) {
+      if (message.type === "retry" && this.#connecting) return;
+      if (message.type === "set_server" || message.type === "retry") this.#connecting = true;
       if (message.type !== "set_server") super.postMessage(message, rest);
       // The service lets in who has a pass; the page brings it when there is something to see.
       else void pass.then((code) => super.postMessage({ ...message, server: `${message.server}?pass=${code}` }));
@@ -90,7 +96,6 @@
   let newsUntil = 0;
   let lastEnd = 0;
   let held = false;
-  let started = false;
   let seen = false;
   let slow = false;
   /** Frames since the first scene came; below 0 there is none. */
@@ -135,8 +140,6 @@
     const start = performance.now();
     callback(time);
     steer();
-    if (!started) tell({ view: "started" });
-    started = true;
     if (fed >= 0) fed++;
     if (!seen && fed >= FIRST_FRAMES && hasPicture()) {
       seen = true;

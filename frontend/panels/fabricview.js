@@ -23,10 +23,6 @@ import { REST } from "../studio.js";
 
 /** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
 const DELAY_MS = 650;
-/** A viewer that draws, but no cloth for so long, is loaded again, then after twice as long. */
-const RELOAD_MS = 6000;
-/** A busy machine needs so many times as long until it draws at all. */
-const STARTING = 5;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
 /** The service draws so many stitches as yarn at most; of larger charts only a part. */
@@ -80,38 +76,18 @@ export function fabricview(host, studio, view) {
     }
   };
 
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let reloading;
-  let patience = RELOAD_MS;
   /** The browser draws nothing in 3D. */
   let blind = false;
-  const reloadUnseen = () => {
-    if (sending || problem || drawing.held) {
-      reloadAfter(RELOAD_MS);
-      return;
-    }
-    patience *= 2;
-    frame.src = shown;
-    beStill();
-  };
-  /** @param {number} ms */
-  const reloadAfter = (ms) => {
-    clearTimeout(reloading);
-    reloading = setTimeout(reloadUnseen, ms);
-  };
   addEventListener("message", ({ source, data }) => {
     if (source !== frame.contentWindow) return;
     if (data.view === "loaded") {
       blind = false;
       tellFrame({ hold: drawing.held });
       if (pass) tellFrame({ pass });
-      reloadAfter(STARTING * patience);
     }
-    if (data.view === "started" && !blind) reloadAfter(patience);
     if (data.view === "seen") knitted();
     if (data.view === "none") {
       blind = true;
-      clearTimeout(reloading);
       status.replaceChildren(icon("warning"), problemText(BLIND));
     }
     if (typeof data.slow === "boolean") drawing.slow = data.slow;
@@ -158,7 +134,6 @@ export function fabricview(host, studio, view) {
   };
   /** The live view shows the cloth. */
   const knitted = () => {
-    clearTimeout(reloading);
     setLive(true);
     still.clear();
     if (!problem) status.replaceChildren();
@@ -177,7 +152,6 @@ export function fabricview(host, studio, view) {
     pass = "";
     sent = "";
     setLive(false);
-    patience = RELOAD_MS;
     status.replaceChildren(h("span", { class: "spinner" }), "Knitting …");
     still.clear();
     frame.src = url;
