@@ -132,6 +132,11 @@ class StitchChart:
         return int(self.purl.shape[1])
 
     @property
+    def stitches(self) -> int:
+        """Number of stitches."""
+        return self.purl.size
+
+    @property
     def text(self) -> str:
         """The chart as K/P lines, top row first; :meth:`parse` reads it back."""
         symbols = np.full((self.rows, self.columns + 1), ord("\n"), dtype=np.uint8)
@@ -236,6 +241,23 @@ class StitchChart:
         size = f"{self.columns} columns × {self.rows} rows, the face side"
         cut = f"; the lower left {most} × {most}" if max(self.purl.shape) > most else ""
         return showing.figure(showing.stitches(self.purl), size + cut)
+
+
+def check_stitches(stitches: int, most: int, what: str = "it", instead: str = "") -> None:
+    """Refuse more stitches than a computation takes.
+
+    Parameters
+    ----------
+    what : has the stitches, such as "its repeat".
+    instead : another way, which ends the remedy.
+
+    Raises
+    ------
+    InputError
+    """
+    if stitches > most:
+        remedy = f"Use at most {most}{instead}."
+        raise InputError("chart", f"{what} has {stitches} stitches.", remedy, most=most)
 
 
 def check_size(rows: int, columns: int) -> None:

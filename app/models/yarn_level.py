@@ -13,7 +13,7 @@ from pydantic import Field
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
 from app.operations.context import Context
-from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart
+from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches
 from knitcore.errors import InputError
 from knitcore.materials import Material
 from knitcore.yarnlevel.conventions import Convention
@@ -45,13 +45,8 @@ class StitchRequest(RequestModel):
             If it has more than ``most`` stitches.
         """
         repeat = to_repeat(self.chart).repeat()
-        stitches = repeat.rows * repeat.columns
-        if most is not None and stitches > most:
-            raise InputError(
-                "chart",
-                f"its repeat has {stitches} stitches.",
-                f"Use a repeat of at most {most} stitches.",
-            )
+        if most is not None:
+            check_stitches(repeat.stitches, most, "its repeat")
         return repeat
 
     def yarn(self, repeat: StitchChart, context: Context) -> ChartYarn:

@@ -107,7 +107,7 @@ def bend(request: BendRequest, context: Context) -> BendResult:
         found = bending(mirrored)
     except ConvergenceError as error:
         notes.append(f"With the symmetries of the chart: {error}")
-    if found is None or (not found.minimum and repeat.rows * repeat.columns <= COMPARED_UP_TO):
+    if found is None or (not found.minimum and repeat.stitches <= COMPARED_UP_TO):
         try:
             free = bending(relaxed(Branch.FREE))
         except (ConvergenceError, UnravelledError) as error:

@@ -15,8 +15,7 @@ from app.models.laws import LawsRequest
 from app.models.uploads import Content
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
@@ -83,13 +82,8 @@ def export(request: ExportRequest, context: Context) -> ExportResult:
         If the chart is too large for this format here.
     """
     chart = to_chart(request.chart)
-    limit = MAX_STITCHES.get(request.to)
-    if limit is not None and chart.rows * chart.columns > limit:
-        raise InputError(
-            "chart",
-            f"{chart.columns}x{chart.rows} stitches are too many for {request.to} here.",
-            f"Use at most {limit} stitches, or the command line.",
-        )
+    if limit := MAX_STITCHES.get(request.to):
+        check_stitches(chart.stitches, limit, instead=f" for {request.to}, or the command line")
     file = _export(chart, request, context)
     return ExportResult.of(
         file,

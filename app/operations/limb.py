@@ -20,6 +20,7 @@ from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.limb import MAX_GIRTHS, PLACES, Limb, LimbPlace, on_limb
+from knitcore.chart import check_stitches
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb
@@ -132,12 +133,7 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
 
 def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
     chart = to_chart(request.chart)
-    if chart.purl.size > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"{chart.purl.size} stitches are too many.",
-            f"Give a tube of at most {MAX_STITCHES}.",
-        )
+    check_stitches(chart.stitches, MAX_STITCHES)
     girths = request.girths
     on = Limb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
     return worn_tube(chart, context.material(request.material), on, request.direction)

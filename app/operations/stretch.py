@@ -19,7 +19,7 @@ from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import outline_marks
@@ -156,19 +156,12 @@ def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:
     InputError, CancelledError
     """
     chart = to_chart(request.chart)
-    stitches = chart.rows * chart.columns
-    if stitches > MAX_STITCHES:
-        side = math.isqrt(MAX_STITCHES)
-        raise InputError(
-            "chart",
-            f"{chart.columns}x{chart.rows} stitches are too many for a stretch test here.",
-            f"Use at most {MAX_STITCHES} stitches, such as {side}x{side}, or the command line.",
-        )
-    if stitches * request.steps > MAX_VALUES:
+    check_stitches(chart.stitches, MAX_STITCHES, instead=", or the command line")
+    if chart.stitches * request.steps > MAX_VALUES:
         raise InputError(
             "steps",
             f"{request.steps} are too many here for a chart of this size.",
-            f"Use at most {MAX_VALUES // stitches}, or the command line.",
+            f"Use at most {MAX_VALUES // chart.stitches}, or the command line.",
         )
     test, margins = _test(chart, request, context)
     return _stitches(chart, request, test, margins)

@@ -223,7 +223,7 @@ def _rectangles(
     else:
         single = request.rectangle_groups is RectangleGroups.STITCH
         block = 1 if single else request.rectangle_block
-        if chart.rows * chart.columns > block**2 * MAX_STITCHES:
+        if chart.stitches > block**2 * MAX_STITCHES:
             raise InputError(
                 "rectangle_block",
                 f"the chart is too large for a rectangle at each {block} × {block} stitches.",

@@ -15,7 +15,7 @@ from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene
 from app.viewer.share import MAX_SOLID, page_html, recording, solid_glb
 from app.viewer.still import still_png
-from knitcore.errors import InputError
+from knitcore.chart import check_stitches
 
 MAX_SHARED_STITCHES = 40_000
 
@@ -91,8 +91,4 @@ def _scenes(request: SharedViewRequest, found: Found, context: Context) -> Itera
 
 
 def _check_size(request: SharedViewRequest, most: int) -> None:
-    stitches = to_chart(request.chart).purl.size
-    if stitches > most:
-        raise InputError(
-            "chart", f"{stitches} stitches are too many for this file.", f"Share at most {most}."
-        )
+    check_stitches(to_chart(request.chart).stitches, most)

@@ -173,11 +173,11 @@ def _regions(
 
 
 def _field(chart: StitchChart, field: FieldColours | None) -> Colours:
-    if field is None or len(field.values) != chart.rows * chart.columns:
+    if field is None or len(field.values) != chart.stitches:
         raise InputError(
             "field",
             "does not have one value for each stitch.",
-            f"Send {chart.rows * chart.columns} values, row by row from the bottom.",
+            f"Send {chart.stitches} values, row by row from the bottom.",
         )
     values = np.array(field.values).reshape(chart.rows, chart.columns)
     if field.log and (min(field.low, field.high) <= 0 or values.min() <= 0):

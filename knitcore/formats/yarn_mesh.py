@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.fabric import Fabric
 from knitcore.garment.piece import Piece
 from knitcore.geometry.lattice import flat_lattice
@@ -68,12 +67,7 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
         If there are too many stitches for a mesh of use.
     """
     grid = chart if isinstance(chart, StitchChart) else chart.shaped.continued()
-    if grid.rows * grid.columns > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"{grid.columns}x{grid.rows} stitches are too many for a mesh.",
-            f"Export at most {MAX_STITCHES} stitches, such as 100x100.",
-        )
+    check_stitches(grid.stitches, MAX_STITCHES)
     return solid(course_centre_lines(chart, material), yarn_radius_mm(grid, material))
 
 

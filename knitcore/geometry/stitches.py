@@ -109,7 +109,7 @@ def _stored_repeat(chart: StitchChart, material: Material) -> StoredStitch | Non
     if pure_fabric(chart) is not None:
         return None  # its quarters are exact
     repeat = chart.repeat_cut()
-    if repeat.rows * repeat.columns > MAX_STORED:
+    if repeat.stitches > MAX_STORED:
         return None
     return stored_stitch(repeat, stored_material(material))
 

@@ -8,8 +8,7 @@ from typing import Any
 import anywidget
 import traitlets
 
-from knitcore.chart import StitchChart
-from knitcore.errors import InputError
+from knitcore.chart import StitchChart, check_stitches
 
 MAX_STITCHES = 3600
 """Cells of a chart that can be painted."""
@@ -61,9 +60,5 @@ class ChartEditor(anywidget.AnyWidget):
 
 
 def _checked(chart: StitchChart) -> StitchChart:
-    stitches = chart.rows * chart.columns
-    if stitches > MAX_STITCHES:
-        raise InputError(
-            "chart", f"it has {stitches} stitches.", f"Edit at most {MAX_STITCHES}, or a region."
-        )
+    check_stitches(chart.stitches, MAX_STITCHES, instead=", or a region")
     return chart

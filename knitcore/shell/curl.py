@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from knitcore import showing
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
@@ -207,12 +207,7 @@ def _pulled(sheet: Sheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
 
 def check_size(chart: StitchChart, stitches: NDArray[np.bool_] | None = None) -> None:
     """InputError if a piece is larger than what is calculated."""
-    if chart.rows * chart.columns > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"it has {chart.rows * chart.columns} stitches.",
-            f"Give a piece of at most {MAX_STITCHES} stitches.",
-        )
+    check_stitches(chart.stitches, MAX_STITCHES)
     if stitches is not None and (stitches.shape != chart.purl.shape or not stitches.any()):
         raise InputError(
             "outline", "does not fit the chart.", "Give as many cells, one stitch at least."

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from knitcore.chart import check_stitches
 from knitcore.choice import Choice
 from knitcore.errors import ConvergenceError, InputError
 from knitcore.yarnlevel.bent_cell import BendingResponse, settled
@@ -119,12 +120,7 @@ def bending(relaxed: RelaxedRepeat) -> FabricBending:
         If the repeat is not in equilibrium without its symmetries, or folds spontaneously: a
         rigidity along rows or columns is not positive.
     """
-    if relaxed.chart.rows * relaxed.chart.columns > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its repeat has {relaxed.chart.rows * relaxed.chart.columns} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
+    check_stitches(relaxed.chart.stitches, MAX_STITCHES, "its repeat")
     if relaxed.flat or relaxed.slides:
         raise InputError(
             "flat", "a repeat that is held flat cannot be bent.", "Relax it without `flat`."

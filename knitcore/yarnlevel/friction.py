@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.chart import check_stitches
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel import kernels
 from knitcore.yarnlevel.energy import CellEnergy
@@ -71,12 +72,7 @@ def agitated(relaxed: RelaxedRepeat) -> RubbedCell:
     InputError
         If the cell is too large, is held flat, or its slides are held.
     """
-    if relaxed.cell.stitches > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its cell has {relaxed.cell.stitches} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
+    check_stitches(relaxed.cell.stitches, MAX_STITCHES, "its cell")
     if relaxed.flat or relaxed.slides:
         raise InputError(
             "flat", "a repeat that is held flat cannot have friction.", "Relax it without `flat`."

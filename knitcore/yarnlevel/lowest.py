@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, ConvergenceError, InputError
 from knitcore.yarnlevel.cell import free_cell
 from knitcore.yarnlevel.energy import CellEnergy
@@ -94,12 +94,7 @@ def without_mirrors(relaxed: RelaxedRepeat, *, cancelled: Cancelled | None = Non
             "is held by more than its symmetries.",
             "Relax it with nothing prescribed but the loop length.",
         )
-    if cell.stitches > MAX_STITCHES:
-        raise InputError(
-            "chart",
-            f"its cell has {cell.stitches} stitches.",
-            f"Use a repeat of at most {MAX_STITCHES} stitches.",
-        )
+    check_stitches(cell.stitches, MAX_STITCHES, "its cell")
     lengths = np.resize(relaxed.loop_lengths_mm, cell.rows)
     energy = CellEnergy(cell, relaxed.yarn, lengths, relaxed.convention)
     found = followed(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from knitcore.arrays import Array
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
@@ -216,12 +216,7 @@ def _starts(branch: Branch, cell: YarnCell, starts: Sequence[Start] | None) -> S
 
 
 def _check_cell(cell: YarnCell, most: int, starts: int, time_limit_s: float | None) -> None:
-    if cell.stitches > most:
-        raise InputError(
-            "chart",
-            f"its cell has {cell.stitches} stitches.",
-            f"Use a repeat of at most {most} stitches.",
-        )
+    check_stitches(cell.stitches, most, "its cell")
     if time_limit_s is None:
         return
     if not time_limit_s > 0.0:

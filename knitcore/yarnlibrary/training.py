@@ -80,7 +80,7 @@ def training_charts() -> dict[StitchChart, str]:
             continue
         kind, chart = entry
         repeat = chart.canonical()
-        if repeat.rows * repeat.columns <= MAX_STITCHES:
+        if repeat.stitches <= MAX_STITCHES:
             found.setdefault(repeat, kind)
     return found
 

@@ -115,7 +115,7 @@ def test_limits_are_named(client: TestClient) -> None:
     chart = {"fabric": "rib", "rows": side, "columns": side}
     refused = client.post("/api/v1/export", json={"chart": chart, "to": "glb"})
     assert refused.status_code == 422
-    assert "too many" in refused.json()["detail"]
+    assert "has 2601 stitches" in refused.json()["detail"]
 
 
 @pytest.mark.parametrize(

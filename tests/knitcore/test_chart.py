@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.chart import MAX_STITCHES_PER_SIDE
+from knitcore.chart import MAX_STITCHES_PER_SIDE, check_stitches
 from tests.knitcore.charts import stitch_charts
 
 
@@ -99,3 +99,11 @@ def test_an_empty_or_flat_grid_is_refused() -> None:
 def test_unknown_fabrics_are_refused() -> None:
     with pytest.raises(InputError, match="stockinette, garter, rib, seed"):
         StitchChart.of_fabric("velvet", rows=2, columns=2)
+
+
+def test_too_many_stitches_are_refused_with_the_most_that_are_taken() -> None:
+    rib = StitchChart.of_fabric("rib", rows=3, columns=4)
+    check_stitches(rib.stitches, 12)
+    with pytest.raises(InputError, match=r"chart: its cell has 12 stitches. Use at most 11.") as no:
+        check_stitches(rib.stitches, 11, "its cell")
+    assert no.value.most == 11
