@@ -1021,6 +1021,8 @@ export interface FillRequest {
   repeats?: "small" | "all";
   /** Smallest side of a patch, where its part is not smaller. */
   smallest_patch?: number;
+  /** Single stitches may be turned where that comes nearer; otherwise every patch is a repeat, or stripes of two. */
+  scattered?: boolean;
   /** The same seed gives the same chart. */
   seed?: number;
   /** Pull the chart in the finite swatch; choose again where the result differs. */

@@ -92,6 +92,11 @@ class FillRequest(LawsRequest):
     smallest_patch: int = Field(
         4, ge=1, le=100, description="Smallest side of a patch, where its part is not smaller."
     )
+    scattered: bool = Field(
+        True,
+        description="Single stitches may be turned where that comes nearer; otherwise every patch "
+        "is a repeat, or stripes of two.",
+    )
     seed: int = Field(0, ge=0, le=2**32 - 1, description="The same seed gives the same chart.")
     check: bool = Field(
         True,

@@ -465,6 +465,9 @@ class FillRequest(TypedDict):
     repeats: NotRequired[Literal["small", "all"]]
     smallest_patch: NotRequired[int]
     """Smallest side of a patch, where its part is not smaller."""
+    scattered: NotRequired[bool]
+    """Single stitches may be turned where that comes nearer; otherwise every patch is a repeat,
+    or stripes of two."""
     seed: NotRequired[int]
     """The same seed gives the same chart."""
     check: NotRequired[bool]

@@ -63,7 +63,7 @@ def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) 
             if abs(away[axis]) > OFF:
                 said.append(
                     f"The patch of {region.stitches} stitches from row {region.row + 1}, column "
-                    f"{region.column + 1} is {away[axis]:+.0%} off {direction}-wise: "
+                    f"{region.column + 1} is {_compared(away[axis])} than wanted {direction}-wise: "
                     f"{region.repeat} is the nearest. {_reach(wish, direction, have)}"
                 )
     if len(regions) == 1:
@@ -75,6 +75,12 @@ def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) 
                 f"{_percent(there[0])} course-wise and {_percent(there[1])} wale-wise."
             )
     return said
+
+
+def _compared(away: float) -> str:
+    times = max(1 + away, 1 / (1 + away))
+    more = f"{times:.1f} times" if times >= 2 else f"{100 * (times - 1):.0f} %"
+    return f"{more} {'stiffer' if away > 0 else 'softer'}"
 
 
 def _reach(wish: Array, direction: Direction, have: Array) -> str:

@@ -42,7 +42,7 @@ MAX_MIXED = 8
 """Most patches that may hold a mixture of two repeats; the largest come first."""
 MIN_MIXED = 48
 """Fewest stitches of a patch with a mixture."""
-MAX_CHECKED = 10_000
+MAX_CHECKED = 20_000
 """Stitches of the largest chart that is pulled in the finite swatch."""
 _CHECKS = 3
 _NEARLY = 0.25
@@ -89,6 +89,7 @@ def fill_field(
     kept: StitchChart | None = None,
     stitch: NDArray[np.bool_] | None = None,
     smallest_patch: int = 4,
+    scattered: bool = True,
     seed: int = 0,
     check: bool = True,
     progress: Callable[[float], None] | None = None,
@@ -109,6 +110,8 @@ def fill_field(
     stitch : bool (rows, columns), where a shaped piece has stitches; elsewhere there is no target
         and no neighbour. All by default.
     smallest_patch : smallest side of a patch in stitches, where its part is not smaller.
+    scattered : single stitches may be turned where that comes nearer; otherwise every patch is a
+        repeat of the atlas, or stripes of two.
     seed : of the order in which stitches are tried.
     check : pull the chart in the finite swatch, and choose again where the result differs.
     progress : called with the share done.
@@ -139,7 +142,8 @@ def fill_field(
         )
     if parts is None:
         parts = np.zeros(wanted.shape[1:], dtype=np.intp)
-    fill = _Fill(wanted, parts, kept, stitch, material, atlas, seed, Progress(progress, cancelled))
+    told = Progress(progress, cancelled)
+    fill = _Fill(wanted, parts, kept, stitch, material, atlas, scattered, seed, told)
     return fill.run(smallest_patch, check=check and wanted[0].size <= MAX_CHECKED)
 
 
@@ -172,12 +176,13 @@ class _Fill:
         stitch: NDArray[np.bool_] | None,
         material: Material,
         atlas: Atlas,
+        scattered: bool,
         seed: int,
         progress: Progress,
     ) -> None:
         inside = np.ones(wanted.shape[1:], dtype=bool) if stitch is None else stitch
         self._wanted = np.where(inside, wanted, np.nan)
-        self._parts = parts
+        self._parts, self._scattered = parts, scattered
         self._material, self._atlas, self._stitch = material, atlas, inside
         no_wish = np.isnan(self._wanted).all(axis=0)
         self._fixed = ~inside if kept is None else no_wish
@@ -252,6 +257,7 @@ class _Fill:
             *np.exp(wish).tolist(),
             most_rows=min(rows, 12),
             most_columns=min(columns, 12),
+            scattered=self._scattered,
             look=self._progress.stop_if_asked,
         )
         if mixture is None or mixture.off > 0.8 * off:
@@ -284,6 +290,7 @@ class _Fill:
             self._table,
             kept=self._kept,
             stitch=self._stitch,
+            scattered=self._scattered,
             seed=self._seed,
             look=lambda share: self._progress.look(start + 0.15 * share),
         )

@@ -81,6 +81,7 @@ class Mixer:
         *,
         most_rows: int = _MAX_SIDE,
         most_columns: int = _MAX_SIDE,
+        scattered: bool = True,
         look: Callable[[], None] = lambda: None,
     ) -> Stripes | None:
         """The mixture nearest to a target (NaN is none); None if there is no room for one.
@@ -88,6 +89,7 @@ class Mixer:
         Parameters
         ----------
         most_rows, most_columns : of the mixture's repeat.
+        scattered : single stitches may be turned where no stripes come near.
         look : called between predictions; may raise to stop.
         """
         wish = np.log([course_n_per_mm, wale_n_per_mm])
@@ -108,7 +110,7 @@ class Mixer:
             if best.off < CLOSE:
                 return best
             learnt += 0.3 * (mixture.log_moduli - estimated - learnt)
-        if best is None or best.off > NEAR:
+        if scattered and (best is None or best.off > NEAR):
             best = self._turned(best, wish, (most_rows, most_columns), look)
         return best
 

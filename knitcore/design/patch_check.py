@@ -23,6 +23,8 @@ from knitcore.mechanics.homogenisation import homogenise
 from knitcore.swatch import Fields, strip_test
 
 SMALL_STRAIN = 0.005
+LOADED = 0.2
+"""Least stress along a pull, over the mean of all patches, of a patch that the pull measures."""
 
 
 def finite_size(
@@ -35,6 +37,9 @@ def finite_size(
     cancelled: Cancelled | None = None,
 ) -> Array:
     """(patches, 2) moduli of each patch in the swatch over those of its repeat, course and wale.
+
+    They are 1 for patches that one of the pulls hardly loads, such as a finger of a glove that ends
+    before the clamp.
 
     Parameters
     ----------
@@ -71,11 +76,14 @@ def finite_size(
                 at_stitches = getattr(fields, f"{kind}_{name}")[1::2, 1::2].ravel()
                 sums = np.bincount(patches.ravel(), area * at_stitches)[:count]
                 array[:, component, pull.axis] = sums / total
-    compliance = strain @ np.linalg.inv(stress)
-    in_swatch = 1 / np.stack([compliance[:, 0, 0], compliance[:, 1, 1]], axis=1)
+    along = np.diagonal(stress, axis1=1, axis2=2)
+    measured = (along > LOADED * along.mean(axis=0)).all(axis=1)
+    compliance = strain[measured] @ np.linalg.inv(stress[measured])
+    in_swatch = 1 / np.diagonal(compliance, axis1=1, axis2=2)
     large = {repeat: _flat_moduli(repeat, material) for repeat in dict.fromkeys(repeats)}
-    found: Array = in_swatch / np.array([large[repeat] for repeat in repeats])
-    return found
+    factors = np.ones((count, 2))
+    factors[measured] = in_swatch / np.array([large[repeat] for repeat in repeats])[measured]
+    return factors
 
 
 def _flat_moduli(repeat: StitchChart, material: Material) -> tuple[float, float]:

@@ -30,6 +30,7 @@ def placed(
     *,
     kept: StitchChart,
     stitch: Grid,
+    scattered: bool,
     seed: int,
     look: Look,
 ) -> StitchChart:
@@ -44,6 +45,7 @@ def placed(
     table : of the material.
     kept : stitches of the chart where there is no repeat.
     stitch : (rows, columns), where there are stitches.
+    scattered : single stitches may be turned at the borders of patches.
     seed : of the order in which patches and stitches are tried.
     look : called from time to time with the share done; may raise to stop.
     """
@@ -54,7 +56,8 @@ def placed(
         purl[patches == patch] = _tiled(repeat, purl)[patches == patch]
     if patches.max() > 0:
         _shift(purl, patches, repeats, local, rng, look)
-        _turn(purl, patches, patches < len(repeats), local, rng, look)
+        if scattered:
+            _turn(purl, patches, patches < len(repeats), local, rng, look)
     return StitchChart(purl)
 
 

@@ -105,8 +105,8 @@ export function fillTab(studio) {
       };
       return input;
     });
-    const now = AXES.map(({ axis }) => h("td", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
-    const verdicts = AXES.map(() => h("td", { class: "muted" }));
+    const now = AXES.map(({ axis }) => h("span", { class: "figures", id: `part-${at}-${axis}-now` }, "…"));
+    const verdicts = AXES.map(() => h("span", { class: "muted part-verdict" }));
     part.tell = () =>
       AXES.forEach(({ axis }, i) => {
         now[i].textContent = figure(part.now?.[axis]);
@@ -166,25 +166,17 @@ export function fillTab(studio) {
         }),
       ),
       h(
-        "table",
+        "div",
         { class: "part-numbers" },
-        h(
-          "thead",
-          {},
+        ...AXES.map(({ label }, i) =>
           h(
-            "tr",
-            {},
-            h("th", { scope: "col" }, "Stiffness, N/mm"),
-            h("th", { scope: "col" }, "now"),
-            h("th", { scope: "col" }, "wanted"),
-            h("th", { scope: "col" }, h("span", { class: "visually-hidden" }, "how near")),
-          ),
-        ),
-        h(
-          "tbody",
-          {},
-          ...AXES.map(({ label }, i) =>
-            h("tr", {}, h("th", { scope: "row" }, `along ${label}`), now[i], h("td", {}, inputs[i]), verdicts[i]),
+            "div",
+            { class: "part-number" },
+            h("span", { class: "muted" }, `along ${label}`),
+            now[i],
+            h("span", { class: "muted", "aria-hidden": "true" }, "→"),
+            inputs[i],
+            verdicts[i],
           ),
         ),
       ),
@@ -193,7 +185,7 @@ export function fillTab(studio) {
   const show = () => {
     list.replaceChildren(
       ...(parts.length
-        ? parts.map(item)
+        ? [h("li", { class: "muted inverse-hint" }, "Stiffness in N/mm, now → wanted"), ...parts.map(item)]
         : [
             h(
               "li",
@@ -208,6 +200,7 @@ export function fillTab(studio) {
   const smallest = field("Smallest patch, stitches", 4, { min: "1", max: "100", step: "1" });
   let seed = 0;
   const large = h("input", { type: "checkbox" });
+  const scattered = h("input", { type: "checkbox" });
 
   const fill = async () => {
     const { rows, columns } = chart.grid;
@@ -240,6 +233,7 @@ export function fillTab(studio) {
         })),
         repeats: large.checked ? "all" : "small",
         smallest_patch: smallest.valueAsNumber || 4,
+        scattered: scattered.checked,
         seed,
       },
       "Filling",
@@ -301,7 +295,7 @@ export function fillTab(studio) {
         {},
         h("summary", {}, "Which patterns, and how near they come"),
         found.patches.length > 0 && patchTable(found, wished),
-        ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, message)),
+        ...found.messages.slice(0, 4).map((message) => h("p", { class: "muted" }, inKnitting(message))),
       ),
     );
     keep.focus();
@@ -338,6 +332,7 @@ export function fillTab(studio) {
         { class: "inverse-more" },
         h("summary", {}, "Options"),
         h("label", { class: "check" }, "No patch narrower than", smallest, "stitches"),
+        h("label", { class: "check" }, scattered, "Scattered purls, too, where they come nearer: hard to knit by hand"),
         h("label", { class: "check" }, large, "Larger patterns, too (the first time takes up to a minute)"),
       ),
     ),
@@ -368,11 +363,21 @@ function against(now, wanted) {
   return `${more}${share > 1 ? "stiffer" : "softer"} than wanted`;
 }
 
+/** A message of the service, which speaks engineering, in the page's words. @param {string} message */
+const inKnitting = (message) =>
+  message.replaceAll("course-wise", "along rows").replaceAll("wale-wise", "along columns");
+
 /** @param {FillResult} found @param {Part[]} wished */
 function patchTable({ patches, columns }, wished) {
-  const rows = patches.toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
   /** @param {{row: number, column: number}} patch */
   const partOf = ({ row, column }) => wished.find(({ cells }) => cells.includes(row * columns + column));
+  /** One row for all patches of a part with the same pattern. @type {Map<string, FillResult["patches"][number]>} */
+  const alike = new Map();
+  for (const patch of patches) {
+    const key = `${partOf(patch)?.name} ${patch.repeat}`;
+    alike.set(key, { ...patch, stitches: patch.stitches + (alike.get(key)?.stitches ?? 0) });
+  }
+  const rows = [...alike.values()].toSorted((a, b) => b.stitches - a.stitches).slice(0, SHOWN_PATCHES);
   /** @param {number} value @param {[number, number]} ends @param {number | null | undefined} wanted */
   const stiffness = (value, [low, high], wanted) =>
     h(

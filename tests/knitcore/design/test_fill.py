@@ -7,6 +7,7 @@ from hypothesis import given
 from knitcore import Fabric, InputError, StitchChart
 from knitcore.design.atlas_build import build_atlas, predict_repeat
 from knitcore.design.fill import FilledField, fill_field
+from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import connected
 from knitcore.design.wishes import Wish, wanted_maps, wished_parts
 from knitcore.errors import CancelledError
@@ -111,6 +112,43 @@ def test_a_target_between_the_repeats_is_met_by_a_mixture() -> None:
         wanted = hidden.modulus_n_per_mm(direction)
         assert found.modulus_n_per_mm(direction) == pytest.approx(wanted, rel=0.08)
     assert field.off_share == 0
+
+
+def test_patches_to_be_knitted_by_hand_have_no_scattered_stitches() -> None:
+    """Single stitches would smooth the border of a disc."""
+    row, column = np.indices((8, 8))
+    disc = (row - 4) ** 2 + (column - 4) ** 2 < 7
+    moduli = [np.where(disc, 0.031, 0.017), np.where(disc, 0.13, 0.3)]
+    plain = fill_field(*moduli, ACRYLIC, ATLAS, scattered=False, check=False)
+    assert len(plain.regions) > 1
+    for number, region in enumerate(plain.regions):
+        repeat = StitchChart.parse(region.repeat)
+        cells = plain.patches == number
+        assert any(
+            np.array_equal(
+                np.roll(g.purl, (a, b), (0, 1))[row % g.rows, column % g.columns][cells] ^ swapped,
+                plain.chart.purl[cells],
+            )
+            for g in (repeat, repeat.mirror())
+            for a in range(g.rows)
+            for b in range(g.columns)
+            for swapped in (False, True)
+        )
+
+
+def test_a_part_that_ends_before_the_clamp_is_judged_by_its_repeat() -> None:
+    """The short finger hangs free when the others are pulled."""
+    stitch = np.ones((12, 16), dtype=bool)
+    stitch[4:8, 10:] = False
+    stitch[8:, 13:] = False
+    patches = np.where(stitch, 0, 2)
+    patches[8:, 8:13] = 1
+    repeats = [StitchChart.of_fabric(fabric) for fabric in (Fabric.STOCKINETTE, Fabric.RIB)]
+    chart = StitchChart(np.where(patches == 0, False, np.indices(stitch.shape)[1] % 2 > 0))
+    factors = finite_size(chart, ACRYLIC, patches, repeats, stitch=stitch)
+    assert factors[1].tolist() == [1.0, 1.0]
+    assert (factors[0] > 0).all()
+    assert (factors[0] != 1).all()
 
 
 def test_the_same_seed_gives_the_same_chart() -> None:
@@ -258,7 +296,7 @@ def test_a_chart_of_another_size_is_refused() -> None:
 def test_unreachable_targets_are_reported() -> None:
     field = fill_field(np.full((6, 6), 9.0), np.full((6, 6), np.nan), ACRYLIC, ATLAS)
     assert field.off_share == 1
-    assert "off course-wise" in field.messages[0]
+    assert "than wanted course-wise" in field.messages[0]
     assert "This yarn reaches" in field.messages[0]
     assert np.isnan(field.regions[0].deviation_wale)
 
