@@ -48,7 +48,7 @@ class Patch:
 
 
 def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) -> list[str]:
-    """Messages about targets that were not met, with alternatives.
+    """Messages about targets that were not met, with alternatives; one for patches alike.
 
     Parameters
     ----------
@@ -58,9 +58,12 @@ def unreached(regions: Sequence[Patch], wishes: Array, off: Array, have: Array) 
     have : (repeats, 2) logarithms of the moduli of all repeats.
     """
     said = []
+    told = set()
     for region, wish, away in zip(regions, wishes, off, strict=True):
         for axis, direction in enumerate(Direction):
-            if abs(away[axis]) > OFF:
+            alike = region.repeat, float(wish[axis]), axis
+            if abs(away[axis]) > OFF and alike not in told:
+                told.add(alike)
                 said.append(
                     f"The patch of {region.stitches} stitches from row {region.row + 1}, column "
                     f"{region.column + 1} is {_compared(away[axis])} than wanted {direction}-wise: "
