@@ -228,6 +228,8 @@ export interface BiaxialResult {
 
 /** A piece and the fabric of its border. */
 export interface BorderRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Identifier of a material of the library. */
   material: string;
   /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
@@ -259,6 +261,8 @@ export type Branch = "published" | "mirrored" | "free";
 
 /** The law to start from, and tests whose forces the law has to match. */
 export interface CalibrateRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** .npz: displacement (frames, 2, rows, columns), frame. */
   field: UploadedFile;
   /** Direction in which the fabric was pulled. */
@@ -492,6 +496,8 @@ export type Curl = "flat" | "front" | "back";
 
 /** A whole piece whose edges are free, all or beside two clamps. */
 export interface CurlRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
   material: string;
@@ -738,6 +744,8 @@ export type Direction = "course" | "wale";
 
 /** A fabric, and the sizes of the test. */
 export interface DrapeRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Identifier of a material of the library. */
   material: string;
   /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
@@ -1268,6 +1276,8 @@ export type Group = "knitcore.patterns" | "knitcore.materials" | "knitcore.expor
 
 /** A whole piece and what holds it. */
 export interface HangRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Identifier of a material of the library. */
   material: string;
   /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */
@@ -1717,6 +1727,8 @@ export type Origin = "measured" | "simulated" | "fitted" | "estimated";
 
 /** A fabric, and how far a strip of it hangs over the edge of a table. */
 export interface OverhangRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
   /** Identifier of a material of the library. */
   material: string;
   /** Of the yarn, g/m: weigh some metres; tex divided by 1000. */

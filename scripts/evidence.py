@@ -32,16 +32,15 @@ from benchmarks.bias_strip import (  # noqa: E402
 from benchmarks.knitdb import STOCKINETTE, factor, ranks, read  # noqa: E402
 from benchmarks.true_to_tests import (  # noqa: E402
     STRESSES,
-    LeftOut,
     Summary,
     left_out,
     of_library,
     strips,
 )
-from docs.figures.measure_figures import COLOURS, Plot  # noqa: E402
 from knitcore import predict  # noqa: E402
+from knitcore.arrays import Array  # noqa: E402
 from knitcore.fabric import Direction, Fabric  # noqa: E402
-from knitcore.materials import Laws, material, paper_figures  # noqa: E402
+from knitcore.materials import Interval, Laws, material, paper_figures  # noqa: E402
 from knitcore.materials.uncertainty import Z_SCORE, log_interval  # noqa: E402
 from knitcore.measure.bending import measure_bending  # noqa: E402
 from knitcore.measure.compression import average_compression, fit_compression  # noqa: E402
@@ -52,10 +51,14 @@ from knitcore.swatch.calibration import FIELD_NOISE_PERCENT, ForceCurve, calibra
 from knitcore.swatch.comparison import Edges, compare  # noqa: E402
 from knitcore.swatch.measured import load_field  # noqa: E402
 from knitcore.swatch.models import EnergyModel, SheetModel  # noqa: E402
+from scripts import evidence_figures as figures  # noqa: E402
 from scripts.refit_laws import carried  # noqa: E402
 
 DENSITY_G_PER_M = 0.5
 """Of the acrylic yarn; the paper does not print it."""
+CALIBRATED = "calibrated on the first two pictures"
+DRAWN = ("the paper's model and law", "published law", "refitted law", CALIBRATED)
+"""Rows of the displacement field that are drawn."""
 HEAD = """# Evidence
 
 How far to trust each number. `python scripts/evidence.py FOLDER` makes this page from the public
@@ -88,13 +91,18 @@ def stretch(folder: Path) -> list[str]:
     for laws, rows in both.items():
         lines.append(f"- {laws} laws, in sample: {Summary.of(list(rows.values()))}.")
     pulls = left_out(folder)
-    figure(pulls)
+    figures.left_out_pulls(pulls)
+    figures.waists(both[Laws.PUBLISHED], both[Laws.REFITTED])
     lines += [
         f"- every pull predicted from the others: {Summary.of([p.other_sample for p in pulls])};",
         "  with only that part of the interval in which pulls of one sample differ (without the",
         f"  error of reading its width): {Summary.of([p.same_sample for p in pulls])}.",
         "- every fabric without its own raw tests, from its published law and the correction",
         f"  found on the other fabrics, as cotton's four are predicted: {carried(folder)}.",
+        "",
+        "![Waists of the eight tests by both sets of laws](figures/evidence-waists.svg)",
+        "",
+        "Simulated less measured waist of each test, at the three stresses from left to right.",
         "",
         "![Pulls predicted from the others](figures/left-out-pulls.svg)",
         "",
@@ -106,26 +114,6 @@ def stretch(folder: Path) -> list[str]:
         "",
     ]
     return lines
-
-
-def figure(pulls: list[LeftOut]) -> None:
-    """Draw the pulls left out."""
-    tests = list(dict.fromkeys((pull.fabric, pull.direction) for pull in pulls))
-    plot = Plot((0, len(tests)), (0.8, 1.2), ("", "simulated / measured force"), ticks=(0, 5))
-    acrylic = material("acrylic")
-    for place, (fabric, direction) in enumerate(tests):
-        sd = float(acrylic.record(fabric).uncertainty.log_stress(direction, 0.1))
-        ends = np.exp([-Z_SCORE * sd, Z_SCORE * sd]).tolist()
-        plot.line([place + 0.5] * 2, ends, "#ddd", width=34)
-        plot.text(place + 0.1, 0.775, fabric)
-        plot.text(place + 0.1, 0.755, f"{direction}-wise")
-    plot.line((0, len(tests)), (1, 1), "#999", "4")
-    for place, key in enumerate(tests):
-        rows = [p.other_sample[0] for p in pulls if (p.fabric, p.direction) == key]
-        for shift, ratios in zip((0.3, 0.5, 0.7), np.transpose(rows), strict=True):
-            known = ratios[np.isfinite(ratios)]
-            plot.dots([place + shift] * len(known), known.tolist(), COLOURS[key[0]])
-    plot.save("left-out-pulls.svg")
 
 
 def moduli() -> list[str]:
@@ -140,6 +128,7 @@ def moduli() -> list[str]:
         "| | course-wise: published | refitted | wale-wise: published | refitted |",
         "|---|---|---|---|---|",
     ]
+    figures.moduli()
     old, new = material("acrylic:published"), material("acrylic")
     ratios = []
     for fabric in Fabric:
@@ -153,6 +142,8 @@ def moduli() -> list[str]:
             cells += [f"{value:.3f} ({ends.low:.3f} to {ends.high:.3f})"]
         lines.append(f"| {fabric} | {' | '.join(cells)} |")
     lines += [
+        "",
+        "![Refitted against published moduli](figures/evidence-moduli.svg)",
         "",
         f"The reductions differ by a factor of {np.exp(rms(np.array(ratios))):.2f} rms: an initial",
         "modulus is the least certain number of a stretch test. *Not shown*: other",
@@ -183,6 +174,7 @@ def pressures(folder: Path) -> list[str]:
         "|---|---|---|---|---|---|",
     ]
     inside = total = 0
+    ranges = []
     for fabric in Fabric:
         for strip in strips(folder, fabric):
             record = material("acrylic").record(fabric)
@@ -196,13 +188,17 @@ def pressures(folder: Path) -> list[str]:
                 factor = np.exp(Z_SCORE * record.uncertainty.log_stress(strip.direction, stress))
                 low, high = found.low / factor, found.high * factor
                 inside += int(low <= free and held <= high)
+                ranges.append((fabric, Interval(held, free), Interval(low, high)))
                 total += 1
                 lines.append(
                     f"| {fabric} {strip.direction}-wise | {worn:.0f} | {stress:.3f} "
                     f"| {held:.0f} to {free:.0f} | {found.low:.0f} to {found.high:.0f} "
                     f"| {low:.0f} to {high:.0f} |"
                 )
+    figures.pressures(ranges)
     lines += [
+        "",
+        "![Pressure by the measured force against the predicted](figures/evidence-pressure.svg)",
         "",
         f"{inside} of {total} measured ranges overlap the interval. The refitted laws rest on",
         "these tests, so this shows the arithmetic and the narrowing, not a new sample. *Not",
@@ -218,8 +214,11 @@ def bending(folder: Path) -> list[str]:
     lengths = [10.0 * float(photo.stem.split("_")[0]) for photo in photos]
     found = measure_bending(photos, linear_density_g_per_m=DENSITY_G_PER_M, length_mm=lengths)
     paper = paper_figures().get("acrylic", "B")
+    figures.bending(found, paper.corrected / 1000)
     return [
         "## Bending of the yarn",
+        "",
+        "![Bending modulus of every photo](figures/evidence-bending.svg)",
         "",
         f"{len(photos)} photos of acrylic yarn hanging over an edge, 10 to 25 cm long: B is",
         f"{1000 * found.bending_modulus_n_mm2:.1f} ± {1000 * (found.standard_deviation or 0):.1f}"
@@ -242,9 +241,13 @@ def yarn_models() -> list[str]:
         "| | rms factor | values |",
         "|---|---|---|",
     ]
-    for name, logs in errors().items():
+    found = errors()
+    figures.yarn_models(found)
+    for name, logs in found.items():
         lines.append(f"| {name} | {np.exp(rms(logs)):.2f} | {logs.size} |")
     lines += [
+        "",
+        "![Models of the yarn against knitted fabric](figures/evidence-yarn-models.svg)",
         "",
         "*Not shown*: mixed charts, of which there are no stretch tests; friction and",
         "set, which the",
@@ -266,8 +269,11 @@ def relaxed_sizes(folder: Path) -> list[str]:
     logs -= logs[first]
     spread = np.array([(a.course.relaxed_log_sd, a.wale.relaxed_log_sd) for a in answers])
     inside = (np.abs(logs - true) <= Z_SCORE * spread)[others]
+    figures.relaxed_sizes(true[others], logs[others], spread[others])
     return [
         "## Relaxed sizes",
+        "",
+        "![Predicted against knitted sizes](figures/evidence-relaxed-sizes.svg)",
         "",
         f"{len(names)} knit and purl swatches of one acrylic yarn, knitted and measured by others",
         "(KnitDB; Hofmann et al., KnitPick, UIST 2019). Compared are widths and heights",
@@ -320,7 +326,12 @@ def gradings(folder: Path) -> list[str]:
         ranges = [values[:, place] for values in (ends, *found)]
         told = " | ".join(f"{values.min():.1f} to {values.max():.1f}" for values in ranges)
         lines.append(f"| {strain:.0%} | {told} |")
+    names = ("measured", "simulated, κ = 0", "simulated, with κ")
+    spans = (np.array([v.min(axis=0), v.max(axis=0)]) for v in (ends, *found))
+    figures.side_by_side(dict(zip(names, spans, strict=True)), STRAINS)
     lines += [
+        "",
+        "![Force of the strip with two loop lengths](figures/evidence-loop-length.svg)",
         "",
         "*Not shown*: the number and the width of the samples, which the files do not state, loops",
         "of other lengths, and the same strip pulled course-wise, which gives the course modulus",
@@ -348,7 +359,7 @@ def field(folder: Path) -> list[str]:
         ("published law", published, SheetModel(), Edges.MEASURED),
         ("refitted law, rigid edges", refitted, SheetModel(), Edges.RIGID),
         ("refitted law", refitted, SheetModel(), Edges.MEASURED),
-        ("calibrated on the first two pictures", first.law, SheetModel(), Edges.MEASURED),
+        (CALIBRATED, first.law, SheetModel(), Edges.MEASURED),
         ("calibrated on all three", every.law, SheetModel(), Edges.MEASURED),
     ]
     head = [f"stretch {pictures.stretch(frame):.2f}" for frame in pictures.frames]
@@ -362,12 +373,18 @@ def field(folder: Path) -> list[str]:
         f"| | {' | '.join(head)} |",
         "|---" * (len(head) + 1) + "|",
     ]
+    across = {}
     for name, law, model, edges in rows:
         found = compare(pictures, law, Direction.WALE, edges=edges, model=model).frames
         told = (f"{f.ux_rms_percent_width:.2f} / {f.uy_rms_percent_width:.2f}" for f in found)
         lines.append(f"| {name} | {' | '.join(told)} |")
+        across[name] = [f.ux_rms_percent_width for f in found]
+    drawn = {name: across[name] for name in DRAWN}
+    figures.field(drawn, list(map(pictures.stretch, pictures.frames)), FIELD_NOISE_PERCENT)
     loaded = first.force_ratio[1:]
     lines += [
+        "",
+        "![Differences of displacements across the pull](figures/evidence-field.svg)",
         "",
         "The refitted law has seen the stretch tests only, so its row is a test of it. The laws",
         "calibrated keep the stretch test's force, too: simulated over measured, on the first two",
@@ -385,7 +402,9 @@ def field(folder: Path) -> list[str]:
 def compression(folder: Path) -> list[str]:
     """Compression constants compared with the paper's."""
     tests = read_compression(folder / "compressionTests.xls")
-    means = {m.yarn: m for m in average_compression([fit_compression(t) for t in tests])}
+    samples = [fit_compression(test) for test in tests]
+    means = {m.yarn: m for m in average_compression(samples)}
+    paper = {}
     lines = [
         "## Compression of the yarn",
         "",
@@ -394,8 +413,10 @@ def compression(folder: Path) -> list[str]:
     ]
     for yarn in ("acrylic", "cotton"):
         k, p = (paper_figures().get(yarn, name).corrected for name in ("k", "p"))
-        found = means[yarn]
+        paper[yarn], found = (k, p), means[yarn]
         lines.append(f"| {yarn} | {1000 * found.k_n_per_mm3:.3g} ({k:g}) | {found.p:.3f} ({p:g}) |")
+    figures.compression(samples, paper)
+    lines += ["", "![Constants of every sample](figures/evidence-compression.svg)"]
     lines += ["", "*Not shown*: the other six yarns, which have no compression tests.", ""]
     return lines
 
@@ -416,6 +437,7 @@ def shear(folder: Path) -> list[str]:
         "|---|---|---|" + "---|" * len(STRAINS),
     ]
     matched: dict[str, list[float]] = {}
+    missed: dict[str, list[Array]] = {}
     worst: dict[str, float] = {}
     for (name, (coupled, growth)), poisson in product(LAWS.items(), POISSON):
         test = graded(folder, poisson, coupled=coupled, shear_stiffening=growth)
@@ -424,6 +446,7 @@ def shear(folder: Path) -> list[str]:
             forces = test.bias_force(ratio, length, STRAINS) / test.force_n
             told = " | ".join(f"{force:.2f}" for force in forces)
             matched.setdefault(name, []).append(ratio)
+            missed.setdefault(name, []).append(forces)
             worst[name] = max(worst.get(name, 1.0), *np.exp(np.abs(np.log(forces))))
             lines.append(f"| {name} | {poisson}, {length:.0f} mm | {ratio:.2f} | {told} |")
     shares = []
@@ -431,15 +454,18 @@ def shear(folder: Path) -> list[str]:
         law = material("acrylic").law(fabric)
         share = law.shear_modulus / np.sqrt(law.modulus_course * law.modulus_wale)
         shares.append(f"{fabric} {share:.2f}")
+    figures.shear({name: np.array(rows) for name, rows in missed.items()}, STRAINS)
     lines += [
+        "",
+        "![Force of the bias strip by three laws](figures/evidence-shear.svg)",
         "",
         "The largest factor by which a force is missed is "
         + ", ".join(f"{factor:.2f} ({name})" for name, factor in worst.items())
         + ".",
         "So much of the stiffening on the bias is the coupling's, and the rest is the shear's own:",
         "its stiffness grows with the square of the angle and has doubled at half a radian. That",
-        "one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the table is",
-        "no proof of it; the yarn level's shear modulus of acrylic stockinette, the same within",
+        "one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the table",
+        "does not prove it; the yarn level's shear modulus of acrylic stockinette, the same within",
         "9 % to an angle of 0.1, agrees with it (4 %).",
         "Less certain is the modulus at rest. This jersey has a share of "
         f"{min(matched[name]):.2f} to {max(matched[name]):.2f}, the library's acrylic, from its",

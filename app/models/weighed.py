@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.models.base import RequestModel
 from app.models.charts import MaterialName
+from app.models.laws import LawsRequest
 from app.operations.context import Context
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
@@ -43,7 +43,7 @@ _CURLS = (
 )
 
 
-class WeighedRequest(RequestModel):
+class WeighedRequest(LawsRequest):
     """A material and the weight of its yarn."""
 
     material: MaterialName

@@ -12,7 +12,7 @@ from app.cli.options import out_option
 from app.models.base import Floats
 from app.models.charts import MaterialName
 from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
-from app.models.laws import LawResult
+from app.models.laws import LawResult, LawsRequest
 from app.models.uploads import UploadedFile, example_file, stored
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
@@ -27,7 +27,7 @@ from knitcore.swatch.calibration import calibrate as calibrated
 from knitcore.swatch.comparison import Edges, compare
 
 
-class CalibrateRequest(FieldRequest):
+class CalibrateRequest(FieldRequest, LawsRequest):
     """The law to start from, and tests whose forces the law has to match."""
 
     material: MaterialName

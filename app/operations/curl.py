@@ -11,6 +11,7 @@ from pydantic import Field
 from app.cli.options import out_option
 from app.models.base import Known, RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
+from app.models.laws import LawsRequest
 from app.models.posed import PosedView
 from app.models.weighed import Corners, TimeLimit, corners_of
 from app.operations.context import Context
@@ -33,7 +34,7 @@ class PullInput(RequestModel):
     strain: float = Field(gt=0, le=1, description="From clamp to clamp: 0.3 is 30 %.")
 
 
-class CurlRequest(RequestModel):
+class CurlRequest(LawsRequest):
     """A whole piece whose edges are free, all or beside two clamps."""
 
     chart: ChartInput

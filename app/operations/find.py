@@ -224,11 +224,11 @@ def _asked(
 def _command(
     request: FindRequest,
     context: Context,
-    materials: tuple[str, ...],
     atlases: tuple[Path, ...],
     elsewhere: bool,
 ) -> FindResult:
-    tables = [*map(load_atlas, atlases), *_atlases(materials, request.repeats, context)]
+    named = request.materials[len(atlases) :]
+    tables = [*map(load_atlas, atlases), *_atlases(named, request.repeats, context)]
     others = [name for name in load_library() if name not in request.materials]
     return _ranked(tables, request, others if elsewhere else [], context)
 
@@ -290,7 +290,7 @@ OPERATION = Operation(
     command=Command(
         _lines,
         help="Rank the repeats of atlases (or of materials, up to 3x3) by how surely they fit.",
-        names=dict.fromkeys(("laws", "materials", "targets", "repeats", "elsewhere"))
+        names=dict.fromkeys(("materials", "targets", "repeats", "elsewhere"))
         | {
             "transfers_per_stitch": "--most-transfers",
             "crossings_per_stitch": "--most-crossings",

@@ -193,6 +193,8 @@ class BiaxialRequest(TypedDict):
 class BorderRequest(TypedDict):
     """A piece and the fabric of its border."""
 
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
     """Identifier of a material of the library."""
     linear_density_g_per_m: float
@@ -214,6 +216,8 @@ class BoxInput(TypedDict):
 class CalibrateRequest(TypedDict):
     """The law to start from, and tests whose forces the law has to match."""
 
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     field: UploadedFile | Path
     """.npz: displacement (frames, 2, rows, columns), frame."""
     direction: Direction
@@ -283,6 +287,8 @@ class CompressionRequest(TypedDict):
 class CurlRequest(TypedDict):
     """A whole piece whose edges are free, all or beside two clamps."""
 
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     chart: str | PureFabricChart
     material: str
     """Identifier of a material of the library."""
@@ -374,6 +380,8 @@ class DesignRepeat(BaseModel):
 class DrapeRequest(TypedDict):
     """A fabric, and the sizes of the test."""
 
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
     """Identifier of a material of the library."""
     linear_density_g_per_m: float
@@ -593,6 +601,8 @@ class Glove(TypedDict):
 class HangRequest(TypedDict):
     """A whole piece and what holds it."""
 
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
     """Identifier of a material of the library."""
     linear_density_g_per_m: float
@@ -718,6 +728,8 @@ class NoRequest(TypedDict):
 class OverhangRequest(TypedDict):
     """A fabric, and how far a strip of it hangs over the edge of a table."""
 
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
     material: str
     """Identifier of a material of the library."""
     linear_density_g_per_m: float

@@ -24,6 +24,7 @@ from knitcore.mechanics.pressure import limb_pressure
 
 HERE = Path(__file__).parent
 WIDTH, HEIGHT, MARGIN = 560, 360, 56
+FONT = 13
 COLOURS = {
     Fabric.STOCKINETTE: "#3b7dd8",
     Fabric.GARTER: "#e08a2c",
@@ -60,20 +61,23 @@ class Plot:
         colour: str,
         dash: str = "",
         width: float = 2,
+        opacity: float = 1,
     ) -> None:
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in map(self.place, xs, ys))
+        faint = "" if opacity == 1 else f' stroke-opacity="{opacity:g}"'
         self.parts.append(
             f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}"'
-            f' stroke-dasharray="{dash}"/>'
+            f' stroke-dasharray="{dash}"{faint}/>'
         )
 
     def dots(self, xs: Sequence[float], ys: Sequence[float], colour: str, r: float = 2.5) -> None:
         for a, b in map(self.place, xs, ys):
             self.parts.append(f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{r}" fill="{colour}"/>')
 
-    def text(self, x: float, y: float, words: str, colour: str = "#777") -> None:
+    def text(self, x: float, y: float, words: str, colour: str = "#777", size: int = FONT) -> None:
         a, b = self.place(x, y)
-        self.parts.append(f'<text x="{a:.0f}" y="{b:.0f}" fill="{colour}">{words}</text>')
+        font = "" if size == FONT else f' font-size="{size}"'
+        self.parts.append(f'<text x="{a:.0f}" y="{b:.0f}" fill="{colour}"{font}>{words}</text>')
 
     def _frame(self, labels: tuple[str, str], ticks: tuple[int, int]) -> None:
         for axis, (low, high) in enumerate((self.x, self.y)):
@@ -97,7 +101,7 @@ class Plot:
         body = "\n".join(self.parts)
         (HERE / name).write_text(
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}"'
-            f' font-family="system-ui, sans-serif" font-size="13">\n{body}\n</svg>\n'
+            f' font-family="system-ui, sans-serif" font-size="{FONT}">\n{body}\n</svg>\n'
         )
 
 

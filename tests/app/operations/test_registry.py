@@ -273,3 +273,17 @@ def test_a_command_loads_no_other_operation() -> None:
     assert "app.operations.rs" in loaded.stdout
     assert "predict" not in loaded.stdout
     assert "fastapi" not in loaded.stdout
+
+
+YARN_ALONE = {"characterise", "material", "relax", "rs", "sweep"}
+"""They compute from the yarn, not from laws; the address of `material` names the laws."""
+
+
+@pytest.mark.parametrize("name", operations())
+def test_published_laws_can_be_chosen_wherever_laws_are_used(name: str) -> None:
+    operation = operations()[name]
+    asked = operation.request.model_fields
+    assert name in YARN_ALONE or not {"material", "materials"} & set(asked) or "laws" in asked
+    if "laws" in asked and operation.command is not None:
+        options = {option for made in command_of(operation, name).params for option in made.opts}
+        assert "--laws" in options
