@@ -199,6 +199,13 @@ export const api = {
   limb: (body, signal) => call("/limb", { method: "POST", body, signal }),
 
   /**
+   * @param {import("./types.js").GloveRequest} body
+   * @param {AbortSignal} [signal]
+   * @returns {Promise<import("./types.js").GloveResult>}
+   */
+  glove: (body, signal) => call("/glove", { method: "POST", body, signal }),
+
+  /**
    * @param {import("./types.js").HangRequest} body
    * @param {AbortSignal} [signal]
    * @returns {Promise<import("./types.js").HangResult>}

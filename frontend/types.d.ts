@@ -541,7 +541,7 @@ export interface CurlResult {
 
 /** The shape of a piece that was computed before. */
 export interface Curled {
-  /** The id that `curl`, `hang` or `limb` returned. */
+  /** The id that `curl`, `hang`, `limb` or `glove` returned. */
   id: string;
 }
 
@@ -1173,11 +1173,11 @@ export interface FrameErrorResult {
 export interface GarmentRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
-  garment: WristBrace | SockLeg | Limb | Glove;
   /** Identifier of a material of the library. */
   material: string;
   /** The knitter's gauge; the material's by default. */
   gauge?: GaugeCount | null;
+  garment: WristBrace | SockLeg | Limb | Glove;
   /** Linear density of the yarn (g/km), for its mass. */
   linear_density_tex?: number | null;
   /** Whether each fabric gets a yarn of its own. */
@@ -1269,6 +1269,50 @@ export interface Glove {
   gusset_girth_mm?: number;
   thumb?: FingerSize | null;
   fingers?: FingerSize[] | null;
+}
+
+/** Fit of a part of the glove where it is nearest to its lock-up. */
+export interface GlovePart {
+  at_mm: number;
+  /** Around the unworn tube. */
+  rest_mm: number;
+  /** Around the limb. */
+  girth_mm: number;
+  /** Tube over limb, minus one; negative where it is stretched. */
+  ease: number;
+  /** Mean pressure, from axially free to axially fixed; null where there is none. */
+  mmhg: [number, number] | null;
+  /** The same, widened by the 90 % interval of the chart's stress. */
+  mmhg_with_spread: [number, number] | null;
+  /** Strain around the limb over that at which the chart is locked. */
+  lock_up_share: number;
+  /** Why there is no pressure, such as a loose fit. */
+  problem: string;
+  name: string;
+}
+
+/** The measurements of a hand, and the yarn. */
+export interface GloveRequest {
+  /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
+  laws?: Laws | null;
+  /** Identifier of a material of the library. */
+  material: string;
+  /** The knitter's gauge; the material's by default. */
+  gauge?: GaugeCount | null;
+  garment: Glove;
+}
+
+/** How the glove sits; no medical class. */
+export interface GloveResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
+  kind: "glove";
+  /** Name of the shape, for 3D views of the glove's chart. */
+  id: string;
+  rows: number;
+  columns: number;
+  parts: GlovePart[];
+  notes: string[];
 }
 
 /** Groups of entry points, and what their functions return lists of. */

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,11 +36,23 @@ class Body:
         next_low, next_high = np.roll(low, -1, axis=1), np.roll(high, -1, axis=1)
         faces = np.stack([low, next_low, next_high, low, next_high, high], axis=-1)
         outwards = rings_mm - rings_mm.mean(axis=1, keepdims=True)
-        outwards /= np.linalg.norm(outwards, axis=-1, keepdims=True)
+        outwards /= np.maximum(np.linalg.norm(outwards, axis=-1, keepdims=True), 1e-9)
         return cls(
             rings_mm.reshape(-1, 3).astype(np.float32),
             outwards.reshape(-1, 3).astype(np.float32),
             faces.reshape(-1, 3),
+        )
+
+    @classmethod
+    def joined(cls, bodies: Sequence[Body]) -> Body:
+        """Several as one."""
+        before = np.cumsum([0, *(len(body.vertices_mm) for body in bodies[:-1])])
+        return cls(
+            np.concatenate([body.vertices_mm for body in bodies]),
+            np.concatenate([body.normals for body in bodies]),
+            np.concatenate(
+                [body.faces + np.uint32(n) for body, n in zip(bodies, before, strict=True)]
+            ),
         )
 
     def sunk_mm(self, depth_mm: float) -> Floats:

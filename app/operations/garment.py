@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -139,16 +140,16 @@ class Glove(Template):
     fingers: list[FingerSize] | None = Field(None, min_length=4, max_length=4)
     ease: Ease = -0.10
 
+    @property
+    def hand(self) -> Hand:
+        """As the library knows it."""
+        fingers = self.fingers and tuple(finger.pass_to(Finger) for finger in self.fingers)
+        thumb = self.thumb and self.thumb.pass_to(Finger)
+        return self.pass_to(Hand, thumb=thumb or _HAND.thumb, fingers=fingers or _HAND.fingers)
+
     def plan(self, **yarn: Any) -> GarmentPlan:
         """Its plan in a yarn."""
-        hand = self.pass_to(
-            Hand,
-            thumb=self.thumb.pass_to(Finger) if self.thumb else _HAND.thumb,
-            fingers=tuple(f.pass_to(Finger) for f in self.fingers)
-            if self.fingers
-            else _HAND.fingers,
-        )
-        return glove(hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
+        return glove(self.hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
 
 
 MATERIAL_ERRORS = (
@@ -161,14 +162,25 @@ SWATCH_ERRORS = (
 )
 
 
-class GarmentRequest(LawsRequest):
-    """A template with measurements, and the yarn."""
+class KnitterRequest(LawsRequest):
+    """The yarn, and how somebody knits it."""
 
-    garment: Annotated[WristBrace | SockLeg | Limb | Glove, Field(discriminator="template")]
     material: MaterialName
     gauge: GaugeCount | None = Field(
         None, description="The knitter's gauge; the material's by default."
     )
+
+    def gauges(self, material: Material) -> GaugeSet:
+        """Of the four fabrics."""
+        if self.gauge is None:
+            return GaugeSet.of_material(material)
+        return GaugeSet.of_material(material, self.gauge.gauge(), self.gauge.fabric)
+
+
+class GarmentRequest(KnitterRequest):
+    """A template with measurements, and the yarn."""
+
+    garment: Annotated[WristBrace | SockLeg | Limb | Glove, Field(discriminator="template")]
     linear_density_tex: float | None = Field(
         None, gt=0, lt=1e5, description="Linear density of the yarn (g/km), for its mass."
     )
@@ -271,7 +283,7 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
         yarn_g=plan.yarn.mass_g,
         yarn_interval_m=plan.yarn.length_interval_m,
         yarn_interval_g=plan.yarn.mass_interval_g,
-        interval_source=SWATCH_ERRORS if count else MATERIAL_ERRORS,
+        interval_source=SWATCH_ERRORS if request.gauge else MATERIAL_ERRORS,
         warnings=[misfit.text for misfit in plan.misfits],
         design=request.pass_to(design_of_plan, plan),
     )
@@ -319,19 +331,33 @@ def _worn(place: Worn) -> WornResult:
     return WornResult.of(found, place)
 
 
-@click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
-)
-@click.option("--gauge", metavar="STSxROWS", help="The knitter's own gauge, such as 22x30.")
-@click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm")
-def _asked(
+def measured(asked: Callable[..., dict[str, object]]) -> Callable[..., dict[str, object]]:
+    """Options of a garment's measurements; :func:`read_measured` reads them."""
+    for option in (
+        click.option("--per", type=click.Choice(list(_LENGTHS)), default="10 cm"),
+        click.option("--gauge", metavar="STSxROWS", help="The knitter's own gauge, such as 22x30."),
+        click.option(
+            "--set",
+            "settings",
+            multiple=True,
+            metavar="NAME=VALUE",
+            help="A measurement such as wrist_mm=170, or profile=[[0,200],[150,260]]; repeatable.",
+        ),
+    ):
+        asked = option(asked)
+    return asked
+
+
+def read_measured(
     template: str, settings: tuple[str, ...], gauge: str | None, per: str
 ) -> dict[str, object]:
+    """Fields ``garment`` and ``gauge`` of a request.
+
+    Raises
+    ------
+    InputError
+        If a setting is none.
+    """
     values: dict[str, object] = {"template": template}
     for setting in settings:
         name, equals, value = setting.partition("=")
@@ -346,6 +372,14 @@ def _asked(
         stitches, _, rows = gauge.lower().replace("×", "x").partition("x")
         asked["gauge"] = {"stitches": stitches, "rows": rows, "per": per}
     return asked
+
+
+@click.argument("template", type=click.Choice(["wrist-brace", "sock-leg", "limb", "glove"]))
+@measured
+def _asked(
+    template: str, settings: tuple[str, ...], gauge: str | None, per: str
+) -> dict[str, object]:
+    return read_measured(template, settings, gauge, per)
 
 
 @out_option("-o", "--out", help="Write a design (.json).")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 import click
 import numpy as np
@@ -78,6 +78,37 @@ class LimbPlaceResult(ResultModel):
         description="Strain around the limb over that at which the chart is locked."
     )
     problem: str = Field(description="Why there is no pressure, such as a loose fit.")
+
+    @classmethod
+    def of_place(cls, place: LimbPlace, **more: Any) -> Self:
+        """In mmHg."""
+        kpa = place.pressure and place.pressure.kpa
+        spread = place.pressure and place.pressure.kpa_with_spread
+        return cls.of(
+            place,
+            mmhg=kpa and kpa.scaled(MMHG_PER_KPA),
+            mmhg_with_spread=spread and spread.scaled(MMHG_PER_KPA),
+            **more,
+        )
+
+    @property
+    def line(self) -> str:
+        """In words, for a table."""
+        pressure = (
+            self.problem
+            if self.mmhg is None or self.mmhg_with_spread is None
+            else (
+                f"{self.mmhg[0]:5.1f} to {self.mmhg[1]:5.1f} "
+                f"({self.mmhg_with_spread[0]:.1f} to {self.mmhg_with_spread[1]:.1f})"
+            )
+        )
+        return (
+            f"{self.at_mm:4.0f} mm {self.girth_mm:4.0f} mm {self.rest_mm:4.0f} mm  "
+            f"{self.ease:+4.0%}  {pressure:27} {self.lock_up_share:.0%}"
+        )
+
+
+HEADING = f"{'at':>7} {'limb':>7} {'tube':>7}  ease   pressure, mmHg (90 %)      to lock-up"
 
 
 class LimbResult(IntervalResult):
@@ -167,21 +198,10 @@ def _view(tube: TubeOnLimb, around: Direction) -> PosedView:
 def _fit(told: Sequence[LimbPlace], every: Sequence[LimbPlace], length_mm: float) -> dict[str, Any]:
     loose = sum(place.ease >= 0.0 for place in every) / len(every)
     return {
-        "places": [_place(place) for place in told],
+        "places": [LimbPlaceResult.of_place(place) for place in told],
         "tightest_mm": max(every, key=lambda place: place.lock_up_share).at_mm,
         "loose_mm": loose * length_mm,
     }
-
-
-def _place(place: LimbPlace) -> LimbPlaceResult:
-    pressed = place.pressure
-    return LimbPlaceResult.of(
-        place,
-        mmhg=None if pressed is None else pressed.kpa.scaled(MMHG_PER_KPA),
-        mmhg_with_spread=(
-            None if pressed is None else pressed.kpa_with_spread.scaled(MMHG_PER_KPA)
-        ),
-    )
 
 
 @click.option(
@@ -222,23 +242,10 @@ def _lines(r: LimbResult) -> list[str]:
         if r.length_mm is None
         else [f"on the limb {r.length_mm:.0f} mm long, unworn {r.relaxed_length_mm:.0f} mm"]
     )
-    lines = [f"{'at':>7} {'limb':>7} {'tube':>7}  ease   pressure, mmHg (90 %)      to lock-up"]
-    for p in r.places:
-        pressure = (
-            p.problem
-            if p.mmhg is None or p.mmhg_with_spread is None
-            else (
-                f"{p.mmhg[0]:5.1f} to {p.mmhg[1]:5.1f} "
-                f"({p.mmhg_with_spread[0]:.1f} to {p.mmhg_with_spread[1]:.1f})"
-            )
-        )
-        lines.append(
-            f"{p.at_mm:4.0f} mm {p.girth_mm:4.0f} mm {p.rest_mm:4.0f} mm  {p.ease:+4.0%}  "
-            f"{pressure:27} {p.lock_up_share:.0%}"
-        )
     return [
         *head,
-        *lines,
+        HEADING,
+        *(place.line for place in r.places),
         f"nearest to its lock-up at {r.tightest_mm:.0f} mm; loose over {r.loose_mm:.0f} mm",
     ]
 

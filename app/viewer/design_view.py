@@ -67,7 +67,9 @@ class StretchStep(RequestModel):
 class Curled(RequestModel):
     """The shape of a piece that was computed before."""
 
-    id: str = Field(max_length=128, description="The id that `curl`, `hang` or `limb` returned.")
+    id: str = Field(
+        max_length=128, description="The id that `curl`, `hang`, `limb` or `glove` returned."
+    )
 
 
 class Focus(RequestModel):

@@ -16,6 +16,7 @@ from app.viewer.fabric import FabricScene
 from app.viewer.share import MAX_SOLID, page_html, recording, solid_glb
 from app.viewer.still import still_png
 from knitcore.chart import check_stitches
+from knitcore.garment.shaped import outline_marks
 
 MAX_SHARED_STITCHES = 40_000
 
@@ -91,4 +92,7 @@ def _scenes(request: SharedViewRequest, found: Found, context: Context) -> Itera
 
 
 def _check_size(request: SharedViewRequest, most: int) -> None:
-    check_stitches(to_chart(request.chart).stitches, most)
+    stitches = to_chart(request.chart).stitches
+    if request.outline is not None:
+        stitches = int(outline_marks(request.outline).sum())
+    check_stitches(stitches, most)

@@ -306,7 +306,7 @@ class Curled(TypedDict):
     """The shape of a piece that was computed before."""
 
     id: str
-    """The id that `curl`, `hang` or `limb` returned."""
+    """The id that `curl`, `hang`, `limb` or `glove` returned."""
 
 
 class CurveRequest(TypedDict):
@@ -538,11 +538,11 @@ class GarmentRequest(TypedDict):
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
-    garment: WristBrace | SockLeg | Limb | Glove
     material: str
     """Identifier of a material of the library."""
     gauge: NotRequired[GaugeCount | None]
     """The knitter's gauge; the material's by default."""
+    garment: WristBrace | SockLeg | Limb | Glove
     linear_density_tex: NotRequired[float | None]
     """Linear density of the yarn (g/km), for its mass."""
     intarsia: NotRequired[bool]
@@ -596,6 +596,18 @@ class Glove(TypedDict):
     gusset_girth_mm: NotRequired[float]
     thumb: NotRequired[FingerSize | None]
     fingers: NotRequired[list[FingerSize] | None]
+
+
+class GloveRequest(TypedDict):
+    """The measurements of a hand, and the yarn."""
+
+    laws: NotRequired[Laws | None]
+    """Of the library's yarns: refitted clamp to clamp (default), or as published."""
+    material: str
+    """Identifier of a material of the library."""
+    gauge: NotRequired[GaugeCount | None]
+    """The knitter's gauge; the material's by default."""
+    garment: Glove
 
 
 class HangRequest(TypedDict):
@@ -2025,6 +2037,41 @@ class GaugeResult(BaseModel):
     stitches_per_5_cm: float
     rows_per_5_cm: float
     source: str
+
+
+class GlovePart(BaseModel):
+    """Fit of a part of the glove where it is nearest to its lock-up."""
+
+    at_mm: float
+    rest_mm: float
+    """Around the unworn tube."""
+    girth_mm: float
+    """Around the limb."""
+    ease: float
+    """Tube over limb, minus one; negative where it is stretched."""
+    mmhg: tuple[float, float] | None
+    """Mean pressure, from axially free to axially fixed; null where there is none."""
+    mmhg_with_spread: tuple[float, float] | None
+    """The same, widened by the 90 % interval of the chart's stress."""
+    lock_up_share: float
+    """Strain around the limb over that at which the chart is locked."""
+    problem: str
+    """Why there is no pressure, such as a loose fit."""
+    name: str
+
+
+class GloveResult(BaseModel):
+    """How the glove sits; no medical class."""
+
+    interval_source: str
+    """What the 90 % intervals rest on."""
+    kind: Literal["glove"] = "glove"
+    id: str
+    """Name of the shape, for 3D views of the glove's chart."""
+    rows: int
+    columns: int
+    parts: list[GlovePart]
+    notes: list[str]
 
 
 class HangResult(BaseModel):

@@ -47,6 +47,8 @@ from knitcore_client.models import (
     FitResult,
     GarmentRequest,
     GarmentResult,
+    GloveRequest,
+    GloveResult,
     HangRequest,
     HangResult,
     HysteresisRequest,
@@ -185,6 +187,10 @@ class AsyncOperations:
     async def garment(self, **request: Unpack[GarmentRequest]) -> GarmentResult:
         """A garment from measurements."""
         return await self._ask(GarmentResult, "POST", "/garment", request)
+
+    async def glove(self, **request: Unpack[GloveRequest]) -> GloveResult:
+        """The glove on a hand."""
+        return await self._ask(GloveResult, "POST", "/glove", request)
 
     async def hang(self, **request: Unpack[HangRequest]) -> HangResult:
         """How a piece hangs under its own weight."""
@@ -526,6 +532,10 @@ class Operations:
     def garment(self, **request: Unpack[GarmentRequest]) -> GarmentResult:
         """A garment from measurements."""
         return self._ask(GarmentResult, "POST", "/garment", request)
+
+    def glove(self, **request: Unpack[GloveRequest]) -> GloveResult:
+        """The glove on a hand."""
+        return self._ask(GloveResult, "POST", "/glove", request)
 
     def hang(self, **request: Unpack[HangRequest]) -> HangResult:
         """How a piece hangs under its own weight."""

@@ -11,6 +11,8 @@
  * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
  *   note: string}} Posed a shape that was computed, and what to say of it
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
+ * @typedef {{request: import("../types.js").GloveRequest, outline: string}} PlannedGlove the hand for which
+ *   a glove was made, and the glove's outline
  * @typedef {"stitch" | "block" | "region"} Groups what an extensibility rectangle stands for
  */
 
@@ -26,6 +28,7 @@ const SETTINGS = {
   block: 4,
   limbAround: /** @type {Direction} */ ("course"),
   girths: /** @type {GirthAt[] | null} */ (null),
+  glove: /** @type {PlannedGlove | null} */ (null),
 };
 
 export class Seeing {
@@ -57,10 +60,13 @@ export class Seeing {
         girths: settings.girths,
       }),
     );
+    /** The glove that was planned last: designs with its outline are worn on its hand. */
+    this.glove = new Signal(settings.glove);
     /** The stitch that was clicked in the 3D view last. */
     this.found = new Signal(/** @type {Cell | null} */ (null));
     this.yarnColours.listen((yarnColours) => saveSettings({ yarnColours }));
     this.groups.listen((groups) => saveSettings({ groups }));
+    this.glove.listen((glove) => saveSettings({ glove }));
     this.limb.listen(({ direction, girths }) => saveSettings({ limbAround: direction, girths }));
     this.block.listen((block) => saveSettings({ block }));
   }

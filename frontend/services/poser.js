@@ -113,9 +113,26 @@ async function* curled({ document: chart, request }, signal, pull) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* worn(studio, signal) {
   const { rows, columns } = studio.document.grid;
+  const hand = gloveOf(studio);
+  if (hand) {
+    const { id, parts, notes } = await api.glove(hand, signal);
+    yield { pose: "worn", id, rows, columns, converged: true, words: pressed(parts, "On the hand"), note: notes[1] };
+    return;
+  }
   const { id, places, notes } = await api.limb({ ...studio.request, ...studio.limb }, signal);
   if (!id) return;
+  yield { pose: "worn", id, rows, columns, converged: true, words: pressed(places, "On the body"), note: notes[0] };
+}
+
+/** @param {{mmhg: [number, number] | null}[]} places @param {string} where */
+function pressed(places, where) {
   const most = Math.max(0, ...places.map(({ mmhg }) => (mmhg ? (mmhg[0] + mmhg[1]) / 2 : 0)));
-  const words = most ? `On the body: 0 to ${figure(most, 2)} mmHg, dark to light` : "On the body: loose";
-  yield { pose: "worn", id, rows, columns, converged: true, words, note: notes[0] };
+  return most ? `${where}: 0 to ${figure(most, 2)} mmHg, dark to light` : `${where}: loose`;
+}
+
+/** The hand that the chart is a glove for, in the material of the design. @param {Studio} studio */
+function gloveOf({ document: chart, materialId, seeing }) {
+  const glove = seeing.glove.value;
+  if (!glove || !chart.shaped || outlineText(chart.outline, chart.grid.columns) !== glove.outline) return null;
+  return { ...glove.request, material: materialId.value };
 }

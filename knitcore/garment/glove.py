@@ -107,6 +107,73 @@ class Hand:
             )
 
 
+@dataclass(frozen=True)
+class GloveLayout:
+    """Stitches of a glove: columns from the forearm, rows of its parts.
+
+    Attributes
+    ----------
+    cuff, support, thumb_crotch, crotch : columns at which these end.
+    thumb_tip : column at which the thumb ends.
+    thumb_rows : of either half of the thumb.
+    gusset_ends : columns at which the gusset's rows on either side of the thumb end.
+    finger_rows, finger_tips : of the back of each finger, as many as of its front; columns.
+    """
+
+    cuff: int
+    support: int
+    thumb_crotch: int
+    crotch: int
+    thumb_tip: int
+    thumb_rows: int
+    gusset_ends: tuple[int, ...]
+    finger_rows: tuple[int, ...]
+    finger_tips: tuple[int, ...]
+
+    @classmethod
+    def of(cls, hand: Hand, gauges: GaugeSet, ease: float) -> GloveLayout:
+        """Stitches for a hand: along it by the gauge of each part's own fabric, around it by that
+        of the fingers (rib) and the thumb (seed)."""
+        palm, seed, rib = (gauges[f] for f in (Fabric.GARTER, Fabric.SEED, Fabric.RIB))
+        cuff = palm.stitches_for(hand.cuff_mm)
+        support = cuff + gauges[Fabric.STOCKINETTE].stitches_for(hand.wrist_mm)
+        thumb_crotch = support + palm.stitches_for(hand.thumb_crotch_mm)
+        crotch = max(support + palm.stitches_for(hand.palm_mm), thumb_crotch + 1)
+        return cls(
+            cuff=cuff,
+            support=support,
+            thumb_crotch=thumb_crotch,
+            crotch=crotch,
+            thumb_tip=thumb_crotch + seed.stitches_for(hand.thumb.length_mm),
+            thumb_rows=seed.rows_for(hand.thumb.circumference_mm / 2 * (1 + ease), multiple=2),
+            gusset_ends=tuple(_gusset(hand, seed, thumb_crotch)),
+            finger_rows=tuple(
+                rib.rows_for(f.circumference_mm / 2 * (1 + ease), multiple=2) for f in hand.fingers
+            ),
+            finger_tips=tuple(crotch + rib.stitches_for(f.length_mm) for f in hand.fingers),
+        )
+
+    @property
+    def side(self) -> int:
+        """Rows of half the thumb with its gusset and its crotch."""
+        return self.thumb_rows + len(self.gusset_ends) + CROTCH_ROWS
+
+    @property
+    def ends(self) -> list[tuple[str, int]]:
+        """Part beyond the crotch, and last column, of every row."""
+        half = [("thumb", self.thumb_tip)] * self.thumb_rows
+        half += [("gusset", end) for end in self.gusset_ends]
+        half += [("hand", self.thumb_crotch)] * CROTCH_ROWS
+        backs = list(zip(self.finger_rows, self.finger_tips, strict=True))
+        ends = list(half)
+        for side in (backs, backs[::-1]):
+            for index, (rows, tip) in enumerate(side):
+                ends += [("finger", tip)] * rows
+                if index < len(side) - 1:
+                    ends += [("hand", self.crotch)] * CROTCH_ROWS
+        return ends + half[::-1]
+
+
 def glove(
     hand: Hand,
     material: Material,
@@ -143,36 +210,16 @@ def glove(
             "ease", f"{ease:g} is not an ease for a glove.", f"Give {MIN_EASE} to {MAX_EASE}."
         )
     gauges = gauges or GaugeSet.of_material(material)
-    palm, seed, rib = (gauges[f] for f in (Fabric.GARTER, Fabric.SEED, Fabric.RIB))
-    cuff = palm.stitches_for(hand.cuff_mm)
-    support = cuff + gauges[Fabric.STOCKINETTE].stitches_for(hand.wrist_mm)
-    thumb_crotch = support + palm.stitches_for(hand.thumb_crotch_mm)
-    crotch = max(support + palm.stitches_for(hand.palm_mm), thumb_crotch + 1)
-
-    thumb_rows = seed.rows_for(hand.thumb.circumference_mm / 2 * (1 + ease), multiple=2)
-    thumb_tip = thumb_crotch + seed.stitches_for(hand.thumb.length_mm)
-    gusset = _gusset(hand, seed, thumb_crotch)
-    thumb = [("thumb", thumb_tip)] * thumb_rows + gusset + [("hand", thumb_crotch)] * CROTCH_ROWS
-    backs = [
-        (
-            rib.rows_for(f.circumference_mm / 2 * (1 + ease), multiple=2),
-            crotch + rib.stitches_for(f.length_mm),
-        )
-        for f in hand.fingers
-    ]
-    ends = list(thumb)
-    for side in (backs, backs[::-1]):
-        for index, (rows, tip) in enumerate(side):
-            ends += [("finger", tip)] * rows
-            if index < len(side) - 1:
-                ends += [("hand", crotch)] * CROTCH_ROWS
-    ends += thumb[::-1]
+    palm = gauges[Fabric.GARTER]
+    layout = GloveLayout.of(hand, gauges, ease)
+    cuff, support = layout.cuff, layout.support
+    thumb_crotch, crotch, ends = layout.thumb_crotch, layout.crotch, layout.ends
 
     tips = np.array([tip for _, tip in ends])
     kinds = np.array([kind for kind, _ in ends])[:, None]
     column = np.broadcast_to(np.arange(int(tips.max())), (len(ends), int(tips.max())))
     # One row of the crotch more on either side: wrong-side rows begin at the wrist.
-    wrist_rows = slice(len(thumb) - 1, len(ends) - len(thumb) + 1)
+    wrist_rows = slice(layout.side - 1, len(ends) - layout.side + 1)
     start = np.full((len(ends), 1), support)
     start[wrist_rows] = 0
     beyond = column >= support
@@ -213,14 +260,14 @@ def glove(
     )
 
 
-def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[tuple[str, int]]:
-    """Rows that end ever nearer to the crotch, two of each length, on one side of the thumb."""
+def _gusset(hand: Hand, seed: Gauge, thumb_crotch: int) -> list[int]:
+    """Where rows end, ever nearer to the crotch, two of each length, on one side of the thumb."""
     height = round(hand.gusset_mm / seed.stitch_course_mm)
     steps = round(hand.gusset_girth_mm / 2 / seed.stitch_wale_mm / 2)
     if height < 1 or steps < 1:
         return []
     lengths = [round(height * (1 - step / steps)) for step in range(steps)]
-    return [("gusset", thumb_crotch + length) for length in lengths for _ in range(2) if length > 0]
+    return [thumb_crotch + length for length in lengths for _ in range(2) if length > 0]
 
 
 def _notes(

@@ -45,6 +45,8 @@ export function create(studio, { keeper }) {
   let measured = () => ({});
   /** @type {Garment | null} */
   let garment = null;
+  /** What was asked for the plan that is shown. @type {any} */
+  let hand = null;
   const latest = new Latest(TYPING_MS);
   const changed = () => {
     make.disabled = true; // until the new plan is there, the old one must not be made
@@ -150,6 +152,8 @@ export function create(studio, { keeper }) {
       onclick: () => {
         if (!garment) return;
         element.close();
+        const { outline } = garment.design;
+        if (template.id === "glove" && outline) studio.seeing.glove.value = { request: hand, outline };
         keeper.openNew(garment.design);
         studio.tell(
           `${garment.design.name}: ${garment.columns} stitches × ${garment.rows} rows. The design before it is still among your designs.`,
@@ -372,6 +376,7 @@ export function create(studio, { keeper }) {
     result.classList.add("busy");
     try {
       garment = /** @type {Garment} */ (await call("/garment", { method: "POST", body, signal }));
+      hand = { garment: body.garment, material: body.material, gauge: body.gauge };
       status.replaceChildren();
       show(garment);
     } catch (error) {

@@ -1,0 +1,146 @@
+"""The glove on the hand that it is made for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from app.cli.options import out_option
+from app.models.base import IntervalResult
+from app.models.posed import Body, PosedView
+from app.operations.context import Context
+from app.operations.garment import Glove, KnitterRequest, measured, read_measured
+from app.operations.limb import HEADING, LimbPlaceResult
+from app.operations.perform import Viewed
+from app.operations.registry import Command, Operation
+from knitcore.fabric import Fabric
+from knitcore.garment.worn_glove import GloveOnHand, answer_of, glove_on_hand
+from knitcore.materials.uncertainty import in_a_sentence
+from knitcore.mechanics.pressure import ELASTIC_MEAN
+
+SIMPLE = (
+    "Fingers and thumb are cylinders, palm and forearm straight in front and behind. Every part is "
+    "as long as the hand's; rows of the thumb are gathered at the wrist."
+)
+
+
+class GloveRequest(KnitterRequest):
+    """The measurements of a hand, and the yarn."""
+
+    garment: Glove
+
+
+class GlovePart(LimbPlaceResult):
+    """Fit of a part of the glove where it is nearest to its lock-up."""
+
+    name: str
+
+
+class GloveResult(IntervalResult):
+    """How the glove sits; no medical class."""
+
+    kind: Literal["glove"] = "glove"
+    id: str = Field(description="Name of the shape, for 3D views of the glove's chart.")
+    rows: int
+    columns: int
+    parts: list[GlovePart]
+    notes: list[str]
+
+
+def glove(request: GloveRequest, context: Context) -> Viewed[GloveResult]:
+    """Fit and pressure of the parts of the therapeutic glove on the hand that it is made for.
+
+    The hand is made of simple bodies with the given measurements; pressure is that of a tube of
+    each part's fabric by Laplace's law. The 3D view can show the glove on the hand.
+
+    Raises
+    ------
+    InputError
+        If a measurement or the material cannot be used.
+    """
+    found = _worn(request, context)
+    return Viewed(_result(found, request, context), _view(found))
+
+
+def _result(found: GloveOnHand, request: GloveRequest, context: Context) -> GloveResult:
+    rows, columns = found.mmhg.shape
+    support = answer_of(Fabric.STOCKINETTE, context.material(request.material))
+    return GloveResult(
+        interval_source=in_a_sentence(support.stretch_errors),
+        id=OPERATION.key(request),
+        rows=rows,
+        columns=columns,
+        parts=[GlovePart.of_place(place, name=name) for name, place in found.parts.items()],
+        notes=[ELASTIC_MEAN, SIMPLE],
+    )
+
+
+def _worn(request: GloveRequest, context: Context) -> GloveOnHand:
+    material = context.material(request.material)
+    return glove_on_hand(
+        request.garment.hand,
+        material,
+        ease=request.garment.ease,
+        gauges=request.gauges(material),
+    )
+
+
+def _view(found: GloveOnHand) -> PosedView:
+    return PosedView(
+        found.corners_mm.astype(np.float32),
+        Body.joined([Body.around(part) for part in found.body_mm]),
+        found.mmhg.astype(np.float32),
+    )
+
+
+@measured
+def _hand(settings: tuple[str, ...], gauge: str | None, per: str) -> dict[str, object]:
+    return read_measured("glove", settings, gauge, per)
+
+
+@out_option("--out", help="Write the glove on the hand to FILE.glb.", suffixes=(".glb",))
+def _and_write(request: GloveRequest, context: Context, out: Path | None) -> GloveResult:
+    found = _worn(request, context)
+    result = _result(found, request, context)
+    if out is not None:
+        # the 3D view's libraries take a second to load
+        from app.viewer.design_view import Curled, ViewRequest, build_scene
+        from app.viewer.share import solid_glb
+        from app.viewer.stitch_colours import Colour
+
+        shaped = found.plan.shaped
+        shown = ViewRequest(
+            chart=shaped.chart.text,
+            outline=shaped.outline,
+            material=request.material,
+            colour=Colour.PRESSURE,
+            curl=Curled(id=result.id),
+        )
+        out.write_bytes(solid_glb(build_scene(shown, _view(found), context)))
+    return result
+
+
+def _lines(r: GloveResult) -> list[str]:
+    return [
+        f"{'':18} {HEADING}",
+        *(f"{part.name:18} {part.line}" for part in r.parts),
+    ]
+
+
+OPERATION = Operation(
+    glove,
+    tag="garments",
+    summary="The glove on a hand",
+    example={"garment": {"template": "glove"}, "material": "glove-wool:glove"},
+    heavy=True,
+    command=Command(
+        _lines,
+        help="How the glove for a hand fits and presses on it.",
+        names={"garment": None, "gauge": None},
+        fields=_hand,
+        run=_and_write,
+    ),
+)
