@@ -8,7 +8,8 @@ import logging
 import os
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cache, partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from anyio.to_thread import current_default_thread_limiter
@@ -37,6 +38,8 @@ from app.http.sessions import Sessions
 from app.http.tokens import REMEMBERED_S, Login, Tokens
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
+from app.operations.context import Context
+from app.operations.predict import PredictRequest, predict
 from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError
@@ -95,6 +98,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
                 _tidy_store(app.state.database, job_store, chosen.results_max_bytes)
             ),
         ]
+        janitors.append(asyncio.create_task(asyncio.to_thread(_warm_up)))
         if chosen.require_login:
             ending = _end_jobs_of_the_revoked(Tokens(app.state.database), app.state.jobs)
             janitors.append(asyncio.create_task(ending))
@@ -151,6 +155,13 @@ def _gauges(app: FastAPI) -> dict[str, tuple[str, Callable[[], float]]]:
             lambda: state.compute.turns.waiting(background=False),
         ),
     }
+
+
+@cache
+def _warm_up() -> None:
+    """Read the learned answers, which the first prediction would wait a second for."""
+    mixed = PredictRequest(chart="KP/KK", material="acrylic")
+    predict(mixed, Context(Path()))
 
 
 async def _close_idle_views(views: Views, idle_s: float) -> None:

@@ -20,8 +20,8 @@
   const TURNING = 0.5;
   /** How long something new takes to be drawn. */
   const NEWS_MS = 1500;
-  /** Side of the small picture that shows whether something is drawn. */
-  const SAMPLE = 24;
+  /** After this time it is looked whether something was drawn. */
+  const ANSWER_MS = 20;
   /** Drawn without a GPU: smoothing edges would take three times as long as all the rest. */
   const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
@@ -98,6 +98,8 @@
   let held = false;
   let seen = false;
   let slow = false;
+  /** Where viser draws. @type {WebGL2RenderingContext | null} */
+  let gl = null;
   /** Frames since the first scene came; below 0 there is none. */
   let fed = -1;
   /** How long a frame takes, in ms. */
@@ -138,13 +140,15 @@
   /** @param {FrameRequestCallback} callback @param {number} time */
   function frame(callback, time) {
     const start = performance.now();
+    const query = !seen && fed >= FIRST_FRAMES ? gl?.createQuery() : null;
+    if (query) gl?.beginQuery(gl.ANY_SAMPLES_PASSED, query);
     callback(time);
+    if (query) {
+      gl?.endQuery(gl.ANY_SAMPLES_PASSED);
+      answer(query);
+    }
     steer();
     if (fed >= 0) fed++;
-    if (!seen && fed >= FIRST_FRAMES && hasPicture()) {
-      seen = true;
-      tell({ view: "seen" });
-    }
     // What the browser itself does for the frame counts, too.
     setTimeout(() => {
       lastEnd = performance.now();
@@ -176,14 +180,19 @@
     addEventListener(name, () => wake(false), { passive: true });
   }
 
-  /** Whether anything is drawn; only to be asked within a frame. */
-  function hasPicture() {
-    const drawn = [...document.querySelectorAll("canvas")].find(({ width, height }) => width && height);
-    if (!drawn) return false;
-    const small = new OffscreenCanvas(SAMPLE, SAMPLE);
-    const context = /** @type {OffscreenCanvasRenderingContext2D} */ (small.getContext("2d"));
-    context.drawImage(drawn, 0, 0, SAMPLE, SAMPLE);
-    return context.getImageData(0, 0, SAMPLE, SAMPLE).data.some((value, i) => i % 4 === 3 && value > 0);
+  /** Tell the page once a frame has drawn anything; reading its picture would stop the GPU. @param {WebGLQuery} query */
+  function answer(query) {
+    setTimeout(() => {
+      if (!gl?.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE)) {
+        answer(query);
+        return;
+      }
+      const drawn = gl.getQueryParameter(query, gl.QUERY_RESULT);
+      gl.deleteQuery(query);
+      if (!drawn || seen) return;
+      seen = true;
+      tell({ view: "seen" });
+    }, ANSWER_MS);
   }
 
   // --- without a GPU ------------------------------------------------------------------------------
@@ -206,7 +215,8 @@
     }
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
-    return context.call(this, kind, { ...options, antialias: !software });
+    gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
+    return gl;
   };
 
   // --- the page around ----------------------------------------------------------------------------

@@ -238,6 +238,14 @@ class SceneWriter:
                 thickness_units="screen",
             ),
         )
+        words = f"{length:g} mm" if length < 10 else f"{length / 10:g} cm"
+        middle = UNITS_PER_MM * np.array([right - length / 2, below - tick, 0.0])
+        self._put(
+            "scale words",
+            self._server.scene.add_label(
+                "/scale/words", words, position=tuple(middle), anchor="top-center"
+            ),
+        )
 
     def _put(self, name: str, handle: Any) -> None:
         """Note a layer's new handle; the same name replaced the old one, None removes it."""

@@ -112,7 +112,6 @@ export function fabricview(host, studio, view) {
   let shown = "";
   let pass = "";
   let source = "";
-  let scale = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
@@ -176,7 +175,6 @@ export function fabricview(host, studio, view) {
       if (problem) status.replaceChildren();
       problem = false;
       source = answer.source;
-      scale = answer.scale_mm < 10 ? `${answer.scale_mm} mm` : `${answer.scale_mm / 10} cm`;
       describe();
       studio.online.value = true;
       pass = answer.url.slice(answer.url.indexOf("#") + 1);
@@ -228,7 +226,6 @@ export function fabricview(host, studio, view) {
       strain && !studio.seeing.posed.value
         ? `Stretched ${along(studio.stretchDirection())} by ${(100 * strain).toFixed(0)} %`
         : poseText(studio),
-      h("span", { class: "caption-scale figures", title: "Length of the line below the cloth" }, scale),
       h("span", { class: "spinner caption-spinner", title: "The cloth is being made anew" }),
     );
     caption.title = studio.seeing.posed.value?.note ?? (source && `Yarn: ${source}`);

@@ -117,7 +117,10 @@ def open_small_chart(visitor: Page, service: str) -> Page:
         "material": "acrylic",
         "chart": CHART,
     }
-    visitor.add_init_script(f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}")
+    kept = f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))}"
+    visitor.add_init_script(
+        f"if (parent === window) {kept}"
+    )  # the frame of the view has no storage
     visitor.goto(service)
     wait_for_numbers(visitor)
     return visitor
