@@ -2472,6 +2472,8 @@ export interface StretchRequest {
   model?: EnergyModel;
   /** C_xyxy in N/mm; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
+  /** Measured gauge of the chart; its relaxed size is estimated if left out. */
+  gauge?: GaugeInput | null;
   /** Size course-wise; from the gauge by default. */
   width_mm?: number | null;
   /** Size wale-wise; from the gauge by default. */

@@ -1030,6 +1030,8 @@ class StretchRequest(TypedDict):
     model: NotRequired[EnergyModel]
     shear_modulus_n_per_mm: NotRequired[float | None]
     """C_xyxy in N/mm; that of the laws by default."""
+    gauge: NotRequired[GaugeInput | None]
+    """Measured gauge of the chart; its relaxed size is estimated if left out."""
     width_mm: NotRequired[float | None]
     """Size course-wise; from the gauge by default."""
     length_mm: NotRequired[float | None]

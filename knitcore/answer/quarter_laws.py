@@ -25,7 +25,7 @@ one force, and all lines are strained alike.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from itertools import pairwise
 
@@ -37,6 +37,7 @@ from knitcore.answer.answer import Answer
 from knitcore.answer.mixture import law_strains
 from knitcore.answer.neighbourhood import neighbourhood_folds
 from knitcore.answer.patches import Patches, patches_of
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.fabric import PHASES, Direction
@@ -80,19 +81,35 @@ class QuarterLaws:
     log_sd: Callable[[], Array]
 
 
-def quarter_laws(chart: StitchChart, material: Material, *, even: bool = False) -> QuarterLaws:
-    """Laws of a piece; ``even`` gives all quarters of a mixed patch one law, that of the patch.
+def quarter_laws(
+    chart: StitchChart,
+    material: Material,
+    gauge: RelaxedSize | None = None,
+    *,
+    even: bool = False,
+) -> QuarterLaws:
+    """Laws of a piece.
+
+    Parameters
+    ----------
+    chart : the piece.
+    material : one yarn on one setting.
+    gauge : measured relaxed size of the chart's mean stitch, if known.
+    even : give all quarters of a mixed patch one law, that of the patch.
 
     Raises
     ------
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    if pure_fabric(chart) is not None:
+    pure = pure_fabric(chart) is not None
+    if pure and gauge is None:
         return flat_laws(chart, material)
-    patches = patches_of(chart, material)
+    patches = patches_of(chart, material, gauge)
     phases = quarter_phases(chart)
     scale = _scale(chart, phases, patches, material)
+    if pure:
+        return replace(flat_laws(chart, material), scale=scale)
     whole = _parts(phases, material)
     laws: list[ConstitutiveLaw] = []
     # of the repeat, if it has several patches

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.answer.quarter_laws import QuarterLaws, quarter_laws
+from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
@@ -50,6 +51,7 @@ def strip_test(
     clamps: Clamps | str = Clamps.CLAMPED,
     draw_in: bool = False,
     stitch: NDArray[np.bool_] | None = None,
+    gauge: RelaxedSize | None = None,
     laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
@@ -73,6 +75,7 @@ def strip_test(
         regions wrinkle: by default the model then has its tension field on.
     stitch : bool (rows, columns), where a shaped piece has stitches, row 0 at the bottom; the
         clamps hold those of its outermost rows or columns. All of the rectangle by default.
+    gauge : measured relaxed size of the chart's mean stitch, if known; not used beside ``laws``.
     laws : of the quarter cells; by default those with which the swatch agrees with
         :func:`knitcore.answer.choose.choose`.
     width_mm, length_mm : size course-wise and wale-wise; by default from the gauge.
@@ -108,6 +111,7 @@ def strip_test(
         shear_modulus,
         draw_in,
         stitch=stitch,
+        gauge=gauge,
         laws=laws,
         width_mm=width_mm,
         length_mm=length_mm,
@@ -130,11 +134,12 @@ def chart_sheet(
     draw_in: bool = False,
     *,
     stitch: NDArray[np.bool_] | None = None,
+    gauge: RelaxedSize | None = None,
     laws: QuarterLaws | None = None,
     width_mm: float | None = None,
     length_mm: float | None = None,
 ) -> Sheet:
-    """The sheet of a chart of a material; ``stitch`` as for :func:`strip_test`.
+    """The sheet of a chart of a material; ``stitch`` and ``gauge`` as for :func:`strip_test`.
 
     Its cells' laws and sizes are such that a large swatch agrees with
     :func:`knitcore.answer.choose.choose`.
@@ -146,7 +151,7 @@ def chart_sheet(
         fabric: (record.stitch_course_mm, record.stitch_wale_mm)
         for fabric, record in material.fabrics.items()
     }
-    local = laws or _local_laws(chart, material, stitch)
+    local = laws or _local_laws(chart, material, stitch, gauge)
     grid = QuarterGrid.of_chart(
         chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm
     )
@@ -158,16 +163,19 @@ def chart_sheet(
 
 
 def _local_laws(
-    chart: StitchChart, material: Material, stitch: NDArray[np.bool_] | None
+    chart: StitchChart,
+    material: Material,
+    stitch: NDArray[np.bool_] | None,
+    gauge: RelaxedSize | None,
 ) -> QuarterLaws:
     """Laws of a piece; a shaped one counts as its bounding rectangle, filled with its pattern."""
     if stitch is None or np.all(stitch):
-        return quarter_laws(chart, material)
+        return quarter_laws(chart, material, gauge)
     inside = np.asarray(stitch, dtype=bool)
     check_cloth(inside, chart.rows, chart.columns)
     rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
     here = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    found = quarter_laws(_continued(chart.purl[here], inside[here]), material)
+    found = quarter_laws(_continued(chart.purl[here], inside[here]), material, gauge)
     patch, scale = np.zeros(inside.shape, dtype=np.intp), np.ones((*inside.shape, 2))
     patch[here], scale[here] = found.patch, found.scale
     return replace(found, patch=patch, scale=scale)

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from app.operations.context import Context
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
-from knitcore import Direction, Fabric, StitchChart, curve, predict, strip_test
+from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict, strip_test
 from knitcore.answer.answer import Answer
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.design.atlas_build import build_atlas
@@ -161,6 +161,23 @@ def test_a_long_free_strip_stretches_like_its_curve(
     across = predict(chart, material(yarn)).along(direction.other)
     area = 12 * 32 * along.relaxed_mm * across.relaxed_mm
     assert test.length_mm * test.width_mm == pytest.approx(area, rel=0.03)
+
+
+@pytest.mark.parametrize("text", ["K", "KP/PK", "KKPP"])
+@pytest.mark.parametrize("direction", Direction)
+def test_a_strip_of_a_known_gauge_stretches_like_the_curve_of_that_gauge(
+    text: str, direction: Direction
+) -> None:
+    """Within 10 %, and 12 stitches of 24 lie on 5 x 6.7 cm: 24 and 36 of them on 10 cm."""
+    chart = StitchChart.parse(text).resized(24, 12)
+    gauge = RelaxedSize.from_gauge(stitches_per_10_cm=24, rows_per_10_cm=36)
+    along = predict(chart, material("acrylic"), gauge).along(direction)
+    strains = along.strain([0.05, 0.1, 0.2])
+    test = strip_test(
+        chart, material("acrylic"), direction, strains.tolist(), clamps="sliding", gauge=gauge
+    )
+    np.testing.assert_allclose(along.strain(test.stress_n_per_mm), strains, rtol=0.1)
+    assert test.length_mm * test.width_mm == pytest.approx(50 * 200 / 3)
 
 
 @pytest.mark.parametrize("direction", Direction)
