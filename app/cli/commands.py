@@ -21,7 +21,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user_data_dir
-from app.models.base import UNIT
+from app.models.base import UNIT, IntervalResult
 from app.models.charts import IS_REPEAT
 from app.models.uploads import UploadedFile
 from app.operations.context import Context
@@ -62,11 +62,14 @@ def command_of(operation: Operation[Any, Any], name: str) -> click.Command:
 
 def _remarks(result: BaseModel) -> list[str]:
     """What a result says besides its figures."""
-    return [
+    told = [
         f"{head}{remark}"
         for field, head in (("notes", "note: "), ("messages", ""), ("warnings", "warning: "))
         for remark in getattr(result, field, ())
     ]
+    if isinstance(result, IntervalResult):
+        told.append(f"90 % intervals: {result.interval_source}")
+    return told
 
 
 def _declared(function: Callable[..., Any] | None) -> list[click.Parameter]:

@@ -82,7 +82,7 @@ def _lines(r: CurveResult) -> list[str]:
     lines += [
         f"{s:8.4f} {e:8.4f}   {a:.4f} to {b:.4f}" for s, e, a, b in zip(*columns, strict=True)
     ]
-    return [*lines, f"source: {r.provenance}", f"90 % intervals: {r.interval_source}"]
+    return [*lines, f"source: {r.provenance}"]
 
 
 OPERATION = Operation(

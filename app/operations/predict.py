@@ -119,7 +119,6 @@ def _lines(r: PredictResult) -> list[str]:
         f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
         f"stitch at rest  {_relaxed(r)}",
         f"source          {r.provenance} ({r.method})",
-        f"90 % intervals  {r.interval_source}",
         *(
             f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"
             for m in r.measures

@@ -83,7 +83,7 @@ def _lines(result: RSResult) -> list[str]:
     factor = log_interval(1.0, RS_LOG_SD).high
     return [
         *lines,
-        f"90 % interval of Y: a factor of {factor:.1f} either way. {result.interval_source}",
+        f"90 % interval of Y: a factor of {factor:.1f} either way.",
     ]
 
 

@@ -351,7 +351,7 @@ def _lines(curve: StretchCurve) -> list[str]:
             f"nearest to lock-up: {spot.utilisation:.0%} {spot.direction}-wise in {spot.fabric}, "
             f"row {spot.row + 1}, stitch {spot.column + 1}"
         )
-    return [*lines, f"90 % intervals: {curve.interval_source}"]
+    return lines
 
 
 OPERATION = Operation(

@@ -164,8 +164,7 @@ def _lines(r: SweepResult) -> list[str]:
         )
     factor = math.exp(Z_SCORE * YARN_LEVEL_STRAIN_LOG_SD)
     lines.append(
-        f"90 % interval of the strains of knitted cloth: a factor of {factor:.1f} either way. "
-        f"{r.interval_source}"
+        f"90 % interval of the strains of knitted cloth: a factor of {factor:.1f} either way."
     )
     return lines
 

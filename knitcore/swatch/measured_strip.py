@@ -134,8 +134,8 @@ class MeasuredStrip:
 
 
 def _resampled(run: StretchRun, strain: Array, top: float) -> tuple[Array, Array]:
-    place = np.digitize(run.strain_along, np.linspace(0.0, top, BINS + 1)) - 1
-    inside = (place >= 0) & (place < BINS)
+    inside = (run.strain_along >= 0.0) & (run.strain_along <= top)
+    place = np.minimum((run.strain_along * BINS / top).astype(np.intp), BINS - 1)
     count = np.bincount(place[inside], minlength=BINS)
     used = count > 0
     along, stress, waist = (

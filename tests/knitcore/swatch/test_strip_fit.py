@@ -116,6 +116,20 @@ def test_a_test_without_the_clamps_distance_strains_evenly(tmp_path: Path) -> No
     assert any("length_mm" in note for note in fit.notes)
 
 
+def test_a_sparse_test_is_read_to_its_last_point(tmp_path: Path) -> None:
+    """The levels of a fit are nearer to each other than 25 points are."""
+    strain = np.linspace(0.0, 0.6, 25)
+    rows = [f"{e},{-0.3 * e},{10 * e},50,70" for e in strain]
+    (tmp_path / "wale.csv").write_text(
+        "\n".join(["strain_along,strain_across,force_n,width_mm,length_mm", *rows])
+    )
+    strip = MeasuredStrip.of(read_stretch_test(tmp_path / "wale.csv"), Direction.WALE)
+    stress, waist = strip.means
+    assert strip.strain[-1] == pytest.approx(0.597)
+    assert stress == pytest.approx(10 * strip.strain / 50)
+    assert waist == pytest.approx(-0.3 * strip.strain)
+
+
 def test_four_tracked_points_are_enough(tmp_path: Path) -> None:
     """Right and left are found by their place, whatever their order."""
     import h5py
