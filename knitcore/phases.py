@@ -20,7 +20,11 @@ LEFT, RIGHT, BELOW, ABOVE = 1, 2, 4, 8
 
 
 def surroundings(
-    chart: StitchChart, *, periodic: bool = False, stitch: NDArray[np.bool_] | None = None
+    chart: StitchChart,
+    *,
+    periodic: bool = False,
+    tube: bool = False,
+    stitch: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.uint8]:
     """The 4-bit code of odd segments around every stitch, shape (rows, columns).
 
@@ -30,7 +34,8 @@ def surroundings(
     periodic : treat the chart as a repeat. Otherwise a segment that would cross an edge takes the
         parity of the same stitch's segment on the other side (a lone row or column counts as
         even), so that a swatch of a pure fabric is pure up to its edge.
-    stitch : bool (rows, columns), where a chart with an outline (not periodic) has stitches; its
+    tube : join the last column to the first only, as in cloth that is knitted in the round.
+    stitch : bool (rows, columns), where a chart with an outline (not joined) has stitches; its
         outline is an edge like that of a rectangle. Codes elsewhere mean nothing.
 
     Examples
@@ -38,21 +43,27 @@ def surroundings(
     >>> surroundings(StitchChart.parse("KKP"))
     array([[0, 2, 3]], dtype=uint8)
     """
-    segments = segment_map(chart, periodic=periodic)
+    segments = segment_map(chart, periodic=periodic, tube=tube)
     course, wale = segments.course_odd.T, segments.wale_odd
-    if periodic:
+    inside = np.ones_like(chart.purl) if stitch is None else stitch
+    if periodic or tube:
         left, right = np.roll(course, 1, axis=0), course
+    else:
+        left, right = _before_and_after(course, inside[:, 1:].T & inside[:, :-1].T)
+    if periodic:
         below, above = np.roll(wale, 1, axis=0), wale
     else:
-        inside = np.ones_like(chart.purl) if stitch is None else stitch
-        left, right = _before_and_after(course, inside[:, 1:].T & inside[:, :-1].T)
         below, above = _before_and_after(wale, inside[1:] & inside[:-1])
     code = left.T * LEFT | right.T * RIGHT | below * BELOW | above * ABOVE
     return code.astype(np.uint8)
 
 
 def quarter_phases(
-    chart: StitchChart, *, periodic: bool = False, stitch: NDArray[np.bool_] | None = None
+    chart: StitchChart,
+    *,
+    periodic: bool = False,
+    tube: bool = False,
+    stitch: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.uint8]:
     """Phase of every quarter cell, with edges and outline as in :func:`surroundings`.
 
@@ -67,7 +78,7 @@ def quarter_phases(
     array([[0, 0, 0, 2, 2, 2],
            [0, 0, 0, 2, 2, 2]], dtype=uint8)
     """
-    codes = surroundings(chart, periodic=periodic, stitch=stitch)
+    codes = surroundings(chart, periodic=periodic, tube=tube, stitch=stitch)
     phases = QUARTERS_OF_CODE[codes]  # (rows, columns, 2, 2)
     return phases.transpose(0, 2, 1, 3).reshape(2 * chart.rows, 2 * chart.columns)
 

@@ -1,0 +1,174 @@
+"""Strips of the yarn level's fabrics in the acrylic stretch tests: strain at equal stress.
+
+    python benchmarks/yarnlevel_strips.py FOLDER [--friction 0.26] [--draws 40] [--specimens 10]
+
+FOLDER holds the authors' acrylic tests. Each fabric is relaxed and stretched at the yarn level with
+the yarn as measured in it (the convention of ``yarnlevel_experiments.py``); its law goes into a
+strip of the measured size between its clamps, and the strains at which strip and test carry the same
+stress are compared. Nothing measured on the fabric is fed in. ``--friction`` pulls the yarn with friction, from
+its relaxed shape; 0.26 is the library's default. ``--draws`` repeats this with loop
+length and diameter of each fabric, bending modulus and contact stiffness drawn from their printed
+scatter, as that of a mean over ``--specimens`` (1: of a single stitch or length of yarn).
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from true_to_tests import strips
+from yarnlevel_experiments import _FAR, _POINTS, as_measured
+
+from knitcore.arrays import Array
+from knitcore.chart import StitchChart
+from knitcore.errors import ConvergenceError, KnitcoreError, UnravelledError
+from knitcore.fabric import Direction, Fabric
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.swatch.measured_strip import MeasuredStrip
+from knitcore.yarnlevel.friction import agitated, rubbed
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.results import Sweep
+from knitcore.yarnlevel.samples import Sample, sample
+from knitcore.yarnlevel.solver import COURSE, WALE
+from knitcore.yarnlevel.splines import RelaxedRepeat
+from knitcore.yarnlevel.sweep import sweep
+from knitcore.yarnlibrary.lawfit import fit_sweeps
+
+STRESSES = np.array([0.05, 0.1, 0.2, 0.3])
+FITTED_TO_N_PER_MM = 0.33
+BENDING_LOG_SD, CONTACT_LOG_SD = 5.96 / 45.15, 0.10 / 0.62
+"""Of the acrylic yarn (Supplementary Table 4)."""
+LOOP_LOG_SD = {
+    Fabric.STOCKINETTE: 0.62 / 11.28, Fabric.GARTER: 0.27 / 10.55,
+    Fabric.RIB: 1.58 / 16.10, Fabric.SEED: 0.76 / 15.67,
+}  # fmt: skip
+DIAMETER_LOG_SD = {
+    Fabric.STOCKINETTE: 0.11 / 1.47, Fabric.GARTER: 0.10 / 2.07,
+    Fabric.RIB: 0.15 / 2.35, Fabric.SEED: 0.12 / 2.39,
+}  # fmt: skip
+"""Of the machine-knit samples (Supplementary Table 2)."""
+
+
+def yarn_law(entry: Sample, friction: float) -> ConstitutiveLaw:
+    """The law of a simulated fabric."""
+    zero = relax(StitchChart.of_fabric(entry.fabric, 2, 2), entry.yarn, entry.loop_length_mm)
+    course, wale = (
+        rubbed_sweep(zero, direction, friction)
+        if friction
+        else sweep(
+            zero, direction, _FAR[direction], points=_POINTS[direction],
+            max_stress_n_per_mm=FITTED_TO_N_PER_MM,
+        )
+        for direction in Direction
+    )  # fmt: skip
+    return fit_sweeps(course, wale, FITTED_TO_N_PER_MM).law
+
+
+def rubbed_sweep(zero: RelaxedRepeat, along: Direction, friction: float) -> Sweep:
+    """The first pull with friction, in the steps of the pull without."""
+    state, cells = agitated(zero), [zero]
+    rest, width = zero.cell_mm(along), zero.cell_mm(along.other)
+    place = (COURSE if along is Direction.COURSE else WALE,)
+    for strain in np.linspace(0.0, _FAR[along], _POINTS[along])[1:]:
+        size = rest * (1.0 + strain)
+        try:
+            state = rubbed(state, friction, fixed=place, target=np.array([size, size]))
+        except (ConvergenceError, UnravelledError):  # the yarn is taut
+            break
+        cells.append(state.cell)
+        if cells[-1].force_n[along.axis] > FITTED_TO_N_PER_MM * width:
+            break
+    stress = np.array([cell.force_n[along.axis] for cell in cells]) / width
+    return Sweep(along, zero, tuple(cells), stress)
+
+
+def strain_ratio(law: ConstitutiveLaw, strip: MeasuredStrip) -> Array:
+    """Simulated over measured strain at each stress; NaN where one of the two does not reach it."""
+    measured, _ = strip.means
+    known = np.isfinite(measured)
+    wanted = np.where(measured[known].max() >= STRESSES, STRESSES, np.nan)
+    at = np.interp(wanted, measured[known], strip.strain[known])
+    levels = np.linspace(0.02, 0.97, 24) * law.lock_up_strain(strip.direction)
+    stress, _ = strip.simulate(law, levels)
+    reached = np.isfinite(stress)
+    found = np.interp(
+        wanted, np.r_[0.0, stress[reached]], np.r_[0.0, levels[reached]], right=np.nan
+    )
+    return np.asarray(found / at)
+
+
+def drawn(entry: Sample, rng: np.random.Generator, shared: Array, specimens: int) -> Sample:
+    """A sample whose inputs lie where their scatter allows them to."""
+    own = rng.standard_normal(2) / np.sqrt(specimens)
+    yarn, common = entry.yarn, shared / np.sqrt(specimens)
+    radius = yarn.radius_mm * np.exp(DIAMETER_LOG_SD[entry.fabric] * own[1])
+    return replace(
+        entry,
+        loop_length_mm=entry.loop_length_mm * float(np.exp(LOOP_LOG_SD[entry.fabric] * own[0])),
+        yarn=replace(
+            yarn,
+            radius_mm=float(radius),
+            bending_modulus_n_mm2=yarn.bending_modulus_n_mm2
+            * float(np.exp(BENDING_LOG_SD * common[0])),
+            contact_stiffness_n_per_mm3=yarn.contact_stiffness_n_per_mm3
+            * float(np.exp(CONTACT_LOG_SD * common[1])),
+        ),
+    )
+
+
+def rms_factor(ratios: Array) -> Array:
+    """Over the tests, at each stress."""
+    return np.asarray(np.exp(np.sqrt(np.nanmean(np.log(ratios) ** 2, axis=0))))
+
+
+def main() -> None:
+    """Print the comparison."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--friction", type=float, default=0.0)
+    parser.add_argument("--draws", type=int, default=0)
+    parser.add_argument("--specimens", type=int, default=10)
+    asked = parser.parse_args()
+    tests = {fabric: strips(asked.folder, fabric) for fabric in Fabric}
+    printed = {fabric: as_measured(sample("acrylic", fabric)) for fabric in Fabric}
+    rows = []
+    print("simulated over measured strain at", ", ".join(map(str, STRESSES)), "N/mm")
+    for fabric, entry in printed.items():
+        law = yarn_law(entry, asked.friction)
+        for strip in tests[fabric]:
+            rows.append(strain_ratio(law, strip))
+            shown = ", ".join(f"{value:.2f}" for value in rows[-1])
+            print(f"  {fabric} along the {strip.direction}: {shown}", flush=True)
+    print("rms factor:", ", ".join(f"{v:.2f}" for v in rms_factor(np.array(rows))))
+    rng = np.random.default_rng(20)
+    factors, failed = [], 0
+    for _ in range(asked.draws):
+        shared = rng.standard_normal(2)
+        entries = [drawn(entry, rng, shared, asked.specimens) for entry in printed.values()]
+        try:
+            laws = [yarn_law(entry, asked.friction) for entry in entries]
+        except KnitcoreError:
+            failed += 1
+            continue
+        factors.append(
+            rms_factor(
+                np.array(
+                    [
+                        strain_ratio(law, strip)
+                        for law, entry in zip(laws, entries, strict=True)
+                        for strip in tests[entry.fabric]
+                    ]
+                )
+            )
+        )
+    if factors:
+        low, middle, high = np.quantile(factors, [0.05, 0.5, 0.95], axis=0)
+        for name, values in (("5 %", low), ("median", middle), ("95 %", high)):
+            print(f"  {name} of {len(factors)} draws:", ", ".join(f"{v:.2f}" for v in values))
+        print(f"  {failed} draws gave no law")
+
+
+if __name__ == "__main__":
+    main()
