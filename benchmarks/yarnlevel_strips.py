@@ -3,12 +3,14 @@
     python benchmarks/yarnlevel_strips.py FOLDER [--friction 0.26] [--draws 40] [--specimens 10]
 
 FOLDER holds the authors' acrylic tests. Each fabric is relaxed and stretched at the yarn level with
-the yarn as measured in it (the convention of ``yarnlevel_experiments.py``); its law goes into a
-strip of the measured size between its clamps, and the strains at which strip and test carry the same
-stress are compared. Nothing measured on the fabric is fed in. ``--friction`` pulls the yarn with friction, from
-its relaxed shape; 0.26 is the library's default. ``--draws`` repeats this with loop
-length and diameter of each fabric, bending modulus and contact stiffness drawn from their printed
-scatter, as that of a mean over ``--specimens`` (1: of a single stitch or length of yarn).
+the yarn as measured in it (the convention of ``yarnlevel_experiments.py``). Its law goes into a
+strip of the measured size between its clamps, and the strains at which strip and test carry the
+same stress are compared; nothing measured on the fabric is fed in.
+
+``--friction`` pulls the yarn with friction, from its relaxed shape; 0.26 is the library's default.
+``--draws`` repeats the comparison with loop length and diameter of each fabric, bending modulus and
+contact stiffness drawn from their printed scatter, as that of a mean over ``--specimens`` (1: of a
+single stitch or length of yarn).
 """
 
 from __future__ import annotations

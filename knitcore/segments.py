@@ -48,9 +48,7 @@ class SegmentMap:
         return SegmentCounts(even=int(odd_map.size) - odd, odd=odd)
 
 
-def segment_map(
-    chart: StitchChart, *, periodic: bool = False, tube: bool = False
-) -> SegmentMap:
+def segment_map(chart: StitchChart, *, periodic: bool = False, tube: bool = False) -> SegmentMap:
     """The even/odd maps of a chart, course-wise and wale-wise.
 
     Parameters
