@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS = (
     {"arrays", "errors", "threads"},
-    {"choice", "batch", "extensions", "showing"},
+    {"bounds", "choice", "batch", "extensions", "showing"},
     {"fabric"},
     {"chart"},
     {"segments", "patterns", "worked"},

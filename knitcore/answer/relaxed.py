@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from knitcore.errors import InputError
+from knitcore.bounds import check_positive
 from knitcore.fabric import Direction
 
 
@@ -31,11 +29,7 @@ class RelaxedSize:
 
     def __post_init__(self) -> None:
         for name in ("course_mm", "wale_mm"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and 0 < value < 500):
-                raise InputError(
-                    name, f"{value} mm is not a stitch size.", "Give mm per stitch, above 0."
-                )
+            check_positive(name, getattr(self, name), "mm", "a stitch size", 500)
 
     @classmethod
     def from_gauge(cls, stitches_per_10_cm: float, rows_per_10_cm: float) -> RelaxedSize:
@@ -50,8 +44,7 @@ class RelaxedSize:
             ("stitches_per_10_cm", stitches_per_10_cm),
             ("rows_per_10_cm", rows_per_10_cm),
         ):
-            if not (np.isfinite(value) and value > 0):
-                raise InputError(name, f"{value} is not a gauge.", "Count over 10 cm.")
+            check_positive(name, value, what="a gauge")
         return cls(100 / stitches_per_10_cm, 100 / rows_per_10_cm)
 
     def extent_mm(self, direction: Direction) -> float:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from knitcore.answer.answer import Along
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 from knitcore.law.response import MAX_STRESS_N_PER_MM
 from knitcore.materials.uncertainty import Interval
@@ -100,10 +101,8 @@ def tube_for(along: Along, worn_mm: float, mmhg: float) -> Interval:
     InputError
         If the target or the circumference cannot be used, or the chart locks before it.
     """
-    if not (math.isfinite(mmhg) and 0 < mmhg <= 300):
-        raise InputError("target_mmhg", f"{mmhg:g} mmHg cannot be used.", "Give above 0 to 300.")
-    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAX_CIRCUMFERENCE_MM):
-        raise InputError("worn_mm", f"{worn_mm:g} mm is not a circumference.", "Give it in mm.")
+    check_positive("target_mmhg", mmhg, "mmHg", "a target pressure", 300)
+    check_positive("worn_mm", worn_mm, "mm", "a circumference", MAX_CIRCUMFERENCE_MM)
     wanted = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
     found = []
     for end in (0, 1):

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import entry_of, predict_repeat
@@ -433,7 +434,6 @@ def _checked(course: Array, wale: Array, smallest_patch: int) -> Array:
     given = both[~np.isnan(both)]
     if not (np.isfinite(given).all() and (given > 0).all()):
         raise InputError("target", "a target modulus is not positive.", "Give N/mm above 0.")
-    if not 1 <= smallest_patch <= 100:
-        raise InputError("smallest_patch", f"{smallest_patch} is not a size.", "Give 1 to 100.")
+    check_range("smallest_patch", smallest_patch, 1, 100, what="a size")
     logarithms: Array = np.log(both)
     return logarithms

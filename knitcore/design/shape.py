@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_positive, check_range
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
 from knitcore.errors import Cancelled, CancelledError, InputError
@@ -379,12 +380,6 @@ def _checked(
             f"{across} x {len(wanted)} stitches are too many to pull repeatedly.",
             f"Use at least 3 across and at most {_MAX_STITCHES} stitches.",
         )
-    if not 0 < strain <= 5:
-        raise InputError(
-            "strain", f"{strain:g} is not a stretch.", "Give a strain above 0, such as 0.3."
-        )
-    if not 1 <= smallest_band <= len(wanted):
-        raise InputError(
-            "smallest_band", f"{smallest_band} lines do not fit.", f"Give 1 to {len(wanted)}."
-        )
+    check_positive("strain", strain, what="a stretch", most=5)
+    check_range("smallest_band", smallest_band, 1, len(wanted), "lines")
     return wanted

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.errors import InputError
 from knitcore.estimate.mixed_model import Mask
 from knitcore.estimate.model import (
@@ -134,7 +135,7 @@ def estimate_yarn(
     InputError
         If a number is impossible, a loop length is missing or a fabric is measured twice.
     """
-    _check_number("bending_modulus_n_mm2", bending_modulus_n_mm2, 1e-5, 10, "N·mm²")
+    check_range("bending_modulus_n_mm2", bending_modulus_n_mm2, 1e-5, 10, "N·mm²")
     loops = _loop_lengths(loop_length_mm)
     table = library_table()
     measured = _measured_mask(swatches)
@@ -210,7 +211,7 @@ def _measured_mask(swatches: Sequence[MeasuredSwatch]) -> Mask:
             "swatches", "a fabric is given twice.", "Give one law per fabric, fitted to all tests."
         )
     for swatch in swatches:
-        _check_number("swatches.loop_length_mm", swatch.loop_length_mm, 1, 100, "mm")
+        check_range("swatches.loop_length_mm", swatch.loop_length_mm, 1, 100, "mm")
     return mask_of(fabrics)
 
 
@@ -224,15 +225,8 @@ def _loop_lengths(given: Mapping[Fabric, float] | float) -> dict[Fabric, float]:
             "Unravel ten stitches of each fabric and divide, or give one length for all.",
         )
     for fabric, length in loops.items():
-        _check_number(f"loop_length_mm.{fabric}", length, 1, 100, "mm")
+        check_range(f"loop_length_mm.{fabric}", length, 1, 100, "mm")
     return loops
-
-
-def _check_number(field: str, value: float, low: float, high: float, unit: str) -> None:
-    if not (math.isfinite(value) and low <= value <= high):
-        raise InputError(
-            field, f"{value:g} {unit} is out of range.", f"Give {low:g} to {high:g} {unit}."
-        )
 
 
 def _warnings(

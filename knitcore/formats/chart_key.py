@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from knitcore.errors import InputError
+from knitcore.bounds import check_range
 from knitcore.formats.drawing import Box, Dots, Label, Shape
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.worked import Construction, Side
@@ -71,10 +70,7 @@ class ChartStyle:
     regions: tuple[RegionMark, ...] = ()
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.aspect) and 0.2 <= self.aspect <= 5):
-            raise InputError(
-                "aspect", f"{self.aspect:g} is not the aspect ratio of a stitch.", "Give 0.2 to 5."
-            )
+        check_range("aspect", self.aspect, 0.2, 5, what="the aspect ratio of a stitch")
 
 
 def is_coloured(piece: Piece) -> bool:

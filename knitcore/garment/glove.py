@@ -13,11 +13,11 @@ and cast on without cutting the yarn.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from knitcore.bounds import check_range
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.garment.gauge import Gauge, GaugeSet
@@ -84,10 +84,7 @@ class Hand:
             "thumb": min(self.thumb.length_mm, self.thumb.circumference_mm),
         }
         for name, value in lengths.items():
-            if not (math.isfinite(value) and 5 <= value <= 600):
-                raise InputError(
-                    name, f"{value:g} mm is not a size of a hand.", "Give 5 to 600 mm."
-                )
+            check_range(name, value, 5, 600, "mm", "a size of a hand")
         if not (0 <= self.gusset_mm < self.thumb.length_mm and 0 <= self.gusset_girth_mm <= 100):
             raise InputError(
                 "gusset_mm",
@@ -205,10 +202,7 @@ def glove(
     InputError
         If measurements or ease cannot be used, or the material lacks a fabric.
     """
-    if not (math.isfinite(ease) and MIN_EASE <= ease <= MAX_EASE):
-        raise InputError(
-            "ease", f"{ease:g} is not an ease for a glove.", f"Give {MIN_EASE} to {MAX_EASE}."
-        )
+    check_range("ease", ease, MIN_EASE, MAX_EASE, what="an ease for a glove")
     gauges = gauges or GaugeSet.of_material(material)
     palm = gauges[Fabric.GARTER]
     layout = GloveLayout.of(hand, gauges, ease)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.bounds import check_positive
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.garment.gauge import Gauge
@@ -219,10 +220,5 @@ def yarn_use(
     metres = float(loop_lengths_mm(quarters, material).sum()) / 1000
     if linear_density_tex is None:
         return YarnUse(metres, None)
-    if not 0 < linear_density_tex < 1e5:
-        raise InputError(
-            "linear_density_tex",
-            f"{linear_density_tex:g} tex is not a linear density.",
-            "Give g per km.",
-        )
+    check_positive("linear_density_tex", linear_density_tex, "tex", "a linear density", 1e5)
     return YarnUse(metres, metres * linear_density_tex / 1000)

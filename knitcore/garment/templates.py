@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from knitcore.bounds import check_range
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.garment.gauge import GaugeSet
@@ -233,5 +233,4 @@ def _check_profile(profile: Sequence[Girth]) -> None:
 
 
 def _check_length(name: str, value: float) -> None:
-    if not (math.isfinite(value) and 5 <= value <= 2000):
-        raise InputError(name, f"{value:g} mm cannot be knitted.", "Give 5 to 2000 mm.")
+    check_range(name, value, 5, 2000, "mm", "a length that can be knitted")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from knitcore.bounds import check_range
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
@@ -69,10 +69,7 @@ class Fit:
     mmhg: float | None = None
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.ease) and -0.6 <= self.ease <= 1):
-            raise InputError(
-                "ease", f"{self.ease:g} is not an ease.", "Give -0.6 (tight) to 1 (wide)."
-            )
+        check_range("ease", self.ease, -0.6, 1, what="an ease")
 
     def rest_mm(
         self, worn_mm: float, material: Material, fabric: Fabric, around: Direction

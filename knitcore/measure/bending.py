@@ -16,6 +16,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_linear_density, check_positive, check_range
 from knitcore.errors import InputError
 from knitcore.measure.centreline import Centreline, load_grey, trace_centreline
 from knitcore.measure.elastica import heavy_elastica
@@ -27,7 +28,6 @@ LOG_LOADS = np.linspace(np.log(0.1), np.log(3e5), 60)
 """Starts of the search for the load."""
 WORST_RMS_SHARE = 0.02
 """Largest rms distance, over the length, at which a line is accepted as hanging yarn."""
-DENSITY_RANGE_G_PER_M = (0.005, 20.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,16 +100,10 @@ def measure_bending(
     """
     if not paths:
         raise InputError("images", "no photo is given.", "Give at least one photo.")
-    low, high = DENSITY_RANGE_G_PER_M
-    if not (np.isfinite(linear_density_g_per_m) and low <= linear_density_g_per_m <= high):
-        raise InputError(
-            "linear_density_g_per_m",
-            f"{linear_density_g_per_m:g} g/m is out of range for a yarn.",
-            f"Give {low:g} to {high:g} g/m; tex divided by 1000 is g/m.",
-        )
+    check_linear_density(linear_density_g_per_m)
     lengths = _lengths(length_mm, len(paths))
-    if px_per_mm is not None and not (np.isfinite(px_per_mm) and px_per_mm > 0):
-        raise InputError("px_per_mm", f"{px_per_mm} cannot be used.", "Give pixels per mm.")
+    if px_per_mm is not None:
+        check_positive("px_per_mm", px_per_mm, "px/mm", "a scale")
     photos, notes = [], []
     for path, length in zip(paths, lengths, strict=True):
         if length is None and px_per_mm is None:
@@ -163,12 +157,7 @@ def _lengths(length_mm: float | Sequence[float] | None, count: int) -> list[floa
             "Give one length for all, or one per photo in the same order.",
         )
     for value in given:
-        if not (np.isfinite(value) and 5 <= value <= 5000):
-            raise InputError(
-                "length_mm",
-                f"{value:g} mm is not a hanging length.",
-                "Give 5 to 5000 mm (not cm or m).",
-            )
+        check_range("length_mm", value, 5, 5000, "mm", "a hanging length")
     return list(given)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.errors import InputError
 from knitcore.measure.compression_files import CompressionTest
 
@@ -94,8 +95,7 @@ def fit_compression(
             "Give it, or a sheet 'Yarn Diameters' with a column that names the yarn.",
         )
     for name, value in (("diameter_mm", diameter), ("probe_width_mm", probe_width_mm)):
-        if not (np.isfinite(value) and 0.01 <= value <= 50):
-            raise InputError(f"{test.name}, {name}", f"{value:g} cannot be used.", "Give mm.")
+        check_range(f"{test.name}, {name}", value, 0.01, 50, "mm", "its size")
     touch, core = _touch_and_core(test)
     depth_core, depth_0 = float(test.depth_mm[core]), float(test.depth_mm[touch])
     thickness = depth_core - depth_0

@@ -16,7 +16,8 @@ from scipy.integrate import cumulative_simpson
 from scipy.linalg import solve_banded
 
 from knitcore.arrays import Array
-from knitcore.errors import ConvergenceError, InputError
+from knitcore.bounds import check_range
+from knitcore.errors import ConvergenceError
 
 NODES = 401
 MAX_LOAD = 1e6
@@ -50,8 +51,7 @@ def heavy_elastica(load: float, clamp_angle: float = 0.0) -> tuple[Array, Array,
     >>> round(float(y[-1] / 0.01), 4)
     0.125
     """
-    if not (np.isfinite(load) and 0 <= load <= MAX_LOAD):
-        raise InputError("load", f"{load} cannot be used.", "Give a number between 0 and 1e6.")
+    check_range("load", load, 0, MAX_LOAD)
     # Even nodes in u with s = u**2 resolve the bend of a long yarn.
     u = np.linspace(0.0, 1.0, NODES)
     s = u**2

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 
@@ -104,8 +105,7 @@ class StretchTest:
         InputError
             If it is not a positive width.
         """
-        if not (np.isfinite(width_mm) and width_mm > 0):
-            raise InputError("width_mm", f"{width_mm} mm is not a width.", "Give it in mm.")
+        check_positive("width_mm", width_mm, "mm", "a width")
         runs = tuple(
             replace(run, stress=run.stress * (old / width_mm))
             for run, old in zip(self.runs, self.width_mm, strict=True)

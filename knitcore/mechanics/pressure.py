@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw, Transverse
@@ -71,12 +72,7 @@ def worn_strain(rest_mm: float, worn_mm: float) -> float:
         If a circumference is impossible, or the tube is loose.
     """
     for name, value in (("rest_mm", rest_mm), ("worn_mm", worn_mm)):
-        if not (math.isfinite(value) and 0 < value <= MAX_CIRCUMFERENCE_MM):
-            raise InputError(
-                name,
-                f"{value:g} mm is not a circumference.",
-                f"Give up to {MAX_CIRCUMFERENCE_MM:g} mm.",
-            )
+        check_positive(name, value, "mm", "a circumference", MAX_CIRCUMFERENCE_MM)
     if worn_mm < rest_mm:
         raise InputError(
             "worn_mm",
@@ -151,10 +147,8 @@ def rest_circumference(
     InputError
         If the target or the circumference cannot be used.
     """
-    if not (math.isfinite(mmhg) and 0 < mmhg <= 300):
-        raise InputError("mmhg", f"{mmhg:g} mmHg cannot be used.", "Give above 0 to 300 mmHg.")
-    if not (math.isfinite(worn_mm) and 0 < worn_mm <= MAX_CIRCUMFERENCE_MM):
-        raise InputError("worn_mm", f"{worn_mm:g} mm is not a circumference.", "Give it in mm.")
+    check_positive("mmhg", mmhg, "mmHg", "a target pressure", 300)
+    check_positive("worn_mm", worn_mm, "mm", "a circumference", MAX_CIRCUMFERENCE_MM)
     tension = mmhg / MMHG_PER_KPA / 1000.0 * worn_mm / (2 * math.pi)
     found = []
     for transverse in Transverse:

@@ -31,6 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import paper_figures
@@ -71,9 +72,7 @@ class SegmentGeometry:
 
     def __post_init__(self) -> None:
         for name in ("separation_mm", "length_mm"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise InputError(name, f"{value} mm is not a length.", "Give a positive length.")
+            check_positive(name, getattr(self, name), "mm", "a length")
         if not math.isfinite(self.slope) or (self.parity is Parity.EVEN and self.slope == 0):
             raise InputError("slope", f"{self.slope} leaves it rigid.", "Give v above 0.")
         if self.parity is Parity.ODD and not (
@@ -127,10 +126,7 @@ class SegmentGeometry:
 
     def rigidity_n_per_mm(self, bending_modulus_n_mm2: float) -> float:
         """Spring constant of the segment in the plane, N/mm."""
-        if not (math.isfinite(bending_modulus_n_mm2) and bending_modulus_n_mm2 > 0):
-            raise InputError(
-                "bending_modulus_n_mm2", f"{bending_modulus_n_mm2} cannot be used.", "Give B > 0."
-            )
+        check_positive("bending_modulus_n_mm2", bending_modulus_n_mm2, "N·mm²")
         scale = bending_modulus_n_mm2 / (self.separation_mm**3 * (1 - self.delta))
         if self.angle_rad is None:
             return 180 * scale / self.slope**2

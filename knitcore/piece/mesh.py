@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 from knitcore.piece.outline import CutPiece
 
@@ -48,8 +49,7 @@ def mesh_of(piece: CutPiece, size_mm: float | None = None) -> Any:
     from skfem import MeshQuad, MeshTri
 
     size = size_for(piece, DEFAULT_ELEMENTS) if size_mm is None else size_mm
-    if not (math.isfinite(size) and size > 0):
-        raise InputError("mesh_mm", f"{size} mm is not a size.", "Give a number above 0 mm.")
+    check_positive("mesh_mm", size, "mm", "a size")
     least = size_for(piece, MAX_ELEMENTS)
     if size < least:
         raise InputError(

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 
 Point = tuple[float, float]
@@ -96,8 +97,7 @@ class CutPiece:
     def rectangle(cls, width_mm: float, length_mm: float, *, grain_deg: float = 0.0) -> CutPiece:
         """A rectangle centred on the origin with the edges bottom, right, top and left."""
         for name, value in (("width_mm", width_mm), ("length_mm", length_mm)):
-            if not 0 < value <= MAX_SIZE_MM:
-                raise InputError(name, f"{value} mm is not a size.", "Give a number above 0 mm.")
+            check_positive(name, value, "mm", "a size", MAX_SIZE_MM)
         x, y = width_mm / 2, length_mm / 2
         return cls(
             ((-x, -y), (x, -y), (x, y), (-x, y)),

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from knitcore.errors import Cancelled, InputError
+from knitcore.bounds import check_range
+from knitcore.errors import Cancelled
 from knitcore.piece.assembly import PieceEnergy
 from knitcore.piece.cloth import Cloth
 from knitcore.piece.conditions import Condition, Constraints
@@ -68,8 +69,7 @@ def solve(
     >>> test.converged, bool(test.force_n[-1, 1, 1] > 0)
     (True, True)
     """
-    if not 1 <= steps <= MAX_STEPS:
-        raise InputError("steps", f"{steps} cannot be used.", f"Use 1 to {MAX_STEPS}.")
+    check_range("steps", steps, 1, MAX_STEPS)
     begin = time.perf_counter()
     energy = PieceEnergy(mesh_of(piece, mesh_mm), cloth, piece.turn)
     constraints = Constraints(energy.basis, piece, conditions)

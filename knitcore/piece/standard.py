@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.chart import StitchChart
 from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
@@ -21,6 +22,7 @@ from knitcore.piece.uncertainty import force_log_sd
 from knitcore.swatch.run import Progress
 from knitcore.swatch.strip import LOCK_UP_SHARE, MAX_STRAIN
 
+STRETCH = "a stretch that can be computed"
 MIN_STRAIN = 1e-9
 """Of a test: forces of smaller ones cannot be told from rounding."""
 
@@ -140,7 +142,7 @@ def bias_test(
     """
     piece = CutPiece.rectangle(width_mm, length_mm, grain_deg=angle_deg)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
-    _check_strain("strain", strain)
+    check_range("strain", strain, MIN_STRAIN, MAX_STRAIN, what=STRETCH)
     most = LOCK_UP_SHARE * _largest_strain(cloth, width_mm, length_mm, angle_deg)
     if strain > most:
         raise InputError(
@@ -194,8 +196,8 @@ def biaxial_test(
         If a strain is negative, both are 0, or the cloth cannot stretch so far.
     CancelledError
     """
-    for name, value in (("strain_x", strain_x), ("strain_y", strain_y)):
-        _check_strain(name, value, least=0.0)
+    check_range("strain_x", strain_x, 0.0, MAX_STRAIN, what=STRETCH)
+    check_range("strain_y", strain_y, 0.0, MAX_STRAIN, what=STRETCH)
     if max(strain_x, strain_y) < MIN_STRAIN:
         remedy = f"Give one of {MIN_STRAIN:g} or more."
         raise InputError("strain_x", "both strains are 0, or nearly.", remedy)
@@ -262,12 +264,7 @@ def trellis_test(
         If the angle is not between 0 and 1.2 rad.
     CancelledError
     """
-    if not MIN_STRAIN <= shear_angle <= MAX_SHEAR_ANGLE:
-        raise InputError(
-            "shear_angle",
-            f"{shear_angle} rad is out of range.",
-            f"Use {MIN_STRAIN:g} to {MAX_SHEAR_ANGLE}.",
-        )
+    check_range("shear_angle", shear_angle, MIN_STRAIN, MAX_SHEAR_ANGLE, "rad")
     piece = CutPiece.rectangle(side_mm, side_mm, grain_deg=grain_deg)
     cloth = cloth_under(piece, chart, material, shear_modulus=shear_modulus)
     conditions = [Framed(edge, shear_angle) for edge in piece.edges]
@@ -292,12 +289,6 @@ def trellis_test(
         shear_stress_n_per_mm=moment / side_mm**2,
         force_log_sd=force_log_sd(test, material, work),
     )
-
-
-def _check_strain(name: str, strain: float, least: float = MIN_STRAIN) -> None:
-    if not least <= strain <= MAX_STRAIN:
-        remedy = f"Use {least:g} to {MAX_STRAIN:g}."
-        raise InputError(name, f"{strain} is not a stretch that can be computed.", remedy)
 
 
 def _lock_up(cloth: Cloth, direction: Direction) -> float:

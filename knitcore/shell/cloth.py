@@ -15,8 +15,8 @@ from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
 from knitcore.answer.choose import choose
 from knitcore.arrays import Array
+from knitcore.bounds import check_linear_density
 from knitcore.chart import StitchChart
-from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.materials.loops import loop_lengths_mm
@@ -27,7 +27,6 @@ from knitcore.yarnlevel.bending import ROLLS_FROM, bending, bending_length_mm
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
-DENSITY_RANGE_G_PER_M = (0.005, 20.0)
 _MAX_POISSON = 0.95
 """Of the root of the product of both ratios, beyond which an answer has no flat energy."""
 
@@ -177,13 +176,7 @@ def stitch_weights_n(
     InputError
         If the yarn's weight is impossible, or the material lacks a loop length.
     """
-    low, high = DENSITY_RANGE_G_PER_M
-    if not low <= linear_density_g_per_m <= high:
-        raise InputError(
-            "linear_density_g_per_m",
-            f"{linear_density_g_per_m:g} g/m is out of range for a yarn.",
-            f"Give {low:g} to {high:g} g/m; tex divided by 1000 is g/m.",
-        )
+    check_linear_density(linear_density_g_per_m)
     quarters = quarter_phases(chart, periodic=periodic)
     by_stitch = quarters.reshape(chart.rows, 2, chart.columns, 2).transpose(0, 2, 1, 3)
     loops = loop_lengths_mm(by_stitch.reshape(chart.rows, chart.columns, 4), material)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.errors import Cancelled, InputError
 from knitcore.shell.cloth import Cloth
 from knitcore.shell.relax import Shape, settle
@@ -83,8 +84,7 @@ def drape(
     """
     if not 0.0 < disc_mm < 0.95 * piece_mm:
         raise InputError("disc_mm", f"{disc_mm:g} mm is too large.", "Give less than the piece.")
-    if not 10 <= across <= MAX_ACROSS:
-        raise InputError("across", f"{across} is out of range.", f"Give 10 to {MAX_ACROSS}.")
+    check_range("across", across, 10, MAX_ACROSS)
     sheet, held = _round(cloth, piece_mm, disc_mm, across)
     load = np.zeros_like(sheet.flat_mm)
     load[:, 2] = -sheet.shared(np.full(len(sheet.quads), cloth.weight_n_per_mm2 * _area(sheet)))

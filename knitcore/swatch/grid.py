@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import label
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_positive
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Fabric
@@ -332,8 +333,7 @@ def check_size_mm(width_mm: float, length_mm: float) -> None:
         Naming the side.
     """
     for name, value in (("width_mm", width_mm), ("length_mm", length_mm)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError(name, f"{value} mm is not a size.", "Give a number above 0 mm.")
+        check_positive(name, value, "mm", "a size")
 
 
 def _means(sizes: Array, cloth: NDArray[np.bool_], axis: int) -> Array:

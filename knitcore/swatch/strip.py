@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from knitcore.answer.quarter_laws import QuarterLaws, quarter_laws
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
 from knitcore.errors import Cancelled, InputError
@@ -286,8 +287,7 @@ def load_levels(strain: float | Sequence[float], steps: int) -> Array:
     InputError
         If they are not positive and increasing, or the number of steps cannot be used.
     """
-    if not 1 <= steps <= MAX_STEPS:
-        raise InputError("steps", f"{steps} cannot be used.", f"Use 1 to {MAX_STEPS}.")
+    check_range("steps", steps, 1, MAX_STEPS)
     values = np.asarray(strain, dtype=float)
     levels = values * (np.arange(1, steps + 1) / steps) if values.ndim == 0 else values
     if levels.size == 0 or not np.all(np.isfinite(levels)) or levels[0] <= 0:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.chart import check_stitches
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel import kernels
@@ -105,12 +106,7 @@ def rubbed(
     ConvergenceError, UnravelledError
         If the yarn locks or unravels on the way.
     """
-    if not 0.0 <= coefficient <= MAX_COEFFICIENT:
-        raise InputError(
-            "friction",
-            f"{coefficient:g} is not a coefficient of friction.",
-            f"Give a number from 0 to {MAX_COEFFICIENT:g}.",
-        )
+    check_range("friction", coefficient, 0, MAX_COEFFICIENT, what="a coefficient of friction")
     cell = last.cell
     energy = cell.energy
     sliding, rest = _sliding(energy, cell.state, last.rubbing, coefficient)

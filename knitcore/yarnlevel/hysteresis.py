@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from knitcore.arrays import Array
+from knitcore.bounds import check_range
 from knitcore.choice import Choice
-from knitcore.errors import Cancelled, InputError, check_cancelled
+from knitcore.errors import Cancelled, check_cancelled
 from knitcore.fabric import Direction
 from knitcore.yarnlevel.friction import RubbedCell, agitated, rubbed
 from knitcore.yarnlevel.limits import check_stretch
@@ -157,8 +158,7 @@ def hysteresis(
     """
     along = Direction.parse(direction)
     check_stretch(max_strain, points, None)
-    if not 1 <= cycles <= MAX_CYCLES:
-        raise InputError("cycles", f"{cycles} cycles are not possible.", f"Give 1 to {MAX_CYCLES}.")
+    check_range("cycles", cycles, 1, MAX_CYCLES)
     rest = relaxed.cell_mm(along)
     steps = rest * (1.0 + np.linspace(0.0, max_strain, points))[1:]
     state = agitated(relaxed)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
+from knitcore.bounds import check_positive, check_range
 from knitcore.errors import InputError
 from knitcore.yarnlevel.yarn import YarnModel
 
@@ -23,8 +22,7 @@ def check_loop(yarn: YarnModel, loop_length_mm: float) -> None:
     InputError
         Naming a usable bound.
     """
-    if not (math.isfinite(loop_length_mm) and loop_length_mm > 0):
-        raise InputError("loop_length_mm", f"{loop_length_mm} is not a length.", "Give it in mm.")
+    check_positive("loop_length_mm", loop_length_mm, "mm", "a length")
     least = max(MIN_LENGTH_PER_RADIUS * yarn.radius_mm, MIN_LENGTH_PER_CORE * yarn.core_radius_mm)
     if loop_length_mm < least:
         raise InputError(
@@ -66,10 +64,8 @@ def check_stretch(max_strain: float, points: int, max_stress_n_per_mm: float | N
     InputError
         Naming the value that cannot be used.
     """
-    if not (math.isfinite(max_strain) and max_strain > 0.0):
-        raise InputError("max_strain", f"{max_strain} is not a stretch.", "Give a strain above 0.")
-    if not 2 <= points <= MAX_POINTS:
-        raise InputError("points", f"{points} cannot be used.", f"Give 2 to {MAX_POINTS}.")
+    check_positive("max_strain", max_strain, what="a stretch")
+    check_range("points", points, 2, MAX_POINTS)
     if max_stress_n_per_mm is not None and not max_stress_n_per_mm > 0.0:
         raise InputError(
             "max_stress_n_per_mm",

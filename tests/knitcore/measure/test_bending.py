@@ -140,7 +140,7 @@ def test_a_cut_off_tip_needs_the_length(tmp_path: Path) -> None:
     [
         ({"linear_density_g_per_m": 500.0}, "tex"),
         ({"linear_density_g_per_m": np.nan}, "linear_density"),
-        ({"length_mm": 1.2}, "not cm"),
+        ({"length_mm": 1.2}, "5 to 5000 mm"),
         ({"length_mm": [100.0, 100.0]}, "2 lengths are given for 1"),
         ({"length_mm": None, "px_per_mm": -1.0}, "px_per_mm"),
         ({"length_mm": 120.0, "px_per_mm": 100.0}, "by its scale"),

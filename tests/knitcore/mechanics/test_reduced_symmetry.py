@@ -111,7 +111,7 @@ def test_impossible_geometry_is_refused(arguments, field):
 def test_other_yarns_and_bending_moduli_are_refused():
     with pytest.raises(InputError, match="acrylic or cotton"):
         rs_fabrics("lace-bamboo")
-    with pytest.raises(InputError, match="B > 0"):
+    with pytest.raises(InputError, match="above 0"):
         SegmentGeometry(Parity.EVEN, 2.2, 4.1, 1.0).rigidity_n_per_mm(0.0)
 
 

@@ -67,5 +67,5 @@ def test_weight_is_that_of_the_yarn_in_the_stitches() -> None:
 
 
 def test_impossible_yarns_are_refused() -> None:
-    with pytest.raises(InputError, match="out of range"):
+    with pytest.raises(InputError, match="not in range"):
         stitch_weights_n(GARTER, ACRYLIC, 0.0)
