@@ -408,6 +408,16 @@ export interface CharacterisedFabric {
 /** Ends of a strip: gripped, or free to slide along the clamp. */
 export type Clamps = "clamped" | "sliding";
 
+/** The stitches of a piece of cloth in a test, to show them in 3D: chart and shape. */
+export interface ClothPiece {
+  /** Name of the shape, for 3D views of this chart. */
+  id: string;
+  /** K/P lines, the top row first, as seen from the face. */
+  chart: string;
+  /** Lines of x (there) and . (not), the top row first. */
+  outline: string;
+}
+
 /** The quantity that colours the stitches. */
 export type Colour = "yarn" | "region" | "fabric" | "phase" | "course" | "wale" | "anisotropy" | "strain" | "utilisation" | "pressure" | "field";
 
@@ -776,6 +786,7 @@ export interface DrapeResult {
   bending_length_wale_mm: number;
   weight_g_per_m2: number;
   converged: boolean;
+  piece: ClothPiece;
   /** Corners of the sheet line by line, mm; null outside the piece. */
   corners_mm: (([number, number, number] | null)[])[] | null;
   notes: string[];
@@ -1804,6 +1815,7 @@ export interface OverhangResult {
   yarn_level_rigidity_n_mm: number;
   weight_g_per_m2: number;
   converged: boolean;
+  piece: ClothPiece;
   /** Corners of the sheet line by line, mm; null outside the piece. */
   corners_mm: (([number, number, number] | null)[])[] | null;
   notes: string[];

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,14 @@ from numpy.typing import NDArray
 from knitcore.arrays import Array
 
 Floats = NDArray[np.float32]
+SEEN_FROM = 1.2
+"""Angle by which what lies on a table is turned to the eye, rad; upright would be a right one."""
+
+
+def _upright(points: Floats) -> Floats:
+    sine, cosine = np.float32(np.sin(SEEN_FROM)), np.float32(np.cos(SEEN_FROM))
+    x, y, z = np.moveaxis(points, -1, 0)
+    return np.stack([x, cosine * y + sine * z, cosine * z - sine * y], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +63,17 @@ class Body:
             ),
         )
 
+    @classmethod
+    def slab(cls, outline_mm: Array, depth_mm: float) -> Body:
+        """A table or a disc below the plane z = 0, whose normals point up: outline (n, 2)."""
+        top = np.column_stack([outline_mm, np.zeros(len(outline_mm))])
+        middle = np.broadcast_to(top.mean(axis=0), top.shape)
+        down = np.array([0.0, 0.0, depth_mm])
+        body = cls.around(np.stack([middle, top, top - down, middle - down]))
+        up = np.zeros_like(body.normals)
+        up[:, 2] = 1.0
+        return replace(body, normals=up)
+
     def sunk_mm(self, depth_mm: float) -> Floats:
         """Its vertices, farther from the cloth: half the cloth lies below its middle plane."""
         return np.asarray(self.vertices_mm - np.float32(depth_mm) * self.normals)
@@ -79,6 +98,20 @@ class PosedView:
     corners_mm: Floats
     body: Body | None = None
     mmhg: Floats | None = None
+
+    def upright(self) -> PosedView:
+        """With z, which is up in a test of cloth, up in the view."""
+        body = self.body
+        return replace(
+            self,
+            corners_mm=_upright(self.corners_mm),
+            body=body
+            and replace(
+                body,
+                vertices_mm=_upright(body.vertices_mm),
+                normals=_upright(body.normals),
+            ),
+        )
 
     @property
     def size_bytes(self) -> int:

@@ -8,12 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.models.charts import MaterialName
+from app.models.base import ResultModel
+from app.models.charts import CellLines, ChartLines, MaterialName
 from app.models.laws import LawsRequest
+from app.models.posed import Floats
 from app.operations.context import Context
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.shell.cloth import Cloth, cloth_of
+from knitcore.garment.shaped import ShapedChart
+from knitcore.shell.cloth import Cloth, cloth_of, stitch_corners
 
 LinearDensity = Annotated[
     float,
@@ -37,6 +40,10 @@ FRICTIONLESS = (
     "Without friction and set. Friction makes real fabric seem stiffer, and keeps it in more than "
     "one shape."
 )
+FROM_QUARTERS = (
+    "The repeat is too large for the yarn level: its bending is the mean of the four fabrics in "
+    "it, without the stiffness that folds give."
+)
 _CURLS = (
     "This fabric curls. It was taken as flat at rest, as if its edges were pressed: the test is "
     "not meant for fabric that rolls up."
@@ -57,7 +64,39 @@ class WeighedRequest(LawsRequest):
 
 def notes_of(cloth: Cloth) -> list[str]:
     """What a test of cloth that is flat at rest leaves out."""
-    return [FRICTIONLESS, *([_CURLS] if cloth.curls else [])]
+    return [
+        FRICTIONLESS,
+        *([_CURLS] if cloth.curls else []),
+        *([FROM_QUARTERS] if cloth.from_quarters else []),
+    ]
+
+
+class ClothPiece(ResultModel):
+    """The stitches of a piece of cloth in a test, to show them in 3D: chart and shape."""
+
+    id: str = Field(description="Name of the shape, for 3D views of this chart.")
+    chart: ChartLines
+    outline: CellLines
+
+
+def piece_of(
+    corners_mm: Array,
+    rectangle_mm: tuple[float, float],
+    cloth: Cloth,
+    repeat: StitchChart,
+    identifier: str,
+) -> tuple[ClothPiece, Floats]:
+    """The stitches of a sheet of rectangles, and their corners; lines follow the columns."""
+    found, stitches = stitch_corners(corners_mm, rectangle_mm, cloth.stitch_mm)
+    rows, columns = stitches.shape
+    small = repeat.repeat()
+    tiled = small.tile(-(-rows // small.rows), -(-columns // small.columns))
+    chart = StitchChart(tiled.purl[:rows, :columns])
+    outline = ShapedChart(chart, stitches).outline
+    row, column = np.indices(found.shape[:2])
+    hidden = 0.01 * np.stack([column, row, 0 * row], axis=-1)
+    corners = np.where(np.isfinite(found), found, hidden).astype(np.float32)
+    return ClothPiece(id=identifier, chart=chart.text, outline=outline), corners
 
 
 def corners_of(corners_mm: Array, there: NDArray[np.bool_]) -> list[list[Corner]]:

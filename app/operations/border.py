@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import WeighedRequest
+from app.models.weighed import FROM_QUARTERS, WeighedRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
@@ -74,6 +74,8 @@ def border(request: BorderRequest, context: Context) -> BorderResult:
     notes = [_RULE] if max(sides.moment_n, ends.moment_n) > 0.0 else []
     if not (sides.holds and ends.holds):
         notes.append(_ROLLS)
+    if inner.from_quarters:
+        notes.append(FROM_QUARTERS)
     return BorderResult(sides=EdgesResult.of(sides), ends=EdgesResult.of(ends), notes=notes)
 
 

@@ -9,11 +9,24 @@ from pydantic import Field
 
 from app.models.base import Ends, ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import Corners, WantsCorners, WeighedRequest, corners_of, notes_of
+from app.models.posed import Body, PosedView
+from app.models.weighed import (
+    ClothPiece,
+    Corners,
+    WantsCorners,
+    WeighedRequest,
+    corners_of,
+    notes_of,
+    piece_of,
+)
 from app.operations.context import Context
+from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.shell.drape import ACROSS, DISC_MM, MAX_ACROSS, PIECE_MM
 from knitcore.shell.drape import drape as drape_cloth
+
+DISC_THICK_MM = 10.0
+"""Of the disc that is shown."""
 
 
 class DrapeRequest(WeighedRequest):
@@ -44,22 +57,31 @@ class DrapeResult(ResultModel):
     bending_length_wale_mm: float
     weight_g_per_m2: float
     converged: bool
+    piece: ClothPiece
     corners_mm: Corners = None
     notes: list[str]
 
 
-def drape(request: DrapeRequest, context: Context) -> DrapeResult:
+def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
     """A round piece drapes over a disc by its weight; its shadow gives the drape coefficient.
 
     Raises
     ------
     InputError, ConvergenceError, CancelledError
     """
-    cloth = request.cloth(to_repeat(request.chart), context)
+    repeat = to_repeat(request.chart)
+    cloth = request.cloth(repeat, context)
     found = request.pass_to(drape_cloth, cloth, cancelled=context.cancelled)
-    return DrapeResult.of(
+    rectangle = request.piece_mm / request.across
+    piece, corners = piece_of(
+        found.corners_mm, (rectangle, rectangle), cloth, repeat, OPERATION.key(request)
+    )
+    turn = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
+    rim = 0.5 * request.disc_mm * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    result = DrapeResult.of(
         found,
         cloth,
+        piece=piece,
         coefficient_of_states=(min(found.coefficients), max(found.coefficients)),
         bending_length_course_mm=cloth.bending_length_mm(0),
         bending_length_wale_mm=cloth.bending_length_mm(1),
@@ -68,6 +90,11 @@ def drape(request: DrapeRequest, context: Context) -> DrapeResult:
         else None,
         notes=notes_of(cloth),
     )
+    return Viewed(result, PosedView(corners, Body.slab(rim, DISC_THICK_MM)).upright())
+
+
+def _draped(request: DrapeRequest, context: Context) -> DrapeResult:
+    return drape(request, context).result
 
 
 def _lines(r: DrapeResult) -> list[str]:
@@ -98,5 +125,6 @@ OPERATION = Operation(
         _lines,
         help="Drape a round piece of CHART over a disc (Cusick's drape coefficient).",
         names={"corners": None},
+        run=_draped,
     ),
 )

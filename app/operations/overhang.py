@@ -5,15 +5,28 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+import numpy as np
 from pydantic import Field
 
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
-from app.models.weighed import Corners, WantsCorners, WeighedRequest, notes_of
+from app.models.posed import Body, PosedView
+from app.models.weighed import (
+    ClothPiece,
+    Corners,
+    WantsCorners,
+    WeighedRequest,
+    notes_of,
+    piece_of,
+)
 from app.operations.context import Context
+from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
 from knitcore.shell.overhang import overhang as hang_over
+
+TABLE_MM = 40.0
+"""Of the table that is shown, from its edge to the back."""
 
 
 class OverhangRequest(WeighedRequest):
@@ -40,28 +53,42 @@ class OverhangResult(ResultModel):
     yarn_level_rigidity_n_mm: float = Field(description="That with which the strip was bent.")
     weight_g_per_m2: float
     converged: bool
+    piece: ClothPiece
     corners_mm: Corners = None
     notes: list[str]
 
 
-def overhang(request: OverhangRequest, context: Context) -> OverhangResult:
+def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResult]:
     """A strip 25 mm wide bends over the edge of a table by its weight, as in Peirce's test.
 
     Raises
     ------
     InputError, ConvergenceError, CancelledError
     """
-    cloth = request.cloth(to_repeat(request.chart), context)
+    repeat = to_repeat(request.chart)
+    cloth = request.cloth(repeat, context)
     axis = 0 if request.direction is Direction.COURSE else 1
     found = hang_over(cloth, axis, request.overhang_mm, cancelled=context.cancelled)
-    return OverhangResult.of(
+    if axis == 0:
+        sheet, rectangle = found.corners_mm.transpose(1, 0, 2), found.rectangle_mm
+    else:  # turned about the vertical, so that the face stays above
+        sheet, rectangle = found.corners_mm[:, ::-1], found.rectangle_mm[::-1]
+    piece, corners = piece_of(sheet, rectangle, cloth, repeat, OPERATION.key(request))
+    table = TABLE_MM * np.array([(-1.0, -1.0), (0.0, -1.0), (0.0, 1.0), (-1.0, 1.0)])
+    result = OverhangResult.of(
         found,
         cloth,
+        piece=piece,
         angle_deg=math.degrees(found.angle_rad),
         yarn_level_rigidity_n_mm=cloth.rigidity_n_mm[axis],
         corners_mm=found.corners_mm.round(3).tolist() if request.corners else None,
         notes=notes_of(cloth),
     )
+    return Viewed(result, PosedView(corners, Body.slab(table, 0.25 * TABLE_MM)).upright())
+
+
+def _hung_over(request: OverhangRequest, context: Context) -> OverhangResult:
+    return overhang(request, context).result
 
 
 def _lines(r: OverhangResult) -> list[str]:
@@ -83,5 +110,6 @@ OPERATION = Operation(
         _lines,
         help="Bend a strip of CHART over the edge of a table (Peirce's bending length).",
         names={"corners": None},
+        run=_hung_over,
     ),
 )

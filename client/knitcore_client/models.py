@@ -1489,6 +1489,17 @@ class CharacterisedFabric(BaseModel):
     curves: dict[Direction, FabricCurve]
 
 
+class ClothPiece(BaseModel):
+    """The stitches of a piece of cloth in a test, to show them in 3D: chart and shape."""
+
+    id: str
+    """Name of the shape, for 3D views of this chart."""
+    chart: str
+    """K/P lines, the top row first, as seen from the face."""
+    outline: str
+    """Lines of x (there) and . (not), the top row first."""
+
+
 class CompareResult(BaseModel):
     """Errors of each frame, in the order of the stretch."""
 
@@ -1727,6 +1738,7 @@ class DrapeResult(BaseModel):
     bending_length_wale_mm: float
     weight_g_per_m2: float
     converged: bool
+    piece: ClothPiece
     corners_mm: list[list[tuple[float, float, float] | None]] | None = None
     """Corners of the sheet line by line, mm; null outside the piece."""
     notes: list[str]
@@ -2436,6 +2448,7 @@ class OverhangResult(BaseModel):
     """That with which the strip was bent."""
     weight_g_per_m2: float
     converged: bool
+    piece: ClothPiece
     corners_mm: list[list[tuple[float, float, float] | None]] | None = None
     """Corners of the sheet line by line, mm; null outside the piece."""
     notes: list[str]

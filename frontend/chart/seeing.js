@@ -6,10 +6,11 @@
  *
  * @typedef {"chart" | "yarn" | "region" | "fabric" | "phase"} YarnColours of the 3D view: as the chart
  *   has them, or one of its own
- * @typedef {"flat" | "lying" | "worn" | "hung"} Pose of the fabric in 3D: held flat, as it lies, on the
- *   body, hanging from its top edge
+ * @typedef {"flat" | "lying" | "worn" | "hung" | "tested"} Pose of the fabric in 3D: held flat, as it lies, on
+ *   the body, hanging from its top edge, a piece of it over an edge or a disc
  * @typedef {{pose: Pose | "pulled", id: string, rows: number, columns: number, converged: boolean, words: string,
- *   note: string}} Posed a shape that was computed, and what to say of it
+ *   note: string, piece?: {chart: string, outline: string}}} Posed a shape that was computed, and what to say
+ *   of it; the piece is another than the chart
  * @typedef {{at_mm: number, girth_mm: number}} GirthAt of a limb
  * @typedef {{request: import("../types.js").GloveRequest, outline: string}} PlannedGlove the hand for which
  *   a glove was made, and the glove's outline
@@ -20,7 +21,7 @@ import { Signal } from "../core/signal.js";
 import { loadSettings, saveSettings } from "../core/store.js";
 
 /** Names of the poses. @type {Record<Pose, string>} */
-export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body", hung: "Hanging" };
+export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body", hung: "Hanging", tested: "In a test" };
 
 const SETTINGS = {
   yarnColours: /** @type {YarnColours} */ ("chart"),

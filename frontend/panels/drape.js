@@ -14,12 +14,19 @@ import { labelled, numberField } from "../widgets/fields.js";
 import { problemText } from "../widgets/problem.js";
 
 /** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
+/**
+ * @typedef {{words: string[], notes: string[], piece?: {id: string, chart: string, outline: string}}} Told
+ *   words, and what to show in 3D
+ */
+
+/** Fabrics of a border. */
+const BORDERS = /** @type {const} */ (["garter", "seed", "rib"]);
 
 /**
  * The simulated tests: words of the button, what it is for, and the answer in words.
  *
  * @type {{id: string, label: string, hint: string,
- *   tell: (asked: Weighed, signal: AbortSignal) => Promise<{words: string[], notes: string[]}>}[]}
+ *   tell: (asked: Weighed, signal: AbortSignal) => Promise<Told>}[]}
  */
 const TESTS = [
   {
@@ -33,6 +40,7 @@ const TESTS = [
       return {
         words: [`Bending length ${rows} cm along the rows, ${columns} cm along the columns.`],
         notes: found[0].notes,
+        piece: found[0].piece,
       };
     },
   },
@@ -41,7 +49,7 @@ const TESTS = [
     label: "Over a disc",
     hint: "A round piece of 30 cm over a disc of 18 cm: the drape coefficient",
     tell: async (asked, signal) => {
-      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes } = await api.drape(asked, signal);
+      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, piece } = await api.drape(asked, signal);
       const states = ends.map((end) => percent(end)).join(" to ");
       return {
         words: [
@@ -49,20 +57,22 @@ const TESTS = [
           `Falls by ${figure(fall_mm / 10, 2)} cm. Soft cloth drapes more than this.`,
         ],
         notes,
+        piece,
       };
     },
   },
   {
     id: "border",
     label: "Border",
-    hint: "How wide a garter border holds it flat by its weight",
+    hint: "How wide a border of garter, seed or rib holds it flat by its weight",
     tell: async (asked, signal) => {
-      const { sides, ends, notes } = await api.border(asked, signal);
-      const wide = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
-      return {
-        words: [`By its weight alone: a garter border of ${wide[0]} cm at the sides, ${wide[1]} cm at the ends.`],
-        notes,
-      };
+      const found = await Promise.all(BORDERS.map((border) => api.border({ ...asked, border }, signal)));
+      const words = found.map(({ sides, ends }, i) => {
+        const [wide, high] = [sides, ends].map(({ width_mm: mm }) => figure(mm / 10, 2));
+        const lies = sides.holds && ends.holds ? "" : ", and wider would roll up, too";
+        return `A ${BORDERS[i]} border by its weight alone: ${wide} cm at the sides, ${high} cm at the ends${lies}.`;
+      });
+      return { words, notes: found[0].notes };
     },
   },
 ];
@@ -79,6 +89,21 @@ export function drape(host, studio) {
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
   });
+  /** @param {string} label @param {{id: string, chart: string, outline: string}} piece @param {string} note */
+  const show = (label, { id, chart, outline }, note) => {
+    const { rows, columns } = studio.document.grid;
+    studio.seeing.pose.value = "tested";
+    studio.seeing.posed.value = {
+      pose: "tested",
+      id,
+      rows,
+      columns,
+      converged: true,
+      words: `${label}, by its weight`,
+      note,
+      piece: { chart, outline },
+    };
+  };
   /** @param {(typeof TESTS)[number]} test */
   const run = ({ label, tell }) => {
     const { grid } = scopeOf(studio);
@@ -90,7 +115,8 @@ export function drape(host, studio) {
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
     latest.run(async (signal) => {
       try {
-        const { words, notes } = await tell(asked, signal);
+        const { words, notes, piece } = await tell(asked, signal);
+        if (piece) show(label, piece, notes[0]);
         answer.replaceChildren(
           ...words.map((text) => h("p", { class: "figures" }, text)),
           ...notes.map((text) => h("p", { class: "muted" }, text)),

@@ -273,6 +273,9 @@ function wanted(studio, view) {
   const byRegion = ["yarn", "region"].includes(colour) || (studio.rectangles.value && seeing.groups.value === "region");
   const { rows, columns } = chart.grid;
   const seen = view.viewport.visible(chart.grid);
+  if (posed?.piece) {
+    return { ...studio.request, ...posed.piece, colour: "fabric", palette: palette(), curl: { id: posed.id } };
+  }
   return {
     ...studio.request,
     outline: chart.shaped ? outlineText(chart.outline, columns) : null,

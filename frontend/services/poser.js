@@ -53,8 +53,12 @@ export function startPoser(studio) {
       }
     });
   };
-  const again = () => wanted() !== "flat" && ask();
-  pose.listen(ask);
+  const again = () => {
+    if (pose.value === "tested")
+      pose.value = "flat"; // it was a piece of the chart before
+    else if (wanted() !== "flat") ask();
+  };
+  pose.listen((now) => now !== "tested" && ask());
   studio.weight.listen(() => pose.value === "hung" && ask());
   limb.listen(() => pose.value === "worn" && ask());
   studio.step.listen((step) => {

@@ -11,19 +11,21 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
+from scipy.ndimage import map_coordinates
 
 from knitcore.answer.choose import choose
 from knitcore.arrays import Array
 from knitcore.bounds import check_linear_density
 from knitcore.chart import StitchChart
-from knitcore.fabric import Direction
+from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
 from knitcore.materials.loops import loop_lengths_mm
 from knitcore.phases import pure_fabric, quarter_phases
 from knitcore.shell.bends import bends_of
 from knitcore.shell.sheet import TWIST, Net, Sheet
-from knitcore.yarnlevel.bending import ROLLS_FROM, bending, bending_length_mm
+from knitcore.yarnlevel.bending import MAX_STITCHES, ROLLS_FROM, bending, bending_length_mm
 from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
@@ -44,6 +46,8 @@ class Cloth:
     curvature_per_mm : at rest, positive with the face outside.
     thickness_mm : of the fabric.
     weight_n_per_mm2 : of the relaxed fabric.
+    from_quarters : whether bending is the mean of the four fabrics' in the repeat, which is too
+        large for the yarn level. Folds, which stiffen wide ribs, are then left out.
     """
 
     stitch_mm: tuple[float, float]
@@ -53,6 +57,7 @@ class Cloth:
     curvature_per_mm: tuple[float, float]
     thickness_mm: float
     weight_n_per_mm2: float
+    from_quarters: bool = False
 
     @property
     def moment_n(self) -> tuple[float, float]:
@@ -137,8 +142,7 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
     Raises
     ------
     InputError
-        If the repeat is too large for the yarn level, the yarn's weight is impossible, or the
-        material lacks a fabric or its loop length.
+        If the yarn's weight is impossible, or the material lacks a fabric or its loop length.
     ConvergenceError
         If it does not relax at the yarn level, or folds by itself.
     """
@@ -159,7 +163,42 @@ def cloth_of(chart: StitchChart, material: Material, *, linear_density_g_per_m: 
         curvature_per_mm=curvature,
         thickness_mm=thickness,
         weight_n_per_mm2=weight / (stitch[0] * stitch[1]),
+        from_quarters=repeat.stitches > MAX_STITCHES,
     )
+
+
+def stitch_corners(
+    corners_mm: Array, rectangle_mm: tuple[float, float], stitch_mm: tuple[float, float]
+) -> tuple[Array, NDArray[np.bool_]]:
+    """The stitches on a sheet of rectangles.
+
+    Parameters
+    ----------
+    corners_mm : (lines, points, 3) corners of the rectangles, NaN outside the piece.
+    rectangle_mm, stitch_mm : sizes at rest, along the points of a line and from line to line.
+
+    Returns
+    -------
+    corners, stitches : (rows + 1, columns + 1, 3) mm, (rows, columns) those within the piece.
+    """
+    at = []
+    for rectangle, stitch, lines in zip(
+        rectangle_mm, stitch_mm, corners_mm.shape[1::-1], strict=True
+    ):
+        wide = rectangle * (lines - 1)
+        count = max(1, int(wide / stitch))
+        at.append((0.5 * (wide - count * stitch) + stitch * np.arange(count + 1)) / rectangle)
+    grid = np.meshgrid(at[1], at[0], indexing="ij")
+    found = np.stack(
+        [
+            map_coordinates(part, grid, order=1, cval=np.nan)
+            for part in np.moveaxis(corners_mm, 2, 0)
+        ],
+        axis=-1,
+    )
+    known = np.isfinite(found[..., 0])
+    stitches = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
+    return found, stitches
 
 
 def stitch_weights_n(
@@ -196,6 +235,8 @@ def _bent(
             (sign * bend.curvature_course_per_mm, sign * bend.curvature_wale_per_mm),
             bend.thickness_mm,
         )
+    if repeat.stitches > MAX_STITCHES:
+        return _mean_bend(repeat, material)
     used = yarn_for(material, repeat)
     found = bending(relax(repeat, used.yarn, used.loop_length_mm))
     return (
@@ -203,3 +244,21 @@ def _bent(
         (found.course.curvature_per_mm, found.wale.curvature_per_mm),
         found.thickness_mm,
     )
+
+
+def _mean_bend(
+    repeat: StitchChart, material: Material
+) -> tuple[tuple[float, float], tuple[float, float], float]:
+    """The same of a large repeat: means over its quarters."""
+    phases = quarter_phases(repeat, periodic=True)
+    sign = np.where(repeat.purl, -1.0, 1.0).repeat(2, axis=0).repeat(2, axis=1)
+    bends = bends_of(material)
+    of = [bends[fabric] for fabric in PHASES]
+    rigidity = np.array([(b.rigidity_course_n_mm, b.rigidity_wale_n_mm) for b in of])
+    curved = np.array([(b.curvature_course_per_mm, b.curvature_wale_per_mm) for b in of])
+    mean = rigidity[phases].mean(axis=(0, 1))
+    moment = (sign[..., None] * (rigidity * curved)[phases]).mean(axis=(0, 1))
+    course, wale = mean.tolist()
+    free_course, free_wale = (moment / mean).tolist()
+    thickness = np.array([b.thickness_mm for b in of])[phases].mean()
+    return (course, wale), (free_course, free_wale), float(thickness)

@@ -38,6 +38,7 @@ class Overhang:
     bending_length_mm : by Peirce's formula from overhang and angle.
     rigidity_n_mm : weight times its cube.
     corners_mm : (lines along, lines across, 3) of the rectangles.
+    rectangle_mm : their size, along and across.
     converged : whether the strip is in equilibrium.
     """
 
@@ -48,6 +49,7 @@ class Overhang:
     bending_length_mm: float
     rigidity_n_mm: float
     corners_mm: Array
+    rectangle_mm: tuple[float, float]
     converged: bool
 
 
@@ -105,5 +107,6 @@ def overhang(
         bending_length_mm=peirce,
         rigidity_n_mm=cloth.weight_n_per_mm2 * peirce**3,
         corners_mm=corners.transpose(1, 0, 2),
+        rectangle_mm=size,
         converged=found.converged,
     )

@@ -48,6 +48,19 @@ def test_simulated_tests_as_commands(arguments: list[str], words: str) -> None:
     assert words in result.stdout
 
 
+@pytest.mark.parametrize(
+    ("address", "more"), [("overhang", {"direction": "wale"}), ("drape", {"across": 10})]
+)
+def test_the_piece_of_a_test_is_shown_in_3d(
+    client: TestClient, address: str, more: dict[str, Any]
+) -> None:
+    told = client.post(f"/api/v1/{address}", json={"chart": "K/P", **more, **YARN}).json()
+    piece = told["piece"]
+    view = {"curl": {"id": piece.pop("id")}, "material": "acrylic", **piece}
+    answer = client.post("/api/v1/views/still", json=view)
+    assert answer.status_code == 200, answer.text
+
+
 def test_fabric_that_curls_is_said_to() -> None:
     yarn = ["--material", "acrylic", "--linear-density-g-per-m", "0.5"]
     result = CliRunner().invoke(main, ["overhang", "stockinette", *yarn])

@@ -11,7 +11,7 @@ from knitcore.errors import InputError
 from knitcore.fabric import Fabric
 from knitcore.materials import material
 from knitcore.shell.bends import bends_of
-from knitcore.shell.cloth import Cloth, cloth_of, stitch_weights_n
+from knitcore.shell.cloth import Cloth, cloth_of, stitch_corners, stitch_weights_n
 from knitcore.shell.sheet import sheet_of
 
 ACRYLIC = material("acrylic")
@@ -69,3 +69,25 @@ def test_weight_is_that_of_the_yarn_in_the_stitches() -> None:
 def test_impossible_yarns_are_refused() -> None:
     with pytest.raises(InputError, match="not in range"):
         stitch_weights_n(GARTER, ACRYLIC, 0.0)
+
+
+def test_cloth_of_a_large_repeat_bends_as_the_mean_of_its_quarters() -> None:
+    halves = StitchChart.parse("\n".join(["K"] * 20 + ["P"] * 20))
+    found = cloth_of(halves, ACRYLIC, linear_density_g_per_m=0.5)
+    assert found.from_quarters
+    plain = _cloth("K")
+    # all but the quarters at the borders of the halves are stockinette, knits against purls
+    assert found.rigidity_n_mm[0] == pytest.approx(plain.rigidity_n_mm[0], rel=0.1)
+    assert found.curvature_per_mm == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+def test_stitches_lie_evenly_on_the_rectangles_of_a_sheet() -> None:
+    x, y = np.meshgrid(np.arange(0.0, 21.0, 2.0), np.arange(0.0, 13.0, 3.0))
+    sheet = np.stack([x, y, x * 0.0], axis=-1)
+    sheet[0, 0] = np.nan
+    corners, stitches = stitch_corners(sheet, (2.0, 3.0), (2.5, 1.5))
+    assert stitches.shape == (8, 8)
+    assert not stitches[0, 0]
+    assert stitches[2:, 1:].all()
+    assert np.allclose(np.diff(corners[4, :, 0]), 2.5)
+    assert np.allclose(np.diff(corners[:, 4, 1]), 1.5)
