@@ -10,7 +10,7 @@ from knitcore import RelaxedSize
 from knitcore.errors import InputError
 
 
-@pytest.mark.parametrize("size", [0.0, -1.0, 500.0, math.nan, math.inf])
+@pytest.mark.parametrize("size", [0.0, -1.0, 500.1, math.nan, math.inf])
 def test_what_is_no_size_is_refused_by_name(size: float) -> None:
     with pytest.raises(InputError) as course:
         RelaxedSize(size, 3.0)

@@ -119,7 +119,7 @@ def test_a_stretch_can_be_stopped():
 
 
 def test_impossible_stretches_are_refused():
-    with pytest.raises(InputError, match="strain above 0"):
+    with pytest.raises(InputError, match="above 0"):
         stretch("cotton", "rib", "course", 0.0, 5)
     with pytest.raises(InputError, match="2 to 1000"):
         stretch("cotton", "rib", "course", 0.5, 1)
