@@ -2231,7 +2231,7 @@ export interface RelaxResult {
   converged: boolean;
   yarn: YarnResult;
   starts: StartResult[];
-  /** Without the mirror symmetries; null for other branches, shapes that are held, and free cells of more than 9 stitches. */
+  /** Without the mirror symmetries; null for other branches, shapes that are held, and free cells of more than 16 stitches. */
   unmirrored: UnmirroredResult | null;
   notes: string[];
   /** Bottom course first; each runs once across the repeat. */

@@ -24,7 +24,7 @@ from knitcore.yarnlevel.relax import Branch, RelaxedRepeat
 from knitcore.yarnlevel.results import RelaxedCell
 from knitcore.yarnlibrary.yarns import ChartYarn
 
-FOLLOWED_UP_TO = 9
+FOLLOWED_UP_TO = 16
 """Free cells of up to this many stitches are also followed without their symmetries."""
 
 

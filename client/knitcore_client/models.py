@@ -2724,7 +2724,7 @@ class RelaxResult(BaseModel):
     starts: list[StartResult]
     unmirrored: UnmirroredResult | None = None
     """Without the mirror symmetries; null for other branches, shapes that are held, and free
-    cells of more than 9 stitches."""
+    cells of more than 16 stitches."""
     notes: list[str]
     centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
     """Bottom course first; each runs once across the repeat."""
