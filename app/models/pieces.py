@@ -41,10 +41,6 @@ class HeldInput(RequestModel):
     x_mm: Millimetres | None = Field(0.0, description="Moved so far; null lets it slide along x.")
     y_mm: Millimetres | None = Field(0.0, description="Moved so far; null lets it slide along y.")
 
-    def condition(self) -> Condition:
-        """As the library has it."""
-        return self.pass_to(Held)
-
 
 class PulledInput(RequestModel):
     """An edge in a clamp that does not turn and moves freely under a force."""
@@ -53,10 +49,6 @@ class PulledInput(RequestModel):
     edge: EdgeName
     x_n: float = 0.0
     y_n: float = 0.0
-
-    def condition(self) -> Condition:
-        """As the library has it."""
-        return self.pass_to(Pulled)
 
 
 class TractionInput(RequestModel):
@@ -67,10 +59,6 @@ class TractionInput(RequestModel):
     x_n_per_mm: float = 0.0
     y_n_per_mm: float = 0.0
 
-    def condition(self) -> Condition:
-        """As the library has it."""
-        return self.pass_to(Traction)
-
 
 class SewnInput(RequestModel):
     """An edge with a tape or elastic sewn on, which resists stretching and bends freely."""
@@ -79,14 +67,11 @@ class SewnInput(RequestModel):
     edge: EdgeName
     stiffness_n: float = Field(gt=0, description="Force of the tape over its strain.")
 
-    def condition(self) -> Condition:
-        """As the library has it."""
-        return self.pass_to(Sewn)
-
 
 ConditionInput = Annotated[
     HeldInput | PulledInput | TractionInput | SewnInput, Field(discriminator="kind")
 ]
+_CONDITIONS = {"held": Held, "pulled": Pulled, "traction": Traction, "sewn": Sewn}
 
 
 class PieceInput(RequestModel):
@@ -112,6 +97,10 @@ class PieceInput(RequestModel):
     def piece(self) -> CutPiece:
         """As the library has it."""
         return self.pass_to(CutPiece)
+
+    def loads(self) -> list[Condition]:
+        """The conditions, as the library has them."""
+        return [given.pass_to(_CONDITIONS[given.kind]) for given in self.conditions]
 
 
 class PieceTestRequest(LawsRequest):

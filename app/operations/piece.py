@@ -87,9 +87,8 @@ def _test(request: PieceRequest, material: Material, context: Context) -> PieceT
     cut = request.piece.piece()
     request.check(cut, context)
     cloth = request.pass_to(cloth_under, cut, to_repeat(request.chart), material)
-    conditions = [given.condition() for given in request.piece.conditions]
     told = {"progress": context.progress, "cancelled": context.cancelled}
-    return request.pass_to(solve, cut, cloth, conditions, **told)
+    return request.pass_to(solve, cut, cloth, request.piece.loads(), **told)
 
 
 def _result(request: PieceRequest, test: PieceTest, material: Material) -> PieceResult:
