@@ -50,14 +50,14 @@ NUMBERED_UP_TO = 40
 
 def chart_svg(chart: StitchChart | Piece, style: ChartStyle | None = None) -> str:
     """The whole chart as one SVG drawing."""
-    piece = _piece(chart)
+    piece = Piece.of(chart)
     size = range(piece.chart.rows), range(piece.chart.columns)
     return to_svg(_Part(piece, style or ChartStyle(), *size, CELL_MM).page(), _title(piece.chart))
 
 
 def chart_pdf(chart: StitchChart | Piece, style: ChartStyle | None = None) -> bytes:
     """The chart as a PDF of :func:`chart_pages`."""
-    return to_pdf(chart_pages(chart, style), _title(_piece(chart).chart))
+    return to_pdf(chart_pages(chart, style), _title(Piece.of(chart).chart))
 
 
 def chart_pages(
@@ -70,7 +70,7 @@ def chart_pages(
     an overview, which has the names of the regions, the notes, and the numbers of the pages; that
     of the overview itself is ``first``.
     """
-    style, piece = style or ChartStyle(), _piece(chart)
+    style, piece = style or ChartStyle(), Piece.of(chart)
     chart = piece.chart
     room_x = A4_MM[0] - 2 * MARGIN_MM - 12.0
     room_y = A4_MM[1] - HEADER_MM - key_height(piece, style) - 2 * MARGIN_MM
@@ -92,10 +92,6 @@ def chart_pages(
     parts = [_Part(piece, bare, rows, columns, cell) for rows, columns in places]
     overview = Page(*A4_MM, tuple(_overview(piece, style, parts, first)))
     return (overview, *(part.page(paper=A4_MM) for part in parts))
-
-
-def _piece(chart: StitchChart | Piece) -> Piece:
-    return chart if isinstance(chart, Piece) else Piece.plain(chart)
 
 
 def _pieces(count: int, most: int) -> list[range]:

@@ -81,7 +81,7 @@ def knitout_program(
     >>> knitout_program(StitchChart.of_fabric("seed", rows=4, columns=6)).transfers
     18
     """
-    piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    piece = Piece.of(chart)
     columns, rows = piece.chart.columns, piece.chart.rows
     if columns > needles:
         parts = -(-columns // needles)

@@ -86,7 +86,7 @@ def verified(
     KnitoutMismatchError
         If the machine refuses the program, warns, or knits something else.
     """
-    piece = (chart if isinstance(chart, Piece) else Piece.plain(chart)).cropped()
+    piece = Piece.of(chart).cropped()
     made = knitout_program(
         piece, finish=finish, needles=MAX_NEEDLES if needles is None else needles
     )

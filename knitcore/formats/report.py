@@ -54,7 +54,7 @@ def design_report(
     InputError
         If the chart needs a pure fabric that the material lacks.
     """
-    piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    piece = Piece.of(chart)
     pages = []
     if piece.is_rectangle:
         found = choose(piece.chart, material)

@@ -30,7 +30,7 @@ def stitch_values(chart: StitchChart | Piece, material: Material) -> dict[str, N
 
 def write_csv(chart: StitchChart | Piece, material: Material) -> str:
     """One line a stitch; rows and columns count from 1 at the bottom left of the face."""
-    values, piece = stitch_values(chart, material), _piece(chart)
+    values, piece = stitch_values(chart, material), Piece.of(chart)
     several = len(piece.yarns) > 1
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
@@ -52,7 +52,7 @@ def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
     """Stitches as rectangles in mm, with their values as cell data."""
     import meshio
 
-    piece = _piece(chart)
+    piece = Piece.of(chart)
     lattice = flat_lattice(_continued(chart), material)
     x = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[0, :, 0])])
     y = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[:, 0, 1])])
@@ -71,10 +71,6 @@ def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
         file = Path(folder) / "chart.vtu"
         meshio.Mesh(points, [("quad", quads)], cell_data=data).write(file, file_format="vtu")
         return file.read_bytes()
-
-
-def _piece(chart: StitchChart | Piece) -> Piece:
-    return chart if isinstance(chart, Piece) else Piece.plain(chart)
 
 
 def _continued(chart: StitchChart | Piece) -> StitchChart:

@@ -61,7 +61,7 @@ def write_rows(
     Bind off.
     <BLANKLINE>
     """
-    piece = chart if isinstance(chart, Piece) else Piece.plain(chart)
+    piece = Piece.of(chart)
     opening, (rows,) = written_sections(piece, construction, first_side=first_side)
     return "\n".join([*opening, *rows, "Bind off.", ""])
 

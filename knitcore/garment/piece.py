@@ -72,6 +72,11 @@ class Piece:
         shaped = chart if isinstance(chart, ShapedChart) else ShapedChart.rectangle(chart)
         return cls(shaped, (yarn,), np.zeros(shaped.stitch.shape, dtype=np.intp))
 
+    @classmethod
+    def of(cls, chart: StitchChart | Piece) -> Piece:
+        """The piece itself, or a chart as a piece of one yarn."""
+        return chart if isinstance(chart, Piece) else cls.plain(chart)
+
     @property
     def chart(self) -> StitchChart:
         """K/P of every cell."""
