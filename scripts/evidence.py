@@ -465,8 +465,9 @@ def shear(folder: Path) -> list[str]:
         "So much of the stiffening on the bias is the coupling's, and the rest is the shear's own:",
         "its stiffness grows with the square of the angle and has doubled at half a radian. That",
         "one number was chosen on this strip (Poisson's ratio 0.3, 50 and 100 mm), so the table",
-        "does not prove it; the yarn level's shear modulus of acrylic stockinette, the same within",
-        "9 % to an angle of 0.1, agrees with it (4 %).",
+        "does not prove it, and the yarn level does not confirm it: without friction and free of",
+        "force, its stockinette and garter become softer ([decisions](decisions.md#shear)). The",
+        "interval of the number holds both.",
         "Less certain is the modulus at rest. This jersey has a share of "
         f"{min(matched[name]):.2f} to {max(matched[name]):.2f}, the library's acrylic, from its",
         f"tests and a broad prior, {', '.join(shares)}. The intervals allow for a factor of three",

@@ -64,7 +64,9 @@ def scaled(record: FabricRecord, course: float, wale: float) -> FabricRecord:
 def _laws_as_they_are() -> Iterator[None]:
     """Cells with the pure fabrics' own laws, so that a changed law is a changed cell."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("knitcore.swatch.strip.quarter_laws", flat_laws)
+        patched.setattr(
+            "knitcore.swatch.strip.quarter_laws", lambda chart, of, gauge: flat_laws(chart, of)
+        )
         yield
 
 
