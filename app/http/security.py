@@ -255,7 +255,7 @@ class Guard:
         )
 
     def _over_budget(self, scope: Scope, user: str, limits: dict[str, str]) -> Response | None:
-        """Refuse more requests than one user may send, a second or at once; tell what is left."""
+        """Refuse more requests than one user may send; say how many are left."""
         left, wait = self.rate.take(user)
         limits["RateLimit-Limit"] = str(self.rate.burst)
         limits["RateLimit-Remaining"] = str(left)

@@ -153,7 +153,7 @@ OPERATION = Operation(
     job=True,
     command=Command(
         _lines,
-        help="Predict all repeats of a material; stopped at any point, it goes on where it was.",
+        help="Predict all repeats of a material; a stopped run continues where it left off.",
         names={"repeats": None},
         run=_command,
     ),

@@ -83,7 +83,7 @@ def curve(
     Parameters
     ----------
     chart : a repeat, or a swatch that may cut its last repeat off.
-    material : one yarn on one setting.
+    material : a yarn at one setting.
     direction : of the pull.
     stress_n_per_mm : increasing stresses at which strains are given, N/mm.
     gauge : measured relaxed size of the chart's mean stitch, if known.

@@ -138,7 +138,7 @@ def learned(
     Parameters
     ----------
     chart : the repeat.
-    material : one yarn on one setting, with the pure fabrics that the chart is made of.
+    material : a yarn at one setting, with the pure fabrics that the chart is made of.
     known : its relaxed size, if known.
 
     Raises

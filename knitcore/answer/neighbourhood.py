@@ -38,7 +38,7 @@ def neighbourhood_sizes(chart: StitchChart, material: Material) -> Array:
     Parameters
     ----------
     chart : the piece, with edges.
-    material : one yarn on one setting.
+    material : a yarn at one setting.
 
     Raises
     ------

@@ -93,7 +93,7 @@ def quarter_laws(
     Parameters
     ----------
     chart : the piece.
-    material : one yarn on one setting.
+    material : a yarn at one setting.
     gauge : measured relaxed size of the chart's mean stitch, if known.
     even : give all quarters of a mixed patch one law, that of the patch.
 

@@ -1,7 +1,7 @@
 """Yarn-level results for an atlas: repeats relaxed and stretched one by one, small ones first.
 
 A repeat takes seconds to a minute, all of a material more than a day, so every finished one is kept
-in a folder beside the atlas, and the run can be stopped at any point and taken up again. The pure
+in a folder beside the atlas, and the run can be stopped at any point and resumed. The pure
 fabrics of the same yarn relate the results to the measured material
 (:mod:`knitcore.answer.swept`).
 """
@@ -49,8 +49,8 @@ def improve_atlas(
     Parameters
     ----------
     material : of the atlas.
-    file : the atlas. It is written when the run ends or is stopped, and when one that was killed is
-        taken up again.
+    file : the atlas. It is written when the run ends or is stopped, and when a killed run is
+        resumed.
     most_stitches : of the largest repeat; small ones come first.
     workers, scheduler : as :func:`knitcore.batch.run_batch`.
     progress : called with the number of repeats done and in all.

@@ -1,4 +1,4 @@
-"""Materials: one yarn on one machine setting, with a law for each pure fabric."""
+"""Materials: one yarn at one machine setting, with a law for each pure fabric."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ class FabricRecord:
 
 @dataclass(frozen=True)
 class Material:
-    """One yarn on one machine setting (or needle).
+    """One yarn at one machine setting (or on one needle).
 
     Attributes
     ----------

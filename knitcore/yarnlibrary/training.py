@@ -24,7 +24,7 @@ MAX_STITCHES = 36
 
 @dataclass(frozen=True)
 class YarnPoint:
-    """One yarn on one setting, for every chart.
+    """One yarn at one setting, for every chart.
 
     Parameters
     ----------
