@@ -12,20 +12,26 @@
   const PITCH = 3.4;
   /** Depth of the grooves over the yarn's radius. */
   const GROOVE = 0.4;
+  /** Yarn whose radius is fewer pixels shows no plies: it is drawn without them, which takes less. */
+  const FEWEST_PIXELS = 1.8;
 
   /** Corners of a tube, turns of its plies from ring to ring, radius in the scene's unit, one over half the cloth's thickness. */
   const yarn = new Float32Array(4);
 
   const DECLARED = `
     uniform vec4 yarn;
-    varying vec3 vYarn; // cosine and sine of the place around the yarn, turns of the plies up to here
+    uniform float yarnPixels; // radius, over half the picture's height in the scene's unit at distance 1
+    varying vec3 vYarn; // cosine and sine of the place around the yarn, turns of the plies up to here; 0 far away
     varying vec2 vShade; // height in the cloth towards the eye, and how far it faces outwards
   `;
   /** The corners of a tube follow each other ring by ring, with a ring at each end that closes it. */
   const PLACED = `
-    float yarnSides = max( yarn.x, 1.0 ), yarnRing = floor( ( float( gl_VertexID ) + 0.5 ) / yarnSides );
-    float yarnAngle = 6.2831853 * ( float( gl_VertexID ) / yarnSides - yarnRing );
-    vYarn = vec3( cos( yarnAngle ), sin( yarnAngle ), ( yarnRing - 1.0 ) * yarn.y );
+    vYarn = vec3( 0.0 );
+    if ( yarnPixels * projectionMatrix[ 1 ][ 1 ] > ${FEWEST_PIXELS} * vViewPosition.z ) {
+      float yarnSides = max( yarn.x, 1.0 ), yarnRing = floor( ( float( gl_VertexID ) + 0.5 ) / yarnSides );
+      float yarnAngle = 6.2831853 * ( float( gl_VertexID ) / yarnSides - yarnRing );
+      vYarn = vec3( cos( yarnAngle ), sin( yarnAngle ), ( yarnRing - 1.0 ) * yarn.y );
+    }
     vec3 yarnFace = normalMatrix * im[ 2 ];
     float yarnSide = dot( yarnFace, vViewPosition ) * inversesqrt( dot( yarnFace, yarnFace ) * dot( vViewPosition, vViewPosition ) );
     vShade = clamp( 4.0 * yarnSide, - 1.0, 1.0 ) * vec2( position.z * yarn.w, objectNormal.z );
@@ -33,7 +39,7 @@
   const LIT = `
     if ( yarn.x > 0.0 ) {
       diffuseColor.rgb *= mix( 0.42, 1.06, clamp( 0.5 + 0.5 * vShade.x, 0.0, 1.0 ) ) * ( 0.9 + 0.1 * vShade.y );
-      if ( fwidth( vYarn.z ) < 0.25 ) {
+      if ( dot( vYarn.xy, vYarn.xy ) > 0.01 && fwidth( vYarn.z ) < 0.25 ) {
         vec2 dx = dFdx( vYarn.xy ), dy = dFdy( vYarn.xy );
         float c = vYarn.x, s = vYarn.y, inside = 1.0 / max( c * c + s * s, 1e-6 );
         vec2 change = ${PLIES}.0 * inside * vec2( c * dx.y - s * dx.x, c * dy.y - s * dy.x ) + 6.2831853 * vec2( dFdx( vYarn.z ), dFdy( vYarn.z ) );
@@ -68,14 +74,18 @@
   gl.shaderSource = function (shader, source) {
     shaderSource.call(this, shader, dressed(source));
   };
-  /** Where programs take the yarn. @type {WeakMap<WebGLProgram, WebGLUniformLocation | null>} */
+  /** Where programs take the yarn and its pixels. @type {WeakMap<WebGLProgram, (WebGLUniformLocation | null)[]>} */
   const places = new WeakMap();
   gl.useProgram = function (program) {
     useProgram.call(this, program);
     if (!program) return;
-    let place = places.get(program);
-    if (place === undefined) places.set(program, (place = this.getUniformLocation(program, "yarn")));
-    if (place) this.uniform4fv(place, yarn);
+    let found = places.get(program);
+    if (!found)
+      places.set(program, (found = ["yarn", "yarnPixels"].map((name) => this.getUniformLocation(program, name))));
+    const [place, pixels] = found;
+    if (!place) return;
+    this.uniform4fv(place, yarn);
+    this.uniform1f(pixels, (yarn[2] * this.drawingBufferHeight) / 2);
   };
 
   /** @typedef {{vertices: Float32Array, faces: Uint32Array, scale: number}} Tubes */
