@@ -75,8 +75,8 @@ export function inspector(host, studio) {
     );
   const tabs = {
     rigidity: tab("rigidity", "Stiffness"),
-    curve: tab("curve", "Stress–strain"),
-    limb: tab("limb", "On a limb"),
+    curve: tab("curve", "Curves"),
+    limb: tab("limb", "Limb"),
     drape: tab("drape", "Drape"),
   };
   const pulls = h("div", {

@@ -10,6 +10,9 @@
 
 import { api, call } from "../api.js";
 
+/** Longest side of a photo of yarn as it is sent; a hand's length of yarn is still some pixels wide. */
+const PHOTO_SIDE_PX = 2400;
+
 export const OWN = "own:";
 
 /** @param {string} id */
@@ -76,10 +79,25 @@ async function uploaded(file) {
  * @param {{gramsPerMetre: number, lengthMm: number}} given weight per length, and the length that hangs
  */
 export const bendingRequest = async (photos, { gramsPerMetre, lengthMm }) => ({
-  images: await Promise.all(photos.map(uploaded)),
+  images: await Promise.all(photos.map(async (photo) => uploaded(await shrunk(photo)))),
   linear_density_g_per_m: gramsPerMetre,
   length_mm: lengthMm,
 });
+
+/**
+ * A photo no larger than tracing needs: those of a telephone are ten times as heavy.
+ *
+ * @param {File} photo as it is if the browser cannot read it: the service says what is wrong with it
+ */
+async function shrunk(photo) {
+  const bitmap = await createImageBitmap(photo).catch(() => null);
+  const scale = PHOTO_SIDE_PX / Math.max(bitmap?.width ?? 0, bitmap?.height ?? 0);
+  if (!bitmap || scale >= 1) return photo;
+  const canvas = new OffscreenCanvas(Math.round(bitmap.width * scale), Math.round(bitmap.height * scale));
+  canvas.getContext("2d")?.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+  bitmap.close();
+  return new File([await canvas.convertToBlob({ type: photo.type, quality: 0.92 })], photo.name);
+}
 
 /** @param {File} file @param {number} diameterMm NaN if the file says it */
 export const compressionRequest = async (file, diameterMm) => ({

@@ -48,6 +48,8 @@ def test_nothing_serious_is_wrong_in_any_panel_in_both_themes(flat_studio: Page)
         page.click("#tab-limb")
         expect(page.locator(".limb-pressure")).to_contain_text("mmHg")
         found += [f"{theme} limb: {wrong}" for wrong in violations(page, "#inspector")]
+        page.click("#tab-drape")
+        found += [f"{theme} drape: {wrong}" for wrong in violations(page, "#inspector")]
         page.focus("#chart")
         for name in MENUS:
             page.click(f"#{name}-button")
@@ -141,3 +143,19 @@ def test_everything_is_in_reach_on_small_screens(flat_studio: Page) -> None:
         assert chart
         assert chart["width"] > 300
         assert chart["height"] > 180
+
+
+def test_panels_do_not_scroll_sideways_on_a_phone(flat_studio: Page) -> None:
+    page = flat_studio
+    page.set_viewport_size({"width": 360, "height": 780})
+    for name in ("help-dialog", "export-dialog", "compare-dialog", "inverse"):
+        PANELS[name](page)
+        expect(page.locator(f"#{name}")).to_be_visible()
+        expect(page.locator(f"#{name}.busy")).to_have_count(0)
+        wide = page.evaluate(
+            "(id) => [document.documentElement, document.getElementById(id)]"
+            ".map((e) => e.scrollWidth - e.clientWidth)",
+            name,
+        )
+        assert max(wide) <= 0, f"{name}: {wide}"
+        page.locator(f"#{name} header").get_by_label("Close").click()

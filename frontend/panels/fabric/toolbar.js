@@ -22,7 +22,7 @@ const SIDES = [
 const HINTS = [
   ["flat", "The fabric held flat"],
   ["lying", "Curled and folded, as it lies on its own"],
-  ["worn", 'Closed to a tube on a limb, its girths under "On a limb"; a glove that was planned here on its hand'],
+  ["worn", 'Closed to a tube on a limb, its girths under "Limb"; a glove that was planned here on its hand'],
 ];
 
 /** @type {[import("../../chart/seeing.js").YarnColours, string][]} */

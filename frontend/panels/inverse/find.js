@@ -334,7 +334,7 @@ export function findTab(studio, context) {
         "label",
         { class: "check", title: "Up to 4 × 4 instead of 3 × 3; the first time takes up to a minute a yarn" },
         large,
-        "Up to 4 × 4",
+        "Larger patterns, too",
       ),
       h("span", { class: "spacer" }),
       h("button", { class: "button primary", type: "submit", id: "find-run" }, "Find"),
