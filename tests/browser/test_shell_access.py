@@ -145,6 +145,7 @@ def test_everything_is_in_reach_on_small_screens(flat_studio: Page) -> None:
         assert chart["height"] > 180
 
 
+@pytest.mark.slow
 def test_panels_do_not_scroll_sideways_on_a_phone(flat_studio: Page) -> None:
     page = flat_studio
     page.set_viewport_size({"width": 360, "height": 780})
