@@ -94,11 +94,17 @@ def test_a_file_that_is_not_a_piece_is_refused(
 
 
 def test_a_bias_strip_has_an_interval(context: Context) -> None:
-    told = bias(BiasRequest.model_validate(ASKED | {"strain": 0.2}), context)
+    told, straight = (
+        bias(BiasRequest.model_validate(ASKED | {"strain": 0.2, "angle_deg": angle}), context)
+        for angle in (45.0, 0.0)
+    )
     (low, high), force = np.array(told.force_interval_n), np.array(told.force_n)
     assert np.all(low < force)
     assert np.all(force < high)
-    assert told.waist_strain[-1] < -0.1
+    taut = math.sqrt(2 - 1.2**2) - 1  # of rows and columns that only turn
+    # cloth is soft in shear: on the bias its Poisson's ratio is above a half, and below theirs
+    assert taut < told.waist_strain[-1] < -0.5 * 0.2
+    assert told.force_n[-1] < straight.force_n[-1]
 
 
 def test_equal_pulls_of_seed_stitch_in_both_directions(context: Context) -> None:
