@@ -134,7 +134,7 @@ export const api = {
   parse: (text) => call("/charts/parse", { method: "POST", body: { text } }),
 
   /**
-   * @param {{chart: string, material: string}} body
+   * @param {import("./types.js").PredictRequest} body
    * @param {AbortSignal} [signal]
    * @returns {Promise<PredictResult>}
    */

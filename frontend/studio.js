@@ -25,6 +25,7 @@ import { loadSettings, saveSettings } from "./core/store.js";
 import { Editing } from "./chart/editing.js";
 import { OVERLAYS } from "./chart/overlays.js";
 import { Seeing } from "./chart/seeing.js";
+import { Gauges } from "./services/gauges.js";
 import { TOOLS } from "./tools/registry.js";
 
 const SETTINGS = {
@@ -71,6 +72,7 @@ export class Studio {
     this.overlay = new Signal(OVERLAYS.find(({ id }) => id === settings.overlay) ?? OVERLAYS[1]);
     this.rectangles = new Signal(settings.rectangles);
     this.seeing = new Seeing();
+    this.gauges = new Gauges();
     /** Of the yarn, g/m. */
     this.weight = new Signal(settings.weight);
 

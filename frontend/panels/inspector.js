@@ -16,6 +16,7 @@ import { curvePlot } from "../plots/curve.js";
 import { rigidityPlot } from "../plots/rigidity.js";
 import { drape } from "./drape.js";
 import { limb } from "./limb.js";
+import { ownGauge } from "./owngauge.js";
 import { problemText } from "../widgets/problem.js";
 
 const COUNT_MS = 80;
@@ -39,7 +40,10 @@ export function inspector(host, studio) {
       studio.seeing.region.value = scopes.value || null;
     },
   });
-  const source = h("details", { class: "source" });
+  const gauge = ownGauge(studio);
+  const provenance = h("summary", { id: "provenance", title: "Where these numbers come from" });
+  const notes = h("ul", { class: "notes" });
+  const source = h("details", { class: "source" }, provenance, gauge.element, notes);
   const problem = h("div", { class: "problem", hidden: true });
   const table = h("table", { class: "numbers" });
   const shares = h("div", { class: "shares" });
@@ -147,13 +151,10 @@ export function inspector(host, studio) {
     fill(table, scope === part.kind ? value : null, part.counted.grid);
     source.hidden = !value;
     if (value) {
-      const open = source.open;
-      const notes = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
-      source.replaceChildren(
-        h("summary", { id: "provenance", title: "Where these numbers come from" }, value.provenance),
-        h("ul", { class: "notes" }, ...notes.map((note) => h("li", {}, note))),
-      );
-      source.open = open;
+      const told = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
+      provenance.textContent = value.provenance;
+      notes.replaceChildren(...told.map((note) => h("li", {}, note)));
+      gauge.show();
     }
   };
   const count = () => {

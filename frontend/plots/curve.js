@@ -55,7 +55,8 @@ export function curvePlot(host, studio) {
     latest.run(async (signal) => {
       const { grid } = scopeOf(studio);
       const direction = studio.seeing.pull.value;
-      const body = { chart: grid.text, material: studio.materialId.value, direction };
+      const cloth = { chart: grid.text, material: studio.materialId.value };
+      const body = { ...cloth, direction, gauge: studio.gauges.of(cloth) };
       const key = JSON.stringify(body);
       if (answer?.key === key) return;
       try {

@@ -22,8 +22,8 @@ export function startPredictor(studio) {
     latest.run(async (signal) => {
       const { kind: scope, grid } = scopeOf(studio);
       try {
-        const body = { chart: grid.text, material: studio.materialId.value };
-        const value = await api.predict(body, signal);
+        const cloth = { chart: grid.text, material: studio.materialId.value };
+        const value = await api.predict({ ...cloth, gauge: studio.gauges.of(cloth) }, signal);
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, scope };
         studio.online.value = true;
@@ -38,6 +38,7 @@ export function startPredictor(studio) {
   studio.document.onChange(ask);
   studio.selection.listen(ask);
   studio.seeing.region.listen(ask);
+  studio.gauges.changes.listen(ask);
   studio.materialId.watch(ask);
   return ask;
 }

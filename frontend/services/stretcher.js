@@ -52,6 +52,7 @@ export class Stretcher {
     };
     studio.document.onSettle(outdate);
     studio.materialId.listen(outdate);
+    studio.gauges.changes.listen(outdate);
     studio.seeing.forgotten.listen((id) => void this.#again(id));
   }
 
@@ -79,7 +80,8 @@ export class Stretcher {
     this.progress.value = null;
     const { document: chart } = studio;
     const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
-    const request = { ...studio.request, outline, direction, strain, steps: STEPS, ...options };
+    const gauge = studio.gauges.of(studio.request);
+    const request = { ...studio.request, gauge, outline, direction, strain, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
       /** @type {StretchResult} */

@@ -77,6 +77,39 @@ def test_a_shaped_piece_is_stretched_and_every_number_has_its_interval(
     expect(readout).to_have_text(re.compile(rf"\d+ % \({INTERVAL}\) of lock-up"))
 
 
+@pytest.mark.slow
+def test_ones_own_gauge_makes_the_numbers_of_its_cloth_more_certain(
+    visitor: Page, service: str
+) -> None:
+    """Painting leaves it behind, undoing brings it back, and the stretch test has its size."""
+    page = open_design(visitor, service)
+    source, size = page.locator("#provenance"), page.locator("#size-course .value")
+    expect(source).to_have_text("learned")
+    guessed = size.inner_text()
+    source.click()
+    page.fill("#own-gauge-stitches", "25")
+    page.fill("#own-gauge-rows", "36")
+    page.press("#own-gauge-rows", "Enter")
+    expect(source).to_have_text("learned with known size")
+    expect(size).to_have_text("4.80")  # 12 stitches
+    with page.expect_request("**/api/v1/jobs") as sent:
+        page.click("#stretch-run")
+    assert sent.value.post_data_json["request"]["gauge"] == {
+        "stitches_per_10_cm": 25,
+        "rows_per_10_cm": 36,
+    }
+    page.mouse.click(*Chart(page).at(4, 4))
+    expect(source).to_have_text("learned")
+    expect(page.locator("#own-gauge-stitches")).to_have_value("")
+    page.keyboard.press("Control+z")
+    expect(source).to_have_text("learned with known size")
+    expect(page.locator("#own-gauge-stitches")).to_have_value("25")
+    for field in ("stitches", "rows"):
+        page.fill(f"#own-gauge-{field}", "")
+        page.press(f"#own-gauge-{field}", "Enter")
+    expect(size).to_have_text(guessed)
+
+
 @pytest.fixture
 def own_material() -> Iterator[str]:
     """Name of a material file that the service offers, with one measured curve."""

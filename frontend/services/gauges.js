@@ -1,0 +1,29 @@
+/**
+ * Gauges that somebody counted on knitted cloth. Each is known for the stitches and the yarn it was
+ * counted on: painting leaves it behind, and undoing finds it again.
+ *
+ * @import {GaugeInput} from "../types.js"
+ *
+ * @typedef {{chart: string, material: string}} Cloth
+ */
+
+import { Signal } from "../core/signal.js";
+
+export class Gauges {
+  /** @type {Map<string, GaugeInput>} */ #known = new Map();
+  /** How often one was given or taken back. */
+  changes = new Signal(0);
+
+  /** @param {Cloth} cloth @returns {GaugeInput | null} */
+  of({ chart, material }) {
+    return this.#known.size ? (this.#known.get(`${material}\n${chart}`) ?? null) : null;
+  }
+
+  /** @param {Cloth} cloth @param {GaugeInput | null} gauge null if it is not known any more */
+  keep({ chart, material }, gauge) {
+    const key = `${material}\n${chart}`;
+    if (gauge) this.#known.set(key, gauge);
+    else this.#known.delete(key);
+    this.changes.value += 1;
+  }
+}
