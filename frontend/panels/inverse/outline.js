@@ -35,7 +35,7 @@ export function outlineTab(studio) {
   /** @type {number[] | null} */ let reached = null;
   const strain = field("Stretch in percent", 30, { min: "1", max: "200", step: "any", id: "outline-strain" });
   const band = field("Narrowest band, lines", 4, { min: "1", max: "100", step: "1" });
-  const seed = field("Variant", 0, { min: "0", step: "1" });
+  let seed = 0;
 
   const svg = document.createElementNS(SVG, "svg");
   svg.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
@@ -160,7 +160,7 @@ export function outlineTab(studio) {
         width: Array.from({ length: lines }, (_, i) => Number(wanted((i + 0.5) / lines).toFixed(4))),
         across: direction === "wale" ? columns : rows,
         smallest_band: Math.min(band.valueAsNumber || 4, lines),
-        seed: seed.valueAsNumber || 0,
+        seed,
       },
       "Pulling swatches",
     );
@@ -220,6 +220,10 @@ export function outlineTab(studio) {
               },
               "Discard",
             ),
+            textButton("wand", "Another try", () => {
+              seed += 1;
+              void fill();
+            }),
           ),
         ),
       ),
@@ -275,8 +279,7 @@ export function outlineTab(studio) {
         h("span", { class: "muted" }, "Pulled along"),
         pulls,
         h("label", { class: "check" }, "by", strain, h("span", { class: "muted" }, "%")),
-        h("label", { class: "check" }, "bands from", band, "lines"),
-        h("label", { class: "check", title: "The same number gives the same chart again" }, "variant", seed),
+        h("label", { class: "check" }, "bands of at least", band, "lines"),
         h("span", { class: "spacer" }),
         h("button", { class: "button primary", type: "submit", id: "outline-run" }, "Fill"),
       ),
