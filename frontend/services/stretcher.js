@@ -53,6 +53,7 @@ export class Stretcher {
     studio.document.onSettle(outdate);
     studio.materialId.listen(outdate);
     studio.gauges.changes.listen(outdate);
+    studio.seeing.pose.listen((pose) => pose !== "flat" && this.playing && this.pause());
     studio.seeing.forgotten.listen((id) => void this.#again(id));
   }
 

@@ -8,6 +8,13 @@ from scipy.interpolate import RectBivariateSpline
 from knitcore.arrays import Array
 
 
+def _halved(lines: Array) -> Array:
+    """A single strip as two, since a spline of degree 1 has no slope."""
+    if len(lines) > 2:
+        return lines
+    return np.stack([lines[0], 0.5 * (lines[0] + lines[1]), lines[1]])
+
+
 class Surface:
     """A smooth surface through the corners of the stitches.
 
@@ -19,9 +26,13 @@ class Surface:
     def __init__(self, corners_mm: Array) -> None:
         rows, columns = (n - 1 for n in corners_mm.shape[:2])
         self._size = columns, rows
-        at = np.arange(rows + 1), np.arange(columns + 1)
-        degree = {"kx": min(3, rows), "ky": min(3, columns)}
-        self._parts = [RectBivariateSpline(*at, corners_mm[..., m], **degree) for m in range(3)]
+        corners_mm = _halved(_halved(corners_mm).swapaxes(0, 1)).swapaxes(0, 1)
+        up = np.linspace(0.0, rows, len(corners_mm))
+        along = np.linspace(0.0, columns, corners_mm.shape[1])
+        kx, ky = min(3, len(up) - 1), min(3, len(along) - 1)
+        self._parts = [
+            RectBivariateSpline(up, along, corners_mm[..., m], kx=kx, ky=ky) for m in range(3)
+        ]
 
     def at(self, across: Array, up: Array, height_mm: Array) -> Array:
         """Points (…, 3), mm, at places counted in stitches from the lower left corner.

@@ -22,3 +22,10 @@ def test_beyond_an_edge_the_surface_is_straight() -> None:
     surface = Surface(np.stack([2.0 * x, 3.0 * y, 0.0 * x], axis=-1))
     found = surface.at(np.array([-1.0, 3.5]), np.array([0.5, 2.5]), np.array([0.0, 1.0]))
     assert np.allclose(found, [[-2.0, 1.5, 0.0], [7.0, 7.5, 1.0]])
+
+
+def test_a_piece_one_stitch_wide_has_a_surface() -> None:
+    x, y = np.meshgrid(np.arange(2.0), np.arange(6.0))
+    surface = Surface(np.stack([2.0 * x, 3.0 * y, 0.0 * x], axis=-1))
+    found = surface.at(np.array([0.5]), np.array([2.5]), np.array([0.4]))
+    assert np.allclose(found, [[1.0, 7.5, 0.4]])
