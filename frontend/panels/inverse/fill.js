@@ -99,7 +99,7 @@ export function fillTab(studio) {
         placeholder: "any",
         id: `part-${at}-${axis}`,
       });
-      input.onchange = () => {
+      input.oninput = () => {
         part[axis] = Number.isFinite(input.valueAsNumber) ? input.valueAsNumber : null;
         part.tell?.();
       };
@@ -111,7 +111,8 @@ export function fillTab(studio) {
       AXES.forEach(({ axis }, i) => {
         now[i].textContent = figure(part.now?.[axis]);
         const wanted = part[axis];
-        inputs[i].value = wanted === null ? "" : String(wanted);
+        // What is being typed ("1.") stays as it is.
+        if (inputs[i] !== document.activeElement) inputs[i].value = wanted === null ? "" : String(wanted);
         verdicts[i].textContent = wanted && part.now ? against(part.now[axis], wanted) : "";
       });
     part.tell();
