@@ -216,6 +216,8 @@
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
     gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
+    // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until the next frame.
+    new MutationObserver(() => wake(false)).observe(this, { attributeFilter: ["width", "height"] });
     return gl;
   };
 
