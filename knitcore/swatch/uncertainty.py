@@ -56,7 +56,9 @@ from knitcore.swatch.strip import Clamps, clamp_edges, clamp_mask, waist_strain
 MODEL_LOG_SD = {"flat": math.log(3.5) / Z_SCORE, "patchwork": 0.05}
 """The composite's own error, for stitches of mixed quarters and of one fabric."""
 MODEL_ERRORS = "the mixture's own error, as for the chart's moduli"
-SHEAR_ASSUMED = "an assumed shear modulus, within a factor e"
+SHEAR_ASSUMED = (
+    f"an assumed shear modulus, within a factor of {np.exp(Z_SCORE * LOG_SHEAR_PRIOR[1]):.0f}"
+)
 LOG_SHEAR_STIFFENING = 1.0
 """Standard deviation of the logarithm of the growth of the shear stiffness, found on one jersey. To
 first order 90 % are -2.6 to 10.6 rad⁻²; the yarn level, without friction, has -2.5."""

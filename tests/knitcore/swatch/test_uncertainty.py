@@ -172,7 +172,7 @@ def test_the_assumed_shear_modulus_counts_and_a_given_one_does_not() -> None:
     assert spread.force_log_sd == 0.0
     assert interval_source(given_one.sheet, base) == "Made up."
     assert interval_source(assumed.sheet, base).endswith(
-        "; an assumed shear modulus, within a factor e."
+        "; an assumed shear modulus, within a factor of 5."
     )
 
 
