@@ -239,11 +239,11 @@ class SceneWriter:
             ),
         )
         words = f"{length:g} mm" if length < 10 else f"{length / 10:g} cm"
-        middle = UNITS_PER_MM * np.array([right - length / 2, below - tick, 0.0])
+        beside = UNITS_PER_MM * np.array([right - length - tick, below, 0.0])
         self._put(
             "scale words",
             self._server.scene.add_label(
-                "/scale/words", words, position=tuple(middle), anchor="top-center"
+                "/scale/words", words, position=tuple(beside), anchor="center-right"
             ),
         )
 
