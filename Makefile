@@ -150,8 +150,8 @@ types: $(VENV)/.installed-dev ## Make the page's types and the client from the s
 	PYTHONPATH=. $(BIN)/python scripts/client_code.py
 
 stitches: install ## Make the packaged relaxed stitches again; OPTIONS="--scheduler tcp://…" or "--workers 2"
-	$(BIN)/python -m knitcore.yarnlibrary.build $(OPTIONS)
-	$(BIN)/python -m knitcore.yarnlibrary.lowest
+	$(BIN)/python -m scripts.stored_stitches $(OPTIONS)
+	$(BIN)/python -m scripts.lowest_stitches
 
 # --- upkeep -----------------------------------------------------------------------------------
 lock: $(VENV)/.installed-dev ## Pin the dependencies again

@@ -1,8 +1,8 @@
 """Relaxed stitches that come with the package.
 
 ``data/stitches.json`` holds sizes, energies and laws, ``data/stitches.npz`` control points;
-:mod:`knitcore.yarnlibrary.build` makes both. ``data/lowest.json`` tells which of them are minima
-without their mirrors (:mod:`knitcore.yarnlibrary.lowest`).
+``scripts/stored_stitches.py`` makes both. ``data/lowest.json`` tells which of them are minima
+without their mirrors (``scripts/lowest_stitches.py``).
 """
 
 from __future__ import annotations

@@ -10,10 +10,10 @@ from knitcore.chart import StitchChart
 from knitcore.yarnlevel.clasps import is_knitted
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.relax import relax
-from knitcore.yarnlibrary import build
-from knitcore.yarnlibrary.build import charts_of_the_store
 from knitcore.yarnlibrary.catalogue import COMMON
 from knitcore.yarnlibrary.store import stored_charts, stored_failure, stored_stitch
+from scripts import stored_stitches
+from scripts.stored_stitches import charts_of_the_store
 
 FREE = set(COMMON) - {"basket 2x2", "3x3 welt"}
 
@@ -109,11 +109,11 @@ def test_a_build_is_reproducible_and_resumes(tmp_path, monkeypatch):
         points = np.zeros((rows, columns * 16, 3)).tolist()
         return {**size, **shares, **law, "controls": points}
 
-    monkeypatch.setattr(build, "characterise_repeat", solve)
+    monkeypatch.setattr(stored_stitches, "characterise_repeat", solve)
     made = []
     for folder in (tmp_path / "a", tmp_path / "b"):
         folder.mkdir()
-        build.build(folder, keep=tmp_path / "keep", most_stitches=1, workers=1)
+        stored_stitches.build(folder, keep=tmp_path / "keep", most_stitches=1, workers=1)
         made.append({file.name: file.read_bytes() for file in folder.iterdir()})
     assert made[0] == made[1]
     assert len(calls) == 2 * 2 * len(COMMON)  # yarns, branches; nothing was done twice

@@ -1,8 +1,8 @@
-"""Follow the stored repeats without their mirrors: ``python -m knitcore.yarnlibrary.lowest``.
+"""Follow the stored repeats without their mirrors: ``python -m scripts.lowest_stitches``.
 
 Every repeat of the store is laid out over its free cell, followed along its instability if it has
-one, and what it leads to is written to ``data/lowest.json``. Finished repeats are kept in a folder,
-so an interrupted run can be resumed.
+one, and what it leads to is written to the library's ``data/lowest.json``. Finished repeats are
+kept in a folder, so an interrupted run can be resumed.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from knitcore.yarnlevel.lowest import followed
 from knitcore.yarnlevel.search import SAME_ENERGY
 from knitcore.yarnlevel.splines import COARSE, FINE
 from knitcore.yarnlevel.yarn import YarnModel
-from knitcore.yarnlibrary.build import tell
 from knitcore.yarnlibrary.characterise import Document
 from knitcore.yarnlibrary.fingerprint import content_key
 from knitcore.yarnlibrary.store import MATERIALS, StoredStitch, stored_charts, stored_stitch
+from scripts.stored_stitches import DATA, tell
 
 
 @dataclass(frozen=True)
@@ -126,9 +126,9 @@ def write_lowest(
 
 
 def main() -> None:
-    """Run ``python -m knitcore.yarnlibrary.lowest``."""
-    parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.lowest")
-    parser.add_argument("--path", type=Path, default=Path(__file__).parent / "data/lowest.json")
+    """Read the options and follow."""
+    parser = argparse.ArgumentParser(prog="python -m scripts.lowest_stitches")
+    parser.add_argument("--path", type=Path, default=DATA / "lowest.json")
     parser.add_argument("--keep", type=Path, default=Path("build/lowest"))
     parser.add_argument("--workers", type=int, help="processes; all cores if left out")
     chosen = parser.parse_args()

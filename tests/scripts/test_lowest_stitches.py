@@ -5,8 +5,8 @@ import json
 import pytest
 
 from knitcore.chart import StitchChart
-from knitcore.yarnlibrary.lowest import FollowTask, follow, write_lowest
 from knitcore.yarnlibrary.store import stored_stitch
+from scripts.lowest_stitches import FollowTask, follow, write_lowest
 
 
 @pytest.mark.parametrize(("text", "minimum"), [("K", True), ("P/K", False)])

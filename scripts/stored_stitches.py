@@ -1,8 +1,8 @@
-"""Make the packaged store of relaxed stitches: ``python -m knitcore.yarnlibrary.build``.
+"""Make the packaged store of relaxed stitches: ``python -m scripts.stored_stitches``.
 
 Relaxes and stretches the repeats of :mod:`knitcore.yarnlibrary.catalogue` for each yarn and writes
-``data/stitches.json`` (sizes, energies, laws) and ``data/stitches.npz`` (control points). Finished
-repeats are kept in a folder, so an interrupted build can be resumed.
+``stitches.json`` (sizes, energies, laws) and ``stitches.npz`` (control points) into the library's
+data folder. Finished repeats are kept in a folder, so an interrupted build can be resumed.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from knitcore.yarnlibrary.characterise import Document, RepeatTask, characterise
 from knitcore.yarnlibrary.store import MATERIALS
 from knitcore.yarnlibrary.yarns import yarn_for
 
+DATA = Path(__file__).parent.parent / "knitcore" / "yarnlibrary" / "data"
 MAX_STITCHES = 8
 SQUARE = 3
 """Repeats of this many rows and columns are also in the store, though they have more stitches."""
@@ -166,10 +167,10 @@ def tell(progress: BatchProgress) -> None:
 
 
 def main() -> None:
-    """Run ``python -m knitcore.yarnlibrary.build``."""
-    parser = argparse.ArgumentParser(prog="python -m knitcore.yarnlibrary.build")
+    """Read the options and build."""
+    parser = argparse.ArgumentParser(prog="python -m scripts.stored_stitches")
     parser.add_argument("--most-stitches", type=int, default=MAX_STITCHES)
-    parser.add_argument("--folder", type=Path, default=Path(__file__).parent / "data")
+    parser.add_argument("--folder", type=Path, default=DATA)
     parser.add_argument("--keep", type=Path, default=Path("build/stitches"))
     parser.add_argument("--scheduler", help="address of a Dask cluster, tcp://host:port")
     parser.add_argument("--workers", type=int, help="processes here; all cores if left out")

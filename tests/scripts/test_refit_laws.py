@@ -5,7 +5,7 @@ import pytest
 
 from knitcore import Direction, Fabric, material
 from knitcore.law.uniaxial import uniaxial_response
-from knitcore.swatch.clamp_correction import ClampCorrection, converted
+from scripts.refit_laws import ClampCorrection, converted
 
 
 @pytest.mark.parametrize("fabric", list(Fabric))
