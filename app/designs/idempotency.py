@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TypeVar
 
 from pydantic import BaseModel
@@ -15,6 +14,7 @@ from sqlalchemy.exc import IntegrityError
 from app.http.problems import ServiceError
 from app.store.database import Database
 from app.store.tables import idempotency_keys
+from app.store.values import now
 
 Answer = TypeVar("Answer", bound=BaseModel)
 KEPT_S = 86_400.0
@@ -47,48 +47,6 @@ class Retry:
         digest = hashlib.sha256("\0".join(request).encode()).hexdigest()
         return cls(owner, key, digest)
 
-    def once(
-        self, database: Database, kind: type[Answer], action: Callable[[Connection], Answer]
-    ) -> Answer:
-        """Run an action in a transaction, or return its first result.
-
-        Raises
-        ------
-        ReusedKeyError
-            If the key came with another request before.
-        """
-
-        def guarded(connection: Connection) -> Answer:
-            known = connection.execute(
-                select(idempotency_keys.c.fingerprint, idempotency_keys.c.answer).where(
-                    idempotency_keys.c.owner == self.owner, idempotency_keys.c.key == self.key
-                )
-            ).one_or_none()
-            if known is not None:
-                if known.fingerprint != self.fingerprint:
-                    raise ReusedKeyError(
-                        "This key came with another request before.",
-                        field="Idempotency-Key",
-                        remedy="Use a new key for every new request.",
-                    )
-                return kind.model_validate_json(known.answer)
-            answer = action(connection)
-            connection.execute(
-                insert(idempotency_keys).values(
-                    owner=self.owner,
-                    key=self.key,
-                    fingerprint=self.fingerprint,
-                    answer=answer.model_dump_json(),
-                    created_at=time.time(),
-                )
-            )
-            return answer
-
-        try:
-            return database.write(guarded)
-        except IntegrityError:
-            return database.write(guarded)  # its twin was faster: now its answer is there
-
 
 def once(
     database: Database,
@@ -96,11 +54,42 @@ def once(
     kind: type[Answer],
     action: Callable[[Connection], Answer],
 ) -> Answer:
-    """Run an action in a transaction; where the request has a key, once for that key."""
-    return database.write(action) if retry is None else retry.once(database, kind, action)
+    """Run an action in a transaction; where the request has a key, once for that key.
+
+    Raises
+    ------
+    ReusedKeyError
+        If the key came with another request before.
+    """
+    if retry is None:
+        return database.write(action)
+
+    def guarded(connection: Connection) -> Answer:
+        known = connection.execute(
+            select(idempotency_keys.c.fingerprint, idempotency_keys.c.answer).where(
+                idempotency_keys.c.owner == retry.owner, idempotency_keys.c.key == retry.key
+            )
+        ).one_or_none()
+        if known is not None:
+            if known.fingerprint != retry.fingerprint:
+                raise ReusedKeyError(
+                    "This key came with another request before.",
+                    field="Idempotency-Key",
+                    remedy="Use a new key for every new request.",
+                )
+            return kind.model_validate_json(known.answer)
+        answer = action(connection)
+        values = {"answer": answer.model_dump_json(), "created_at": now()}
+        connection.execute(insert(idempotency_keys).values(asdict(retry) | values))
+        return answer
+
+    try:
+        return database.write(guarded)
+    except IntegrityError:
+        return database.write(guarded)  # its twin was faster: now its answer is there
 
 
 def forget_old_keys(database: Database) -> None:
     """Drop keys after a day."""
-    old = idempotency_keys.c.created_at < time.time() - KEPT_S
+    old = idempotency_keys.c.created_at < now() - KEPT_S
     database.write(lambda connection: connection.execute(idempotency_keys.delete().where(old)))

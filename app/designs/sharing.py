@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 
 from sqlalchemy import Connection, Row, func, insert, select, update
 
 from app.budgets import BUDGETS, OverBudgetError
-from app.designs.document import (
-    Design,
-    NewShare,
-    Share,
-    SharedDesign,
-    ShareMode,
-    Shares,
-)
+from app.designs.document import Design, NewShare, Share, SharedDesign, ShareMode, Shares
 from app.designs.idempotency import Retry, once
-from app.designs.store import add, copied, document_of, find, moment, now
-from app.http.problems import NotFoundError, ServiceError
+from app.designs.store import add, copied, document_of, find, most_of_one
+from app.http.problems import NotFoundError, RefusedError
 from app.store.database import Database
 from app.store.tables import designs, shares
+from app.store.values import hash_of, now
+
+_OPEN = shares.c.revoked_at.is_(None)
 
 
-class NotAllowedError(ServiceError):
+class NotAllowedError(RefusedError):
     """The link allows less than was asked."""
 
-    status, type, title = 403, "refused", "This link does not allow that"
+    title = "This link does not allow that"
 
 
 class Sharing:
@@ -38,31 +33,22 @@ class Sharing:
     def give(self, owner: str, design: str, mode: ShareMode) -> NewShare:
         """Make a link; its token is returned this once only."""
         token = secrets.token_urlsafe(32)
-        share, at = secrets.token_urlsafe(12), now()
+        given = {"id": secrets.token_urlsafe(12), "mode": mode.value, "created_at": now()}
 
         def action(connection: Connection) -> None:
             find(connection, owner, design, change=True)
-            given = select(func.count()).where(
-                shares.c.design_id == design, shares.c.revoked_at.is_(None)
-            )
-            if connection.execute(given).scalar_one() >= BUDGETS.links:
+            open_ = select(func.count()).where(shares.c.design_id == design, _OPEN)
+            if connection.execute(open_).scalar_one() >= BUDGETS.links:
                 raise OverBudgetError(
                     f"The design has {BUDGETS.links} open links, which is as many as it may.",
                     field="links",
                     remedy="Take some back.",
                 )
-            connection.execute(
-                insert(shares).values(
-                    id=share,
-                    design_id=design,
-                    token_hash=_hash(token),
-                    mode=mode.value,
-                    created_at=at,
-                )
-            )
+            kept = {"design_id": design, "token_hash": hash_of(token)}
+            connection.execute(insert(shares).values(given | kept))
 
         self._database.write(action)
-        return NewShare(id=share, mode=mode, created_at=moment(at), token=token)
+        return NewShare.model_validate(given | {"token": token})
 
     def given(self, owner: str, design: str) -> Shares:
         """The links of a design that still open it."""
@@ -70,23 +56,14 @@ class Sharing:
             find(connection, owner, design)
             rows = connection.execute(
                 select(shares.c.id, shares.c.mode, shares.c.created_at)
-                .where(shares.c.design_id == design, shares.c.revoked_at.is_(None))
+                .where(shares.c.design_id == design, _OPEN)
                 .order_by(shares.c.created_at, shares.c.id)
             ).all()
         return Shares(shares=[Share.model_validate(row, from_attributes=True) for row in rows])
 
     def most_given(self, owner: str) -> int:
         """Number of open links to that of an owner's designs which has the most."""
-        each = (
-            select(func.count())
-            .select_from(shares.join(designs))
-            .where(designs.c.owner == owner, shares.c.revoked_at.is_(None))
-            .group_by(shares.c.design_id)
-            .order_by(func.count().desc())
-            .limit(1)
-        )
-        with self._database.read() as connection:
-            return connection.execute(each).scalar() or 0
+        return most_of_one(self._database, owner, shares, _OPEN)
 
     def revoke(self, owner: str, design: str, share: str) -> None:
         """Close a link for good."""
@@ -95,11 +72,7 @@ class Sharing:
             find(connection, owner, design)
             closed = connection.execute(
                 update(shares)
-                .where(
-                    shares.c.id == share,
-                    shares.c.design_id == design,
-                    shares.c.revoked_at.is_(None),
-                )
+                .where(shares.c.id == share, shares.c.design_id == design, _OPEN)
                 .values(revoked_at=now())
             )
             if closed.rowcount == 0:
@@ -137,11 +110,7 @@ def _shared(connection: Connection, token: str) -> Row[tuple[object, ...]]:
     row = connection.execute(
         select(designs, shares.c.mode)
         .join(shares, shares.c.design_id == designs.c.id)
-        .where(
-            shares.c.token_hash == _hash(token),
-            shares.c.revoked_at.is_(None),
-            designs.c.deleted_at.is_(None),
-        )
+        .where(shares.c.token_hash == hash_of(token), _OPEN, designs.c.deleted_at.is_(None))
     ).one_or_none()
     if row is None:
         raise NotFoundError(
@@ -150,8 +119,3 @@ def _shared(connection: Connection, token: str) -> Row[tuple[object, ...]]:
             remedy="Ask for a new link.",
         )
     return row
-
-
-def _hash(token: str) -> str:
-    """Tokens are 256 random bits, so a plain hash cannot be turned back."""
-    return hashlib.sha256(token.encode()).hexdigest()

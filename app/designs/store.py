@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import secrets
-import time
-from datetime import UTC, datetime
 from functools import cache
 from typing import Any
 
-from sqlalchemy import Connection, Row, Select, bindparam, func, insert, select, update
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Row,
+    Select,
+    Table,
+    bindparam,
+    func,
+    insert,
+    select,
+    update,
+)
 
 from app.budgets import BUDGETS, OverBudgetError
 from app.designs.conditions import ConflictError, check_match
@@ -30,6 +39,7 @@ from app.http.problems import NotFoundError
 from app.store.database import Database
 from app.store.pages import one_page
 from app.store.tables import design_versions, designs
+from app.store.values import now
 from knitcore.chart import StitchChart
 from knitcore.formats.layout import DesignLayout, check_layout
 
@@ -50,19 +60,13 @@ class DesignStore:
     def create(self, owner: str, document: DesignDocument, retry: Retry | None = None) -> Design:
         """Keep a new design."""
         content = _content(document)
-        return self._made(owner, lambda connection: content, retry)
+        return once(self._database, retry, Design, lambda c: add(c, owner, content))
 
     def duplicate(self, owner: str, design: str, retry: Retry | None = None) -> Design:
         """A copy of the caller's design."""
 
-        def content(connection: Connection) -> dict[str, Any]:
-            return copied(find(connection, owner, design))
-
-        return self._made(owner, content, retry)
-
-    def _made(self, owner: str, content: Any, retry: Retry | None) -> Design:
         def action(connection: Connection) -> Design:
-            return add(connection, owner, content(connection))
+            return add(connection, owner, copied(find(connection, owner, design)))
 
         return once(self._database, retry, Design, action)
 
@@ -136,11 +140,8 @@ class DesignStore:
                 "changed_at": now(),
             }
             connection.execute(_CHANGE, values | {"design": row.id})
-            return Painted(
-                revision=values["revision"],
-                changed_at=moment(values["changed_at"]),
-                map=kinds_around(values["chart"], row.rows, row.columns, strokes.runs),
-            )
+            kinds = kinds_around(values["chart"], row.rows, row.columns, strokes.runs)
+            return Painted.model_validate(values | {"map": kinds})
 
         return await self._database.written(action)
 
@@ -219,16 +220,7 @@ class DesignStore:
 
     def most_versions(self, owner: str) -> int:
         """Number of versions of that of an owner's designs which has the most."""
-        each = (
-            select(func.count())
-            .select_from(design_versions.join(designs))
-            .where(designs.c.owner == owner)
-            .group_by(design_versions.c.design_id)
-            .order_by(func.count().desc())
-            .limit(1)
-        )
-        with self._database.read() as connection:
-            return connection.execute(each).scalar() or 0
+        return most_of_one(self._database, owner, design_versions)
 
     def forget_deleted(self) -> int:
         """Remove designs that were deleted 30 days ago for good; returns their number."""
@@ -240,16 +232,6 @@ class DesignStore:
             return gone.rowcount
 
         return self._database.write(action)
-
-
-def now() -> float:
-    """Seconds since 1970."""
-    return time.time()
-
-
-def moment(seconds: float) -> datetime:
-    """A time as clients get it."""
-    return datetime.fromtimestamp(seconds, UTC)
 
 
 @cache
@@ -315,6 +297,22 @@ def _count(connection: Connection, owner: str) -> int:
     """Number of an owner's designs, deleted ones included."""
     count = select(func.count()).select_from(designs).where(designs.c.owner == owner)
     return int(connection.execute(count).scalar_one())
+
+
+def most_of_one(
+    database: Database, owner: str, parts: Table, *conditions: ColumnElement[bool]
+) -> int:
+    """Number of rows about that of an owner's designs which has the most of them."""
+    each = (
+        select(func.count())
+        .select_from(parts.join(designs))
+        .where(designs.c.owner == owner, *conditions)
+        .group_by(parts.c.design_id)
+        .order_by(func.count().desc())
+        .limit(1)
+    )
+    with database.read() as connection:
+        return connection.execute(each).scalar() or 0
 
 
 def copied(row: Row[Any]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 
 from app.doctor import examine_running
 from app.http.identity import LOCAL_USER, current_user
-from app.http.problems import Problem, ServiceError, UnavailableError
+from app.http.problems import Problem, RefusedError, UnavailableError
 
 router = APIRouter(tags=["service"])
 
@@ -67,12 +67,6 @@ async def readyz(request: Request) -> Readiness:
     return Readiness(checks={check.name: check.ok for check in found.checks})
 
 
-class NotForUsersError(ServiceError):
-    """These numbers are for the operator of the service."""
-
-    status, type, title = 403, "refused", "Refused"
-
-
 @router.get("/metrics", summary="Numbers for Prometheus", response_class=Response)
 def metrics(request: Request) -> Response:
     """Requests, times, jobs, views and the process itself.
@@ -80,7 +74,7 @@ def metrics(request: Request) -> Response:
     Where users have logins of their own, they need the token of the settings.
     """
     if current_user.get() != LOCAL_USER:
-        raise NotForUsersError(
+        raise RefusedError(
             "Numbers about all users are for the operator of the service.",
             remedy="Send the token of KNITCORE_TOKEN.",
         )

@@ -8,14 +8,12 @@ import re
 import secrets
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Any
 
-from prometheus_client import CollectorRegistry, Counter, Histogram, Info, ProcessCollector
-from prometheus_client.core import GaugeMetricFamily
-from prometheus_client.registry import Collector
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info, ProcessCollector
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -100,19 +98,8 @@ class Metrics:
         )
         Info("knitcore", "The program.", registry=self.registry).info({"version": VERSION})
         ProcessCollector(registry=self.registry)
-        self.registry.register(_Gauges(gauges))
-
-
-class _Gauges(Collector):
-    def __init__(self, gauges: dict[str, tuple[str, Callable[[], float]]]) -> None:
-        self._gauges = gauges
-
-    def describe(self) -> Iterable[GaugeMetricFamily]:
-        return [GaugeMetricFamily(f"knitcore_{n}", text) for n, (text, _) in self._gauges.items()]
-
-    def collect(self) -> Iterator[GaugeMetricFamily]:
-        for name, (text, value) in self._gauges.items():
-            yield GaugeMetricFamily(f"knitcore_{name}", text, value())
+        for name, (text, value) in gauges.items():
+            Gauge(f"knitcore_{name}", text, registry=self.registry).set_function(value)
 
 
 class Observer:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import logging
+import math
 from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import Annotated, Any
@@ -146,14 +147,30 @@ class NotFoundError(ServiceError):
     status, type, title = 404, "not-found", "Not found here"
 
 
-def problem_response(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
-    """A problem as a response."""
-    return JSONResponse(
-        problem.model_dump(),
-        status_code=problem.status,
-        headers=headers,
-        media_type=PROBLEM_TYPE,
-    )
+class RefusedError(ServiceError):
+    """The request is not allowed."""
+
+    status, type, title = 403, "refused", "Refused"
+
+
+class TooManyError(ServiceError):
+    """Requests come too often."""
+
+    status, type, title = 429, "too-many", "Too many requests"
+
+    def __init__(self, detail: str, wait_s: float) -> None:
+        wait = math.ceil(wait_s)
+        super().__init__(detail, remedy=f"Try again in {wait} s.")
+        self.headers = {"Retry-After": str(wait)}
+
+
+def answer_to(error: Exception) -> JSONResponse:
+    """Any error as a response."""
+    return _response(problem_of(error), getattr(error, "headers", None))
+
+
+def _response(problem: Problem, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    return JSONResponse(problem.model_dump(), problem.status, headers, PROBLEM_TYPE)
 
 
 def problem_of(error: Exception) -> Problem:
@@ -298,14 +315,14 @@ def install_problem_handlers(app: FastAPI) -> None:
             fault = _of_library(other)
             if fault.field not in told and len(problem.errors) < MAX_FAULTS:
                 problem.errors.append(fault)
-        return problem_response(problem)
+        return _response(problem)
 
     @app.exception_handler(KnitcoreError)
     @app.exception_handler(ServiceError)
     @app.exception_handler(InvalidRequestError)
     @app.exception_handler(HTTPException)
     async def _(_: Request, error: Exception) -> JSONResponse:
-        return problem_response(problem_of(error), getattr(error, "headers", None))
+        return answer_to(error)
 
     @app.exception_handler(Exception)
     async def _(_: Request, error: Exception) -> JSONResponse:
@@ -315,4 +332,4 @@ def install_problem_handlers(app: FastAPI) -> None:
 def unexpected(error: Exception) -> JSONResponse:
     """An error in the service; its log line has the id of the request."""
     log.error("unexpected error", exc_info=error)
-    return problem_response(problem_of(error))
+    return answer_to(error)

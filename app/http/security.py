@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import math
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -18,12 +17,19 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
-from app.budgets import InUse, OverBudgetError
+from app.budgets import InUse
 from app.http.bodies import limited
 from app.http.identity import NOBODY, current_session, current_user
 from app.http.kinds import PAGES
 from app.http.passes import Opener, Passes
-from app.http.problems import Problem, StoppingError, problem_response, unexpected
+from app.http.problems import (
+    RefusedError,
+    ServiceError,
+    StoppingError,
+    TooManyError,
+    answer_to,
+    unexpected,
+)
 from app.http.rate import RateLimit
 from app.http.sessions import SESSION_S
 from app.http.sign_in import PATH, sign_in_form, sign_in_page, token_page
@@ -74,6 +80,25 @@ VIEW_POLICY = "; ".join(
 )
 
 
+class StrangeHostError(RefusedError):
+    """The service does not go by the name that was used."""
+
+    status = 400
+
+
+class TooLargeError(RefusedError):
+    """The request is too large."""
+
+    status = 413
+
+
+class UnknownUserError(ServiceError):
+    """A token is needed."""
+
+    status, type, title = 401, "sign-in", "Sign in"
+    headers: Mapping[str, str] = {"WWW-Authenticate": 'Bearer realm="Knitcore"'}
+
+
 class Guard:
     """ASGI middleware that refuses what must not reach the application.
 
@@ -101,24 +126,40 @@ class Guard:
         limits: dict[str, str] = {}
         if self.settings.asks_for_login:
             current_user.set(NOBODY)  # until the request's token or session is known
+        try:
+            answer = await self._admitted(scope, receive, limits)
+        except ServiceError as error:
+            answer = answer_to(error)
+        if scope["type"] == "websocket":
+            await self._pass_socket(answer, scope, receive, send)
+        else:
+            await self._pass_request(answer, scope, receive, send, limits)
+
+    async def _admitted(
+        self, scope: Scope, receive: Receive, limits: dict[str, str]
+    ) -> Response | None:
+        """Let a connection in and note whose it is; a response where the guard itself answers.
+
+        Raises
+        ------
+        ServiceError
+            If it is refused.
+        """
         passes: Passes = scope["app"].state.passes
         opener = passes.holder(scope)
-        refusal = self._refusal(scope, has_pass=opener is not None)
-        if refusal is None and opener is not None:
-            refusal = await self._by_pass(scope, opener, limits)
-        elif refusal is None and self.settings.asks_for_login and _is_sign_in(scope):
-            refusal = await self._signed_in(scope, receive)
-        elif refusal is None and self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
-            refusal = await self._login(scope, limits)
-        if scope["type"] == "websocket":
-            await self._pass_socket(refusal, scope, receive, send)
-        else:
-            await self._pass_request(refusal, scope, receive, send, limits)
+        self._check(scope, has_pass=opener is not None)
+        if opener is not None:
+            await self._by_pass(scope, opener, limits)
+        elif self.settings.asks_for_login and _is_sign_in(scope):
+            return await self._signed_in(scope, receive)
+        elif self.settings.asks_for_login and scope["path"] not in OPEN_PATHS:
+            return await self._login(scope, limits)
+        return None
 
     async def _pass_socket(
-        self, refusal: Response | None, scope: Scope, receive: Receive, send: Send
+        self, answer: Response | None, scope: Scope, receive: Receive, send: Send
     ) -> None:
-        if refusal is not None:
+        if answer is not None:
             await WebSocketClose(code=1008, reason="refused")(scope, receive, send)
             return
         async with self._while_open(scope) as open_:
@@ -129,7 +170,7 @@ class Guard:
 
     async def _pass_request(
         self,
-        refusal: Response | None,
+        answer: Response | None,
         scope: Scope,
         receive: Receive,
         send: Send,
@@ -152,10 +193,10 @@ class Guard:
                 headers.update(limits)
             await send(message)
 
-        if refusal is not None:
+        if answer is not None:
             if _has_body(scope):  # it will not be read
-                refusal.headers["Connection"] = "close"
-            await refusal(scope, receive, send_with_headers)
+                answer.headers["Connection"] = "close"
+            await answer(scope, receive, send_with_headers)
             return
         try:
             in_use: InUse = scope["app"].state.in_use
@@ -168,9 +209,8 @@ class Guard:
         except asyncio.CancelledError:  # the service stops, and does not wait any longer
             if started or not scope["app"].state.stopping:
                 raise
-            stopping = StoppingError("The service is stopping.")
-            answer = problem_response(stopping.problem, stopping.headers)
-            await answer(scope, receive, send_with_headers)
+            stopped = answer_to(StoppingError("The service is stopping."))
+            await stopped(scope, receive, send_with_headers)
         except ClientDisconnect:  # before its request was complete; the log shall tell
             await Response(status_code=GONE)(scope, receive, send_with_headers)
         except Exception as error:  # answered here, so that its answer has the headers, too
@@ -178,26 +218,27 @@ class Guard:
                 raise
             await unexpected(error)(scope, receive, send_with_headers)
 
-    def _refusal(self, scope: Scope, *, has_pass: bool) -> Response | None:
+    def _check(self, scope: Scope, *, has_pass: bool) -> None:
+        """Refuse other names, changes from pages of other sites, and bodies that are too large."""
         headers = Headers(scope=scope)
         hosts = headers.getlist("host")
         host = hosts[0] if len(hosts) == 1 else ""
         if not self._knows(host):
-            return _refused("host", "This service does not go by that name.", HOST_REMEDY, 400)
+            raise StrangeHostError(
+                "This service does not go by that name.", field="host", remedy=HOST_REMEDY
+            )
         origin = headers.get("origin")
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD", "OPTIONS")
         own = has_pass or origin is None or _place_of(origin) == host.lower()
         if changes and not own:
-            return _refused("origin", "The request comes from a page of another site.", "", 403)
+            raise RefusedError("The request comes from a page of another site.", field="origin")
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > self.settings.max_body_bytes:
-            return _refused(
-                "body",
+            raise TooLargeError(
                 "The request is too large.",
-                f"Send at most {self.settings.max_body_bytes} bytes.",
-                413,
+                field="body",
+                remedy=f"Send at most {self.settings.max_body_bytes} bytes.",
             )
-        return None
 
     def _knows(self, host: str) -> bool:
         try:
@@ -206,21 +247,19 @@ class Guard:
             return False
         return name is not None and (name in self.hosts or f"[{name}]" in self.hosts)
 
-    async def _by_pass(
-        self, scope: Scope, opener: Opener, limits: dict[str, str]
-    ) -> Response | None:
+    async def _by_pass(self, scope: Scope, opener: Opener, limits: dict[str, str]) -> None:
         """Let in who was given a pass, as long as the token or session that asked for it lasts."""
         if opener.opened_by is not None:
             login: Login = scope["app"].state.login
-            try:
-                if not await asyncio.to_thread(login.is_open, *opener.opened_by):
-                    return _refused("pass", "This pass has ended.", "Show the view again.", 403)
-            except StoreError as error:
-                return problem_response(error.problem)
+            if not await asyncio.to_thread(login.is_open, *opener.opened_by):
+                raise RefusedError(
+                    "This pass has ended.", field="pass", remedy="Show the view again."
+                )
             scope[OPENED_BY] = opener.opened_by
         current_user.set(opener.user)
         current_session.set(opener.session)
-        return self._over_budget(scope, opener.user, limits) if opener.opened_by else None
+        if opener.opened_by is not None:
+            self._count(scope, opener.user, limits)
 
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
         """Let a known user in, within their rate, and note who it is."""
@@ -228,15 +267,11 @@ class Guard:
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)
         link = _link_token(scope.get("query_string", b""))
-        try:
-            identifier, user, session = await asyncio.to_thread(_who, login, token, link, cookie)
-        except StoreError as error:
-            return problem_response(error.problem)
+        identifier, user, session = await asyncio.to_thread(_who, login, token, link, cookie)
         if not user:
             return self._stranger(scope, tried=bool(token or link))
         current_user.set(user)
-        if (refusal := self._over_budget(scope, user, limits)) is not None:
-            return refusal
+        self._count(scope, user, limits)
         current_session.set(session)
         scope[OPENED_BY] = identifier, session
         if link and not (token or session) and scope["type"] == "http" and scope["method"] == "GET":
@@ -246,27 +281,26 @@ class Guard:
     def _stranger(self, scope: Scope, *, tried: bool) -> Response:
         """Ask for a token; after several unknown ones the address must wait."""
         if tried and self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
-            return _too_many("Too many unknown tokens came from this address.", 10.0)
-        if scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", ""):
+            raise TooManyError("Too many unknown tokens came from this address.", 10.0)
+        if _is_sign_in(scope) or (
+            scope["path"] == "/" and "text/html" in Headers(scope=scope).get("accept", "")
+        ):
             return token_page(401, "Nobody has this token. Ask for a new one." if tried else "")
-        return _unknown(
+        raise UnknownUserError(
             "This service asks for a token.",
-            "Open the page as /?token=…, or send the header Authorization: Bearer ….",
+            field="token",
+            remedy="Open the page as /?token=…, or send the header Authorization: Bearer ….",
         )
 
-    def _over_budget(self, scope: Scope, user: str, limits: dict[str, str]) -> Response | None:
+    def _count(self, scope: Scope, user: str, limits: dict[str, str]) -> None:
         """Refuse more requests than one user may send; say how many are left."""
         left, wait = self.rate.take(user)
         limits["RateLimit-Limit"] = str(self.rate.burst)
         limits["RateLimit-Remaining"] = str(left)
         if wait:
-            return _too_many("You are asking too often.", wait)
+            raise TooManyError("You are asking too often.", wait)
         in_use: InUse = scope["app"].state.in_use
-        try:
-            in_use.check("connections", user)
-        except OverBudgetError as error:
-            return problem_response(error.problem)
-        return None
+        in_use.check("connections", user)
 
     async def _by_link(self, scope: Scope, identifier: str, user: str, link: str) -> Response:
         """Keep a session in a cookie, and the token out of the address; after a click, if another
@@ -283,15 +317,10 @@ class Guard:
         """Begin a session after the click on the sign-in page."""
         token, to = await sign_in_form(scope, receive)
         login: Login = scope["app"].state.login
-        try:
-            identifier, user = await asyncio.to_thread(login.by_token, token)
-            if user:
-                return await self._begin(scope, identifier, user, to)
-        except StoreError as error:
-            return problem_response(error.problem)
-        if self.failures.take((scope.get("client") or ("unknown", 0))[0])[1]:
-            return _too_many("Too many unknown tokens came from this address.", 10.0)
-        return token_page(401, "Nobody has this token. Ask for a new one.")
+        identifier, user = await asyncio.to_thread(login.by_token, token)
+        if user:
+            return await self._begin(scope, identifier, user, to)
+        return self._stranger(scope, tried=True)
 
     async def _begin(self, scope: Scope, identifier: str, user: str, to: str) -> Response:
         login: Login = scope["app"].state.login
@@ -408,45 +437,6 @@ def with_own_cookie_only(headers: list[tuple[bytes, bytes]]) -> list[tuple[bytes
         if own and '"' not in own:
             kept.append((b"cookie", f"{SESSION_COOKIE}={own}".encode("latin-1")))
     return kept
-
-
-def _too_many(detail: str, wait_s: float) -> Response:
-    wait = math.ceil(wait_s)
-    return problem_response(
-        Problem(
-            type="too-many",
-            title="Too many requests",
-            status=429,
-            detail=detail,
-            remedy=f"Try again in {wait} s.",
-        ),
-        {"Retry-After": str(wait)},
-    )
-
-
-def _unknown(detail: str, remedy: str) -> Response:
-    problem = Problem(
-        type="sign-in",
-        title="Sign in",
-        status=401,
-        detail=detail,
-        field="token",
-        remedy=remedy,
-    )
-    return problem_response(problem, {"WWW-Authenticate": 'Bearer realm="Knitcore"'})
-
-
-def _refused(field: str, detail: str, remedy: str, status: int) -> Response:
-    return problem_response(
-        Problem(
-            type="refused",
-            title="Refused",
-            status=status,
-            detail=detail,
-            field=field,
-            remedy=remedy or None,
-        )
-    )
 
 
 def _has_body(scope: Scope) -> bool:

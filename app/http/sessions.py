@@ -8,9 +8,9 @@ from pydantic import AwareDatetime, BaseModel, Field
 from sqlalchemy import delete, insert, select
 
 from app.budgets import Use
-from app.designs.store import moment, now
 from app.store.database import Database
 from app.store.tables import sessions
+from app.store.values import now
 
 SESSION_S = 30 * 86_400
 
@@ -66,8 +66,8 @@ class Sessions:
         with self._database.read() as connection:
             rows = connection.execute(found).all()
         return [
-            SessionSummary(id=r.id, created_at=moment(r.created_at), is_this=r.id == this)
-            for r in rows
+            SessionSummary.model_validate({**row._mapping, "is_this": row.id == this})
+            for row in rows
         ]
 
     def end(self, user: str, session: str) -> bool:

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
 import hmac
 import re
 import secrets
 import time
-from typing import Any
 
 from itsdangerous import BadSignature, URLSafeTimedSerializer
 from pydantic import AwareDatetime, BaseModel
 from sqlalchemy import Connection, insert, or_, select, update
 
-from app.designs.store import moment, now
 from app.http.identity import LOCAL_USER
 from app.http.sessions import SESSION_S, Sessions
 from app.store.database import Database
 from app.store.tables import access_tokens, service_keys
+from app.store.values import hash_of, now
 from knitcore.errors import InputError
 
 USER = re.compile(r"[A-Za-z0-9][A-Za-z0-9._@-]{0,79}")
@@ -75,19 +73,20 @@ class Tokens:
         values = {
             "id": secrets.token_hex(4),
             "user": user,
-            "token_hash": _hash(token),
+            "token_hash": hash_of(token),
             "label": label[:200],
             "created_at": at,
             "expires_at": None if days is None else at + 86_400 * days,
         }
         self._database.write(lambda c: c.execute(insert(access_tokens).values(values)))
-        return NewToken(**_summary(values | {"revoked_at": None}), token=token)
+        return NewToken.model_validate(values | {"revoked_at": None, "token": token})
 
     def all(self) -> TokenList:
         """Every token, including those that no longer work."""
         with self._database.read() as connection:
             rows = connection.execute(select(access_tokens).order_by(access_tokens.c.created_at))
-            return TokenList(tokens=[TokenSummary(**_summary(dict(r._mapping))) for r in rows])
+            found = [TokenSummary.model_validate(row, from_attributes=True) for row in rows]
+        return TokenList(tokens=found)
 
     def revoke(self, token: str) -> None:
         """Close a token, by its id.
@@ -157,13 +156,13 @@ class Login:
     def __init__(self, tokens: Tokens, sessions: Sessions, environment: str | None) -> None:
         self._tokens = tokens
         self._sessions = sessions
-        self._environment = None if environment is None else _hash(environment)
+        self._environment = None if environment is None else hash_of(environment)
         self._signer = URLSafeTimedSerializer(tokens.session_key(), salt="knitcore session")
         self._remembered: dict[tuple[str, str], tuple[float, tuple[str, str]]] = {}
 
     def by_token(self, token: str) -> tuple[str, str]:
         """(id, user) of a token; empty strings if it is unknown."""
-        hashed = _hash(token)
+        hashed = hash_of(token)
         if self._environment is not None and hmac.compare_digest(hashed, self._environment):
             return ENVIRONMENT, LOCAL_USER
         return self._ask("hashed", hashed)
@@ -218,14 +217,3 @@ class Login:
             self._remembered.clear()
         self._remembered[by, value] = (at, found)
         return found
-
-
-def _hash(token: str) -> str:
-    """Tokens are 256 random bits, so a plain hash cannot be turned back."""
-    return hashlib.sha256(token.encode()).hexdigest()
-
-
-def _summary(values: dict[str, Any]) -> dict[str, Any]:
-    times = ("created_at", "expires_at", "revoked_at")
-    kept = {name: values[name] for name in ("id", "user", "label")}
-    return kept | {n: None if values[n] is None else moment(values[n]) for n in times}

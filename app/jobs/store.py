@@ -7,27 +7,18 @@ import secrets
 from collections.abc import Mapping
 from typing import Any
 
-from sqlalchemy import (
-    ColumnElement,
-    Connection,
-    Row,
-    bindparam,
-    func,
-    insert,
-    select,
-    update,
-)
+from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
 
 from app.budgets import BUDGETS, OverBudgetError
 from app.designs.idempotency import Retry, once
-from app.designs.store import now
 from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.store.database import Database, StoreError
 from app.store.pages import one_page
 from app.store.tables import job_requests, jobs, results
+from app.store.values import now
 
-OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
+WAITING, RUNNING = OPEN = (JobState.WAITING.value, JobState.RUNNING.value)
 KEPT_S = 30 * 86_400.0
 ORPHANED_S = 60.0
 """A process not seen for this long counts as gone; the others take over its jobs."""
@@ -122,11 +113,11 @@ class JobStore:
 
     def begin(self, job: str) -> bool:
         """Mark a waiting job as running; False if it no longer waits."""
-        return self._move(job, (JobState.WAITING,), JobState.RUNNING, started_at=now())
+        return self._move(job, (WAITING,), RUNNING, started_at=now())
 
     def wait_again(self, job: str) -> bool:
         """Put a running job back in the queue."""
-        return self._move(job, (JobState.RUNNING,), JobState.WAITING, started_at=None, progress=0.0)
+        return self._move(job, (RUNNING,), WAITING, started_at=None, progress=0.0)
 
     def end(
         self,
@@ -139,20 +130,13 @@ class JobStore:
         """Close an open job, with the progress it made; False if it was closed before."""
         packed = None if problem is None else problem.model_dump_json()
         reached = {} if progress is None else {"progress": progress}
-        return self._move(
-            job,
-            (JobState.WAITING, JobState.RUNNING),
-            state,
-            problem=packed,
-            finished_at=now(),
-            **reached,
-        )
+        return self._move(job, OPEN, state.value, problem=packed, finished_at=now(), **reached)
 
-    def _move(self, job: str, before: tuple[JobState, ...], after: JobState, **values: Any) -> bool:
+    def _move(self, job: str, before: tuple[str, ...], after: str, **values: Any) -> bool:
         change = (
             update(jobs)
-            .where(jobs.c.id == job, jobs.c.state.in_([s.value for s in before]))
-            .values(state=after.value, **values)
+            .where(jobs.c.id == job, jobs.c.state.in_(before))
+            .values(state=after, **values)
         )
         return self._database.write(lambda connection: connection.execute(change).rowcount == 1)
 
@@ -168,7 +152,7 @@ class JobStore:
         def action(connection: Connection) -> list[tuple[str, str]]:
             connection.execute(
                 update(jobs)
-                .where(which, jobs.c.state == JobState.RUNNING.value)
+                .where(which, jobs.c.state == RUNNING)
                 .values(
                     state=JobState.INTERRUPTED.value,
                     problem=INTERRUPTED.model_dump_json(),
@@ -177,7 +161,7 @@ class JobStore:
             )
             waiting = connection.execute(
                 update(jobs)
-                .where(which, jobs.c.state == JobState.WAITING.value)
+                .where(which, jobs.c.state == WAITING)
                 .values(process=self.process, seen_at=now())
                 .returning(jobs.c.id, jobs.c.owner, jobs.c.created_at)
             )
