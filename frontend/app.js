@@ -151,7 +151,7 @@ watchConnection(studio, () => {
 const elsewhere = openAddressed(studio, keeper);
 if (!kept && !elsewhere) {
   offerTour(byId("topbar"), context);
-  void stretcher.run("wale", FIRST_STRAIN).then(() => {
+  void stretcher.run("wale", { strain: FIRST_STRAIN }).then(() => {
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) stretcher.play();
   });
 }

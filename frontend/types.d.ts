@@ -2476,8 +2476,10 @@ export interface StretchRequest {
   outline?: string | null;
   /** Along rows, or along columns. */
   direction: Direction;
-  /** Last clamp-to-clamp strain: 0.5 is 50 %. */
-  strain: number;
+  /** Last clamp-to-clamp strain: 0.5 is 50 %. Give this or a force. */
+  strain?: number | null;
+  /** Last force on the clamps, in place of a strain. */
+  force_n?: number | null;
   steps?: number;
   /** Ends gripped, or free to slide along the clamps. */
   clamps?: Clamps;

@@ -25,8 +25,17 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.garment.shaped import outline_marks
 from knitcore.law.stiffening import EXTENSION_START
-from knitcore.swatch import Clamps, EnergyModel, StripTest, strip_test
+from knitcore.swatch import (
+    Clamps,
+    EnergyModel,
+    Sheet,
+    StripTest,
+    chart_sheet,
+    pull,
+    strain_at_force,
+)
 from knitcore.swatch.margins import StretchMargins, sampled_steps, stretch_margins
+from knitcore.swatch.strip import load_levels
 
 Array = NDArray[np.float32]
 
@@ -44,7 +53,15 @@ class StretchRequest(LawsRequest):
     material: MaterialName
     outline: OutlineInput = None
     direction: Direction = Field(description="Along rows, or along columns.")
-    strain: float = Field(gt=0, le=5, description="Last clamp-to-clamp strain: 0.5 is 50 %.")
+    strain: float | None = Field(
+        None,
+        gt=0,
+        le=5,
+        description="Last clamp-to-clamp strain: 0.5 is 50 %. Give this or a force.",
+    )
+    force_n: float | None = Field(
+        None, gt=0, le=10_000, description="Last force on the clamps, in place of a strain."
+    )
     steps: int = Field(12, ge=1, le=1000)
     clamps: Clamps = Field(
         Clamps.CLAMPED, description="Ends gripped, or free to slide along the clamps."
@@ -176,13 +193,19 @@ def _test(
 ) -> tuple[StripTest, StretchMargins]:
     material = context.material(request.material)
     total = request.steps + len(sampled_steps(request.steps))
-    test = request.pass_to(
-        strip_test,
+    sheet = request.pass_to(
+        chart_sheet,
         chart,
         material,
         stitch=None if request.outline is None else outline_marks(request.outline),
         gauge=request.gauge.relaxed_size() if request.gauge else None,
         laws=None,  # those that the request chooses are in the material
+    )
+    test = pull(
+        sheet,
+        request.direction,
+        load_levels(_last_strain(sheet, request, context), request.steps),
+        clamps=request.clamps,
         cancelled=context.cancelled,
         progress=lambda done, _: context.progress(done, total),
     )
@@ -194,6 +217,23 @@ def _test(
         cancelled=context.cancelled,
     )
     return test, margins
+
+
+def _last_strain(sheet: Sheet, request: StretchRequest, context: Context) -> float:
+    """The strain that is asked for, or at which the clamps hold the force that is."""
+    match request.strain, request.force_n:
+        case float(strain), None:
+            return strain
+        case None, float(force_n):
+            return strain_at_force(
+                sheet,
+                request.direction,
+                force_n,
+                clamps=request.clamps,
+                cancelled=context.cancelled,
+            )
+        case _:
+            raise InputError("strain", "give either a strain or a force.", "Use one of the two.")
 
 
 def _curve(

@@ -1022,8 +1022,10 @@ class StretchRequest(TypedDict):
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     direction: Direction
     """Along rows, or along columns."""
-    strain: float
-    """Last clamp-to-clamp strain: 0.5 is 50 %."""
+    strain: NotRequired[float | None]
+    """Last clamp-to-clamp strain: 0.5 is 50 %. Give this or a force."""
+    force_n: NotRequired[float | None]
+    """Last force on the clamps, in place of a strain."""
     steps: NotRequired[int]
     clamps: NotRequired[Clamps]
     """Ends gripped, or free to slide along the clamps."""

@@ -14,6 +14,8 @@ import { REST } from "../studio.js";
 import { icon } from "../icons.js";
 import { numberField } from "../widgets/fields.js";
 
+/** @typedef {"%" | "N"} Unit of a pull */
+
 /** What the field says in each unit at first. */
 const DEFAULTS = { "%": "30", N: "2" };
 
@@ -65,7 +67,7 @@ export function stretchdrawer(host, studio, stretcher) {
       class: "chip-select",
       id: "stretch-unit",
       "aria-label": "Unit of the pull",
-      onchange: () => (amount.value = DEFAULTS[/** @type {"%" | "N"} */ (unit.value)]),
+      onchange: () => (amount.value = DEFAULTS[/** @type {Unit} */ (unit.value)]),
     },
     h("option", { value: "%" }, "%"),
     h("option", { value: "N" }, "N"),
@@ -90,13 +92,12 @@ export function stretchdrawer(host, studio, stretcher) {
       model: /** @type {"full" | "published"} */ (options.model.value),
       shear_modulus_n_per_mm: shear > 0 ? shear : null,
     };
-    if (toForce) void stretcher.pullTo(direction, wanted, how);
-    else void stretcher.run(direction, wanted / 100, how);
+    void stretcher.run(direction, toForce ? { force_n: wanted } : { strain: wanted / 100 }, how);
   };
-  /** @param {number} strain */
-  const pullBy = (strain) => {
-    unit.value = "%";
-    amount.value = String(Math.floor(100 * strain + 1e-9));
+  /** @param {number} most @param {Unit} of */
+  const pullBy = (most, of) => {
+    unit.value = of;
+    amount.value = String(most);
     start();
   };
   const run = h("button", {
@@ -315,19 +316,23 @@ function stretchOptions(studio) {
 }
 
 /**
- * What is wrong with a test that was refused; a strain in percent, as it was entered.
+ * What is wrong with a test that was refused; the largest pull in the unit in which it was entered.
  *
  * @param {Problem} problem
- * @param {(strain: number) => void} pull
+ * @param {(most: number, unit: Unit) => void} pull
  */
 function refused({ title, detail, remedy, field, most }, pull) {
-  if (field !== "strain" || !most) return h("span", {}, h("strong", {}, title), `: ${detail} ${remedy ?? ""}`);
-  const amount = `${Math.floor(100 * most + 1e-9)} %`;
+  if (!most || (field !== "strain" && field !== "force_n")) {
+    return h("span", {}, h("strong", {}, title), `: ${detail} ${remedy ?? ""}`);
+  }
+  /** @type {Unit} */
+  const unit = field === "strain" ? "%" : "N";
+  const amount = unit === "%" ? Math.floor(100 * most + 1e-9) : most;
   return h(
     "span",
     {},
-    h("strong", {}, "Too far"),
-    `: the first stitches lock before that. Use at most ${amount}. `,
-    h("button", { class: "link", id: "stretch-most", onclick: () => pull(most) }, `Pull by ${amount}`),
+    h("strong", {}, unit === "%" ? "Too far" : "Too hard"),
+    `: the first stitches lock before that. Use at most ${amount} ${unit}. `,
+    h("button", { class: "link", id: "stretch-most", onclick: () => pull(amount, unit) }, `Pull by ${amount} ${unit}`),
   );
 }

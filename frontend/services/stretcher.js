@@ -4,23 +4,18 @@
  * @import {Studio} from "../studio.js"
  * @import {Direction, StretchResult, StretchRequest} from "../types.js"
  *
+ * @typedef {Pick<StretchRequest, "strain" | "force_n">} Pull how far, or how hard
  * @typedef {Partial<Pick<StretchRequest, "clamps" | "model" | "shear_modulus_n_per_mm">>} StretchOptions
  */
 
 import { ApiError, api, isAbort } from "../api.js";
 import { OVERLAYS } from "../chart/overlays.js";
 import { Signal } from "../core/signal.js";
-import { figure, percent } from "../core/format.js";
 import { outlineText } from "../core/snapshot.js";
-import { further, strainAt } from "../core/striptest.js";
 import { runJob } from "./jobs.js";
 
 const STEPS = 20;
 const FRAME_MS = 140;
-/** Most tests to find a force, and the tolerance. */
-const MAX_TRIES = 8;
-const NEAR = 0.005;
-const FIRST_STRAIN = 0.2;
 /** Tests that took no longer than this are repeated automatically after a change. */
 const FAST_S = 3;
 const AGAIN_MS = 900;
@@ -68,11 +63,11 @@ export class Stretcher {
 
   /**
    * @param {Direction} direction
-   * @param {number} strain
+   * @param {Pull} pull
    * @param {StretchOptions} [options]
    * @returns {Promise<StretchResult | null>} null if it was given up or refused
    */
-  async run(direction, strain, options = {}) {
+  async run(direction, pull, options = {}) {
     const { studio } = this;
     this.cancel();
     this.pause();
@@ -82,7 +77,7 @@ export class Stretcher {
     const { document: chart } = studio;
     const outline = chart.shaped ? outlineText(chart.outline, chart.grid.columns) : null;
     const gauge = studio.gauges.of(studio.request);
-    const request = { ...studio.request, gauge, outline, direction, strain, steps: STEPS, ...options };
+    const request = { ...studio.request, gauge, outline, direction, ...pull, steps: STEPS, ...options };
     studio.stretch.value = { ...studio.stretch.value, busy: true, problem: null };
     try {
       /** @type {StretchResult} */
@@ -112,64 +107,18 @@ export class Stretcher {
     }
   }
 
-  /**
-   * Pull until the clamps hold a force: the strain is found by a few tests.
-   *
-   * @param {Direction} direction
-   * @param {number} newtons
-   * @param {StretchOptions} [options]
-   */
-  async pullTo(direction, newtons, options = {}) {
-    const { studio } = this;
-    let strain = this.#guess(direction, newtons);
-    let limit = Infinity;
-    for (let tries = 0; tries < MAX_TRIES; tries++) {
-      const test = await this.run(direction, strain, options);
-      if (!test) {
-        const { problem } = studio.stretch.value;
-        if (problem?.field !== "strain" || !problem.most || problem.most >= limit) return;
-        strain = limit = problem.most;
-        continue;
-      }
-      const end = /** @type {number} */ (test.strain.at(-1));
-      const reached = strainAt(test, newtons);
-      if (reached !== null && end - reached < NEAR * end) return;
-      if (reached === null && end >= limit) {
-        studio.tellProblem({
-          type: "input",
-          status: 422,
-          title: "The first stitches lock before that force",
-          detail: `At ${percent(end)} the clamps hold ${figure(test.force_n.at(-1))} N.`,
-          remedy: "Give a smaller force.",
-        });
-        return;
-      }
-      strain = Math.min(limit, reached ?? further(test, newtons));
-    }
-  }
-
   /** The test on show with the chart as it is now, at the same step. */
   async #pullAgain() {
     const { studio } = this;
     const { stale, busy, value } = studio.stretch.value;
     if (!stale || busy || !value || !this.#request || this.#design !== studio.designId) return;
-    const { direction, strain, clamps, model, shear_modulus_n_per_mm } = this.#request;
+    const { direction, strain, force_n, clamps, model, shear_modulus_n_per_mm } = this.#request;
     const [step, overlay] = [studio.step.value, studio.overlay.value];
     if (studio.document.painting) this.#soon = setTimeout(() => void this.#pullAgain(), AGAIN_MS);
-    else if (await this.run(direction, strain, { clamps, model, shear_modulus_n_per_mm })) {
+    else if (await this.run(direction, { strain, force_n }, { clamps, model, shear_modulus_n_per_mm })) {
       studio.step.value = step;
       studio.overlay.value = overlay;
     }
-  }
-
-  /** A first guess from the modulus: knits stiffen, so it is seldom too small. @param {Direction} direction @param {number} newtons */
-  #guess(direction, newtons) {
-    const { grid } = this.studio.document;
-    const found = this.studio.prediction.value.value;
-    if (!found) return FIRST_STRAIN;
-    const across = direction === "wale" ? grid.columns * found.relaxed_course_mm : grid.rows * found.relaxed_wale_mm;
-    const strain = newtons / across / found[`modulus_${direction}_n_per_mm`];
-    return Math.min(1, Math.max(0.02, strain)) || FIRST_STRAIN;
   }
 
   /**

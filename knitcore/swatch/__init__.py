@@ -1,7 +1,7 @@
 """The finite swatch: a chart of any stitches as a nonlinear sheet, pulled, sheared or relaxed."""
 
 from knitcore.swatch.fields import Fields
-from knitcore.swatch.force_control import pull_with_force
+from knitcore.swatch.force_control import pull_with_force, strain_at_force
 from knitcore.swatch.grid import QuarterGrid
 from knitcore.swatch.misfit import Misfit, misfit, relaxed_shape
 from knitcore.swatch.models import Coupling, EnergyModel, SheetModel
@@ -28,5 +28,6 @@ __all__ = [
     "pull",
     "pull_with_force",
     "relaxed_shape",
+    "strain_at_force",
     "strip_test",
 ]

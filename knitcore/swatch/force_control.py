@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +27,28 @@ from knitcore.swatch.strip import (
 
 FORCE_TOLERANCE = 1e-6
 MAX_CORRECTIONS = 25
+FIRST_STRAIN = 1e-3
+NEAR_LIMIT = 1e-2
+"""Share of the largest strain within which that strain itself is tried."""
+
+
+def strain_at_force(
+    sheet: Sheet,
+    direction: Direction,
+    force_n: float,
+    *,
+    clamps: Clamps = Clamps.CLAMPED,
+    cancelled: Cancelled | None = None,
+) -> float:
+    """The clamp-to-clamp strain at which the clamps hold a force (N).
+
+    Raises
+    ------
+    InputError
+        If it lies beyond 98 % of the lock-up; names the force that is reached there.
+    ConvergenceError, CancelledError
+    """
+    return _Bench(sheet, direction, clamps, cancelled).pull(force_n).strain
 
 
 def pull_with_force(
@@ -39,8 +62,7 @@ def pull_with_force(
 ) -> StripTest:
     """A strip test in which the clamps are pulled with given forces (N, increasing).
 
-    The strain for a force is found by secant steps on the clamp force of strain-driven
-    equilibria. A force beyond 98 % of the lock-up strain ends the test as not converged.
+    A force beyond 98 % of the lock-up strain ends the test as not converged.
 
     Raises
     ------
@@ -55,59 +77,98 @@ def pull_with_force(
     if np.any(np.diff(levels) <= 0):
         raise InputError("force_n", "the forces do not increase.", "Give increasing forces.")
     begin = time.perf_counter()
-    limit = min(LOCK_UP_SHARE * lock_up_strain(sheet, direction), MAX_STRAIN)
-    nodes = sheet.grid.edge(clamp_edges(direction)[1])
-    fixed = clamp_mask(sheet.grid, direction, clamps)
+    bench = _Bench(sheet, direction, clamps, cancelled)
+    pulls: list[_Pull] = []
+    problem = None
+    try:
+        for goal in levels:
+            pulls.append(bench.pull(goal))
+            if progress is not None:
+                progress(len(pulls), len(levels))
+    except (ConvergenceError, InputError) as error:
+        problem = f"Force {len(pulls) + 1} of {len(levels)} was not reached. {error}"
+    path = Path(tuple(pull.found for pull in pulls), problem, time.perf_counter() - begin)
+    return strip_result(sheet, direction, np.array([pull.strain for pull in pulls]), path)
 
-    def solve(strain: float, start: Equilibrium | None) -> Equilibrium:
+
+@dataclass(frozen=True, eq=False)
+class _Pull:
+    """An equilibrium, the clamps' strain and their force in N."""
+
+    strain: float
+    force_n: float
+    found: Equilibrium
+
+
+class _Bench:
+    """A sheet between clamps, pulled on by ever larger forces.
+
+    The strain for a force is found by secant steps on the clamp force, each from the last
+    equilibrium.
+    """
+
+    def __init__(
+        self, sheet: Sheet, direction: Direction, clamps: Clamps, cancelled: Cancelled | None
+    ) -> None:
+        self._sheet, self._direction, self._cancelled = sheet, direction, cancelled
+        self._limit = min(LOCK_UP_SHARE * lock_up_strain(sheet, direction), MAX_STRAIN)
+        self._fixed = clamp_mask(sheet.grid, direction, clamps)
+        self._end = sheet.grid.edge(clamp_edges(direction)[1])
+        self._last: list[_Pull] = []
+
+    def pull(self, goal_n: float) -> _Pull:
+        """The equilibrium under a force.
+
+        Raises
+        ------
+        InputError
+            If the sheet locks up before that.
+        ConvergenceError, CancelledError
+        """
+        iterations = 0
+        for _ in range(MAX_CORRECTIONS):
+            now = self._at(self._next(goal_n))
+            self._last = [*self._last[-1:], now]
+            iterations += now.found.iterations
+            if abs(now.force_n - goal_n) <= FORCE_TOLERANCE * goal_n:
+                return replace(now, found=replace(now.found, iterations=iterations))
+            if now.strain == self._limit and now.force_n < goal_n:
+                most = float(np.floor(100 * now.force_n) / 100)
+                raise InputError(
+                    "force_n",
+                    f"{goal_n:.3g} N {self._direction}-wise is too much: this swatch can be "
+                    f"pulled to a strain of {self._limit:.3f}, near its lock-up, with "
+                    f"{now.force_n:.3g} N.",
+                    f"Use at most {most:.2f}.",
+                    most=most,
+                )
+        raise ConvergenceError(f"{MAX_CORRECTIONS} pulls did not come to {goal_n:.3g} N.")
+
+    def _next(self, goal_n: float) -> float:
+        """A strain at which the clamps may hold a force, from those that are known."""
+        if not self._last:
+            return min(FIRST_STRAIN, self._limit)
+        now = self._last[-1]
+        before = self._last[-2] if len(self._last) > 1 else None
+        slope = (
+            now.force_n / now.strain
+            if before is None or before.strain == now.strain
+            else (now.force_n - before.force_n) / (now.strain - before.strain)
+        )
+        strain = now.strain + (goal_n - now.force_n) / slope
+        half = (now.strain + self._limit) / 2  # stiffening makes the secant overshoot
+        if strain <= half:
+            return strain
+        return self._limit if self._limit - half < NEAR_LIMIT * self._limit else half
+
+    def _at(self, strain: float) -> _Pull:
         path = run_path(
-            sheet,
-            fixed,
-            [stretched(sheet.grid, direction, strain)],
-            start=start.state if start else None,
-            cancelled=cancelled,
+            self._sheet,
+            self._fixed,
+            [stretched(self._sheet.grid, self._direction, strain)],
+            start=self._last[-1].found.state if self._last else None,
+            cancelled=self._cancelled,
         )
         if path.problem:
             raise ConvergenceError(path.problem)
-        return path.found[0]
-
-    def force(found: Equilibrium) -> float:
-        return float(found.reaction[nodes, direction.axis].sum())
-
-    found: list[Equilibrium] = []
-    strains: list[float] = []
-    problem = None
-    last = (0.0, 0.0)
-    strain = 1e-3
-    equilibrium: Equilibrium | None = None
-    try:
-        for number, goal in enumerate(levels):
-            iterations = 0
-            for _ in range(MAX_CORRECTIONS):
-                equilibrium = solve(strain, equilibrium)
-                iterations += equilibrium.iterations
-                now = force(equilibrium)
-                if abs(now - goal) <= FORCE_TOLERANCE * goal:
-                    break
-                slope = (now - last[1]) / (strain - last[0])
-                last = (strain, now)
-                # stiffening makes the secant overshoot; half the strain that is left bounds it
-                strain = min(strain + (goal - now) / slope, (strain + limit) / 2)
-            else:
-                raise ConvergenceError(
-                    f"{goal:.3g} N needs more than {limit:.3f} strain, 98 % of the lock-up."
-                )
-            found.append(
-                Equilibrium(equilibrium.state, equilibrium.energy, equilibrium.reaction, iterations)
-            )
-            strains.append(strain)
-            if progress is not None:
-                progress(number + 1, len(levels))
-            if number + 1 < len(levels):
-                slope = (now - last[1]) / (strain - last[0]) if strain != last[0] else now / strain
-                last = (strain, now)
-                strain = min(strain + (levels[number + 1] - now) / slope, (strain + limit) / 2)
-    except ConvergenceError as error:
-        problem = f"Force {len(found) + 1} of {len(levels)} was not reached. {error}"
-    path = Path(tuple(found), problem, time.perf_counter() - begin)
-    return strip_result(sheet, direction, np.array(strains), path)
+        return _Pull(strain, float(path.forces(self._end, self._direction.axis)[0]), path.found[0])

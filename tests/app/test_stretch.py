@@ -119,6 +119,33 @@ def test_beyond_the_lock_up_the_limit_is_named(client: TestClient) -> None:
     assert "Use at most 0.4" in result.stderr
 
 
+def test_a_test_ends_at_the_force_that_was_asked_for(client: TestClient) -> None:
+    asked = {field: value for field, value in ASKED.items() if field != "strain"}
+    answer = client.post("/api/v1/stretch", json=asked | {"force_n": 1.5}).json()
+    assert answer["force_n"][-1] == pytest.approx(1.5, rel=1e-5)
+    assert np.diff(answer["strain"], prepend=0) == pytest.approx(answer["strain"][0])
+    same = client.post("/api/v1/stretch", json=ASKED | {"strain": answer["strain"][-1]}).json()
+    assert same["waist_strain"] == pytest.approx(answer["waist_strain"])
+
+
+def test_a_force_beyond_the_lock_up_names_the_largest(client: TestClient) -> None:
+    asked = {field: value for field, value in ASKED.items() if field != "strain"}
+    problem = client.post("/api/v1/stretch", json=asked | {"force_n": 9_999}).json()
+    assert problem["field"] == "force_n"
+    assert 0 < problem["most"] < 9_999
+    most = client.post("/api/v1/stretch", json=asked | {"force_n": problem["most"]}).json()
+    assert most["force_n"][-1] == pytest.approx(problem["most"])
+
+
+@pytest.mark.parametrize("force", [None, 2.0])
+def test_a_pull_is_a_strain_or_a_force(client: TestClient, force: float | None) -> None:
+    strain = None if force is None else 0.2
+    body = ASKED | {"strain": strain, "force_n": force}
+    response = client.post("/api/v1/stretch", json=body)
+    assert response.status_code == 422
+    assert response.json()["detail"] == "strain: give either a strain or a force."
+
+
 def test_the_published_model_warns_beyond_the_lock_up(client: TestClient) -> None:
     body = ASKED | {"model": "published", "strain": 1.5}
     answer = client.post("/api/v1/stretch", json=body).json()

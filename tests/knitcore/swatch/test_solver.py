@@ -22,9 +22,10 @@ from knitcore.swatch import (
     pull,
     pull_with_force,
     solver,
+    strain_at_force,
 )
 from knitcore.swatch.run import run_path
-from knitcore.swatch.strip import load_levels
+from knitcore.swatch.strip import load_levels, lock_up_strain
 
 GARTER = ConstitutiveLaw(0.241, 0.060, 0.036, 0.029, 1.17, 0.802, 0.022, 0.022, 0.01)
 SCRIPT = ConstitutiveLaw(
@@ -108,6 +109,15 @@ def test_force_control_finds_the_strains_of_strain_control() -> None:
     by_force = pull_with_force(sheet, Direction.COURSE, by_strain.force_n)
     assert by_force.converged
     assert by_force.strain == pytest.approx(by_strain.strain, rel=1e-5)
+
+
+def test_a_force_short_of_the_largest_strain_is_found() -> None:
+    """The secant comes to that strain and has to turn back."""
+    sheet = homogeneous_sheet(GARTER, 60, 40, columns=4, rows=4)
+    limit = 0.98 * lock_up_strain(sheet, Direction.WALE)
+    near = pull(sheet, Direction.WALE, load_levels(0.999 * limit, 6))
+    found = strain_at_force(sheet, Direction.WALE, near.force_n[-1])
+    assert found == pytest.approx(0.999 * limit, rel=1e-5)
 
 
 def test_a_force_that_cannot_be_reached_leaves_the_part_before_it() -> None:
