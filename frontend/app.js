@@ -1,4 +1,4 @@
-/** Puts the page together. */
+/** Puts the page together, in pieces between which the browser has its turn: none keeps it waiting for long. */
 
 import { listenToKeys } from "./actions/registry.js";
 import { ApiError, api, isAbort } from "./api.js";
@@ -44,7 +44,7 @@ const chart = kept ? ChartDocument.read(kept, loadHistory()) : new ChartDocument
 const studio = new Studio(chart, kept ?? { id: newIdentifier(), name: "First swatch", material: FIRST_MATERIAL });
 
 const view = new ChartView(byId("chart-host"), byId("chart"), byId("chart-top"), studio);
-new Painter(view, studio);
+await nextTask();
 
 const keeper = new Keeper(studio, kept?.remote ?? null);
 sharePlaces(view, studio, keeper.windows);
@@ -78,11 +78,15 @@ startPoser(studio);
 topbar(byId("topbar"), studio, context);
 sharedBanner(byId("shared"), context);
 rail(byId("rail"), studio, context);
+await nextTask();
+
 chartstrip(byId("chart-host"), context);
 selectionbar(byId("chart-host"), context);
 messages(byId("messages"), byId("offline"), studio);
 tips();
 themed.push(overlaybar(byId("overlays"), studio, view), shelf(byId("shelf"), studio, context));
+await nextTask();
+
 stretchdrawer(byId("stretch"), studio, stretcher);
 split(byId("split-columns"), "--side-width", {
   axis: "x",
@@ -96,13 +100,17 @@ split(byId("split-rows"), "--inspector-height", {
   size: () => byId("inspector").offsetHeight,
   most: () => innerHeight - 320,
 });
+const predictAgain = startPredictor(studio);
+// Everything that follows the chart is there: now it may be painted on.
+new Painter(view, studio);
 listenToKeys(context, isTyping);
 listenToImports(context, isTyping);
+await nextTask();
 
-await nextTask(); // the page is there; asking the service need not be part of the same long task
-const predictAgain = startPredictor(studio);
 // The 3D view starts in a process of its own, while the page is painted.
 const showAgain = fabricview(byId("fabric"), studio, view);
+await nextTask();
+
 /** The numbers come second: the chart is there to be painted on before they come. */
 void firstPaint().then(async () => {
   performance.mark("studio");

@@ -34,6 +34,18 @@ class Answers:
         """The context of operations that need no worker."""
         return Context(self._data_dir)
 
+    def can_be_viewed(self, operation: Operation[Any, Any], request: str) -> bool:
+        """Whether what a 3D view shows of the result is in memory; True where there is nothing.
+
+        Parameters
+        ----------
+        request : JSON of a valid one.
+        """
+        if not operation.is_viewed:
+            return True
+        key = operation.key(operation.request.model_validate_json(request))
+        return self._recent.get(key) is not None
+
     async def answer(
         self,
         abandoned: Callable[[], Awaitable[bool]],

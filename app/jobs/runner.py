@@ -78,7 +78,7 @@ class JobRunner:
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
     ) -> JobStatus:
-        """Add a job; if its result is known, it is done at once.
+        """Add a job; if its result is known, and what a 3D view shows of it, it is done at once.
 
         Raises
         ------
@@ -86,7 +86,9 @@ class JobRunner:
             If too many jobs of this owner wait.
         """
         key = await asyncio.to_thread(job_key, kind, request)
-        known = await asyncio.to_thread(self.store.knows, key)
+        known = await asyncio.to_thread(self.store.knows, key) and await asyncio.to_thread(
+            self._answers.can_be_viewed, KINDS[kind], request
+        )
         state = JobState.DONE if known else JobState.WAITING
         if not known:
             self._compute.check_room(owner)

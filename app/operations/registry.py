@@ -107,7 +107,12 @@ class Operation(Generic[Request, Result]):
     def result(self) -> type[Result]:
         """The model of the result."""
         told = get_type_hints(self.run)["return"]
-        return cast("type[Result]", get_args(told)[0] if get_origin(told) is Viewed else told)
+        return cast("type[Result]", get_args(told)[0] if self.is_viewed else told)
+
+    @cached_property
+    def is_viewed(self) -> bool:
+        """Whether its results come with what a 3D view shows of them."""
+        return get_origin(get_type_hints(self.run)["return"]) is Viewed
 
     @property
     def address(self) -> str:

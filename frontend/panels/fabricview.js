@@ -252,7 +252,10 @@ export function fabricview(host, studio, view) {
   now();
   return () => {
     shown = ""; // a restarted service has new scenes, so the frame must connect anew
-    now();
+    const test = pulled(studio);
+    if (test)
+      studio.seeing.forgotten.value = test.id; // it is run again, and then sent
+    else now();
   };
 }
 

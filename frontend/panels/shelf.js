@@ -121,7 +121,8 @@ export function shelf(host, studio, context) {
 function thumbnail(ink, palette, colour) {
   const side = 2 * SIDE;
   const canvas = h("canvas", { width: side, height: side });
-  drawThumbnail(/** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d")), side, ink, palette, colour);
+  const context = canvas.getContext("2d", { willReadFrequently: true }); // reading from a GPU would stop it
+  drawThumbnail(/** @type {CanvasRenderingContext2D} */ (context), side, ink, palette, colour);
   return h("img", { src: canvas.toDataURL(), class: "thumbnail", alt: "" });
 }
 

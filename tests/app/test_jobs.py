@@ -102,6 +102,13 @@ def test_a_stretch_test_in_the_background(client: TestClient) -> None:
     following = client.get(JOBS, params={"limit": 1, "cursor": listed["next_cursor"]}).json()
     assert [j["id"] for j in following["jobs"]] == [made.json()["id"]]
 
+    client.app.state.recent.drop(result["id"])  # type: ignore[attr-defined]  # as after a restart
+    assert client.put("/api/v1/views/of-a-job-1", json=view).status_code == 422
+    third = client.post(f"{address}/again").headers["location"]
+    with client.stream("GET", f"{third}/events") as stream:
+        assert any('"done"' in line for line in stream.iter_lines())
+    assert client.put("/api/v1/views/of-a-job-1", json=view).status_code == 200
+
 
 def test_a_job_that_cannot_work_says_why(client: TestClient) -> None:
     body = {"kind": "stretch", "request": STRETCH | {"material": "steel"}}
