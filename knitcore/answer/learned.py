@@ -17,6 +17,7 @@ the yarn level predicts: see :data:`MAX_FOLDED`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -198,26 +199,45 @@ class LearnedModel:
         A sweep takes the place of the regressions. Its variance is their noise: whatever densities
         do not explain, such as which of several shapes the simulation settled in.
         """
-        mixture = Mixture.of(found.shares, material)
-        sample = self.sample(found.features[None], mixture.numbers)
         if swept is None:
-            folding, unfolding = self.folding(sample), self.unfolding(sample)
-        else:
-            folding = swept.folding[None], np.array([self.folding.settings.noise])
-            unfolding = swept.unfolding[None], np.array([self.unfolding.settings.noise])
+            one = Densities(*(values[None] for values in found.arrays))
+            return self.answers(one, material, [known])[0]
+        mixture = Mixture.of(found.shares, material)
+        folding = swept.folding, self.folding.settings.noise
+        unfolding = swept.unfolding, self.unfolding.settings.noise
+        return self._answer(found, mixture, known, folding, unfolding)
+
+    def answers(
+        self, found: Densities, material: Material, known: Sequence[RelaxedSize | None]
+    ) -> list[LearnedAnswer]:
+        """Sizes and responses of several charts, by their densities and known sizes."""
+        mixtures = Mixture.each(found.shares, material)
+        samples = self.sample(found.features, np.array([m.numbers for m in mixtures]))
+        corrections = (zip(*of(samples), strict=True) for of in (self.folding, self.unfolding))
+        each = zip(found, mixtures, known, *corrections, strict=True)
+        return [self._answer(*one) for one in each]
+
+    def _answer(
+        self,
+        found: Densities,
+        mixture: Mixture,
+        known: RelaxedSize | None,
+        folding: tuple[Array, float],
+        unfolding: tuple[Array, float],
+    ) -> LearnedAnswer:
+        """From means and variances of folding and unfolding."""
         flat_mm = mixture.size_mm
         if known is not None:
             fold = np.log(np.array([known.course_mm, known.wale_mm]) / flat_mm)
             fold_sd = np.full(2, known.log_sd)
         else:
-            folds, deviations = self.folded(*folding, found, simulated=mixture.simulated)
-            fold, fold_sd = folds[0], deviations[0]
-        means, variance = unfolding
+            fold, fold_sd = self.folded(*folding, found, simulated=mixture.simulated)
+        mean, variance = unfolding
         slopes = self.slopes * follows(mixture)
-        values = means[0] + slopes @ fold
+        values = mean + slopes @ fold
         # near a pure fabric little remains to be learned
         spread = found.mixed * (found.ways @ self.unfolding_scale)
-        deviations = np.sqrt(spread**2 * variance[0] + slopes**2 @ fold_sd**2)
+        deviations = np.sqrt(spread**2 * variance + slopes**2 @ fold_sd**2)
         return LearnedAnswer(
             size_mm=flat_mm * np.exp(fold),
             size_log_sd=fold_sd,
@@ -229,17 +249,17 @@ class LearnedModel:
         )
 
     def folded(
-        self, fold: Array, variance: Array, found: Densities, *, simulated: bool
+        self, fold: Array, variance: ArrayLike, found: Densities, *, simulated: bool
     ) -> tuple[Array, Array]:
-        """Logarithms of size over the mixture's and their standard deviations, (m, 2) each.
+        """Logarithms of size over the mixture's and their standard deviations, (…, 2) each.
 
         Parameters
         ----------
-        fold, variance : (m, 2), (m,) at the yarn level.
+        fold, variance : (…, 2), (…) at the yarn level.
         simulated : for yarn-level fabric, which folds more than knitted fabric.
         """
         part = np.asarray(found.mixed)[..., None]
-        deviation = part * (found.ways @ self.folding_scale) * np.sqrt(variance)[:, None]
+        deviation = part * (found.ways @ self.folding_scale) * np.sqrt(variance)[..., None]
         if simulated:
             return fold, deviation
         shown = found.straight**2 / (1.0 + np.abs(fold) / self.most_folded)
@@ -257,11 +277,8 @@ class LearnedModel:
         phases = present(shares)
         records = [material.record(PHASES[phase]) for phase in phases]
         flat = shares[:, phases] @ [(r.stitch_course_mm, r.stitch_wale_mm) for r in records]
-        numbers = pure_numbers(material, phases)
-        samples = self.sample(
-            found.features,
-            None if numbers is None else shares[:, phases] @ numbers[:, :-1],
-        )
+        numbers = shares[:, phases] @ pure_numbers(material, phases)[phases, :-1]
+        samples = self.sample(found.features, numbers)
         simulated = all(record.origin is Origin.SIMULATED for record in records)
         fold, _ = self.folded(*self.folding(samples), found, simulated=simulated)
         return np.asarray(flat * np.exp(fold))
@@ -269,7 +286,8 @@ class LearnedModel:
     def sweep_of(self, chart: StitchChart, material: Material) -> SweptChart | None:
         """The sweep of a chart among the samples, if it was of the material's yarn."""
         found = densities(chart)
-        yarn = self.sample(found.features[None], Mixture.of(found.shares, material).numbers).numbers
+        mixture = Mixture.of(found.shares, material)
+        yarn = self.sample(found.features[None], mixture.numbers[None]).numbers
         key, numbers = chart.canonical().key, self.folding.samples.numbers
         return next(
             (
@@ -280,15 +298,13 @@ class LearnedModel:
             None,
         )
 
-    def sample(self, features: Array, numbers: Array | None) -> Samples:
-        """Features of charts (m, features) and the yarn's numbers, in the samples' units."""
-        yarn = self.number_centre if numbers is None else numbers
-        scaled = (np.atleast_2d(yarn) - self.number_centre) / self.number_scale
-        return Samples(
-            features / self.feature_scale,
-            np.broadcast_to(scaled, (len(features), scaled.shape[1])),
-            np.zeros(len(features), dtype=bool),
-        )
+    def sample(self, features: Array, numbers: Array) -> Samples:
+        """Features of charts (m, features) and numbers of their yarns (m, 4), in the samples'
+        units; an unknown yarn (nan) is one in the middle.
+        """
+        scaled = (numbers - self.number_centre) / self.number_scale
+        none_pure = np.zeros(len(features), dtype=bool)
+        return Samples(features / self.feature_scale, np.nan_to_num(scaled), none_pure)
 
 
 def follows(mixture: Mixture) -> Array:

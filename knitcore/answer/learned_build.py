@@ -169,7 +169,6 @@ def _row(
     chart: StitchChart, yarn_name: str, mixture: Mixture, made_of: Densities,
     size_mm: tuple[float, float], strains: list[Array], poisson: tuple[float, float],
 ) -> Row:  # fmt: skip
-    assert mixture.numbers is not None  # noqa: S101 - yarns of the yarn level are known
     fold, outputs = over_mixture(mixture, size_mm, strains, poisson)
     if len(mixture.parts) == 1:  # a pure fabric is its own mixture; the rest is its law's misfit
         fold, outputs = np.zeros_like(fold), np.zeros_like(outputs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -57,6 +58,35 @@ def mixed(
         If the material lacks a pure fabric that the repeat needs.
     """
     learned = packaged_model().answer(found, material, gauge, swept)
+    return _answer(repeat, found, material, learned, gauge, swept)
+
+
+def mixed_patches(
+    parts: Sequence[StitchChart],
+    found: Densities,
+    material: Material,
+    sizes: Sequence[RelaxedSize | None],
+) -> list[Answer]:
+    """Answers for the patches of a chart, by their densities and relaxed sizes, if known.
+
+    Raises
+    ------
+    InputError
+        If the material lacks a pure fabric that the patches need.
+    """
+    learned = packaged_model().answers(found, material, sizes)
+    each = zip(parts, found, learned, sizes, strict=True)
+    return [_answer(part, own, material, one, size) for part, own, one, size in each]
+
+
+def _answer(
+    repeat: StitchChart,
+    found: Densities,
+    material: Material,
+    learned: LearnedAnswer,
+    gauge: RelaxedSize | None,
+    swept: SweptChart | None = None,
+) -> Answer:
     pure = 1 - float(found.mixed)  # near a pure fabric that fabric's own uncertainty counts
     own = 0.0 if gauge is not None else GAUGE_LOG_SD * pure
     course, wale = (_along(learned, direction, own, pure) for direction in Direction)

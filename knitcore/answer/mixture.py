@@ -40,13 +40,13 @@ class Mixture:
     Attributes
     ----------
     parts : (share, record) of each fabric that is present.
-    numbers : ln r/L, ln core/L, ln k r⁴L/B and contact exponent of the yarn, means of the parts;
-        None where the material does not describe its yarn well enough.
+    numbers : (4,) ln r/L, ln core/L, ln k r⁴L/B and contact exponent of the yarn, means of the
+        parts; nan where the material does not describe its yarn well enough.
     bending_stress_n_per_mm : B / L³, the unit in which stresses of different yarns compare.
     """
 
     parts: tuple[tuple[float, FabricRecord], ...]
-    numbers: Array | None
+    numbers: Array
     bending_stress_n_per_mm: float
 
     @classmethod
@@ -58,13 +58,20 @@ class Mixture:
         InputError
             If the material lacks a fabric with a share.
         """
-        phases = present(shares)
-        parts = tuple((float(shares[k]), material.record(PHASES[k])) for k in phases)
-        yarns = pure_numbers(material, phases)
-        if yarns is None:
-            return cls(parts, None, USUAL_STRESS_N_PER_MM)
-        mean = shares[phases] @ yarns
-        return cls(parts, mean[:-1], math.exp(mean[-1]))
+        return cls.each(shares[None], material)[0]
+
+    @classmethod
+    def each(cls, shares: Array, material: Material) -> list[Mixture]:
+        """The mixtures with each of these shares, (m, 4)."""
+        yarns = pure_numbers(material, present(shares))
+        found = []
+        for own in shares:
+            phases = present(own)
+            parts = tuple((float(own[k]), material.record(PHASES[k])) for k in phases)
+            *numbers, bending = own[phases] @ yarns[phases]
+            stress = USUAL_STRESS_N_PER_MM if math.isnan(bending) else math.exp(bending)
+            found.append(cls(parts, np.array(numbers), stress))
+        return found
 
     @property
     def simulated(self) -> bool:
@@ -131,25 +138,26 @@ class Mixture:
 
 
 _STRESSES: Array = np.geomspace(1e-7, 100.0, 1000)
+_LOG_STRESSES: Array = np.log(_STRESSES)
 
 
 def law_strains(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
     """Strains of a law from its table, within 1e-4 of their own size."""
     at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
-    found = np.exp(np.interp(at, np.log(_STRESSES), _log_strains(law, direction)))
+    found = np.exp(np.interp(at, _LOG_STRESSES, _log_strains(law, direction)))
     return np.asarray(found * np.minimum(stress_n_per_mm / _STRESSES[0], 1.0))
 
 
 def _law_slopes(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
     """d ln strain / d ln stress of a law: 1 at first, less where it stiffens."""
     at = np.log(np.maximum(stress_n_per_mm, _STRESSES[0]))
-    return np.asarray(np.interp(at, np.log(_STRESSES), _slopes(law, direction)))
+    return np.asarray(np.interp(at, _LOG_STRESSES, _slopes(law, direction)))
 
 
 def _law_shares(law: ConstitutiveLaw, direction: Direction, stress_n_per_mm: Array) -> Array:
     """(2, …) strain across, and strain at a held width, over a law's strain, from its table."""
-    at, logs = np.log(stress_n_per_mm), np.log(_STRESSES)
-    return np.array([np.interp(at, logs, shares) for shares in _shares(law, direction)])
+    at = np.log(stress_n_per_mm)
+    return np.array([np.interp(at, _LOG_STRESSES, shares) for shares in _shares(law, direction)])
 
 
 @lru_cache(maxsize=128)
@@ -161,7 +169,7 @@ def _shares(law: ConstitutiveLaw, direction: Direction) -> Array:
 
 @lru_cache(maxsize=128)
 def _slopes(law: ConstitutiveLaw, direction: Direction) -> Array:
-    return np.asarray(np.gradient(_log_strains(law, direction), np.log(_STRESSES)))
+    return np.asarray(np.gradient(_log_strains(law, direction), _LOG_STRESSES))
 
 
 @lru_cache(maxsize=128)
@@ -189,11 +197,15 @@ def present(shares: Array) -> NDArray[np.int64]:
     return np.flatnonzero(shares.reshape(-1, 4).max(axis=0) > _NOTHING)
 
 
-def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array | None:
-    """(phases, 5) numbers of the yarn in each pure fabric; None where too little is known."""
-    charts = [StitchChart.of_fabric(PHASES[phase]) for phase in phases]
-    try:
-        used = [yarn_for(material, chart) for chart in charts]
-    except InputError:
-        return None
-    return np.array([yarn_numbers(one.yarn, one.loop_length_mm) for one in used])
+def pure_numbers(material: Material, phases: NDArray[np.int64]) -> Array:
+    """(4, 5) numbers of the yarn in these pure fabrics; nan in others, and where too little is
+    known.
+    """
+    found = np.full((len(PHASES), 5), np.nan)
+    for phase in phases:
+        try:
+            used = yarn_for(material, StitchChart.of_fabric(PHASES[phase]))
+        except InputError:
+            continue
+        found[phase] = yarn_numbers(used.yarn, used.loop_length_mm)
+    return found

@@ -27,7 +27,7 @@ from knitcore.answer.answer import Along, Answer
 from knitcore.answer.densities import Densities, densities, densities_of
 from knitcore.answer.learned import SweptChart, packaged_model
 from knitcore.answer.measured import measured
-from knitcore.answer.mixed import mixed
+from knitcore.answer.mixed import mixed, mixed_patches
 from knitcore.answer.relaxed import RelaxedSize
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
@@ -212,10 +212,7 @@ def patches_of(
     found = found.towards(whole, alike)
 
     def answered(sizes: Sequence[RelaxedSize | None]) -> Patches:
-        flat = [
-            mixed(part, own, material, size)
-            for part, own, size in zip(parts, found, sizes, strict=True)
-        ]
+        flat = mixed_patches(parts, found, material, sizes)
         wide = len(columns) - 1
         lines = (tuple(flat[k : k + wide]) for k in range(0, len(flat), wide))
         return Patches(rows, columns, tuple(lines), alike)

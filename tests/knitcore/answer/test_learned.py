@@ -100,7 +100,7 @@ def test_intervals_widen_away_from_the_training_charts() -> None:
     model = packaged_model()
     numbers = seen.mixture.numbers
     variances = [
-        model.folding(model.sample(densities(c).features[None], numbers))[1][0]
+        model.folding(model.sample(densities(c).features[None], numbers[None]))[1][0]
         for c in (StitchChart.parse("KKPP/KKPP/PPKK/PPKK"), panels)
     ]
     assert variances[1] > 1.5 * variances[0]
