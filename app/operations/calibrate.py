@@ -20,11 +20,12 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.law_files import LawFile, save_law
 from knitcore.measure.stretch_test import stated_direction
-from knitcore.measure.uniaxial import Reduction, fit_files
+from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 from knitcore.swatch.calibration import Calibration, ForceCurve
 from knitcore.swatch.calibration import calibrate as calibrated
 from knitcore.swatch.comparison import Edges, compare
+from knitcore.swatch.strip_fit import fit_tests
 
 
 class CalibrateRequest(FieldRequest, LawsRequest):
@@ -73,7 +74,7 @@ def _calibration(request: CalibrateRequest, context: Context) -> Calibration:
     with stored(request.tests) as paths:
         tests = _course_first(paths) if len(paths) == 2 else paths
         if len(tests) == 2:
-            law = fit_files(tests[0], tests[1], reduction=Reduction.UNIFORM).law
+            law = fit_tests(*tests, reduction=Reduction.UNIFORM).law
         if tests:
             chosen = tests[request.direction.axis] if len(tests) == 2 else tests[0]
             test = read_stretch_test(chosen, marks=Marks.CLAMPS)

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from knitcore.fabric import Direction
-from knitcore.measure.uniaxial import Reduction, fit_files
+from knitcore.measure.uniaxial import Reduction
+from knitcore.swatch.strip_fit import fit_tests
 
 X = Direction.COURSE
 
@@ -23,7 +24,7 @@ PUBLISHED = {
 @pytest.mark.parametrize("fabric", PUBLISHED)
 def test_published_reduction_gives_the_published_constants(study_data: Path, fabric: str) -> None:
     files = [study_data / "uniaxial" / f"outputData_Acrylic Yarn {fabric} {d}.h5" for d in "XY"]
-    fit = fit_files(files[0], files[1], reduction=Reduction.PUBLISHED)
+    fit = fit_tests(*files, reduction=Reduction.PUBLISHED)
     law, expected = fit.law, PUBLISHED[fabric]
     assert law.poisson_yx == pytest.approx(expected[6], abs=0.001)
     assert law.poisson_xy == pytest.approx(expected[7], abs=0.001)
@@ -42,6 +43,6 @@ def test_uniform_reduction_differs_where_the_notes_say(study_data: Path) -> None
     stiffness = {}
     for fabric in ("Garter", "Stockinette"):
         files = [folder / f"outputData_Acrylic Yarn {fabric} {d}.h5" for d in "XY"]
-        stiffness[fabric] = fit_files(files[0], files[1]).law
+        stiffness[fabric] = fit_tests(*files, reduction=Reduction.UNIFORM).law
     assert stiffness["Garter"].stiffness_yyyy == pytest.approx(0.078, rel=0.08)
     assert stiffness["Stockinette"].stiffness_xxxx == pytest.approx(0.313, rel=0.08)

@@ -9,12 +9,13 @@ import pytest
 
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
-from knitcore.measure.uniaxial import fit_files
+from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import Marks, read_stretch_test
 from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, pull
 from knitcore.swatch.calibration import ForceCurve, calibrate
 from knitcore.swatch.comparison import Edges, compare
 from knitcore.swatch.measured import MeasuredField, load_field
+from knitcore.swatch.strip_fit import fit_tests
 
 GARTER = material("acrylic:published").law(Fabric.GARTER)
 
@@ -44,7 +45,7 @@ def test_a_law_refitted_from_tests_gives_the_clamp_force(study_data: Path) -> No
     course, wale = (
         study_data / "uniaxial" / f"outputData_Acrylic Yarn Garter {axis}.h5" for axis in "XY"
     )
-    law = fit_files(course, wale).law
+    law = fit_tests(course, wale, reduction=Reduction.UNIFORM).law
     curve = ForceCurve.of_test(read_stretch_test(wale, marks=Marks.CLAMPS), 40 / 127)
     strain = np.arange(0.3, 0.71, 0.1)
     sheet = Sheet(QuarterGrid.uniform(60, 20, curve.width_mm, curve.length_mm), [law], SheetModel())

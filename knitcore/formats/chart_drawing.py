@@ -28,6 +28,7 @@ from knitcore.formats.chart_key import (
     is_coloured,
     key_height,
     key_shapes,
+    multiple_words,
     tinted,
 )
 from knitcore.formats.drawing import Box, Dots, Label, Page, Shape, Strokes, to_pdf, to_svg
@@ -371,8 +372,4 @@ def _multiple(chart: StitchChart) -> str:
     repeat = chart.repeat_cut()
     if repeat == chart:
         return "no repeat"
-    extra_stitches = chart.columns % repeat.columns
-    extra_rows = chart.rows % repeat.rows
-    stitches = f"multiple of {repeat.columns}" + (f" + {extra_stitches}" if extra_stitches else "")
-    rows = f"multiple of {repeat.rows}" + (f" + {extra_rows}" if extra_rows else "")
-    return f"{stitches} sts, {rows} rows"
+    return multiple_words(repeat, chart.columns % repeat.columns, chart.rows % repeat.rows)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.bounds import check_range
+from knitcore.chart import StitchChart
 from knitcore.formats.drawing import Box, Dots, Label, Shape
 from knitcore.garment.piece import Piece, yarn_name
 from knitcore.worked import Construction, Side
@@ -96,6 +97,13 @@ def _note_lines(style: ChartStyle) -> list[str]:
         line for part in style.note.splitlines() for line in textwrap.wrap(part, NOTE_CHARACTERS)
     ]
     return wrapped[:NOTE_LINES]
+
+
+def multiple_words(repeat: StitchChart, edge_columns: int, edge_rows: int) -> str:
+    """How many stitches and rows a repeat takes, with those that are left at the edges."""
+    stitches = f"multiple of {repeat.columns}" + (f" + {edge_columns}" if edge_columns else "")
+    rows = f"multiple of {repeat.rows}" + (f" + {edge_rows}" if edge_rows else "")
+    return f"{stitches} sts, {rows} rows"
 
 
 def tinted(colour: str) -> str:

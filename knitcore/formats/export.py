@@ -22,18 +22,10 @@ from knitcore.formats import (
     written,
     yarn_mesh,
 )
-from knitcore.formats.chart_key import ChartStyle, RegionMark, RepeatMark
+from knitcore.formats.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
 from knitcore.formats.drawing import Page, to_long_svg, to_pdf
 from knitcore.formats.knitout import Finish
-from knitcore.formats.layout import (
-    DesignLayout,
-    DesignRepeat,
-    Placement,
-    layout_fields,
-    motif_chart,
-    piece_of,
-    region_cells,
-)
+from knitcore.formats.layout import DesignLayout, layout_fields, piece_of, region_cells
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
 from knitcore.geometry.lattice import flat_lattice
@@ -250,7 +242,13 @@ def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartSty
     aspect = min(max(float(sizes[1] / sizes[0]), 0.2), 5.0)
     facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
     marks = tuple(
-        RepeatMark(_repeat_words(repeat), tuple(_place(place) for place in repeat.placements))
+        RepeatMark(
+            f"{repeat.name}: "
+            + multiple_words(
+                StitchChart.parse(repeat.motif), repeat.edge_columns, repeat.edge_rows
+            ),
+            tuple((p.row, p.column, p.rows, p.columns) for p in repeat.placements),
+        )
         for repeat in options.layout.repeats
         if repeat.placements
     )
@@ -269,21 +267,6 @@ def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartSty
         options.name,
         regions,
     )
-
-
-def _place(place: Placement) -> tuple[int, int, int, int]:
-    return place.row, place.column, place.rows, place.columns
-
-
-def _repeat_words(repeat: DesignRepeat) -> str:
-    motif = motif_chart(repeat.motif)
-    stitches = f"multiple of {motif.columns}" + _plus(repeat.edge_columns)
-    rows = f"multiple of {motif.rows}" + _plus(repeat.edge_rows)
-    return f"{repeat.name}: {stitches} sts, {rows} rows"
-
-
-def _plus(edge: int) -> str:
-    return f" + {edge}" if edge else ""
 
 
 def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tuple[str, ...]:

@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import label
 
-from knitcore.arrays import Array
+from knitcore.arrays import Array, runs
 from knitcore.formats.chart_key import tinted
 from knitcore.formats.drawing import Box, Label, Shape
 from knitcore.formats.layout import DesignRegion, region_cells
@@ -142,10 +140,3 @@ def _rectangle(
 ) -> Box:
     corner = middle[0] - sides[0] / 2, middle[1] - sides[1] / 2
     return Box(*corner, *sides, stroke=ink, line_width=line)
-
-
-def runs(values: NDArray[np.int_]) -> Iterator[tuple[int, int, int]]:
-    """Stretches of equal values: first place, the place after the last, and the value."""
-    edges = [0, *(np.flatnonzero(np.diff(values)) + 1).tolist(), len(values)]
-    for start, stop in pairwise(edges):
-        yield start, stop, int(values[start])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from knitcore.fabric import Direction
 from knitcore.formats.design import DesignFile
-from knitcore.formats.layout import DesignRegion, motif_text, runs_of
+from knitcore.formats.layout import DesignRegion, runs_of
 from knitcore.garment.plan import FABRIC_COLOURS, GarmentPlan
 
 YARN_NAMES = dict(zip(FABRIC_COLOURS.values(), ("blue", "orange", "green", "purple"), strict=True))
@@ -29,7 +29,7 @@ def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) 
             name=region.name,
             colour=region.colour,
             yarn=YARN_NAMES.get(region.colour, region.name) if intarsia else None,
-            fill=motif_text(region.fill),
+            fill=region.fill.key,
             runs=runs_of(region.cells & plan.shaped.stitch),
         )
         for region in plan.regions

@@ -116,22 +116,6 @@ def layout_fields(design: DesignLayout) -> dict[str, Any]:
     return {name: getattr(design, name) for name in DesignLayout.model_fields}
 
 
-def motif_chart(motif: str) -> StitchChart:
-    """The chart of a motif.
-
-    Examples
-    --------
-    >>> motif_chart("KP/PP").purl.tolist()
-    [[True, True], [False, True]]
-    """
-    return StitchChart.parse(motif)
-
-
-def motif_text(chart: StitchChart) -> str:
-    """The inverse of :func:`motif_chart`."""
-    return chart.key
-
-
 def region_cells(region: DesignRegion, rows: int, columns: int) -> NDArray[np.bool_]:
     """The stitches of a region, bool (rows, columns), row 0 at the bottom.
 
@@ -300,7 +284,7 @@ def _region_notes(
         elif not kept.any():
             notes.append(f"{region.name} is lost: it lies wholly outside the outline.")
         elif region.fill is not None:
-            purl = motif_chart(region.fill).resized(chart.rows, chart.columns).purl
+            purl = StitchChart.parse(region.fill).resized(chart.rows, chart.columns).purl
             other = int(np.count_nonzero((purl != chart.purl) & kept))
             if other:
                 notes.append(

@@ -10,12 +10,13 @@ import numpy as np
 from knitcore.answer.answer import Along, Answer
 from knitcore.answer.choose import choose
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM
+from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.fabric import Direction
 from knitcore.formats.chart_drawing import A4_MM, chart_pages
 from knitcore.formats.chart_key import MARGIN_MM, ChartStyle, tinted
 from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
-from knitcore.formats.extensibility_drawing import field_shapes, region_fields, runs
+from knitcore.formats.extensibility_drawing import field_shapes, region_fields
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.piece import Piece
 from knitcore.materials import Interval, Material

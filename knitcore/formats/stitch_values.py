@@ -19,7 +19,7 @@ from knitcore.mechanics.local import local_moduli
 
 def stitch_values(chart: StitchChart | Piece, material: Material) -> dict[str, NDArray[np.float64]]:
     """Local values by name with their units, each (rows, columns), bottom row first."""
-    local = local_moduli(_continued(chart), material)
+    local = local_moduli(Piece.of(chart).shaped.continued(), material)
     return {
         "modulus_course_n_per_mm": local.modulus_course_n_per_mm,
         "modulus_wale_n_per_mm": local.modulus_wale_n_per_mm,
@@ -53,7 +53,7 @@ def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
     import meshio
 
     piece = Piece.of(chart)
-    lattice = flat_lattice(_continued(chart), material)
+    lattice = flat_lattice(piece.shaped.continued(), material)
     x = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[0, :, 0])])
     y = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[:, 0, 1])])
     grid_x, grid_y = np.meshgrid(x, y)
@@ -71,7 +71,3 @@ def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
         file = Path(folder) / "chart.vtu"
         meshio.Mesh(points, [("quad", quads)], cell_data=data).write(file, file_format="vtu")
         return file.read_bytes()
-
-
-def _continued(chart: StitchChart | Piece) -> StitchChart:
-    return chart.shaped.continued() if isinstance(chart, Piece) else chart

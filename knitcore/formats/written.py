@@ -25,13 +25,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 
+from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.garment.piece import MAIN_YARN, Piece, yarn_name
-from knitcore.garment.worked_piece import PieceRow, groups, piece_rows
+from knitcore.garment.worked_piece import PieceRow, piece_rows
 from knitcore.worked import Construction, Side
 
 LATER_USE = 2
@@ -137,10 +138,10 @@ class _Writer:
     def _best(self, row: int, stop: int) -> tuple[int, int]:
         """The period that saves most rows from here on, and how many; (0, 0) if none does."""
         best = (0, 0)
-        for period, runs in self._runs.items():
+        for period, lengths in self._runs.items():
             if row + period >= stop:
                 break
-            repeated = min(int(runs[row]), stop - row - period)
+            repeated = min(int(lengths[row]), stop - row - period)
             if repeated >= period and repeated > best[1]:
                 best = (period, repeated)
         return best
@@ -162,7 +163,7 @@ def piece_row_words(row: PieceRow, *, several: bool) -> str:
     """One row of a piece in words; with ``several`` yarns each stretch names its own."""
     forms, before, after = _edge_forms(row)
     parts = list(before)
-    stretches = groups(row.yarns)
+    stretches = runs(row.yarns)
     for start, stop, yarn in stretches:
         plain = len(stretches) == 1 and not after and not any(forms)
         words = row_words(row.purls) if plain else _bracketed(row.purls, forms, start, stop)
@@ -261,12 +262,12 @@ def _longest_repeat(purls: tuple[bool, ...]) -> tuple[int, int, int]:
     row = np.array(purls)
     best, saved = (0, 0, 0), 0
     for period in range(LATER_USE, len(purls) // 2 + 1):
-        runs = _run_lengths(row[period:] == row[:-period])
+        lengths = _run_lengths(row[period:] == row[:-period])
         # A repeat best begins where a run of like stitches does.
         for start in _starts(purls):
-            if start >= len(runs):
+            if start >= len(lengths):
                 break
-            times = (int(runs[start]) + period) // period
+            times = (int(lengths[start]) + period) // period
             if times < LATER_USE:
                 continue
             unit, written = purls[start : start + period], purls[start : start + period * times]
@@ -289,13 +290,7 @@ def _run_lengths(equal: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> np.n
 
 
 def _tokens(purls: Sequence[bool]) -> list[tuple[bool, int]]:
-    tokens: list[tuple[bool, int]] = []
-    for purl in purls:
-        if tokens and tokens[-1][0] == purl:
-            tokens[-1] = (purl, tokens[-1][1] + 1)
-        else:
-            tokens.append((purl, 1))
-    return tokens
+    return [(purl, len(list(alike))) for purl, alike in groupby(purls)]
 
 
 def _plain(purls: Sequence[bool]) -> str:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import runs
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.garment.shaped import ShapedChart
@@ -95,9 +95,8 @@ class Piece:
     def runs(self, row: int) -> tuple[Run, ...]:
         """The yarns of a row from left to right."""
         first, last = self.shaped.spans[row]
-        yarns = self.yarn_of[row, first:last]
-        edges = [0, *(np.flatnonzero(np.diff(yarns)) + 1).tolist(), last - first]
-        return tuple(Run(first + a, first + b, int(yarns[a])) for a, b in pairwise(edges))
+        found = runs(self.yarn_of[row, first:last])
+        return tuple(Run(first + start, first + stop, yarn) for start, stop, yarn in found)
 
     def cells(self, yarn: int) -> NDArray[np.bool_]:
         """The stitches of one yarn."""

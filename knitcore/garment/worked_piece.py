@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -118,15 +117,3 @@ def piece_from_rows(rows: Sequence[PieceRow], yarns: Sequence[PieceYarn]) -> Pie
         yarn_of[index, place] = row.yarns[::-1] if rs else row.yarns
         stitch[index, place] = True
     return Piece(ShapedChart(StitchChart(purl), stitch), tuple(yarns), yarn_of)
-
-
-def groups(yarns: Sequence[int]) -> list[tuple[int, int, int]]:
-    """Runs of one yarn in working order: start, stop and yarn.
-
-    Examples
-    --------
-    >>> groups([0, 0, 2])
-    [(0, 2, 0), (2, 3, 2)]
-    """
-    edges = [0, *(i for i in range(1, len(yarns)) if yarns[i] != yarns[i - 1]), len(yarns)]
-    return [(a, b, yarns[a]) for a, b in pairwise(edges)]

@@ -115,11 +115,6 @@ class FabricRecord:
     printed: Mapping[str, Figure] = field(default_factory=lambda: MappingProxyType({}))
     measured: Mapping[Direction, MeasuredCurve] = field(default_factory=dict)
 
-    @property
-    def stitch_area_mm2(self) -> float:
-        """Relaxed area of one stitch."""
-        return self.stitch_course_mm * self.stitch_wale_mm
-
     def stitch_size_mm(self, direction: Direction) -> float:
         """Relaxed extent of one stitch in a direction."""
         course = direction is Direction.COURSE

@@ -15,13 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.measure.tables import numbers, read_table
 from knitcore.measure.workbooks import MAX_BYTES, Cell, Sheet, is_workbook, read_workbook
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 With arc length ``s`` in units of the hanging length L and the angle ``theta`` below the horizontal,
 moment balance reads
 
-    theta'' = -load (1 - s) cos(theta),   theta(0) = clamp angle,   theta'(1) = 0,
+    theta'' = -load (1 - s) cos(theta),   theta(0) = 0,   theta'(1) = 0,
     load = weight_per_length * L**3 / B,
 
 so the shape depends on one number only.
@@ -24,13 +24,12 @@ MAX_LOAD = 1e6
 """Beyond, the bend is shorter than a hundredth of the yarn and no photo resolves it."""
 
 
-def heavy_elastica(load: float, clamp_angle: float = 0.0) -> tuple[Array, Array, Array]:
+def heavy_elastica(load: float) -> tuple[Array, Array, Array]:
     """Arc length, horizontal distance and depth of a hanging rod, all in units of its length.
 
     Parameters
     ----------
     load : dimensionless weight, w L**3 / B, between 0 and 1e6.
-    clamp_angle : radians below the horizontal at the clamp.
 
     Returns
     -------
@@ -59,11 +58,11 @@ def heavy_elastica(load: float, clamp_angle: float = 0.0) -> tuple[Array, Array,
     lower = 2.0 / (left * (left + right))
     upper = 2.0 / (right * (left + right))
     pull = load * (1.0 - s[1:-1])
-    theta = clamp_angle + (np.pi / 2 - clamp_angle) * (1 - np.exp(-s * np.cbrt(load)))
+    theta = np.pi / 2 * (1 - np.exp(-s * np.cbrt(load)))
     last = s[-1] - s[-2]
     for _ in range(100):
         residual = np.empty(NODES)
-        residual[0] = theta[0] - clamp_angle
+        residual[0] = theta[0]
         residual[1:-1] = (
             lower * theta[:-2]
             - (lower + upper) * theta[1:-1]

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from knitcore.arrays import Array
+from knitcore.law.constitutive import ConstitutiveLaw
 
 ALPHA_SHARE_LIMIT = 0.999
 """Largest alpha times the largest strain: the lock-up lies beyond every point."""
@@ -52,6 +53,28 @@ class DirectionFit:
         """Stress (N/mm) of the fitted direction; poisson_coupling is C_ab / C_aa."""
         linear = self.stiffness * (strain_along + poisson_coupling * strain_across)
         return np.asarray(linear + self.beta * stiffening_stress(self.alpha * strain_along))
+
+
+def law_of_directions(
+    course: DirectionFit, wale: DirectionFit, poisson_yx: float, poisson_xy: float
+) -> ConstitutiveLaw:
+    """The law of both directions; Poisson's ratios tie its couplings to the stiffnesses.
+
+    Raises
+    ------
+    InputError
+        If the constants make no stable law.
+    """
+    return ConstitutiveLaw(
+        stiffness_xxxx=course.stiffness,
+        stiffness_yyyy=wale.stiffness,
+        stiffness_xxyy=poisson_xy * course.stiffness,
+        stiffness_yyxx=poisson_yx * wale.stiffness,
+        alpha_xx=course.alpha,
+        alpha_yy=wale.alpha,
+        beta_xx=course.beta,
+        beta_yy=wale.beta,
+    )
 
 
 def stiffening_stress(s: Array) -> Array:

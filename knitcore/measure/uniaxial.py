@@ -20,10 +20,10 @@ Standard errors by the jackknife over pulls (over blocks of strain when there is
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,10 +34,15 @@ from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.measured import MeasuredCurve
 from knitcore.materials.uncertainty import LawUncertainty
-from knitcore.measure.law_fit import ALPHA_SHARE_LIMIT, DirectionFit, fit_direction
+from knitcore.measure.law_fit import (
+    ALPHA_SHARE_LIMIT,
+    DirectionFit,
+    fit_direction,
+    law_of_directions,
+)
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest, check_pair
-from knitcore.measure.uniaxial_files import Marks, read_stretch_test
+from knitcore.measure.uniaxial_files import Marks
 
 BINS = 40
 """Strain intervals of a pull in the uniform reduction."""
@@ -115,26 +120,25 @@ class LawFit:
     uncertainty: LawUncertainty | None = None
     waist_rms: dict[Direction, float] | None = None
 
-
-def fit_files(
-    course: Path,
-    wale: Path,
-    *,
-    reduction: Reduction = Reduction.UNIFORM,
-    file_format: str | None = None,
-) -> LawFit:
-    """Fit a law to two files (see :mod:`knitcore.measure.uniaxial_files` for their layout).
-
-    Raises
-    ------
-    InputError
-        If a file cannot be used, or the two do not belong together.
-    """
-    tests = [
-        read_stretch_test(path, marks=reduction.marks, file_format=file_format)
-        for path in (course, wale)
-    ]
-    return fit_law(tests[0], tests[1], reduction=reduction)
+    @classmethod
+    def of(
+        cls,
+        tests: Sequence[StretchTest],
+        residuals: dict[Direction, Residuals],
+        **more: Any,
+    ) -> LawFit:
+        """The fit of a course-wise and a wale-wise test; ``more`` are its other fields."""
+        off = {d: r.stress - r.fitted for d, r in residuals.items()}
+        by_direction = dict(zip(Direction, tests, strict=True))
+        return cls(
+            rms_n_per_mm=rms(np.concatenate([*off.values()])),
+            rms_course_n_per_mm=rms(off[Direction.COURSE]),
+            rms_wale_n_per_mm=rms(off[Direction.WALE]),
+            residuals=residuals,
+            curves={d: median_curve(test) for d, test in by_direction.items()},
+            runs={d: len(test.runs) for d, test in by_direction.items()},
+            **more,
+        )
 
 
 def fit_law(
@@ -163,21 +167,16 @@ def fit_law(
         Direction.COURSE: _residuals(course, fits[0], ratios[1]),
         Direction.WALE: _residuals(wale, fits[1], ratios[0]),
     }
-    rms = {d: _rms(r.stress - r.fitted) for d, r in residuals.items()}
     for direction, fit in zip(Direction, fits, strict=True):
         notes += _range_notes(direction, fit)
     single = [t.source for t in (course, wale) if len(t.runs) == 1]
-    return LawFit(
+    return LawFit.of(
+        (course, wale),
+        residuals,
         law=law,
         standard_errors=errors,
         reduction=reduction,
-        rms_n_per_mm=_rms(np.concatenate([r.stress - r.fitted for r in residuals.values()])),
-        rms_course_n_per_mm=rms[Direction.COURSE],
-        rms_wale_n_per_mm=rms[Direction.WALE],
         largest_strain={d: f.largest_strain for d, f in zip(Direction, fits, strict=True)},
-        residuals=residuals,
-        curves={d: median_curve(t) for d, t in zip(Direction, (course, wale), strict=True)},
-        runs={d: len(t.runs) for d, t in zip(Direction, (course, wale), strict=True)},
         error_method="jackknife over pulls"
         if not single
         else f"jackknife over blocks of strain ({', '.join(single)}); scatter of pulls unknown",
@@ -203,17 +202,7 @@ def _fit(
             " below 1: no stable sheet has them.",
             "Check that both tests are of the same fabric and that strain_across is right.",
         )
-    law = ConstitutiveLaw(
-        stiffness_xxxx=x.stiffness,
-        stiffness_yyyy=y.stiffness,
-        stiffness_xxyy=ratios[1] * x.stiffness,
-        stiffness_yyxx=ratios[0] * y.stiffness,
-        alpha_xx=x.alpha,
-        alpha_yy=y.alpha,
-        beta_xx=x.beta,
-        beta_yy=y.beta,
-    )
-    return (x, y), (ratios[0], ratios[1]), law
+    return (x, y), (ratios[0], ratios[1]), law_of_directions(x, y, *ratios)
 
 
 def _poisson_ratio(test: StretchTest, reduction: Reduction) -> float:
@@ -343,7 +332,8 @@ def _residuals(test: StretchTest, fit: DirectionFit, poisson_coupling: float) ->
     )
 
 
-def _rms(values: Array) -> float:
+def rms(values: Array) -> float:
+    """Root mean square."""
     return float(np.sqrt(np.mean(values**2)))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -242,30 +241,6 @@ class QuarterGrid:
         along: Indices = numbers.take(line, axis=1 - axis)
         chosen: Indices = along[used.take(line, axis=1 - axis)]
         return chosen
-
-    @cached_property
-    def triangles(self) -> Indices:
-        """The crossed triangulation, (4 * cells, 3); centres are numbered after the corners."""
-        c = self.cell_corners
-        centre = len(self.corners) + np.arange(len(c))
-        sides = [np.column_stack([c[:, i], c[:, (i + 1) % 4], centre]) for i in range(4)]
-        return np.stack(sides, axis=1).reshape(-1, 3)
-
-    def mesh(self) -> Any:
-        """The mesh as a scikit-fem ``MeshTri`` with named boundaries, nodes numbered as here."""
-        from skfem import MeshTri
-
-        points = np.vstack([self.corners, self.centres]).T
-        mesh = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(self.triangles.T))
-        x, y = self.column_lines, self.row_lines
-        return mesh.with_boundaries(
-            {
-                "left": lambda p: np.isclose(p[0], x[0]),
-                "right": lambda p: np.isclose(p[0], x[-1]),
-                "bottom": lambda p: np.isclose(p[1], y[0]),
-                "top": lambda p: np.isclose(p[1], y[-1]),
-            }
-        )
 
 
 def sums_at_corners(cells: Array) -> Array:

@@ -179,7 +179,6 @@ class StripTest(SwatchTest):
     stress_n_per_mm : force per initial width.
     waist_strain : change of width half-way between the clamps, over the initial width there.
     width_mm, length_mm : initial size across and along the pull; of a shaped piece its mean width.
-    requested_strain : the last strain that was asked for.
     """
 
     direction: Direction
@@ -189,7 +188,6 @@ class StripTest(SwatchTest):
     waist_strain: Array
     width_mm: float
     length_mm: float
-    requested_strain: tuple[float, ...]
 
     def _repr_html_(self) -> str:
         strain, stress = (np.append(0.0, a) for a in (self.strain, self.stress_n_per_mm))

@@ -275,7 +275,6 @@ def strip_result(sheet: Sheet, direction: Direction, levels: Array, path: Path) 
         waist_strain=np.array([waist_strain(grid, s.corners, direction) for s in path.states]),
         width_mm=width,
         length_mm=length,
-        requested_strain=tuple(float(e) for e in levels),
     )
 
 

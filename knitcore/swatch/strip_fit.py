@@ -29,9 +29,8 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.uniaxial import uniaxial_response
 from knitcore.materials.uncertainty import LawUncertainty
 from knitcore.measure.law_fit import fit_direction
-from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchTest, check_pair
-from knitcore.measure.uniaxial import LawFit, Reduction, Residuals, fit_law
+from knitcore.measure.uniaxial import LawFit, Reduction, Residuals, fit_law, rms
 from knitcore.measure.uniaxial_files import read_stretch_test
 from knitcore.swatch.measured_strip import (
     CELLS,
@@ -166,23 +165,18 @@ def fit_simulated(
         d: _residuals(test, strip, simulated)
         for d, test, strip, simulated in zip(Direction, tests, strips, found.stress, strict=True)
     }
-    rms = {d: _rms(r.stress - r.fitted) for d, r in residuals.items()}
-    return LawFit(
+    return LawFit.of(
+        tests,
+        residuals,
         law=found.law,
         standard_errors=found.errors,
         reduction=Reduction.RECOMMENDED,
-        rms_n_per_mm=_rms(np.concatenate([r.stress - r.fitted for r in residuals.values()])),
-        rms_course_n_per_mm=rms[Direction.COURSE],
-        rms_wale_n_per_mm=rms[Direction.WALE],
         largest_strain={d: t.largest_strain for d, t in zip(Direction, tests, strict=True)},
-        residuals=residuals,
-        curves={d: median_curve(t) for d, t in zip(Direction, tests, strict=True)},
-        runs={d: len(t.runs) for d, t in zip(Direction, tests, strict=True)},
         error_method="jackknife over pulls, scatter about the fit, readings of width",
         notes=tuple(notes),
         uncertainty=found.uncertainty,
         waist_rms={
-            d: _rms((w - strip.means[1])[np.isfinite(w)])
+            d: rms((w - strip.means[1])[np.isfinite(w)])
             for d, w, strip in zip(Direction, found.waist, strips, strict=True)
         },
     )
@@ -335,7 +329,3 @@ def _residuals(test: StretchTest, strip: MeasuredStrip, simulated: Array) -> Res
     along = points.strain_along[inside]
     fitted = np.interp(along, np.append(0.0, strip.strain), np.append(0.0, simulated))
     return Residuals(along, points.strain_across[inside], points.stress[inside], fitted)
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))

@@ -15,8 +15,8 @@ import numpy as np
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
-from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
-from knitcore.measure.law_fit import LINEAR_FLOOR, DirectionFit, fit_direction
+from knitcore.law.constitutive import ConstitutiveLaw
+from knitcore.measure.law_fit import LINEAR_FLOOR, DirectionFit, fit_direction, law_of_directions
 from knitcore.yarnlevel.results import Sweep
 
 MAX_STRESS_N_PER_MM = 0.3
@@ -46,10 +46,7 @@ class SimulatedLaw:
 
 
 def fit_sweeps(
-    course: Sweep,
-    wale: Sweep,
-    max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM,
-    shear_modulus_n_per_mm: float = DEFAULT_SHEAR_MODULUS_N_PER_MM,
+    course: Sweep, wale: Sweep, max_stress_n_per_mm: float = MAX_STRESS_N_PER_MM
 ) -> SimulatedLaw:
     """Fit the eight constants to a stretch along the course and one along the wale.
 
@@ -57,7 +54,6 @@ def fit_sweeps(
     ----------
     course, wale : the stretches.
     max_stress_n_per_mm : points above this stress are left out.
-    shear_modulus_n_per_mm : assumed, as no stretch measures it.
 
     Raises
     ------
@@ -76,17 +72,7 @@ def fit_sweeps(
     poisson_xy = _slope(*points[Direction.WALE][:2])
     x = _fit(Direction.COURSE, points[Direction.COURSE], poisson_xy)
     y = _fit(Direction.WALE, points[Direction.WALE], poisson_yx)
-    law = ConstitutiveLaw(
-        stiffness_xxxx=x.stiffness,
-        stiffness_yyyy=y.stiffness,
-        stiffness_xxyy=poisson_xy * x.stiffness,
-        stiffness_yyxx=poisson_yx * y.stiffness,
-        alpha_xx=x.alpha,
-        alpha_yy=y.alpha,
-        beta_xx=x.beta,
-        beta_yy=y.beta,
-        shear_modulus=shear_modulus_n_per_mm,
-    )
+    law = law_of_directions(x, y, poisson_yx, poisson_xy)
     top = min(max_stress_n_per_mm, *(float(c.stress_n_per_mm.max()) for c in (course, wale)))
     return SimulatedLaw(law, top, x.largest_strain, y.largest_strain, x.rms, y.rms)
 

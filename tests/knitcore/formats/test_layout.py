@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from knitcore import InputError, StitchChart
+from knitcore import InputError
 from knitcore.formats.design import DesignFile, design_from_mapping, read_design, write_design
 from knitcore.formats.layout import (
     DesignRegion,
@@ -18,8 +18,6 @@ from knitcore.formats.layout import (
     Placement,
     ShelfPattern,
     layout_notes,
-    motif_chart,
-    motif_text,
     region_cells,
     runs_of,
 )
@@ -27,7 +25,7 @@ from knitcore.garment.shaped import INSIDE, OUTSIDE
 from tests.knitcore.charts import stitch_charts
 
 NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=20)
-MOTIFS = stitch_charts(4).map(motif_text)
+MOTIFS = stitch_charts(4).map(lambda chart: chart.key)
 COLOURS = st.from_regex(r"\A#[0-9a-f]{6}\Z")
 
 
@@ -95,11 +93,6 @@ def test_nothing_is_lost(design: DesignFile, tmp_path: Path) -> None:
 def test_runs_are_the_cells(cells: np.ndarray[tuple[int, int], np.dtype[np.bool_]]) -> None:
     region = DesignRegion(id="a", name="A", colour="#000000", runs=runs_of(cells))
     assert np.array_equal(region_cells(region, *cells.shape), cells)
-
-
-@given(chart=stitch_charts())
-def test_motifs_are_charts(chart: StitchChart) -> None:
-    assert motif_chart(motif_text(chart)) == chart
 
 
 def region(name: str, runs: list[tuple[int, int, int]], **more: object) -> dict[str, object]:

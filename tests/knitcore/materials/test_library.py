@@ -72,7 +72,7 @@ def test_dimensions_come_from_the_tables():
     rib = acrylic.record(Fabric.RIB)
     assert (rib.loop_length_mm, rib.hand_loop_length_mm) == (16.10, 18.32)
     assert (rib.yarn_diameter_mm, rib.hand_yarn_diameter_mm) == (2.35, 2.49)
-    assert rib.stitch_area_mm2 == pytest.approx(8.50)
+    assert rib.stitch_course_mm * rib.stitch_wale_mm == pytest.approx(8.50)
     assert acrylic.yarn.bending_modulus_n_mm2 == pytest.approx(45.15e-3)
     assert acrylic.yarn.compression_stiffness_n_per_mm3 == pytest.approx(0.62e-3)
     assert acrylic.yarn.compression_exponent == 2.42
@@ -87,7 +87,7 @@ def test_the_glove_is_addressed_by_needle():
     tight = material("glove-wool:needle-2.0mm:published").record(Fabric.STOCKINETTE)
     assert plain.law.modulus_course == pytest.approx(0.157, rel=0.01)
     assert tight.law.modulus_course == pytest.approx(0.793, rel=0.01)
-    assert tight.stitch_area_mm2 == pytest.approx(5.32)
+    assert tight.stitch_course_mm * tight.stitch_wale_mm == pytest.approx(5.32)
     assert "2.0 mm" in tight.setting
     glove = material("glove-wool:glove:published")
     assert glove.record(Fabric.STOCKINETTE) == tight

@@ -16,7 +16,8 @@ from knitcore.materials import MeasuredCurve
 from knitcore.materials.measured import MAX_POINTS
 from knitcore.measure.median_curve import median_curve
 from knitcore.measure.stretch_test import StretchRun, StretchTest
-from knitcore.measure.uniaxial import fit_files
+from knitcore.measure.uniaxial import Reduction
+from knitcore.swatch.strip_fit import fit_tests
 from tests.knitcore.measure.synthetic import LAW, write_csv
 
 
@@ -30,7 +31,8 @@ def pulls(*factors: float, ends: tuple[float, ...] = (), points: int = 400) -> S
 
 
 def test_a_fit_keeps_curves_that_are_those_of_its_law(tmp_path: Path) -> None:
-    fit = fit_files(*(write_csv(tmp_path / f"{d}.csv", d) for d in Direction))
+    files = [write_csv(tmp_path / f"{d}.csv", d) for d in Direction]
+    fit = fit_tests(*files, reduction=Reduction.UNIFORM)
     for direction in Direction:
         curve = fit.curves[direction]
         assert curve.pulls == 4

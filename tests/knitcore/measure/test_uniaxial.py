@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -15,11 +16,13 @@ from knitcore.errors import InputError
 from knitcore.fabric import Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.measure.law_fit import fit_direction
-from knitcore.measure.uniaxial import Reduction, fit_files
+from knitcore.measure.uniaxial import Reduction
 from knitcore.measure.uniaxial_files import read_stretch_test
+from knitcore.swatch.strip_fit import fit_tests
 from tests.knitcore.measure.synthetic import LAW, pull, save_as_xlsx, write_csv, write_h5
 
 X, Y = Direction.COURSE, Direction.WALE
+fit_files = partial(fit_tests, reduction=Reduction.UNIFORM)
 CONSTANTS = (
     "stiffness_xxxx",
     "stiffness_yyyy",

@@ -40,6 +40,7 @@ from knitcore.swatch import Clamps, EnergyModel, QuarterGrid, Sheet, SheetModel,
 from knitcore.swatch.run import run_path
 from knitcore.swatch.solver import Tolerance
 from knitcore.swatch.strip import chart_sheet, clamp_mask, stretched
+from tests.knitcore.swatch.crossed_mesh import crossed_mesh
 
 ACRYLIC = material("acrylic")
 LAW = replace(ACRYLIC.law(Fabric.STOCKINETTE).symmetrised(), shear_stiffening=4.0)
@@ -70,7 +71,7 @@ def test_the_grid_and_scikit_fem_have_the_same_energy_and_forces(energy: EnergyM
     sheet = chart_sheet(chart, ACRYLIC, energy)
     grid = sheet.grid
     cloth = Cloth(sheet, (float(grid.column_lines[0]), float(grid.row_lines[0])))
-    piece = PieceEnergy(grid.mesh(), cloth, np.eye(2), element=ElementTriP1(), order=1)
+    piece = PieceEnergy(crossed_mesh(grid), cloth, np.eye(2), element=ElementTriP1(), order=1)
     rest = np.vstack([grid.corners, grid.centres])
     moved = rest @ np.array([[1.1, 0.03], [-0.02, 1.2]]) + rng.uniform(-0.05, 0.05, rest.shape)
     corners, centres = np.split(moved, [len(grid.corners)])
@@ -88,7 +89,7 @@ def test_the_equilibrium_on_the_grids_mesh_is_the_grids() -> None:
     held = clamp_mask(grid, Direction.WALE, Clamps.CLAMPED)
     path = run_path(sheet, held, targets, tolerance=Tolerance(1e-11))
     cloth = Cloth(sheet, (float(grid.column_lines[0]), float(grid.row_lines[0])))
-    energy = PieceEnergy(grid.mesh(), cloth, np.eye(2), element=ElementTriP1(), order=1)
+    energy = PieceEnergy(crossed_mesh(grid), cloth, np.eye(2), element=ElementTriP1(), order=1)
     piece = CutPiece.rectangle(grid.width_mm, grid.length_mm)
     conditions = [Held("bottom"), Held("top", y_mm=0.3 * grid.length_mm)]
     constraints = Constraints(energy.basis, piece, conditions)

@@ -14,6 +14,7 @@ from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.law.stiffening import StiffeningForm
 from knitcore.swatch import EnergyModel, QuarterGrid, Sheet, SheetModel, State
 from knitcore.swatch.kernel import Nodes
+from tests.knitcore.swatch.crossed_mesh import crossed_mesh
 
 LAWS = (
     ConstitutiveLaw(
@@ -59,7 +60,7 @@ def full_tangent(sheet: Sheet, state: State) -> sp.csr_matrix:
 
 def skfem_assembly(sheet: Sheet, state: State) -> tuple[float, np.ndarray, np.ndarray]:
     """Energy, forces and tangent by scikit-fem, from Notes 7 and 9 written down directly."""
-    mesh = sheet.grid.mesh()
+    mesh = crossed_mesh(sheet.grid)
     basis = Basis(mesh, ElementVector(ElementTriP1()), intorder=2)
     law_of_triangle = np.repeat(sheet.grid.law_of_cell.ravel(), 4)[:, None]
     law = {
@@ -212,7 +213,7 @@ def test_cloth_pulled_to_a_point_has_infinite_energy_and_raises_nothing() -> Non
 
 def test_the_grid_numbers_its_nodes_and_edges_like_its_mesh() -> None:
     grid = mixed_grid(np.random.default_rng(0))
-    mesh = grid.mesh()
+    mesh = crossed_mesh(grid)
     basis = Basis(mesh, ElementVector(ElementTriP1()))
     for name in ("left", "right", "bottom", "top"):
         by_mesh = basis.get_dofs(name).all()
