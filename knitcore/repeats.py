@@ -2,8 +2,7 @@
 
 Repeats that differ by a translation, by a mirror (left to right) or by turning the cloth over are
 the same fabric. Upside down it is another one, because loops point upwards. A repeat is primitive
-if no smaller
-rectangle tiles it.
+if no smaller rectangle tiles it.
 """
 
 from __future__ import annotations

@@ -22,7 +22,8 @@ from knitcore.arrays import Array
 from knitcore.bounds import check_positive, check_range
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
-from knitcore.errors import Cancelled, CancelledError, InputError
+from knitcore.design.progress import Progress
+from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
 from knitcore.swatch import strip_test
@@ -169,17 +170,12 @@ class _Run:
         chosen = ROUNDS * len(FORCES_N_PER_MM)
         total = chosen + TRIES
 
-        def look(done: int) -> None:
-            if self._cancelled is not None and self._cancelled():
-                raise CancelledError(f"stopped after {done} of {total} swatches")
-            if progress is not None:
-                progress(done / total)
-
+        told = Progress(progress, self._cancelled)
         wish = self._by_band(1 - self._wanted)
         best: _Pulled | None = None
         aim = wish
         for turn in range(chosen):
-            look(turn)
+            told.look(turn / total)
             if turn % ROUNDS == 0:
                 aim = wish
             pulled = self._pull(self._choose(aim, FORCES_N_PER_MM[turn // ROUNDS]))
@@ -196,9 +192,8 @@ class _Run:
                 f"{self._direction}-wise.",
                 "Ask for a smaller strain.",
             )
-        best = self._change_bands(best, rng, lambda turn: look(chosen + turn))
-        if progress is not None:
-            progress(1.0)
+        best = self._change_bands(best, rng, lambda turn: told.look((chosen + turn) / total))
+        told.look(1.0)
         return self._result(best)
 
     def _choose(self, aim: Array, force: float) -> tuple[int, ...]:

@@ -90,8 +90,8 @@ class Target:
     Attributes
     ----------
     quantity : what is sought; the anisotropy is Y_course / Y_wale, stretch is a strain (0.5 = 50 %)
-        free
-        across the pull, pressure that of a tube, its direction around the limb.
+        with the cloth free across the pull, pressure that of a tube whose direction runs around the
+        limb.
     value : the target; above 0 except for Poisson's ratios.
     tolerance : relative deviation that still counts as reached (0.1 = 10 %); for Poisson's ratios
         the difference.

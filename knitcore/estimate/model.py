@@ -200,22 +200,17 @@ def predict_cells(
         np.exp(values["alpha"]),
         np.exp(values["beta"]),
     )
-    laws = []
-    for i in range(len(FABRICS)):
-        nu_yx, nu_xy = poisson[i]
-        stiffness = modulus[i] / (1 - nu_yx * nu_xy)
-        laws.append(
-            ConstitutiveLaw(
-                stiffness_xxxx=float(stiffness[0]),
-                stiffness_yyyy=float(stiffness[1]),
-                stiffness_xxyy=float(nu_xy * stiffness[0]),
-                stiffness_yyxx=float(nu_yx * stiffness[1]),
-                alpha_xx=float(alpha[i, 0]),
-                alpha_yy=float(alpha[i, 1]),
-                beta_xx=float(beta[i, 0]),
-                beta_yy=float(beta[i, 1]),
-            )
+    laws = [
+        ConstitutiveLaw.of_moduli(
+            *modulus[i].tolist(),
+            *poisson[i].tolist(),
+            alpha_xx=float(alpha[i, 0]),
+            alpha_yy=float(alpha[i, 1]),
+            beta_xx=float(beta[i, 0]),
+            beta_yy=float(beta[i, 1]),
         )
+        for i in range(len(FABRICS))
+    ]
     values["strain"] = np.log(
         [[strain_at_stress(law, d, LOAD_N_PER_MM) for d in DIRECTIONS] for law in laws]
     )

@@ -231,17 +231,24 @@ class _Part:
         )
         yield Label(MARGIN_MM, MARGIN_MM + 5.5, f"{how}; {about}", 3.0)
 
+    def _boxes(
+        self, rows: range, columns: range, fill: str | None = None, stroke: str | None = None
+    ) -> Iterator[Box]:
+        """A box on these stitches, as far as they are in the window."""
+        left, right = (
+            max(columns.start, self.columns.start),
+            min(columns.stop, self.columns.stop),
+        )
+        low, high = max(rows.start, self.rows.start), min(rows.stop, self.rows.stop)
+        if left < right and low < high:
+            width, height = self.cell * (right - left), self._row_height * (high - low)
+            yield Box(self.x(left), self.y(high - 1), width, height, fill, stroke, line_width=0.7)
+
     def _colours(self) -> Iterator[Shape]:
-        if not is_coloured(self.piece):
-            return
-        for row in self.rows:
+        for row in self.rows if is_coloured(self.piece) else ():
             for run in self.piece.runs(row):
-                first = max(run.start, self.columns.start)
-                last = min(run.stop, self.columns.stop)
-                if first < last:
-                    fill = tinted(self.piece.yarns[run.yarn].colour)
-                    width = self.cell * (last - first)
-                    yield Box(self.x(first), self.y(row), width, self._row_height, fill=fill)
+                fill = tinted(self.piece.yarns[run.yarn].colour)
+                yield from self._boxes(range(row, row + 1), range(run.start, run.stop), fill)
 
     def _grid(self) -> Iterator[Strokes]:
         """Fine lines, heavier every ten stitches from the right and every ten rows."""
@@ -299,46 +306,25 @@ class _Part:
 
     def _no_stitches(self) -> Iterator[Shape]:
         """Grey boxes before and after the stitches of each row."""
-        spans = self.piece.shaped.spans
         for row in self.rows:
-            for start, stop in ((0, spans[row][0]), (spans[row][1], self.chart.columns)):
-                first, last = max(start, self.columns.start), min(stop, self.columns.stop)
-                if first < last:
-                    width = self.cell * (last - first)
-                    x, y = self.x(first), self.y(row)
-                    yield Box(x, y, width, self._row_height, fill=NO_STITCH)
+            start, stop = self.piece.shaped.spans[row]
+            for outside in (range(start), range(stop, self.chart.columns)):
+                yield from self._boxes(range(row, row + 1), outside, NO_STITCH)
 
     def _repeat(self) -> Iterator[Shape]:
         """A heavy border around the repeat at the bottom right, where row 1 begins."""
-        repeat = self.chart.repeat_cut()
-        if repeat == self.chart:
-            return
-        start = max(self.chart.columns - repeat.columns, self.columns.start)
-        if self.rows.start >= repeat.rows or start >= self.columns.stop:
-            return
-        top = min(repeat.rows, self.rows.stop) - 1
-        yield Box(
-            self.x(start),
-            self.y(top),
-            self.cell * (self.columns.stop - start),
-            self._row_height * (top + 1 - self.rows.start),
-            stroke=HEAVY,
-            line_width=0.7,
-        )
+        repeat, columns = self.chart.repeat_cut(), self.chart.columns
+        if repeat != self.chart:
+            right = range(columns - repeat.columns, columns)
+            yield from self._boxes(range(repeat.rows), right, stroke=HEAVY)
 
     def _placements(self) -> Iterator[Shape]:
         """A heavy border around every copy of a linked repeat, as far as it is on this page."""
         for mark in self.style.repeats:
             for row, column, rows, columns in mark.places:
-                left, right = (
-                    max(column, self.columns.start),
-                    min(column + columns, self.columns.stop),
+                yield from self._boxes(
+                    range(row, row + rows), range(column, column + columns), stroke=HEAVY
                 )
-                low, high = max(row, self.rows.start), min(row + rows, self.rows.stop)
-                if left < right and low < high:
-                    width, height = self.cell * (right - left), self._row_height * (high - low)
-                    x, y = self.x(left), self.y(high - 1)
-                    yield Box(x, y, width, height, stroke=HEAVY, line_width=0.7)
 
     def _row_numbers(self) -> Iterator[Shape]:
         """Right-side rows at the right, wrong-side rows at the left: as many as leave room."""

@@ -7,8 +7,7 @@ in a chain bind-off.
 
 Edges are shaped as by hand. Where a course begins, its own yarn casts on and binds off; where it
 ends, that yarn has not arrived, so a separate strand is used. A loss of one stitch is a decrease:
-its
-loop is put onto the neighbour. Blocks of colour have a carrier each (intarsia), and each course
+its loop is put onto the neighbour. Blocks of colour have a carrier each (intarsia), and each course
 tucks the yarn of a block into the next one, so that no slit is left.
 
 Specification: https://textiles-lab.github.io/knitout/knitout.html

@@ -1,8 +1,7 @@
 """Relaxed centre lines of the four pure fabrics, in the sizes of a material.
 
 They come from the packaged store of the yarn level, which holds acrylic and cotton. Other materials
-get those of acrylic, scaled to their own stitches, and labelled as an estimate. Where the store has
-no line of a fabric, a geometric loop is used (:mod:`knitcore.geometry.loops`).
+get those of acrylic, scaled to their own stitches, and labelled as an estimate.
 """
 
 from __future__ import annotations
@@ -14,17 +13,13 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
-from knitcore.fabric import PHASES, Fabric
-from knitcore.geometry.loops import loop_centre_line, loop_kinds
+from knitcore.fabric import PHASES
 from knitcore.materials import Material
 from knitcore.yarnlevel.spline import SUPPORT, quintic_basis
-from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
+from knitcore.yarnlibrary.store import MATERIALS, StoredStitch, stored_fabric
 
 POINTS = 49
 """Points of a centre line over one stitch, both ends included."""
-STORED = ("acrylic", "cotton")
-CLEARANCE_SHARE = 0.26
-"""Distance of neighbouring strands of a geometric loop, in stitch widths."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +41,7 @@ class FabricLines:
 
 def stored_material(material: Material) -> str:
     """The material of the store whose stitches are used for a material."""
-    return material.sample if material.sample in STORED else STORED[0]
+    return material.sample if material.sample in MATERIALS else MATERIALS[0]
 
 
 def fabric_lines(material: Material) -> FabricLines:
@@ -57,23 +52,15 @@ def fabric_lines(material: Material) -> FabricLines:
     InputError
         If the material lacks one of the four fabrics.
     """
-    sizes = tuple(
-        (material.record(f).stitch_course_mm, material.record(f).stitch_wale_mm) for f in PHASES
-    )
-    return _fabric_lines(stored_material(material), material.sample in STORED, sizes)
+    sizes = tuple(material.record(fabric).stitch_mm for fabric in PHASES)
+    return _fabric_lines(stored_material(material), material.sample in MATERIALS, sizes)
 
 
 @lru_cache(maxsize=64)
 def _fabric_lines(stored: str, own: bool, sizes_mm: tuple[tuple[float, float], ...]) -> FabricLines:
-    lines, strands, drawn = [], [], []
+    lines, strands = [], []
     for fabric, (course_mm, wale_mm) in zip(PHASES, sizes_mm, strict=True):
-        chart = StitchChart.of_fabric(fabric, rows=2, columns=2)
-        found = stored_stitch(chart, stored)
-        if found is None:
-            drawn.append(fabric)
-            lines.append(_geometric(fabric, course_mm, wale_mm))
-            strands.append(CLEARANCE_SHARE * course_mm)
-            continue
+        chart, found = StitchChart.of_fabric(fabric), stored_fabric(fabric, stored)
         scale = np.sqrt(course_mm * wale_mm / (found.cell_course_mm * found.cell_wale_mm))
         row, column = np.argwhere(~found.chart.purl)[0]
         line = cell_lines(found)[row, column] * (1.0, 1.0, scale)
@@ -83,8 +70,6 @@ def _fabric_lines(stored: str, own: bool, sizes_mm: tuple[tuple[float, float], .
     source = f"relaxed curves of the four fabrics in {stored}"
     if not own:
         source += ", scaled to this material's stitches: an estimate"
-    if drawn:
-        source += f"; drawn, not computed: {', '.join(drawn)}"
     result = FabricLines(np.array(lines), np.array(strands), source)
     result.lines.setflags(write=False)
     return result
@@ -128,11 +113,3 @@ def strand_distance_mm(line: Array, chart: StitchChart, course_mm: float, wale_m
     above = course * (1.0, 1.0, sign[1 % chart.rows, 0] * sign[0, 0]) + (0.0, wale_mm, 0.0)
     distance = np.linalg.norm(shape[:, None] - above[None], axis=2)
     return float(distance.min())
-
-
-def _geometric(fabric: Fabric, course_mm: float, wale_mm: float) -> Array:
-    chart = StitchChart.of_fabric(fabric, rows=4, columns=4)
-    row, column = np.argwhere(~chart.purl[1:3, 1:3])[0] + 1
-    radius = 0.5 * CLEARANCE_SHARE * min(course_mm, wale_mm)
-    line: Array = loop_centre_line(int(loop_kinds(chart)[row, column]), POINTS)
-    return line * (1.0, 1.0, radius)

@@ -31,12 +31,7 @@ class Lattice:
 
 def stitch_sizes_mm(material: Material) -> Array:
     """Width and height of the 16 kinds of stitch, (16, 2), each the mean of its four quarters."""
-    sizes = np.array(
-        [
-            [material.record(fabric).stitch_course_mm, material.record(fabric).stitch_wale_mm]
-            for fabric in PHASES
-        ]
-    )
+    sizes = np.array([material.record(fabric).stitch_mm for fabric in PHASES])
     of_code: Array = sizes[QUARTERS_OF_CODE].mean(axis=(1, 2))
     return of_code
 

@@ -1,9 +1,9 @@
-"""The centre line of one stitch: a geometric loop until a relaxed one is known.
+"""The centre line of one stitch as a drawn loop, of which solids for files are made.
 
 The loop has the right topology for any neighbours: feet go behind the loops of the row below, legs
 pass in front, the head passes behind the legs of the row above; a purl is the mirror image. Only
 its proportions are drawn, not computed: lengths and contacts are those of the stitch cell and the
-yarn's diameter. Relaxations at the yarn level also start from it.
+yarn's diameter.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ from knitcore.phases import (
     reference_fabric,
     surroundings,
 )
-from knitcore.yarnlibrary.store import StoredStitch, stored_stitch
+from knitcore.yarnlibrary.store import StoredStitch, stored_fabric, stored_stitch
 
 MAX_STORED = 36
 """Stitches of the largest repeats that are looked up in the store."""
@@ -119,12 +119,9 @@ def _of_stored(
 ) -> StitchShapes:
     """The repeat's own cell, scaled like the fabric it resembles."""
     reference = reference_fabric(stored.chart)
-    like = stored_stitch(StitchChart.of_fabric(reference, rows=2, columns=2), stored.material)
-    record = material.record(reference)
-    course, wale = stored.cell_course_mm, stored.cell_wale_mm
-    if like is not None:
-        course *= record.stitch_course_mm / like.cell_course_mm
-        wale *= record.stitch_wale_mm / like.cell_wale_mm
+    like, record = stored_fabric(reference, stored.material), material.record(reference)
+    course = stored.cell_course_mm * record.stitch_course_mm / like.cell_course_mm
+    wale = stored.cell_wale_mm * record.stitch_wale_mm / like.cell_wale_mm
     depth = np.sqrt(course * wale / (stored.cell_course_mm * stored.cell_wale_mm))
     rows, columns = np.indices((chart.rows, chart.columns))
     index = rows % stored.chart.rows * stored.chart.columns + columns % stored.chart.columns

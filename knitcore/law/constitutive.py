@@ -124,6 +124,32 @@ class ConstitutiveLaw:
                 "stiffness_xxyy * stiffness_yyxx must stay below stiffness_xxxx * stiffness_yyyy.",
             )
 
+    @classmethod
+    def of_moduli(
+        cls,
+        modulus_course: float,
+        modulus_wale: float,
+        poisson_yx: float,
+        poisson_xy: float,
+        **others: float,
+    ) -> ConstitutiveLaw:
+        """A law by its Young's moduli (N/mm), Poisson's ratios, and the ``others`` by name.
+
+        Raises
+        ------
+        InputError
+            As for the constants themselves.
+        """
+        held = 1 - poisson_yx * poisson_xy
+        if not held > 0:
+            raise InputError(
+                "poisson_xy",
+                f"{poisson_xy:g} times poisson_yx {poisson_yx:g} is 1 or more.",
+                "Their product must stay below 1.",
+            )
+        xxxx, yyyy = modulus_course / held, modulus_wale / held
+        return cls(xxxx, yyyy, poisson_xy * xxxx, poisson_yx * yyyy, **others)
+
     # -- linear constants -------------------------------------------------------------------
 
     @property

@@ -76,11 +76,12 @@ class LawDocument(_Model):
         InputError
             If it is not positive definite, or if stated moduli contradict the stiffnesses.
         """
-        xxxx, yyyy, xxyy, yyxx = self._stiffnesses()
-        if xxxx is None or yyyy is None or xxyy is None or yyxx is None:
-            xxxx, yyyy, xxyy, yyxx = self._from_engineering()
         others = {f.name: getattr(self, f.name) for f in fields(ConstitutiveLaw)[4:]}
-        law = ConstitutiveLaw(xxxx, yyyy, xxyy, yyxx, **others)
+        if None in self._stiffnesses():
+            stated = (value or 0.0 for value in self._engineering())
+            law = ConstitutiveLaw.of_moduli(*stated, **others)
+        else:
+            law = ConstitutiveLaw(*(value or 0.0 for value in self._stiffnesses()), **others)
         check_stated_constants(
             law,
             modulus_course=self.modulus_course,
@@ -89,17 +90,6 @@ class LawDocument(_Model):
             poisson_xy=self.poisson_xy,
         )
         return law
-
-    def _from_engineering(self) -> tuple[float, float, float, float]:
-        course, wale, nu_yx, nu_xy = (value or 0.0 for value in self._engineering())
-        if nu_yx * nu_xy >= 1:
-            raise InputError(
-                "poisson_xy",
-                f"{nu_xy:g} times poisson_yx {nu_yx:g} is 1 or more.",
-                "Their product must stay below 1.",
-            )
-        xxxx, yyyy = course / (1 - nu_yx * nu_xy), wale / (1 - nu_yx * nu_xy)
-        return xxxx, yyyy, nu_xy * xxxx, nu_yx * yyyy
 
     @classmethod
     def from_law(cls, law: ConstitutiveLaw) -> LawDocument:

@@ -115,10 +115,14 @@ class FabricRecord:
     printed: Mapping[str, Figure] = field(default_factory=lambda: MappingProxyType({}))
     measured: Mapping[Direction, MeasuredCurve] = field(default_factory=dict)
 
+    @property
+    def stitch_mm(self) -> tuple[float, float]:
+        """Relaxed width and height of one stitch."""
+        return self.stitch_course_mm, self.stitch_wale_mm
+
     def stitch_size_mm(self, direction: Direction) -> float:
         """Relaxed extent of one stitch in a direction."""
-        course = direction is Direction.COURSE
-        return self.stitch_course_mm if course else self.stitch_wale_mm
+        return self.stitch_mm[direction.axis]
 
 
 @dataclass(frozen=True)

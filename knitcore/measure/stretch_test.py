@@ -182,30 +182,21 @@ def check_run(run: StretchRun, *, first_row: int = 1) -> None:
 
 
 def _check_percent(run: StretchRun, first_row: int) -> None:
-    largest = int(np.argmax(np.abs(run.strain_along)))
-    narrowest = int(np.argmin(run.strain_across))
-    if abs(run.strain_along[largest]) > PERCENT_STRAIN:
-        raise InputError(
-            f"{run.name}, strain_along",
-            f"{run.strain_along[largest]:.4g} in row {largest + first_row} looks like a strain"
-            " in percent (%).",
-            "Divide the strains by 100: 0.25 means 25 %.",
-        )
-    widest = int(np.argmax(run.strain_across))
-    if run.strain_across[widest] > PERCENT_STRAIN:
-        raise InputError(
-            f"{run.name}, strain_across",
-            f"{run.strain_across[widest]:.4g} in row {widest + first_row} looks like a strain"
-            " in percent (%).",
-            "Divide the strains by 100: -0.05 means 5 % narrower.",
-        )
-    if run.strain_across[narrowest] <= -1:
-        raise InputError(
-            f"{run.name}, strain_across",
-            f"{run.strain_across[narrowest]:.4g} in row {narrowest + first_row} would make the"
-            " width negative; it looks like a strain in percent (%).",
-            "Divide the strains by 100: -0.05 means 5 % narrower.",
-        )
+    along, across = run.strain_along, run.strain_across
+    looks, narrower = "looks like a strain in percent (%).", "-0.05 means 5 % narrower"
+    negative = f"would make the width negative; it {looks}"
+    for name, values, wrong, how, example in (
+        ("strain_along", along, np.abs(along) > PERCENT_STRAIN, looks, "0.25 means 25 %"),
+        ("strain_across", across, across > PERCENT_STRAIN, looks, narrower),
+        ("strain_across", across, across <= -1, negative, narrower),
+    ):
+        if wrong.any():
+            worst = int(np.argmax(np.where(wrong, np.abs(values), 0.0)))
+            raise InputError(
+                f"{run.name}, {name}",
+                f"{values[worst]:.4g} in row {worst + first_row} {how}",
+                f"Divide the strains by 100: {example}.",
+            )
 
 
 def _check_stress(run: StretchRun, first_row: int) -> None:

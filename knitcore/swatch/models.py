@@ -20,6 +20,7 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.bounds import check_positive
 from knitcore.errors import InputError
 from knitcore.law.constitutive import ConstitutiveLaw, Symmetrisation
 
@@ -87,14 +88,8 @@ class SheetModel:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "energy", energy_model(self.energy))
-        if self.shear_modulus is not None and not (
-            np.isfinite(self.shear_modulus) and self.shear_modulus > 0
-        ):
-            raise InputError(
-                "shear_modulus",
-                f"{self.shear_modulus} N/mm is not a stiffness.",
-                "Give above 0 N/mm.",
-            )
+        if self.shear_modulus is not None:
+            check_positive("shear_modulus", self.shear_modulus, "N/mm", "a stiffness")
         if self.energy is EnergyModel.PUBLISHED and self.tension_field:
             raise InputError(
                 "model", "the published model has no such option.", "Use the full model."

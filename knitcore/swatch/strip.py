@@ -148,10 +148,7 @@ def chart_sheet(
     chosen = sheet_model(model, shear_modulus)
     if draw_in and not isinstance(model, SheetModel) and chosen.energy is EnergyModel.FULL:
         chosen = replace(chosen, tension_field=True)
-    sizes = {
-        fabric: (record.stitch_course_mm, record.stitch_wale_mm)
-        for fabric, record in material.fabrics.items()
-    }
+    sizes = {fabric: record.stitch_mm for fabric, record in material.fabrics.items()}
     local = laws or _local_laws(chart, material, stitch, gauge)
     grid = QuarterGrid.of_chart(
         chart, sizes, local.scale, stitch=stitch, width_mm=width_mm, length_mm=length_mm

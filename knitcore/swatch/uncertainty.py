@@ -37,7 +37,7 @@ from knitcore.fabric import PHASES, Direction
 from knitcore.gridsolver.dissection import GridFactor
 from knitcore.law.constitutive import DEFAULT_SHEAR_MODULUS_N_PER_MM, ConstitutiveLaw
 from knitcore.law.stiffening import StiffeningForm
-from knitcore.materials.material import Material
+from knitcore.materials.material import FabricRecord, Material
 from knitcore.materials.uncertainty import (
     Z_SCORE,
     Interval,
@@ -224,7 +224,7 @@ def _lock_up_sd(sheet: Sheet, material: Material) -> Array:
     """Standard deviation of ln(lock-up strain), course-wise and wale-wise, (laws, 2)."""
     found = np.zeros((len(sheet.laws), 2))
     for code in _codes(sheet):
-        spread = material.record(PHASES[code % len(PHASES)]).uncertainty
+        spread = _record(material, code).uncertainty
         found[code] = [spread.curve(direction).log_lock_up for direction in Direction]
     return found
 
@@ -238,10 +238,8 @@ def law_parameters(
     """
     found = []
     for code in _codes(sheet):
-        law, spread = (
-            material.law(PHASES[code % len(PHASES)]),
-            material.record(PHASES[code % len(PHASES)]).uncertainty,
-        )
+        record = _record(material, code)
+        law, spread = record.law, record.uncertainty
         for direction in Direction:
             step = _varied(sheet, [code], partial(_stress_scaled, direction))
             sd = float(spread.log_stress(direction, stress_n_per_mm))
@@ -260,8 +258,7 @@ def law_parameters(
 
 def interval_source(sheet: Sheet, material: Material) -> str:
     """What the intervals of a test of a sheet rest on, in words."""
-    used = {PHASES[code % len(PHASES)]: None for code in _codes(sheet)}
-    said = [material.record(fabric).uncertainty.source for fabric in used]
+    said = [_record(material, code).uncertainty.source for code in _codes(sheet)]
     said += [SHEAR_ASSUMED] if _of_assumed_shear(sheet, material) else []
     said += [MODEL_ERRORS] if model_log_sd(sheet) else []
     return in_a_sentence(said)
@@ -273,13 +270,18 @@ def _codes(sheet: Sheet) -> list[int]:
     return codes
 
 
+def _record(material: Material, code: int) -> FabricRecord:
+    """The pure fabric whose law, perhaps fitted to an answer, has this code."""
+    return material.record(PHASES[code % len(PHASES)])
+
+
 def _of_assumed_shear(sheet: Sheet, material: Material) -> list[int]:
     """Codes of the laws whose shear modulus is the assumed one."""
     return [
         code
         for code in _codes(sheet)
         if sheet.model.shear_modulus is None
-        and material.record(PHASES[code % len(PHASES)]).uncertainty.log_shear is None
+        and _record(material, code).uncertainty.log_shear is None
         and sheet.laws[code].shear_modulus == DEFAULT_SHEAR_MODULUS_N_PER_MM
     ]
 

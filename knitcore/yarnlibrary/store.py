@@ -11,6 +11,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
+from knitcore.fabric import Fabric
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.kernels import sample_curve
@@ -27,7 +29,6 @@ from knitcore.yarnlevel.yarn import YarnModel
 from knitcore.yarnlibrary.catalogue import placement
 
 MATERIALS = ("acrylic", "cotton")
-_DATA = "knitcore.yarnlibrary"
 
 
 @dataclass(frozen=True)
@@ -171,6 +172,13 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
     )
 
 
+def stored_fabric(fabric: Fabric, material_id: str) -> StoredStitch:
+    """The packaged relaxation of a pure fabric; the store has all four of each material."""
+    found = stored_stitch(StitchChart.of_fabric(fabric), material_id)
+    assert found is not None  # noqa: S101 - packaged, and tested
+    return found
+
+
 def stored_failure(chart: StitchChart, material_id: str) -> str | None:
     """Why a repeat of the store has no relaxed shape; None if it has one or is not in the store."""
     entry = _entries().get(f"{material_id}/{chart.canonical().key}", {})
@@ -194,23 +202,21 @@ def _law(entry: dict[str, Any]) -> ConstitutiveLaw | None:
 
 @cache
 def _entries() -> dict[str, Any]:
-    path = files(_DATA) / "data" / "stitches.json"
-    if not path.is_file():
-        return {}
-    entries: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["stitches"]
+    entries: dict[str, Any] = json.loads(_data("stitches.json"))["stitches"]
     return entries
 
 
 @cache
 def _unmirrored() -> dict[str, Any]:
-    path = files(_DATA) / "data" / "lowest.json"
-    if not path.is_file():
-        return {}
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    found: dict[str, Any] = json.loads(_data("lowest.json"))
     return found
 
 
 @cache
 def _controls() -> dict[str, NDArray[np.float32]]:
-    with (files(_DATA) / "data" / "stitches.npz").open("rb") as stream, np.load(stream) as found:
+    with np.load(BytesIO(_data("stitches.npz"))) as found:
         return {name: found[name] for name in found.files}
+
+
+def _data(name: str) -> bytes:
+    return (files("knitcore.yarnlibrary") / "data" / name).read_bytes()
