@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import math
-import os
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from pydantic import BaseModel
 
+from app.compute.memory import machine_bytes
 from app.http.identity import LOCAL_USER
 from app.http.problems import ServiceError
 from app.http.rate import RateLimit
@@ -18,10 +18,6 @@ from app.http.rate import RateLimit
 DAY_S = 86_400.0
 MIN_S = 60.0
 """Computing time that has come back when a user may compute again."""
-
-
-def _machine_bytes() -> int:
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
 @dataclass(frozen=True)
@@ -52,7 +48,7 @@ class Budgets:
 
     connections: int = 128
     cpu_s: float = 12 * 3_600.0
-    memory_bytes: int = field(default_factory=_machine_bytes)
+    memory_bytes: int = field(default_factory=machine_bytes)
     views: int = 16
     view_stitches: int = 4_000_000
     watchers: int = 32
@@ -165,14 +161,9 @@ class InUse:
         ------
         OverBudgetError
         """
-        self.check(what, owner)
-        self._held[what, owner] += 1
-        try:
+        with self.growing(what, owner) as count:
+            count(1)
             yield
-        finally:
-            self._held[what, owner] -= 1
-            if not self._held[what, owner]:
-                del self._held[what, owner]
 
     @contextlib.contextmanager
     def growing(self, what: str, owner: str) -> Iterator[Callable[[int], None]]:

@@ -6,6 +6,7 @@ import os
 import resource
 import shutil
 from collections.abc import Callable
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -149,23 +150,17 @@ def _check_database(settings: Settings) -> None:
     if settings.database_url is None and not settings.database_file.exists():
         check_not_lost(settings.database_file)
         return  # it is made by the first start
-    database = Database(settings.store_url)
-    try:
+    with closing(Database(settings.store_url)) as database:
         database.check_pages()
         check_schema(database)
-    finally:
-        database.close()
 
 
 def _holder(settings: Settings) -> str | None:
     """The service that runs on the data now; a second one would be refused."""
     if settings.database_url is None and not settings.database_file.exists():
         return None
-    database = Database(settings.store_url)
-    try:
+    with closing(Database(settings.store_url)) as database:
         return holder(database, settings.process_name)
-    finally:
-        database.close()
 
 
 def check_handles() -> None:
@@ -193,8 +188,5 @@ def check_cluster(address: str) -> None:
     """
     from app.compute.cluster import Cluster  # its library is needed here only
 
-    cluster = Cluster(address)
-    try:
+    with closing(Cluster(address)) as cluster:
         cluster.check()
-    finally:
-        cluster.close()

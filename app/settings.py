@@ -18,6 +18,7 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
+from app.compute.memory import machine_bytes
 from knitcore.errors import InputError
 
 NO_SETTINGS = frozenset(
@@ -87,9 +88,7 @@ class Settings(BaseSettings):
         1800.0, gt=0, description="Longest run of one job in the background."
     )
     worker_memory_bytes: int = Field(
-        default_factory=lambda: max(
-            4_000_000_000, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
-        ),
+        default_factory=lambda: max(4_000_000_000, machine_bytes() // 2),
         ge=500_000_000,
         description="Most memory of one process for heavy work; half of the machine's by default.",
     )

@@ -577,11 +577,12 @@ export interface CurveRequest {
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
   material: string;
+  /** Measured gauge of the chart; its relaxed size is estimated if left out. */
+  gauge?: GaugeInput | null;
   /** Along rows, or along columns. */
   direction: Direction;
   /** Increasing. */
   stress_n_per_mm?: number[];
-  gauge?: GaugeInput | null;
 }
 
 /** Strain at each stress, transverse direction free. */
@@ -1965,10 +1966,10 @@ export interface PredictRequest {
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
   material: string;
+  /** Measured gauge of the chart; its relaxed size is estimated if left out. */
+  gauge?: GaugeInput | null;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
-  /** Measured gauge; the relaxed size is estimated if left out. */
-  gauge?: GaugeInput | null;
   /** Further numbers, by the names of installed extensions. */
   measures?: string[];
 }
@@ -2472,6 +2473,8 @@ export interface StretchRequest {
   chart: string | PureFabricChart;
   /** Identifier of a material of the library. */
   material: string;
+  /** Measured gauge of the chart; its relaxed size is estimated if left out. */
+  gauge?: GaugeInput | null;
   /** Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out. */
   outline?: string | null;
   /** Along rows, or along columns. */
@@ -2486,8 +2489,6 @@ export interface StretchRequest {
   model?: EnergyModel;
   /** C_xyxy in N/mm; that of the laws by default. */
   shear_modulus_n_per_mm?: number | null;
-  /** Measured gauge of the chart; its relaxed size is estimated if left out. */
-  gauge?: GaugeInput | null;
   /** Size course-wise; from the gauge by default. */
   width_mm?: number | null;
   /** Size wale-wise; from the gauge by default. */

@@ -94,13 +94,10 @@ def open_database(settings: Settings, *, migrated: bool = True) -> Iterator[Data
     from app.store.database import Database
     from app.store.schema import migrate
 
-    database = Database(settings.store_url)
-    try:
+    with contextlib.closing(Database(settings.store_url)) as database:
         if migrated:
             migrate(database)
         yield database
-    finally:
-        database.close()
 
 
 def user_data_dir() -> Path:

@@ -8,6 +8,7 @@ import click
 from pydantic import ValidationError
 
 from app.cli.common import emit, json_option
+from app.models.base import first_fault
 from app.settings import Settings
 from knitcore.errors import InputError
 
@@ -21,9 +22,7 @@ def command(as_json: bool) -> None:
     try:
         found = examine(Settings())
     except (InputError, ValidationError) as error:
-        first = error.errors()[0] if isinstance(error, ValidationError) else None
-        field = "" if first is None else ".".join(str(part) for part in first["loc"])
-        problem = str(error) if first is None else f"{field}: {first['msg']}."
+        problem = f"{first_fault(error)}." if isinstance(error, ValidationError) else str(error)
         remedy = "Compare the environment and the file of KNITCORE_CONFIG with docs/serving.md."
         found = Checks(checks=[Check(name="settings", ok=False, problem=problem, remedy=remedy)])
     lines = [

@@ -10,6 +10,7 @@ import click
 from pydantic import ValidationError
 
 import app.cli as package
+from app.models.base import first_fault
 from app.operations.registry import commands, operation_of_command
 from knitcore.errors import KnitcoreError
 
@@ -84,9 +85,8 @@ class Commands(Operations):
         except ModuleNotFoundError as error:
             raise Failure(_remedy(error)) from error
         except ValidationError as error:
-            first = error.errors()[0]
-            field = ".".join(str(part) for part in first["loc"])
-            raise Failure(f"{field}: {first['msg']} (given: {first['input']!r}).") from error
+            given = error.errors()[0]["input"]
+            raise Failure(f"{first_fault(error)} (given: {given!r}).") from error
 
 
 def _not_installed(name: str, error: ModuleNotFoundError) -> click.Command:

@@ -67,16 +67,15 @@ def _prepared(settings: Settings, address: str) -> Iterator[None]:
     from app.store.schema import migrate
 
     check_folder(settings.folder)
-    database = Database(settings.store_url)
-    try:
-        with held(database, settings.process_name, address):
-            database.check_pages()
-            migrate(database)
-            for check in examine(settings).failed:
-                log.warning("%s: %s %s", check.name, check.problem, check.remedy)
-            yield
-    finally:
-        database.close()
+    with (
+        contextlib.closing(Database(settings.store_url)) as database,
+        held(database, settings.process_name, address),
+    ):
+        database.check_pages()
+        migrate(database)
+        for check in examine(settings).failed:
+            log.warning("%s: %s %s", check.name, check.problem, check.remedy)
+        yield
 
 
 def serve_on(settings: Settings, listener: socket.socket) -> None:

@@ -1,13 +1,19 @@
-"""Return unused memory to the system."""
+"""How much memory there is, and returning what is not used to the system."""
 
 from __future__ import annotations
 
 import ctypes
 import gc
+import os
 
 M_MMAP_THRESHOLD = -3
 """Of glibc's malloc.h."""
 LARGE_BYTES = 1_000_000
+
+
+def machine_bytes() -> int:
+    """Memory of this machine."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
 def keep_no_large_blocks() -> None:

@@ -56,6 +56,12 @@ def read(model: Any, content: bytes | str) -> Any:
         ) from None
 
 
+def first_fault(error: ValidationError) -> str:
+    """The first thing that is wrong, and where."""
+    fault = error.errors()[0]
+    return ": ".join(filter(None, (".".join(map(str, fault["loc"])), fault["msg"])))
+
+
 class RequestModel(BaseModel):
     """A request, or a part of one; unknown fields are refused."""
 

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from app.models.base import RequestModel
+from app.models.laws import FabricRequest
 from knitcore.answer.relaxed import RelaxedSize
 
 Count = Annotated[
@@ -28,3 +29,16 @@ class GaugeInput(RequestModel):
     def relaxed_size(self) -> RelaxedSize:
         """The relaxed size of one stitch."""
         return RelaxedSize.from_gauge(self.stitches_per_10_cm, self.rows_per_10_cm)
+
+
+class GaugedRequest(FabricRequest):
+    """A chart of a material, and how somebody knits it."""
+
+    gauge: GaugeInput | None = Field(
+        None, description="Measured gauge of the chart; its relaxed size is estimated if left out."
+    )
+
+    @property
+    def relaxed_size(self) -> RelaxedSize | None:
+        """The relaxed size of one stitch, if the gauge was measured."""
+        return self.gauge.relaxed_size() if self.gauge else None

@@ -7,7 +7,10 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from app.models.base import RequestModel, ResultModel
-from knitcore.materials import Laws, load_library
+from app.models.charts import ChartInput, MaterialName, to_chart
+from app.operations.context import Context
+from knitcore.chart import StitchChart
+from knitcore.materials import Laws, Material, load_library
 
 
 class LawsRequest(RequestModel):
@@ -42,6 +45,17 @@ class LawsRequest(RequestModel):
                 )
             return material
         return self.laws.of(material)
+
+
+class FabricRequest(LawsRequest):
+    """A chart of a material."""
+
+    chart: ChartInput
+    material: MaterialName
+
+    def fabric(self, context: Context) -> tuple[StitchChart, Material]:
+        """Both, as the library has them."""
+        return to_chart(self.chart), context.material(self.material)
 
 
 class Moduli(ResultModel):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -135,16 +135,14 @@ class PieceTestRequest(LawsRequest):
                 f"Use at least {least:.3g} mm, fewer steps, or the command line.",
             )
 
-    def pull(self, test: Callable[..., T], context: Context, **more: Any) -> T:
-        """A test of the library on cloth of the chart."""
-        return self.pass_to(
-            test,
-            to_repeat(self.chart),
-            context.material(self.material),
-            progress=context.progress,
-            cancelled=context.cancelled,
-            **more,
-        )
+    def pull(
+        self, test: Callable[..., T], size_mm: tuple[float, float], context: Context, **more: Any
+    ) -> tuple[T, Material]:
+        """A test of the library on a rectangle of the chart's cloth, and the cloth's material."""
+        self.check(CutPiece.rectangle(*size_mm), context)
+        material = context.material(self.material)
+        told = {"progress": context.progress, "cancelled": context.cancelled}
+        return self.pass_to(test, to_repeat(self.chart), material, **told, **more), material
 
 
 class PieceTestResult(IntervalResult):
@@ -159,6 +157,18 @@ class PieceTestResult(IntervalResult):
         description="Largest alpha * strain at the last step; 1 is the lock-up."
     )
     messages: list[str]
+
+    @classmethod
+    def of_pull(cls, found: Any, material: Material, **more: Any) -> Self:
+        """Of a test of a rectangle; its forces get the intervals of their deviations."""
+        ends = {}
+        for name in cls.model_fields:
+            force, is_interval, _ = name.partition("_interval_n")
+            if is_interval:
+                factor = np.exp(Z_SCORE * getattr(found, f"{force}_log_sd"))
+                value = getattr(found, f"{force}_n")
+                ends[name] = value / factor, value * factor
+        return cls.of(found, **ends, **of_test(found.test, material), **more)
 
 
 def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
@@ -178,12 +188,6 @@ def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
         "utilisation": test.utilisation() if test.found else 0.0,
         "messages": [*([test.problem] if test.problem else []), *([told] if past else [])],
     }
-
-
-def interval(force: Any, log_sd: Any) -> tuple[Any, Any]:
-    """Ends of 90 % intervals of forces (arrays)."""
-    factor = np.exp(Z_SCORE * np.asarray(log_sd))
-    return force / factor, force * factor
 
 
 def table(columns: dict[str, list[float]]) -> list[str]:

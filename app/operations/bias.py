@@ -7,10 +7,9 @@ from typing import Literal
 from pydantic import Field
 
 from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.piece import CutPiece
 from knitcore.piece.standard import bias_test
 
 
@@ -49,12 +48,8 @@ def bias(request: BiasRequest, context: Context) -> BiasResult:
     ------
     InputError, CancelledError
     """
-    request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
-    test = request.pull(bias_test, context)
-    ends = interval(test.force_n, test.force_log_sd)
-    return BiasResult.of(
-        test, force_interval_n=ends, **of_test(test.test, context.material(request.material))
-    )
+    size = request.width_mm, request.length_mm
+    return BiasResult.of_pull(*request.pull(bias_test, size, context))
 
 
 def _lines(r: BiasResult) -> list[str]:

@@ -7,10 +7,9 @@ from typing import Literal
 from pydantic import Field
 
 from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.piece import CutPiece
 from knitcore.piece.standard import biaxial_test
 
 
@@ -45,14 +44,8 @@ def biaxial(request: BiaxialRequest, context: Context) -> BiaxialResult:
     ------
     InputError, CancelledError
     """
-    request.check(CutPiece.rectangle(request.width_mm, request.length_mm), context)
-    test = request.pull(biaxial_test, context)
-    return BiaxialResult.of(
-        test,
-        force_x_interval_n=interval(test.force_x_n, test.force_x_log_sd),
-        force_y_interval_n=interval(test.force_y_n, test.force_y_log_sd),
-        **of_test(test.test, context.material(request.material)),
-    )
+    size = request.width_mm, request.length_mm
+    return BiaxialResult.of_pull(*request.pull(biaxial_test, size, context))
 
 
 def _lines(r: BiaxialResult) -> list[str]:

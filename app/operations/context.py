@@ -7,10 +7,8 @@ from functools import cached_property
 from pathlib import Path
 
 from app.results.on_disk import KeptResults
-from app.results.own_materials import PREFIX, find_own_material
+from app.results.own_materials import KINDS, PREFIX, find_own_material
 from knitcore.materials import Material, load_material_file, material
-
-FILE_KINDS = (".json", ".yaml", ".yml")
 
 
 def _never() -> bool:
@@ -64,7 +62,7 @@ class Context:
         InputError
             If there is none.
         """
-        if self.local and name.lower().endswith(FILE_KINDS):
+        if self.local and name.lower().endswith(KINDS):
             return load_material_file(name)
         return find_own_material(name, self.data_dir) if name.startswith(PREFIX) else material(name)
 

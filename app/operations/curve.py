@@ -9,10 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from app.models.base import EARLIER_NAME, EndsOfList, Floats, IntervalResult
-from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.checks import Check
-from app.models.gauge import GaugeInput
-from app.models.laws import LawsRequest
+from app.models.gauge import GaugedRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM, increasing
@@ -23,16 +21,13 @@ from knitcore.fabric import Direction
 Stress = Annotated[float, Field(ge=0, le=100)]
 
 
-class CurveRequest(LawsRequest):
+class CurveRequest(GaugedRequest):
     """A chart, a direction and the stresses to ask for."""
 
-    chart: ChartInput
-    material: MaterialName
     direction: Direction = Field(description="Along rows, or along columns.")
     stress_n_per_mm: Annotated[list[Stress], Check(lambda s, _: increasing(s))] = Field(
         list(DEFAULT_STRESS_N_PER_MM), min_length=1, max_length=500, description="Increasing."
     )
-    gauge: GaugeInput | None = None
 
 
 class CurveResult(IntervalResult):
@@ -54,9 +49,7 @@ class CurveResult(IntervalResult):
 def curve(request: CurveRequest, context: Context) -> CurveResult:
     """Strain at each stress, and the stress interval at each strain, for a chart of any size."""
     check_cancelled(context.cancelled)
-    size = request.gauge.relaxed_size() if request.gauge else None
-    chart, material = to_chart(request.chart), context.material(request.material)
-    found = chart_curve(chart, material, request.direction, request.stress_n_per_mm, gauge=size)
+    found = request.pass_to(chart_curve, *request.fabric(context), gauge=request.relaxed_size)
     return CurveResult.of(
         found,
         strain_interval=(found.strain_low, found.strain_high),

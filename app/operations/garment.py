@@ -263,12 +263,8 @@ def garment(request: GarmentRequest, context: Context) -> GarmentResult:
     InputError
         If a measurement or the material cannot be used.
     """
-    material, count = context.material(request.material), request.gauge
-    gauges = (
-        GaugeSet.of_material(material)
-        if count is None
-        else GaugeSet.of_material(material, count.gauge(), count.fabric)
-    )
+    material = context.material(request.material)
+    gauges = request.gauges(material)
     tex = request.linear_density_tex
     plan = request.garment.plan(material=material, gauges=gauges, linear_density_tex=tex)
     return GarmentResult.of(

@@ -160,17 +160,13 @@ def summary(found: Material) -> MaterialSummary:
         found,
         id=found.identifier,
         description=description(found),
-        fabrics={fabric: _fabric(record) for fabric, record in found.fabrics.items()},
+        fabrics={f: FabricSummary.of(record, record.law) for f, record in found.fabrics.items()},
     )
 
 
 def description(found: Material) -> str:
     """Fibre and product."""
     return ", ".join(part for part in (found.yarn.fibre, found.yarn.product) if part)
-
-
-def _fabric(record: FabricRecord) -> FabricSummary:
-    return FabricSummary.of(record, record.law)
 
 
 def _detail(record: FabricRecord) -> FabricDetail:

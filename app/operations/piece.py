@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import click
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from app.cli.options import out_option
-from app.models.base import EndsOfList, Floats, ResultModel
+from app.models.base import EndsOfList, Floats, ResultModel, first_fault
 from app.models.charts import to_repeat
 from app.models.checks import Check
 from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
@@ -132,18 +132,9 @@ def _piece_file(piece: Path) -> dict[str, Any]:
         return {"piece": PieceInput.model_validate_json(piece.read_bytes())}
     except OSError as error:
         raise InputError("piece", f"{piece}: {error.strerror}.", "Name a JSON file.") from None
-    except ValueError as error:
-        raise InputError("piece", f"{piece.name}: {_first(error)}.", "See docs/piece.md.") from None
-
-
-def _first(error: ValueError) -> str:
-    """The first problem, and its place."""
-    errors = getattr(error, "errors", None)
-    if errors is None:
-        return str(error)
-    found = errors()[0]
-    place = ".".join(str(part) for part in found["loc"])
-    return f"{place}: {found['msg']}" if place else str(found["msg"])
+    except ValidationError as error:
+        problem = f"{piece.name}: {first_fault(error)}."
+        raise InputError("piece", problem, "See docs/piece.md.") from None
 
 
 @out_option("--out", help="Write FILE.npz, .csv or .vtu.", suffixes=SUFFIXES)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.models.base import Ends, IntervalResult, Known, ResultModel
-from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
+from app.models.charts import OutlineInput
 from app.models.extensions import ExtensionName
-from app.models.gauge import GaugeInput
-from app.models.laws import ElasticConstants, Extensibility, LawsRequest
+from app.models.gauge import GaugedRequest
+from app.models.laws import ElasticConstants, Extensibility
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
@@ -20,15 +20,10 @@ from knitcore.garment.shaped import ShapedChart, outline_marks
 from knitcore.segments import segment_map
 
 
-class PredictRequest(LawsRequest):
+class PredictRequest(GaugedRequest):
     """A chart and its material; a shaped piece counts by the largest rectangle inside it."""
 
-    chart: ChartInput
-    material: MaterialName
     outline: OutlineInput = None
-    gauge: GaugeInput | None = Field(
-        None, description="Measured gauge; the relaxed size is estimated if left out."
-    )
     measures: list[ExtensionName] = Field(
         [], max_length=16, description="Further numbers, by the names of installed extensions."
     )
@@ -80,7 +75,7 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
     """Effective constants with their 90 % intervals and their source."""
-    chart, material = to_chart(request.chart), context.material(request.material)
+    chart, material = request.fabric(context)
     notes = []
     if request.outline is not None:
         shaped = ShapedChart(chart, outline_marks(request.outline))
@@ -88,7 +83,7 @@ def predict(request: PredictRequest, context: Context) -> PredictResult:
         if not shaped.stitch.all():
             size = f"{chart.columns} x {chart.rows}"
             notes.append(f"For the largest rectangle inside the outline, {size} stitches.")
-    found = choose(chart, material, request.gauge.relaxed_size() if request.gauge else None)
+    found = choose(chart, material, request.relaxed_size)
     segments = segment_map(chart)
     return PredictResult.of(
         found,

@@ -14,9 +14,8 @@ from scipy.ndimage import distance_transform_edt
 
 from app.cli.options import out_option
 from app.models.base import EndsOfList, Floats, IntervalResult, ResultModel
-from app.models.charts import ChartInput, Column, MaterialName, OutlineInput, Row, to_chart
-from app.models.gauge import GaugeInput
-from app.models.laws import LawsRequest
+from app.models.charts import Column, OutlineInput, Row, to_chart
+from app.models.gauge import GaugedRequest
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
@@ -46,11 +45,9 @@ MAX_VALUES = 60 * MAX_STITCHES
 NEAR_LOCK_UP = 0.95
 
 
-class StretchRequest(LawsRequest):
+class StretchRequest(GaugedRequest):
     """A chart between two clamps, which hold the outermost stitches, and how it is pulled."""
 
-    chart: ChartInput
-    material: MaterialName
     outline: OutlineInput = None
     direction: Direction = Field(description="Along rows, or along columns.")
     strain: float | None = Field(
@@ -69,9 +66,6 @@ class StretchRequest(LawsRequest):
     model: EnergyModel = EnergyModel.FULL
     shear_modulus_n_per_mm: float | None = Field(
         None, ge=1e-4, le=10, description="C_xyxy in N/mm; that of the laws by default."
-    )
-    gauge: GaugeInput | None = Field(
-        None, description="Measured gauge of the chart; its relaxed size is estimated if left out."
     )
     width_mm: float | None = Field(
         None, ge=1, le=10_000, description="Size course-wise; from the gauge by default."
@@ -198,7 +192,7 @@ def _test(
         chart,
         material,
         stitch=None if request.outline is None else outline_marks(request.outline),
-        gauge=request.gauge.relaxed_size() if request.gauge else None,
+        gauge=request.relaxed_size,
         laws=None,  # those that the request chooses are in the material
     )
     test = pull(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
 from pydantic import Field
@@ -19,7 +18,7 @@ from knitcore.fabric import Direction
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_STRAIN_LOG_SD,
-    Z_SCORE,
+    log_interval,
 )
 from knitcore.yarnlevel.relax import Branch
 from knitcore.yarnlevel.results import Sweep
@@ -27,6 +26,8 @@ from knitcore.yarnlevel.sweep import sweep as swept
 from knitcore.yarnlibrary.lawfit import MAX_STRESS_N_PER_MM, SimulatedLaw, fit_sweeps
 from knitcore.yarnlibrary.yarns import ChartYarn
 
+FACTOR = log_interval(1.0, YARN_LEVEL_STRAIN_LOG_SD).high
+"""Of strains of knitted cloth either way, 90 %."""
 _FAR_STRAIN = {Direction.COURSE: 3.5, Direction.WALE: 2.5}
 """Largest strain of the stretch across, which the law also needs; a stress may end it before."""
 _FAR_POINTS = 60
@@ -127,12 +128,11 @@ def _result(
         if context.cancelled():
             raise
         notes.append(f"No law could be fitted: {error}")
-    factor = math.exp(Z_SCORE * YARN_LEVEL_STRAIN_LOG_SD)
     return SweepResult.of(
         main,
         zero,
         request,
-        strain_interval=(main.strain / factor, main.strain * factor),
+        strain_interval=(main.strain / FACTOR, main.strain * FACTOR),
         interval_source=YARN_LEVEL_ERRORS,
         law=None if law is None else SweptLaw.of(law, law.law),
         converged=main.converged and len(main.strain) == request.points,
@@ -162,11 +162,10 @@ def _lines(r: SweepResult) -> list[str]:
             f"{r.law.modulus_course_n_per_mm:.4f}, wale {r.law.modulus_wale_n_per_mm:.4f} N/mm, "
             f"Poisson yx {r.law.poisson_yx:.3f}, xy {r.law.poisson_xy:.3f}"
         )
-    factor = math.exp(Z_SCORE * YARN_LEVEL_STRAIN_LOG_SD)
-    lines.append(
-        f"90 % interval of the strains of knitted cloth: a factor of {factor:.1f} either way."
-    )
-    return lines
+    return [
+        *lines,
+        f"90 % interval of the strains of knitted cloth: a factor of {FACTOR:.1f} either way.",
+    ]
 
 
 OPERATION = Operation(

@@ -9,10 +9,9 @@ import numpy as np
 from pydantic import Field
 
 from app.models.base import EndsOfList, Floats
-from app.models.pieces import PieceTestRequest, PieceTestResult, Size, interval, of_test, table
+from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.piece import CutPiece
 from knitcore.piece.standard import trellis_test
 
 
@@ -46,14 +45,9 @@ def trellis(request: TrellisRequest, context: Context) -> TrellisResult:
     ------
     InputError, CancelledError
     """
-    request.check(CutPiece.rectangle(request.side_mm, request.side_mm), context)
-    test = request.pull(trellis_test, context, shear_angle=math.radians(request.angle_deg))
-    return TrellisResult.of(
-        test,
-        angle_deg=np.degrees(test.shear_angle),
-        force_interval_n=interval(test.force_n, test.force_log_sd),
-        **of_test(test.test, context.material(request.material)),
-    )
+    size, angle = (request.side_mm, request.side_mm), math.radians(request.angle_deg)
+    test, material = request.pull(trellis_test, size, context, shear_angle=angle)
+    return TrellisResult.of_pull(test, material, angle_deg=np.degrees(test.shear_angle))
 
 
 def _lines(r: TrellisResult) -> list[str]:

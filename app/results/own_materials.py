@@ -67,8 +67,7 @@ def _materials_in(folder: Path) -> dict[str, Material]:
     found = {}
     for file in files[:MAX_FILES]:
         try:
-            facts = file.stat()
-            own = _read(file, facts.st_mtime_ns, facts.st_size)
+            own = _read(file)
         except (InputError, OSError) as error:
             _log.warning("%s is not a material: %s", file, error)
             continue
@@ -97,15 +96,13 @@ def keep_material(document: MaterialDocument, owner: str, data_dir: Path) -> Mat
     new = place.with_suffix(".new")
     new.write_text(document.model_dump_json(indent=1, exclude_defaults=True), encoding="utf-8")
     new.replace(place)
-    facts = place.stat()
-    return _read(place, facts.st_mtime_ns, facts.st_size)
+    return _read(place)
 
 
 def remove_material(identifier: str, owner: str, data_dir: Path) -> bool:
     """Take a user's material out of the folder; false if the user keeps none of that identifier."""
     for file in _kept_by(owner, data_dir):
-        facts = file.stat()
-        if _read(file, facts.st_mtime_ns, facts.st_size).identifier == identifier:
+        if _read(file).identifier == identifier:
             file.unlink()
             _replaced(file).unlink(missing_ok=True)
             return True
@@ -126,8 +123,13 @@ def _tag(owner: str) -> str:
     return f"kept-{hashlib.sha256(owner.encode()).hexdigest()[:12]}-"
 
 
+def _read(file: Path) -> Material:
+    facts = file.stat()
+    return _state_of(file, facts.st_mtime_ns, facts.st_size)
+
+
 @lru_cache(maxsize=MAX_FILES)
-def _read(file: Path, _modified_ns: int, _size: int) -> Material:
+def _state_of(file: Path, _modified_ns: int, _size: int) -> Material:
     own = load_material_file(file)
     mark = hashlib.sha256(file.read_bytes()).hexdigest()[:6]
     return replace(own, identifier=f"{PREFIX}{own.identifier}.{mark}")

@@ -317,11 +317,12 @@ class CurveRequest(TypedDict):
     chart: str | PureFabricChart
     material: str
     """Identifier of a material of the library."""
+    gauge: NotRequired[GaugeInput | None]
+    """Measured gauge of the chart; its relaxed size is estimated if left out."""
     direction: Direction
     """Along rows, or along columns."""
     stress_n_per_mm: NotRequired[list[float]]
     """Increasing."""
-    gauge: NotRequired[GaugeInput | None]
 
 
 class DesignDocument(BaseModel):
@@ -825,10 +826,10 @@ class PredictRequest(TypedDict):
     chart: str | PureFabricChart
     material: str
     """Identifier of a material of the library."""
+    gauge: NotRequired[GaugeInput | None]
+    """Measured gauge of the chart; its relaxed size is estimated if left out."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
-    gauge: NotRequired[GaugeInput | None]
-    """Measured gauge; the relaxed size is estimated if left out."""
     measures: NotRequired[list[str]]
     """Further numbers, by the names of installed extensions."""
 
@@ -1018,6 +1019,8 @@ class StretchRequest(TypedDict):
     chart: str | PureFabricChart
     material: str
     """Identifier of a material of the library."""
+    gauge: NotRequired[GaugeInput | None]
+    """Measured gauge of the chart; its relaxed size is estimated if left out."""
     outline: NotRequired[str | None]
     """Lines of x (stitch) and . (no stitch), the top row first; all stitches if left out."""
     direction: Direction
@@ -1032,8 +1035,6 @@ class StretchRequest(TypedDict):
     model: NotRequired[EnergyModel]
     shear_modulus_n_per_mm: NotRequired[float | None]
     """C_xyxy in N/mm; that of the laws by default."""
-    gauge: NotRequired[GaugeInput | None]
-    """Measured gauge of the chart; its relaxed size is estimated if left out."""
     width_mm: NotRequired[float | None]
     """Size course-wise; from the gauge by default."""
     length_mm: NotRequired[float | None]
