@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Self, TypeVar
 
 from knitcore.choice import Choice
+
+Item = TypeVar("Item")
 
 
 class Direction(Choice):
@@ -22,6 +24,16 @@ class Direction(Choice):
     def other(self) -> Direction:
         """The transverse direction."""
         return Direction.WALE if self is Direction.COURSE else Direction.COURSE
+
+    def of(self, course: Item, wale: Item) -> Item:
+        """The one of two things that is of this direction.
+
+        Examples
+        --------
+        >>> Direction.WALE.of("row", "column")
+        'column'
+        """
+        return course if self is Direction.COURSE else wale
 
 
 class Fabric(Choice):

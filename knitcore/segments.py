@@ -43,7 +43,7 @@ class SegmentMap:
 
     def counts(self, direction: Direction) -> SegmentCounts:
         """Numbers of even and odd segments that run in this direction."""
-        odd_map = self.course_odd if direction is Direction.COURSE else self.wale_odd
+        odd_map = direction.of(self.course_odd, self.wale_odd)
         odd = int(np.count_nonzero(odd_map))
         return SegmentCounts(even=int(odd_map.size) - odd, odd=odd)
 

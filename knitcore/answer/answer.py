@@ -153,7 +153,7 @@ class Answer:
 
     def along(self, direction: Direction) -> Along:
         """The answer for a pull in a direction."""
-        return self.course if direction is Direction.COURSE else self.wale
+        return direction.of(self.course, self.wale)
 
     def with_size(self, relaxed: RelaxedSize) -> Answer:
         """The answer with a measured relaxed size, and the same stretch from it."""

@@ -49,4 +49,4 @@ class RelaxedSize:
 
     def extent_mm(self, direction: Direction) -> float:
         """Relaxed size along a direction, mm."""
-        return self.course_mm if direction is Direction.COURSE else self.wale_mm
+        return direction.of(self.course_mm, self.wale_mm)

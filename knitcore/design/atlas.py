@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,9 @@ from knitcore.chart import StitchChart
 from knitcore.design.cost import KnittingCost, knitting_cost
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 FORMAT = 5
 MAX_BYTES = 50_000_000
@@ -122,7 +126,7 @@ class Atlas:
 
     def poisson(self, direction: Direction) -> Array:
         """Contraction across a pull along a direction, over the strain along it."""
-        return self.column("poisson_yx" if direction is Direction.COURSE else "poisson_xy")
+        return self.column(direction.of("poisson_yx", "poisson_xy"))
 
     @cached_property
     def log_moduli(self) -> Array:
@@ -141,10 +145,7 @@ class Atlas:
         wanted = np.broadcast_to(np.asarray(stress_n_per_mm, dtype=float), (len(self),))
         curves = self.strains(direction)
         if np.ptp(wanted) == 0 and len(self):
-            from scipy.interpolate import PchipInterpolator  # loads for half a second
-
-            shape = PchipInterpolator(STRESS_N_PER_MM, curves, axis=1, extrapolate=False)
-            return shape(float(wanted[0]))
+            return _through(STRESS_N_PER_MM, curves)(float(wanted[0]))
         return _each(curves, wanted)
 
     def stress_at(self, direction: Direction, strain: float) -> Array:
@@ -197,25 +198,22 @@ class Atlas:
 
 def _each(curves: Array, stress_n_per_mm: Array) -> Array:
     """Each curve of strains at its own stress."""
-    from scipy.interpolate import PchipInterpolator
-
-    found = [
-        PchipInterpolator(STRESS_N_PER_MM, curve, extrapolate=False)(stress)
-        for curve, stress in zip(curves, stress_n_per_mm, strict=True)
-    ]
-    return np.array(found, dtype=float)
+    pairs = zip(curves, stress_n_per_mm, strict=True)
+    return np.array([_through(STRESS_N_PER_MM, curve)(stress) for curve, stress in pairs], float)
 
 
 def _stresses(curves: Array, strain: float) -> Array:
     """Stress at a strain by each curve of strains."""
-    from scipy.interpolate import PchipInterpolator
-
     # Curves are nearly flat at the lock-up; interpolation needs them to increase.
     rising = np.maximum.accumulate(curves, axis=1) + 1e-9 * np.arange(len(STRESS_N_PER_MM))
-    found = [
-        PchipInterpolator(curve, STRESS_N_PER_MM, extrapolate=False)(strain) for curve in rising
-    ]
-    return np.array(found, dtype=float)
+    return np.array([_through(curve, STRESS_N_PER_MM)(strain) for curve in rising], float)
+
+
+def _through(x: Array, y: Array) -> PchipInterpolator:
+    """The monotone curve through points, along the last axis; NaN beyond them."""
+    from scipy.interpolate import PchipInterpolator  # loads for half a second
+
+    return PchipInterpolator(x, y, axis=-1, extrapolate=False)
 
 
 def save_atlas(atlas: Atlas, file: Path) -> None:

@@ -238,10 +238,9 @@ class _Run:
             return None
         if not test.converged:
             return None
-        course = self._direction is Direction.COURSE
-        rest, moved = (test.y_mm, test.uy_mm[-1]) if course else (test.x_mm, test.ux_mm[-1])
-        if not course:
-            rest, moved = rest.T, moved.T
+        rest, moved = self._direction.of(
+            (test.y_mm, test.uy_mm[-1]), (test.x_mm.T, test.ux_mm[-1].T)
+        )
         lines = slice(1, None, 2)  # nodes in the middle of a line of stitches
         size = rest[-1, lines] - rest[0, lines]
         width = 1 + (moved[-1, lines] - moved[0, lines]) / size
@@ -323,7 +322,7 @@ class _Run:
         narrowing = self._poisson * np.array(
             [min(self._strain, float(curve[-1])) for curve in self._curves]
         )
-        line = "column" if self._direction is Direction.COURSE else "row"
+        line = self._direction.of("column", "row")
         return [
             f"{line.capitalize()} {worst + 1} is {off[worst]:+.0%} of the width off. Far from the "
             f"clamps and from other bands this yarn comes to {1 - narrowing.max():.2f} to "
@@ -336,7 +335,7 @@ class _Run:
 def _palette(atlas: Atlas, direction: Direction, strain: float, across: int) -> NDArray[np.intp]:
     """Repeats that stretch and narrow differently."""
     shapes = np.array([atlas.chart(k).purl.shape for k in range(len(atlas))])
-    side = shapes[:, 0] if direction is Direction.COURSE else shapes[:, 1]
+    side = direction.of(shapes[:, 0], shapes[:, 1])
     usable = np.flatnonzero((side <= across) & (shapes.max(axis=1) <= 4))
     stretch = atlas.strain_at(direction, 0.05)[usable]
     narrowing = atlas.poisson(direction)[usable] * np.minimum(stretch, 2 * strain)

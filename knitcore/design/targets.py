@@ -203,7 +203,7 @@ def values_of(atlas: Atlas, target: Target) -> tuple[Array, Array, Array]:
             atlas.column(f"{quantity}_low"),
             atlas.column(f"{quantity}_high"),
         )
-    value, low, high = course if direction is Direction.COURSE else wale
+    value, low, high = direction.of(course, wale)
     if quantity.needs_load:
         load = target.load_n_per_mm
         return (

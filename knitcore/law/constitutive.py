@@ -174,19 +174,19 @@ class ConstitutiveLaw:
 
     def modulus(self, direction: Direction) -> float:
         """Young's modulus (N/mm) in a direction."""
-        return self.modulus_course if direction is Direction.COURSE else self.modulus_wale
+        return direction.of(self.modulus_course, self.modulus_wale)
 
     def poisson(self, direction: Direction) -> float:
         """Contraction across a pull in a direction, over the strain along it."""
-        return self.poisson_yx if direction is Direction.COURSE else self.poisson_xy
+        return direction.of(self.poisson_yx, self.poisson_xy)
 
     def alpha(self, direction: Direction) -> float:
         """Inverse of the lock-up strain in a direction."""
-        return self.alpha_xx if direction is Direction.COURSE else self.alpha_yy
+        return direction.of(self.alpha_xx, self.alpha_yy)
 
     def beta(self, direction: Direction) -> float:
         """Stress scale (N/mm) of the stiffening in a direction."""
-        return self.beta_xx if direction is Direction.COURSE else self.beta_yy
+        return direction.of(self.beta_xx, self.beta_yy)
 
     def lock_up_strain(self, direction: Direction) -> float:
         """Strain at which the stress diverges at a held width, 1 / alpha (infinite if alpha is 0).

@@ -129,7 +129,7 @@ def _checked(stress: ArrayLike) -> Array:
 
 def _pair(direction: Direction, along: Array, across: Array) -> tuple[Array, Array]:
     """Strains course-wise and wale-wise."""
-    return (along, across) if direction is Direction.COURSE else (across, along)
+    return direction.of((along, across), (across, along))
 
 
 def _by_halving(carried: Callable[[Array], Array], wanted: Array, low: Array, high: Array) -> Array:

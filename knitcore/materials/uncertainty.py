@@ -108,16 +108,15 @@ class LawUncertainty:
 
     def log_modulus(self, direction: Direction) -> float:
         """Standard deviation of the logarithm of Young's modulus in a direction."""
-        course = direction is Direction.COURSE
-        return self.log_modulus_course if course else self.log_modulus_wale
+        return direction.of(self.log_modulus_course, self.log_modulus_wale)
 
     def poisson(self, direction: Direction) -> float:
         """Standard deviation of the contraction across a pull in a direction."""
-        return self.poisson_yx if direction is Direction.COURSE else self.poisson_xy
+        return direction.of(self.poisson_yx, self.poisson_xy)
 
     def curve(self, direction: Direction) -> CurveUncertainty:
         """Uncertainty of the stress-strain curve in a direction."""
-        known = self.curve_course if direction is Direction.COURSE else self.curve_wale
+        known = direction.of(self.curve_course, self.curve_wale)
         return known or CurveUncertainty(self.log_modulus(direction))
 
     def log_stress(self, direction: Direction, stress_n_per_mm: ArrayLike) -> Array:

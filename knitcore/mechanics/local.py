@@ -46,8 +46,7 @@ class StitchTable:
 
     def modulus_n_per_mm(self, direction: Direction) -> Array:
         """Local modulus by code in a direction, N/mm."""
-        course = direction is Direction.COURSE
-        return self.modulus_course_n_per_mm if course else self.modulus_wale_n_per_mm
+        return direction.of(self.modulus_course_n_per_mm, self.modulus_wale_n_per_mm)
 
     @cached_property
     def log_moduli(self) -> Array:
@@ -66,8 +65,7 @@ class StitchTable:
     def modulus_interval_n_per_mm(self, direction: Direction) -> tuple[Array, Array]:
         """Low and high ends of the moduli's 90 % intervals, N/mm."""
         modulus = self.modulus_n_per_mm(direction)
-        course = direction is Direction.COURSE
-        factor = np.exp(Z_SCORE * (self.log_sd_course if course else self.log_sd_wale))
+        factor = np.exp(Z_SCORE * direction.of(self.log_sd_course, self.log_sd_wale))
         return modulus / factor, modulus * factor
 
 

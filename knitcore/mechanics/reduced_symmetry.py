@@ -194,7 +194,7 @@ class RSFabric:
 
     def segment(self, direction: Direction) -> SegmentResult:
         """The segments of a direction."""
-        return self.course if direction is Direction.COURSE else self.wale
+        return direction.of(self.course, self.wale)
 
 
 def rs_fabric(
@@ -279,7 +279,7 @@ def _published_geometry(material: str, fabric: Fabric, direction: Direction) -> 
         ).corrected
 
     separation, delta, slope = value("lambda"), value("delta"), value("v")
-    odd = fabric.course_odd if direction is Direction.COURSE else fabric.wale_odd
+    odd = direction.of(fabric.course_odd, fabric.wale_odd)
     if not odd:
         return SegmentGeometry(Parity.EVEN, separation, separation * (1 - delta), slope)
     angle = value("phi")

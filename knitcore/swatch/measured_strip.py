@@ -101,7 +101,7 @@ class MeasuredStrip:
         if self.length_mm is None:  # strains evenly, so that any mesh is exact
             return Sheet(QuarterGrid.uniform(2, 2, 10.0, 10.0), [law], SheetModel())
         sides = (self.length_mm, self.width_mm)
-        width, height = sides if self.direction is Direction.COURSE else sides[::-1]
+        width, height = self.direction.of(sides, sides[::-1])
         step = min(sides) / cells
         columns, rows = (min(MAX_CELLS, round(side / step)) for side in (width, height))
         return Sheet(QuarterGrid.uniform(columns, rows, width, height), [law], SheetModel())

@@ -335,7 +335,7 @@ def check_lock_up(sheet: Sheet, direction: Direction, strain: float) -> None:
 
 def clamp_edges(direction: Direction) -> tuple[str, str]:
     """Names of the clamped edges, the fixed and the pulled one."""
-    return ("left", "right") if direction is Direction.COURSE else ("bottom", "top")
+    return direction.of(("left", "right"), ("bottom", "top"))
 
 
 def clamp_mask(grid: QuarterGrid, direction: Direction, clamps: Clamps) -> NDArray[np.bool_]:
@@ -375,7 +375,7 @@ def homogeneous_sheet(
 
 def _length(grid: QuarterGrid, direction: Direction) -> float:
     """Distance of the clamps at rest."""
-    return grid.width_mm if direction is Direction.COURSE else grid.length_mm
+    return direction.of(grid.width_mm, grid.length_mm)
 
 
 def waist_strain(grid: QuarterGrid, corners: Array, direction: Direction) -> float:
@@ -390,9 +390,9 @@ def waist_strain(grid: QuarterGrid, corners: Array, direction: Direction) -> flo
 
     def widths(positions: Array) -> Array:
         across = positions[:, direction.other.axis].reshape(shape)
-        across = across.T if direction is Direction.COURSE else across
+        across = direction.of(across.T, across)
         return np.asarray(across[lines, last] - across[lines, first])
 
-    at = (grid.column_lines if direction is Direction.COURSE else grid.row_lines)[lines]
+    at = direction.of(grid.column_lines, grid.row_lines)[lines]
     ratio = widths(corners) / widths(grid.corners)
     return float(np.interp((at[0] + at[-1]) / 2, at, ratio)) - 1

@@ -94,7 +94,7 @@ class RelaxedCell:
 
     def cell_mm(self, direction: Direction) -> float:
         """Size of one stitch along a direction, mm."""
-        return self.cell_course_mm if direction is Direction.COURSE else self.cell_wale_mm
+        return direction.of(self.cell_course_mm, self.cell_wale_mm)
 
     def _repr_html_(self) -> str:
         lines = self.tiled_lines()
