@@ -226,7 +226,7 @@ class _Flow:
             self._room(BODY_MM * LINE)
             self._y += BODY_MM * LINE
             if colour and not index:
-                self.draw(Box(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
+                self._patch(colour)
             if bullet and not index:
                 self.draw(Label(MARGIN_MM, self._y, "•", BODY_MM))
             self.draw(Label(MARGIN_MM + indent, self._y, line, BODY_MM, bold=bold))
@@ -243,7 +243,7 @@ class _Flow:
         self._room(BODY_MM * LINE)
         self._y += BODY_MM * LINE
         if colour:
-            self.draw(Box(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
+            self._patch(colour)
             places = (places[0] + 6.0, *places[1:])
         for text, place in zip(cells, places, strict=True):
             self.draw(Label(MARGIN_MM + place, self._y, text, BODY_MM, bold=bold))
@@ -260,6 +260,9 @@ class _Flow:
 
     def draw(self, shape: Shape) -> None:
         self._pages[-1].append(shape)
+
+    def _patch(self, colour: str) -> None:
+        self.draw(Box(MARGIN_MM, self._y - 3.0, 3.6, 3.6, fill=colour, stroke=GRID))
 
     def _room(self, height: float) -> None:
         if self._y + height > A4_MM[1] - FOOT_MM:

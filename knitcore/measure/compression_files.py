@@ -14,11 +14,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from knitcore.arrays import Array
 from knitcore.errors import InputError
-from knitcore.measure.tables import numbers, read_table
+from knitcore.measure.tables import numbers, read_table, rows_by_label
 from knitcore.measure.workbooks import MAX_BYTES, Cell, Sheet, is_workbook, read_workbook
 
 
@@ -174,14 +172,8 @@ def _read_csv(path: Path) -> list[CompressionTest]:
         for name in ("depth_mm", "force_n", "diameter_mm")
         if name in table
     }
-    labels = (
-        table["sample"].fillna("").str.strip().to_numpy(dtype=str)
-        if "sample" in table
-        else np.full(len(table), path.stem)
-    )
     tests = []
-    for label in dict.fromkeys(labels.tolist()):
-        rows = labels == label
+    for label, rows in rows_by_label(table, "sample", path.stem).items():
         diameter = columns["diameter_mm"][rows][0] if "diameter_mm" in columns else None
         tests.append(
             CompressionTest(

@@ -44,6 +44,12 @@ class StretchRun:
         """Number of points."""
         return len(self.stress)
 
+    def only(self, points: slice | NDArray[np.bool_]) -> StretchRun:
+        """The run with some of its points."""
+        return StretchRun(
+            self.name, self.strain_along[points], self.strain_across[points], self.stress[points]
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class StretchTest:
@@ -127,8 +133,7 @@ def until_unloaded(run: StretchRun) -> StretchRun:
     lowest = float(run.stress[peak:].min(initial=np.inf))
     if peak < MIN_POINTS or lowest > (1 - FALL_SHARE) * run.stress[peak]:
         return run
-    part = slice(0, peak + 1)
-    return StretchRun(run.name, run.strain_along[part], run.strain_across[part], run.stress[part])
+    return run.only(slice(0, peak + 1))
 
 
 def check_run(run: StretchRun, *, first_row: int = 1) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.errors import InputError
@@ -55,6 +56,19 @@ def read_table(path: Path, header: str) -> pd.DataFrame:
                 "Save it with commas between columns and decimal points, or as XLSX.",
             )
     return table
+
+
+def rows_by_label(table: pd.DataFrame, column: str, default: str) -> dict[str, NDArray[np.intp]]:
+    """Rows of a table by their label in a column, in the order in which the labels come.
+
+    Parameters
+    ----------
+    default : label of all rows of a table without that column.
+    """
+    if column not in table:
+        return {default: np.arange(len(table))}
+    labels = table[column].fillna("").str.strip().to_numpy(dtype=str)
+    return {label: np.flatnonzero(labels == label) for label in dict.fromkeys(labels.tolist())}
 
 
 def numbers(where: str, values: Sequence[object] | pd.Series, first_row: int = 2) -> Array:

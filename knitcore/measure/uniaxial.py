@@ -280,19 +280,7 @@ def _reduced(test: StretchTest) -> list[StretchTest]:
         keep = block != index
         keep[last] = True
         if keep.sum() >= 10 and not keep.all():
-            parts.append(
-                replace(
-                    test,
-                    runs=(
-                        StretchRun(
-                            run.name,
-                            run.strain_along[keep],
-                            run.strain_across[keep],
-                            run.stress[keep],
-                        ),
-                    ),
-                )
-            )
+            parts.append(replace(test, runs=(run.only(keep),)))
     return parts
 
 

@@ -34,7 +34,7 @@ from knitcore.measure.stretch_test import (
     misread_forces,
     until_unloaded,
 )
-from knitcore.measure.tables import numbers, read_table
+from knitcore.measure.tables import numbers, read_table, rows_by_label
 
 CLAMP_MM = 35.5
 CSV_COLUMNS = ("strain_along", "strain_across", "force_n", "width_mm")
@@ -317,20 +317,11 @@ def _read_table(path: Path) -> StretchTest:
     _check_header(path.name, list(table.columns))
     given = [*CSV_COLUMNS, *(name for name in TABLE_LENGTHS if name in table)]
     values = {name: numbers(f"{path.name}, column {name}", table[name]) for name in given}
-    labels = (
-        table["run"].fillna("").str.strip().to_numpy(dtype=str)
-        if "run" in table
-        else np.full(len(table), "")
-    )
     if len(table) == 0:
         raise InputError(path.name, "has no rows.", "Give one row per point.")
-    runs: list[StretchRun] = []
-    widths: list[float] = []
-    for label in dict.fromkeys(labels.tolist()):
-        rows = np.flatnonzero(labels == label)
-        run, width = _run(path.name, label, rows, values)
-        runs.append(run)
-        widths.append(width)
+    labelled = rows_by_label(table, "run", "").items()
+    found = [_run(path.name, label, rows, values) for label, rows in labelled]
+    runs, widths = zip(*found, strict=True)
     lengths = {
         column: _length(path.name, column, values[column])
         for column in TABLE_LENGTHS
@@ -343,7 +334,7 @@ def _read_table(path: Path) -> StretchTest:
             f"{across:g} mm is more than the clamped width.",
             "Give the distance, in mm at rest, of the points that you track across.",
         )
-    return StretchTest(path.name, "", tuple(runs), tuple(widths), (), clamps, across)
+    return StretchTest(path.name, "", runs, widths, (), clamps, across)
 
 
 def _length(name: str, column: str, length: Array) -> float:

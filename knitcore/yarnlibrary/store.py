@@ -120,6 +120,13 @@ class StoredStitch:
         return lines
 
 
+_AS_THEY_ARE = (
+    *("loop_length_mm", "yarn_provenance", "cell_course_mm", "cell_wale_mm", "energy_n_mm"),
+    *("bending_share", "contact_share", "converged", "law_max_stress_n_per_mm", "law_failure"),
+)
+"""Fields of a stored stitch that the file has in the same form."""
+
+
 def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
     """The packaged relaxation of a chart's repeat, mirrored and shifted to fit; None if there is
     none.
@@ -152,19 +159,10 @@ def stored_stitch(chart: StitchChart, material_id: str) -> StoredStitch | None:
         chart=repeat,
         material=material_id,
         yarn=YarnModel(**entry["yarn"]),
-        loop_length_mm=entry["loop_length_mm"],
-        yarn_provenance=entry["yarn_provenance"],
         branch=Branch(entry["branch"]),
         convention=Convention(entry["convention"]),
-        cell_course_mm=entry["cell_course_mm"],
-        cell_wale_mm=entry["cell_wale_mm"],
-        energy_n_mm=entry["energy_n_mm"],
-        bending_share=entry["bending_share"],
-        contact_share=entry["contact_share"],
-        converged=entry["converged"],
         law=_law(entry),
-        law_max_stress_n_per_mm=entry["law_max_stress_n_per_mm"],
-        law_failure=entry["law_failure"],
+        **{name: entry[name] for name in _AS_THEY_ARE},
         law_jumps=(entry["law_jumps"][0], entry["law_jumps"][1]),
         controls=points,
         free=None if "failure" in free else FreeStitch(**{**free, "law": _law(free)}),
