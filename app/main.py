@@ -25,6 +25,7 @@ from app.compute.processes import processes
 from app.compute.turns import Gate
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
+from app.designs.watching import Watched
 from app.http import health
 from app.http.kinds import serve_kinds
 from app.http.observing import Metrics, Observer, configure_logging
@@ -124,6 +125,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = chosen
     app.state.stopping = False
     app.state.in_use = InUse()
+    app.state.watched = Watched()
     app.state.passes = Passes()
     app.state.metrics = Metrics(_gauges(app))
     install_problem_handlers(app)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from fastapi.responses import StreamingResponse
 
 from app.designs.conditions import etag, knows
 from app.designs.document import (
@@ -49,7 +50,7 @@ ShareId = Annotated[str, Path(min_length=1, max_length=64, pattern=r"^[A-Za-z0-9
 
 
 async def _store(request: Request) -> DesignStore:
-    return DesignStore(request.app.state.database)
+    return DesignStore(request.app.state.database, request.app.state.watched.changed)
 
 
 async def _sharing(request: Request) -> Sharing:
@@ -115,6 +116,31 @@ def get_design(
     if if_none_match is not None and knows(if_none_match, found.revision):
         return Response(status_code=304, headers={"ETag": etag(found.revision)})
     return _tagged(response, found)
+
+
+@router.get(
+    "/designs/{design}/events",
+    summary="Follow a design",
+    response_class=StreamingResponse,
+    responses={
+        200: {"content": {"text/event-stream": {}}, "description": "Events `others`, `changed`."}
+    },
+)
+def get_design_events(
+    design: DesignId, store: Store, owner: Owner, request: Request
+) -> StreamingResponse:
+    """Server-sent events: `others`, how many more follow it at this process, and `changed`, its
+    new revision.
+    """
+    store.get(owner, design)
+    state = request.app.state
+    state.in_use.check("streams", owner)
+    counted = state.in_use.hold("streams", owner)
+    return StreamingResponse(
+        state.watched.events(owner, design, counted, lambda: state.stopping),
+        media_type="text/event-stream",
+        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
+    )
 
 
 @router.put("/designs/{design}", summary="Replace a design", responses=CONDITIONAL)

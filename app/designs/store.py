@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -52,10 +53,19 @@ _CHANGE = update(designs).where(designs.c.id == bindparam("design"))
 
 
 class DesignStore:
-    """The designs of all owners."""
+    """The designs of all owners.
 
-    def __init__(self, database: Database) -> None:
+    Parameters
+    ----------
+    database : where they are.
+    changed : called with owner, design and revision after a change.
+    """
+
+    def __init__(
+        self, database: Database, changed: Callable[[str, str, int], None] | None = None
+    ) -> None:
         self._database = database
+        self._tell = changed or (lambda *_: None)
 
     def create(self, owner: str, document: DesignDocument, retry: Retry | None = None) -> Design:
         """Keep a new design."""
@@ -102,7 +112,7 @@ class DesignStore:
             check_match(if_match, row.revision)
             return _changed(connection, row, content)
 
-        return self._database.write(action)
+        return self._told(owner, self._database.write(action))
 
     def patch(self, owner: str, design: str, patch: DesignPatch, if_match: str | None) -> Design:
         """Change some fields."""
@@ -112,7 +122,7 @@ class DesignStore:
             check_match(if_match, row.revision)
             return _changed(connection, row, patch.model_dump(exclude_none=True))
 
-        return self._database.write(action)
+        return self._told(owner, self._database.write(action))
 
     async def paint(self, owner: str, design: str, strokes: Strokes) -> Painted:
         """Merge strokes into the present chart, also if others have painted since.
@@ -143,7 +153,9 @@ class DesignStore:
             kinds = kinds_around(values["chart"], row.rows, row.columns, strokes.runs)
             return Painted.model_validate(values | {"map": kinds})
 
-        return await self._database.written(action)
+        painted = await self._database.written(action)
+        self._tell(owner, design, painted.revision)
+        return painted
 
     def delete(self, owner: str, design: str, if_match: str | None) -> None:
         """Put a design aside; it can be recovered for 30 days."""
@@ -165,7 +177,7 @@ class DesignStore:
             row = find(connection, owner, design, change=True, deleted=True)
             return _changed(connection, row, {"deleted_at": None})
 
-        return self._database.write(action)
+        return self._told(owner, self._database.write(action))
 
     def keep_version(
         self, owner: str, design: str, name: str, retry: Retry | None = None
@@ -211,7 +223,7 @@ class DesignStore:
             size = {"rows": chart.rows, "columns": chart.columns}
             return _changed(connection, row, {"name": kept.design_name, **content, **size})
 
-        return self._database.write(action)
+        return self._told(owner, self._database.write(action))
 
     def kept(self, owner: str) -> tuple[int, int]:
         """Number of an owner's designs, deleted ones included, and their bytes with versions."""
@@ -232,6 +244,10 @@ class DesignStore:
             return gone.rowcount
 
         return self._database.write(action)
+
+    def _told(self, owner: str, design: Design) -> Design:
+        self._tell(owner, design.id, design.revision)
+        return design
 
 
 @cache

@@ -11,8 +11,9 @@ import viser
 
 from app.budgets import BUDGETS, OverBudgetError
 from app.http.problems import ServiceError, UnavailableError
+from app.listeners import Listeners
 from app.viewer.camera import FARTHEST
-from app.viewer.clicks import Clicks, clicked_stitch
+from app.viewer.clicks import Cell, clicked_stitch
 from app.viewer.cloth import UNITS_PER_MM
 from app.viewer.fabric import Drawing
 from app.viewer.incoming import WantedPicture
@@ -73,7 +74,7 @@ class Views:
     """
 
     def __init__(self, most: int, idle_s: float) -> None:
-        self.clicks = Clicks()
+        self.clicks = Listeners[Cell]()
         self._most = most
         self._idle_s = idle_s
         self._views: dict[str, View] = {}

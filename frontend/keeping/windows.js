@@ -1,6 +1,6 @@
 /**
- * Other windows of this browser that show the same design: how many there are, where their pointers and
- * selections are, and when one of them has delivered something.
+ * Other windows that show the same design: how many there are, where the pointers and selections of those of
+ * this browser are, and when the design has changed.
  *
  * @import {Box} from "../core/grid.js"
  * @import {Cell} from "../core/raster.js"
@@ -10,6 +10,7 @@
 
 import { Signal } from "../core/signal.js";
 import { newIdentifier } from "../core/store.js";
+import { Follower } from "./follower.js";
 
 /** How often the others are asked whether they are still there, and how long they have to answer. */
 const ASK_MS = 4000;
@@ -20,6 +21,7 @@ const NOWHERE = { cell: null, box: null };
 /**
  * @typedef {{kind: "here" | "gone" | "who", window: string, design: string | null}
  *   | {kind: "changed", window: string, design: string, revision: number}
+ *   | {kind: "elsewhere", window: string, design: string, others: number}
  *   | {kind: "at", window: string, design: string, place: Place}} Word
  */
 
@@ -28,7 +30,7 @@ export class Windows {
   others = new Signal(0);
   /** Where they are, by window. */
   places = new Signal(/** @type {ReadonlyMap<string, Place>} */ (new Map()));
-  /** Called when another window has delivered a revision of the design. @type {(revision: number) => void} */
+  /** Called when there is a new revision of the design, perhaps this window's own. @type {(revision: number) => void} */
   onChanged = () => {};
   #channel = new BroadcastChannel("knitcore-windows");
   #name = newIdentifier();
@@ -36,6 +38,21 @@ export class Windows {
   #place = NOWHERE;
   /** @type {(name: string) => void} */ #answered = () => {};
   /** Design of each other window. @type {Map<string, string | null>} */ #seen = new Map();
+  /** Number of other browsers with the design, and whether this window is the one that knows. */
+  #elsewhere = 0;
+  #follows = false;
+  #follower = new Follower({
+    others: (count) => {
+      this.#follows = true;
+      this.#elsewhere = count;
+      this.#tellElsewhere();
+      this.#count();
+    },
+    changed: (revision) => {
+      this.delivered(revision);
+      this.onChanged(revision);
+    },
+  });
 
   constructor() {
     this.#channel.onmessage = (event) => this.#heard(/** @type {Word} */ (event.data));
@@ -49,6 +66,9 @@ export class Windows {
   show(design) {
     if (design === this.#design) return;
     this.#design = design;
+    this.#elsewhere = 0;
+    this.#follows = false;
+    this.#follower.follow(design);
     this.#say({ kind: "who", window: this.#name, design });
     this.#count();
   }
@@ -62,6 +82,12 @@ export class Windows {
   at(place) {
     this.#place = place;
     if (this.#design && this.others.value) this.#say({ kind: "at", window: this.#name, design: this.#design, place });
+  }
+
+  #tellElsewhere() {
+    if (this.#design && this.#follows) {
+      this.#say({ kind: "elsewhere", window: this.#name, design: this.#design, others: this.#elsewhere });
+    }
   }
 
   #ask() {
@@ -84,7 +110,14 @@ export class Windows {
     this.#answered(word.window);
     if (word.kind === "gone") this.#seen.delete(word.window);
     else this.#seen.set(word.window, word.design);
-    if (word.kind === "who") this.#say({ kind: "here", window: this.#name, design: this.#design });
+    if (word.kind === "who") {
+      this.#say({ kind: "here", window: this.#name, design: this.#design });
+      this.#tellElsewhere();
+    }
+    if (word.kind === "elsewhere" && word.design === this.#design) {
+      this.#elsewhere = word.others;
+      this.#follows = false;
+    }
     if (word.kind === "at" && word.design === this.#design) {
       this.places.value = new Map([...this.places.value, [word.window, word.place]]);
     }
@@ -95,10 +128,9 @@ export class Windows {
   #count() {
     const design = this.#design;
     const here = [...this.#seen].filter(([, one]) => design && one === design).map(([name]) => name);
-    if (here.length > this.others.value) {
-      this.others.value = here.length;
-      this.at(this.#place); // for whoever has come
-    } else this.others.value = here.length;
+    const before = this.others.value;
+    this.others.value = here.length + this.#elsewhere;
+    if (this.others.value > before) this.at(this.#place); // for whoever has come
     const known = [...this.places.value].filter(([name]) => here.includes(name));
     if (known.length < this.places.value.size) this.places.value = new Map(known);
   }

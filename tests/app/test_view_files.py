@@ -14,8 +14,9 @@ import pytest
 import trimesh
 from fastapi.testclient import TestClient
 
+from app.listeners import Listeners
 from app.operations.context import Context
-from app.viewer.clicks import Clicks, clicked_stitch
+from app.viewer.clicks import Cell, clicked_stitch
 from app.viewer.colours import MAKERS_COLOURS, rgb
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.fabric import RECTANGLE, Box
@@ -144,7 +145,7 @@ def test_a_click_finds_its_stitch(chart: str) -> None:
 
 
 def test_clicks_reach_only_listeners_of_the_design() -> None:
-    clicks = Clicks()
+    clicks = Listeners[Cell]()
 
     async def listen() -> list[tuple[int, int]]:
         with (

@@ -43,3 +43,29 @@ def test_a_stroke_in_one_window_is_seen_in_the_other_which_nobody_touches(
     second.close()
     expect(first.locator(".chart-other")).to_have_count(0)
     expect(first.locator("#others")).to_be_hidden()
+
+
+@pytest.mark.slow
+def test_another_browser_with_the_design_is_told_of_and_its_strokes_are_seen(
+    flat_studio: Page,
+) -> None:
+    first = flat_studio
+    drag(first, 60, 0)
+    expect(first.locator("#kept")).to_have_attribute("data-state", "kept")
+    assert first.context.browser is not None
+    elsewhere = first.context.browser.new_context()
+    try:
+        second = elsewhere.new_page()
+        second.route("**/view/**", lambda route: route.fulfill(body="", content_type="text/html"))
+        second.goto(first.url)
+        wait_for_numbers(second)
+        for page in (first, second):
+            expect(page.locator("#others")).to_contain_text("open in another window")
+        theirs, ours = (page.locator("#segments-course") for page in (second, first))
+        before = theirs.text_content() or ""
+        drag(first, 0, 60, start=(-60, -40))
+        expect(theirs).not_to_have_text(before)
+        expect(theirs).to_have_text(ours.text_content() or "")
+    finally:
+        elsewhere.close()
+    expect(first.locator("#others")).to_be_hidden()
