@@ -17,7 +17,7 @@ from app.http.rate import RateLimit
 
 DAY_S = 86_400.0
 MIN_S = 60.0
-"""Computing time that has come back when a user may compute again."""
+"""Computing time that must have come back before a user may compute again."""
 
 
 @dataclass(frozen=True)

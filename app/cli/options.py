@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,14 @@ def write_design_of(chart: str, material: str, name: str, out: Path | None) -> N
 
         design = DesignFile(name=name, material=material, chart=chart)
         out.write_text(write_design(design), encoding="utf-8")
+
+
+def write_csv(file: Path, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table with the names of its columns."""
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(head)
+        writer.writerows(rows)
 
 
 def check_writable(path: Path | None, field: str) -> None:

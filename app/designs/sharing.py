@@ -62,7 +62,7 @@ class Sharing:
         return Shares(shares=[Share.model_validate(row, from_attributes=True) for row in rows])
 
     def most_given(self, owner: str) -> int:
-        """Number of open links to that of an owner's designs which has the most."""
+        """The largest number of open links to any one design of an owner."""
         return most_of_one(self._database, owner, shares, _OPEN)
 
     def revoke(self, owner: str, design: str, share: str) -> None:

@@ -231,7 +231,7 @@ class DesignStore:
             return _count(connection, owner), _kept_bytes(connection, owner)
 
     def most_versions(self, owner: str) -> int:
-        """Number of versions of that of an owner's designs which has the most."""
+        """The largest number of versions that any one design of an owner has."""
         return most_of_one(self._database, owner, design_versions)
 
     def forget_deleted(self) -> int:
@@ -318,7 +318,7 @@ def _count(connection: Connection, owner: str) -> int:
 def most_of_one(
     database: Database, owner: str, parts: Table, *conditions: ColumnElement[bool]
 ) -> int:
-    """Number of rows about that of an owner's designs which has the most of them."""
+    """The largest number of such rows that any one design of an owner has."""
     each = (
         select(func.count())
         .select_from(parts.join(designs))

@@ -13,12 +13,12 @@ from app.models.checks import faults_of
 from knitcore.errors import InputError
 
 MAX_BYTES = 10_000
-"""Of a request that is read here, in the event loop. Of a larger one, the library's faults are told
-when the rest is in order."""
+"""Largest request that is checked here, on the event loop. In a larger one, what the library finds
+wrong is reported once the rest is valid."""
 
 
 def also_wrong(error: RequestValidationError, request: Request) -> Iterator[InputError]:
-    """What the library says against the fields that are of their kinds."""
+    """What the library finds wrong in the fields whose types are right."""
     if int(request.headers.get("Content-Length", MAX_BYTES + 1)) > MAX_BYTES:
         return
     body, model = error.body, _model(request)

@@ -32,7 +32,7 @@ class RateLimit:
         return int(left), wait
 
     def spend(self, who: str, amount: float, at: float | None = None) -> None:
-        """Take an amount that is known only now; less than none may be left."""
+        """Take an amount that is known only afterwards; the level may fall below zero."""
         at = time.monotonic() if at is None else at
         self._set(who, self.left(who, at) - amount, at)
 

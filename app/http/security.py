@@ -39,7 +39,7 @@ from app.store.database import StoreError
 
 SESSION_COOKIE = "knitcore_session"
 GONE = 499
-"""Status, in the log only, of a request whose client went before it was complete."""
+"""Status, in the log only, of a request whose client left before it was complete."""
 OPENED_BY = "knitcore.opened_by"
 """Token and session of a request, in its scope."""
 LOGIN_FAILURES = 20
@@ -211,7 +211,7 @@ class Guard:
                 raise
             stopped = answer_to(StoppingError("The service is stopping."))
             await stopped(scope, receive, send_with_headers)
-        except ClientDisconnect:  # before its request was complete; the log shall tell
+        except ClientDisconnect:  # before its request was complete; only the log says so
             await Response(status_code=GONE)(scope, receive, send_with_headers)
         except Exception as error:  # answered here, so that its answer has the headers, too
             if started:

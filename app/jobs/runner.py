@@ -25,8 +25,9 @@ log = logging.getLogger("knitcore.jobs")
 BEAT_S = 2.0
 """Interval at which processes exchange the state of their jobs and cancellations."""
 BEATS_TO_LOOK_ROUND = 10
+"""Number of them after which jobs of processes that are gone are looked for."""
 AGAIN_S = 10.0
-"""After which a job that no worker began is tried again."""
+"""Wait before a job that no worker began is tried again."""
 STORE_RETRY_S = (0.5, 2.0, 5.0, 10.0, 20.0)
 """How long a result waits for a database that is away."""
 

@@ -138,7 +138,7 @@ field is named after that of the value: ``force_interval_n`` belongs to ``force_
 EndsOfList = Annotated[tuple[Floats, Floats], BeforeValidator(_ends)]
 """The same of a list of values: the list of low ends, and that of high ends."""
 EARLIER_NAME: JsonDict = {"deprecated": True}
-"""Of a field that is there for programs written when it was the only one."""
+"""For a field that is kept for programs written before its successor."""
 Known = Annotated[float | None, BeforeValidator(_known)]
 """A number, null where the library's is not finite."""
 KnownEnds = Annotated[tuple[Known, Known], BeforeValidator(_ends)]

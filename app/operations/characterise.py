@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import shutil
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -10,6 +9,7 @@ from typing import Any, Literal, Self
 import click
 from pydantic import Field, RootModel, model_validator
 
+from app.cli.options import write_csv
 from app.models.base import Positive, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.operations.context import Context
@@ -36,6 +36,8 @@ from knitcore.yarnlibrary.yarn_table import (
 )
 
 MAX_SETTINGS = 24
+QUANTITIES = ("strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share")
+"""Of each point of a curve."""
 FINISHED = "finished"
 """Folder of finished stitches inside the results folder, from which a stopped batch continues."""
 
@@ -276,8 +278,18 @@ def _command(
     results = [_result(table) for table in tables]
     for result in results:
         _write_materials(result, out)
-    _write_table(results, out / "table.csv")
-    _write_curves(results, out / "curves.csv")
+    rows = [(result.identifier, row) for result in results for row in result.rows]
+    of_row = set(FabricRow.model_fields)
+    table = ([yarn, *row.model_dump(mode="json", include=of_row).values()] for yarn, row in rows)
+    write_csv(out / "table.csv", ["yarn", *FabricRow.model_fields], table)
+    points = (
+        [yarn, row.fabric, row.setting, direction, *point]
+        for yarn, row in rows
+        for direction, curve in row.curves.items()
+        for point in zip(*(getattr(curve, name) for name in QUANTITIES), strict=True)
+    )
+    head = ["yarn", "fabric", "setting", "direction", *QUANTITIES]
+    write_csv(out / "curves.csv", head, points)
     return YarnsResult(results)
 
 
@@ -291,32 +303,6 @@ def _write_materials(result: CharacteriseResult, folder: Path) -> None:
     for setting, document in result.materials.items():
         suffix = "" if setting == result.reference else f"-{setting}"
         save_material_file(document.to_material(), folder / f"{result.identifier}{suffix}.json")
-
-
-def _write_table(results: list[CharacteriseResult], file: Path) -> None:
-    columns = list(FabricRow.model_fields)
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, ["yarn", *columns])
-        writer.writeheader()
-        for result in results:
-            for row in result.rows:
-                told = row.model_dump(mode="json", include=set(columns))
-                writer.writerow({"yarn": result.identifier, **told})
-
-
-def _write_curves(results: list[CharacteriseResult], file: Path) -> None:
-    quantities = (
-        "strain", "transverse_strain", "stress_n_per_mm", "bending_share", "contact_share",
-    )  # fmt: skip
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["yarn", "fabric", "setting", "direction", *quantities])
-        for result in results:
-            for row in result.rows:
-                for direction, curve in row.curves.items():
-                    head = [result.identifier, str(row.fabric), row.setting, str(direction)]
-                    points = zip(*(getattr(curve, name) for name in quantities), strict=True)
-                    writer.writerows([*head, *point] for point in points)
 
 
 def _lines(results: YarnsResult) -> list[str]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.cli.options import out_option
+from app.cli.options import out_option, write_csv
 from app.models.base import Floats, RequestModel, ResultModel
 from app.models.checks import Check
 from app.models.laws import ElasticConstants, LawConstants, LawResult
@@ -142,19 +141,13 @@ def _command(
         file = LawFile(found.law, source, found.standard_errors, found.largest_strain, found.curves)
         save_law(file, out)
     if residuals is not None:
-        _write_residuals(found, residuals)
-    return _result(found, residuals=False)
-
-
-def _write_residuals(found: LawFit, path: Path) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            ["direction", "strain_along", "strain_across", "stress_n_per_mm", "fitted_n_per_mm"]
+        points = (
+            (direction, *map(float, row))
+            for direction, r in found.residuals.items()
+            for row in zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
         )
-        for direction, r in found.residuals.items():
-            columns = zip(r.strain_along, r.strain_across, r.stress, r.fitted, strict=True)
-            writer.writerows([str(direction), *map(float, row)] for row in columns)
+        write_csv(residuals, ["direction", *ResidualPoints.model_fields], points)
+    return _result(found, residuals=False)
 
 
 def _lines(r: FitResult) -> list[str]:

@@ -21,7 +21,7 @@ from knitcore.yarnlibrary.fingerprint import SOLVERS, content_key
 log = logging.getLogger("knitcore.kept")
 
 MAX_BYTES = 200_000_000
-"""Room for all results; those not asked for longest go first."""
+"""Room for all results; the least recently used are removed first."""
 
 Result = TypeVar("Result", bound=BaseModel)
 
@@ -71,7 +71,7 @@ class KeptResults:
     def _read(self, kind: type[Result], file: Path) -> Result | None:
         try:
             found = kind.model_validate_json(file.read_bytes())
-            os.utime(file)  # for which to let go first
+            os.utime(file)  # the least recently used are removed first
         except FileNotFoundError:
             return None
         except ValidationError:

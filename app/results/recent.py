@@ -1,4 +1,4 @@
-"""Results that the page may ask to see again, kept in memory by the content of their request."""
+"""Results that the page may ask for again, in memory, by the content of their request."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ MAX_BYTES = 32_000_000
 
 
 class RecentResults:
-    """The latest results, bounded by their size; the longest unused ones go first."""
+    """The latest results, up to a size in all; the least recently used are dropped first."""
 
     def __init__(self, most_bytes: int = MAX_BYTES) -> None:
         self._most_bytes = most_bytes
