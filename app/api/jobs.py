@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request, Response
@@ -13,6 +13,7 @@ from fastapi.responses import StreamingResponse
 from app.designs.conditions import ConflictError
 from app.designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
 from app.http.bodies import OrUndecoded, Undecoded, WorkerRoute
+from app.http.events import event_stream
 from app.http.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
 from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
@@ -20,8 +21,6 @@ from app.jobs.kinds import JobRequest, JobResult
 from app.jobs.runner import JobRunner
 
 EVENT_PERIOD_S = 0.25
-HEARTBEATS = 60
-"""Periods without a change after which a line is sent, so that a vanished client is noticed."""
 
 router = APIRouter(route_class=WorkerRoute, tags=["jobs"], responses=MISSING)
 
@@ -83,29 +82,19 @@ async def get_job_events(
 ) -> StreamingResponse:
     """Server-sent events, one per change, each as `GET /jobs/{job}` answers; ends with the job."""
     first = await runner.status(owner, job)
-    request.app.state.in_use.check("streams", owner)
-    return StreamingResponse(
-        _events(first, job, request, runner, owner),
-        media_type="text/event-stream",
-        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
-    )
+    states = _states(first, job, request, runner, owner)
+    return event_stream(request, states, EVENT_PERIOD_S)
 
 
-async def _events(
+async def _states(
     status: JobStatus, job: str, request: Request, runner: JobRunner, owner: str
-) -> AsyncIterator[bytes]:
-    told, quiet = "", 0
-    hold = request.app.state.in_use.hold("streams", owner)
-    with hold, contextlib.suppress(NotFoundError):  # deleted while it was followed
+) -> AsyncGenerator[str | None]:
+    told = ""
+    with contextlib.suppress(NotFoundError):  # deleted while it was followed
         while not request.app.state.stopping:
             text = status.model_dump_json()
-            if text != told:
-                told, quiet = text, 0
-                yield f"event: status\ndata: {text}\n\n".encode()
-            else:
-                quiet += 1
-                if quiet % HEARTBEATS == 0:
-                    yield b": still there\n\n"
+            yield None if text == told else f"event: status\ndata: {text}\n\n"
+            told = text
             if status.state.is_final:
                 return
             await asyncio.sleep(EVENT_PERIOD_S)

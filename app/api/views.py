@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextvars
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncGenerator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Annotated, Any, TypeVar
@@ -17,6 +17,7 @@ from app.budgets import InUse
 from app.compute.compute import Compute
 from app.compute.turns import Gate
 from app.http.bodies import BoundedRoute
+from app.http.events import event_stream
 from app.http.identity import current_user
 from app.http.passes import Passes
 from app.http.problems import NotFoundError, Problem
@@ -50,8 +51,6 @@ from app.viewer.shared import (
 from app.viewer.views import View
 
 EVENT_PERIOD_S = 0.5
-HEARTBEATS = 30
-"""Periods without a click after which a line is sent, so that a vanished client is noticed."""
 MISSING: dict[int | str, dict[str, Any]] = {
     404: {"model": Problem, "description": "This view is not open."}
 }
@@ -141,12 +140,7 @@ async def get_view_events(design: DesignId, request: Request) -> StreamingRespon
     Ends with the view.
     """
     _view(design, request)
-    request.app.state.in_use.check("streams", current_user.get())
-    return StreamingResponse(
-        _events(private_name(design), request),
-        media_type="text/event-stream",
-        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
-    )
+    return event_stream(request, _clicks(private_name(design), request), EVENT_PERIOD_S)
 
 
 @router.get(
@@ -279,18 +273,14 @@ def _view(design: str, request: Request) -> View:
     return view
 
 
-async def _events(name: str, request: Request) -> AsyncIterator[bytes]:
-    state, quiet = request.app.state, 0
-    owner = current_user.get()
-    with state.in_use.hold("streams", owner), state.views.clicks.listen(name) as queue:
-        yield b"retry: 2000\n\n"
+async def _clicks(name: str, request: Request) -> AsyncGenerator[str | None]:
+    state = request.app.state
+    with state.views.clicks.listen(name) as queue:
+        yield "retry: 2000\n\n"
         while not state.stopping and state.views.get(name) is not None:
             try:
                 row, column = await asyncio.wait_for(queue.get(), EVENT_PERIOD_S)
             except TimeoutError:
-                quiet += 1
-                if quiet % HEARTBEATS == 0:
-                    yield b": still there\n\n"
-                continue
-            quiet = 0
-            yield f'event: stitch\ndata: {{"row": {row}, "column": {column}}}\n\n'.encode()
+                yield None
+            else:
+                yield f'event: stitch\ndata: {{"row": {row}, "column": {column}}}\n\n'

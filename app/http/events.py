@@ -1,0 +1,53 @@
+"""Server-sent events that a user follows."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncGenerator, AsyncIterator
+from contextlib import aclosing
+
+from fastapi import Request
+from fastapi.responses import StreamingResponse
+
+from app.budgets import InUse
+from app.http.identity import current_user
+
+QUIET_S = 15.0
+"""Time without an event after which a line is sent, so that a vanished client is noticed."""
+
+
+def event_stream(
+    request: Request, events: AsyncGenerator[str | None], period_s: float
+) -> StreamingResponse:
+    """A response that lasts as long as there are events.
+
+    Parameters
+    ----------
+    events : each as its text; None where a period passed without one.
+    period_s : how long a period lasts.
+
+    Raises
+    ------
+    OverBudgetError
+        If the user follows too many streams already.
+    """
+    in_use: InUse = request.app.state.in_use
+    in_use.check("streams", current_user.get())
+    return StreamingResponse(
+        _lines(in_use, current_user.get(), events, round(QUIET_S / period_s)),
+        media_type="text/event-stream",
+        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
+    )
+
+
+async def _lines(
+    in_use: InUse, owner: str, events: AsyncGenerator[str | None], most_quiet: int
+) -> AsyncIterator[bytes]:
+    quiet = 0
+    with in_use.hold("streams", owner):
+        async with aclosing(events):
+            async for text in events:
+                quiet = 0 if text else quiet + 1
+                if text:
+                    yield text.encode()
+                elif quiet % most_quiet == 0:
+                    yield b": still there\n\n"
