@@ -93,10 +93,6 @@ def drape(request: DrapeRequest, context: Context) -> Viewed[DrapeResult]:
     return Viewed(result, PosedView(corners, Body.slab(rim, DISC_THICK_MM)).upright())
 
 
-def _draped(request: DrapeRequest, context: Context) -> DrapeResult:
-    return drape(request, context).result
-
-
 def _lines(r: DrapeResult) -> list[str]:
     low, high = r.coefficient_of_states
     return [
@@ -125,6 +121,5 @@ OPERATION = Operation(
         _lines,
         help="Drape a round piece of CHART over a disc (Cusick's drape coefficient).",
         names={"corners": None},
-        run=_draped,
     ),
 )

@@ -87,10 +87,6 @@ def overhang(request: OverhangRequest, context: Context) -> Viewed[OverhangResul
     return Viewed(result, PosedView(corners, Body.slab(table, 0.25 * TABLE_MM)).upright())
 
 
-def _hung_over(request: OverhangRequest, context: Context) -> OverhangResult:
-    return overhang(request, context).result
-
-
 def _lines(r: OverhangResult) -> list[str]:
     return [
         f"overhang        {r.overhang_mm:.0f} mm falls by {r.angle_deg:.1f}°",
@@ -110,6 +106,5 @@ OPERATION = Operation(
         _lines,
         help="Bend a strip of CHART over the edge of a table (Peirce's bending length).",
         names={"corners": None},
-        run=_hung_over,
     ),
 )
