@@ -180,7 +180,7 @@ def check_handles() -> None:
 
 
 def check_cluster(address: str) -> None:
-    """Refuse a cluster that does not answer, or has nobody to work.
+    """Refuse a cluster that does not answer or has no workers.
 
     Raises
     ------

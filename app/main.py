@@ -57,8 +57,8 @@ log = logging.getLogger("knitcore.app")
 JANITOR_PERIOD_S = 30.0
 TIDY_PERIOD_S = 3600.0
 THREADS = 8
-"""Of the service, beside the event loop. Python runs one at a time: with FastAPI's 40 the loop
-would wait for 40 others each time it comes back from reading or sending."""
+"""Threads of the service besides the event loop. Python runs one at a time: with FastAPI's 40, the
+loop could wait for all of them each time it returns from reading or sending."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -200,7 +200,7 @@ def _places(settings: Settings, cluster: Cluster | None) -> list[Place]:
 
 
 def _most_each(settings: Settings) -> int | None:
-    """Places that one user may hold, by the memory of their workers; a cluster has its own."""
+    """Places that one user may hold, by the memory of their workers; no limit on a cluster."""
     if settings.scheduler is not None or not settings.asks_for_login:
         return None
     return max(1, BUDGETS.memory_bytes // settings.worker_memory_bytes)

@@ -59,7 +59,7 @@ MAX_STILL_HERE = 5_000
 """Letters of a chart whose still the service draws itself, in 0.1 s; others wait for a worker."""
 
 T = TypeVar("T")
-# Threads of their own: for those that asyncio has, everybody's logins and jobs would wait.
+# Separate threads, so that logins and jobs, which use asyncio's, need not wait for drawings.
 _drawing = ThreadPoolExecutor(4, "drawing")
 _pictures = ThreadPoolExecutor(16, "pictures")  # waiting for browsers, up to 25 s each
 

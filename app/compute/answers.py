@@ -53,8 +53,8 @@ class Answers:
         request: BaseModel | bytes,
         **turn: Any,
     ) -> Reply:
-        """The answer of an operation to a request, which may be JSON that a worker shall decode;
-        ``turn`` goes to :meth:`Compute.run`.
+        """The answer of an operation to a request, or to JSON that a worker is to decode; ``turn``
+        goes to :meth:`Compute.run`.
 
         Raises
         ------

@@ -18,7 +18,7 @@ _loaded = threading.Event()
 
 
 def _end_with_service() -> None:
-    """Its process notices the end of the service by itself once it waits to fork."""
+    """End this process with the service while it loads; once it waits to fork, it notices alone."""
     while not _loaded.wait(0.5):
         if os.getppid() != SERVICE:
             os._exit(1)

@@ -23,9 +23,9 @@ from app.http.identity import current_user
 from app.models.charts import MAX_FIELD
 
 SMALL_BYTES = 64_000
-"""Of a body that is decoded at once."""
+"""Largest body that is decoded without waiting for a turn."""
 MAX_DECODED_BYTES = 4_000_000
-"""Of one that the service decodes at all: a design of the largest chart has less."""
+"""Largest body that the service decodes itself; a design of the largest chart is smaller."""
 MAX_VALUES = MAX_FIELD + 10_000
 """Values in a JSON body, counted by commas and opening brackets: a field on the largest chart that
 has one, and whatever comes with it. Reading and checking them takes some 30 ms. Charts and files

@@ -25,19 +25,19 @@ log = logging.getLogger("knitcore.app")
 
 BODY_GRACE_S = 20.0
 MIN_BYTES_PER_S = 20_000
-"""Least speed of a body after the grace period."""
+"""Slowest body that is accepted after the grace period."""
 MAX_BESIDE_BYTES = 32_000
-"""Of a request beside its body: address, headers, sizes of chunks, trailers. Chunks may add as much
-as the body has."""
+"""Most bytes of a request besides its body: address, headers, chunk sizes, trailers. Chunk sizes
+may add as many as the body has."""
 MAX_HEADERS = 100
 MAX_AHEAD = 8
-"""Requests sent ahead on one connection; browsers send none."""
+"""Most pipelined requests on one connection; browsers send none."""
 FREE_PARTS, MIN_PART_BYTES = 1_000, 100
-"""A body may come in so many parts of any size; more must be as large as this on average."""
+"""A body may come in FREE_PARTS parts of any size; if in more, they must have this mean size."""
 FRAMES_PER_S, FRAMES_AT_ONCE = 300.0, 1_200
-"""Of one websocket; while a view is turned, the page sends one for each picture on the screen."""
+"""Limits of one websocket; while a view is turned, the page sends one for each screen refresh."""
 LOOKED_AT_BYTES = 4_000
-"""Of what has come over a websocket, before its frames are counted."""
+"""Bytes read from a websocket at a time; its frames are counted in between."""
 TOLD_EVERY_S = 60.0
 
 

@@ -74,11 +74,11 @@ def configure_logging(kind: str) -> None:
 
 
 class Metrics:
-    """The numbers of one application, in a registry of their own.
+    """Metrics of one application, in their own registry.
 
     Parameters
     ----------
-    gauges : names, help texts and functions of values that are computed when the numbers are read.
+    gauges : by name, a help text and a function, called each time the metrics are read.
     """
 
     def __init__(self, gauges: dict[str, tuple[str, Callable[[], float]]]) -> None:

@@ -84,7 +84,7 @@ def _sources(folder: Path) -> list[Path]:
 
 
 class PageFiles(StaticFiles):
-    """The page's files and nothing else of their folder, compressed for clients that accept it.
+    """The page's files and nothing else in their folder, compressed for clients that accept it.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from starlette.types import Scope
 from app.http.identity import current_session, current_user
 
 MAX_PASSES = 10_000
-"""Passes that are remembered; the one that was given longest ago makes room."""
+"""Most passes that are remembered; the oldest makes room for a new one."""
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ def install_schema(app: FastAPI) -> None:
     made, one = app.openapi, threading.Lock()
 
     def openapi() -> dict[str, Any]:
-        with one:  # it takes a second: those who ask meanwhile wait instead of making it, too
+        with one:  # it takes a second; whoever asks in the meantime waits instead of making another
             return app.openapi_schema or complete()
 
     def complete() -> dict[str, Any]:

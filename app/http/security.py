@@ -65,7 +65,7 @@ PAGE_POLICY = "; ".join(
 )
 VIEW_POLICY = "; ".join(
     [
-        "sandbox allow-scripts",  # also where it is opened by itself: nothing of our origin
+        "sandbox allow-scripts",  # even if opened on its own: it must not share our origin
         "default-src 'self' data: blob:",
         # viser's client is one file with inline script and WebAssembly workers
         "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' data: blob:",
@@ -248,7 +248,7 @@ class Guard:
         return name is not None and (name in self.hosts or f"[{name}]" in self.hosts)
 
     async def _by_pass(self, scope: Scope, opener: Opener, limits: dict[str, str]) -> None:
-        """Let in who was given a pass, as long as the token or session that asked for it lasts."""
+        """Let the holder of a pass in while the token or session that asked for it is valid."""
         if opener.opened_by is not None:
             login: Login = scope["app"].state.login
             if not await asyncio.to_thread(login.is_open, *opener.opened_by):
@@ -262,7 +262,7 @@ class Guard:
             self._count(scope, opener.user, limits)
 
     async def _login(self, scope: Scope, limits: dict[str, str]) -> Response | None:
-        """Let a known user in, within their rate, and note who it is."""
+        """Let a known user in, unless requests come too often, and note who it is."""
         login: Login = scope["app"].state.login
         headers = Headers(scope=scope)
         token, cookie = _bearer(headers), _cookie(headers)

@@ -48,7 +48,7 @@ class Sessions:
         return session
 
     def find(self, session: str) -> tuple[str, str]:
-        """(token, user) of a session; empty texts if there is none, or it is too old."""
+        """(token, user) of a session; empty strings if there is none or it has expired."""
         found = select(sessions.c.token, sessions.c.user).where(
             sessions.c.id == session, sessions.c.created_at > now() - SESSION_S
         )

@@ -122,7 +122,7 @@ class Tokens:
         return row.id, row.user
 
     def without_any(self, users: set[str]) -> set[str]:
-        """Those of some users who have no open token any more."""
+        """Which of these users no longer have an open token."""
         open_ = select(access_tokens.c.user).where(
             access_tokens.c.user.in_(users),
             access_tokens.c.revoked_at.is_(None),

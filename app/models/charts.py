@@ -15,7 +15,7 @@ from knitcore.garment.shaped import outline_marks
 MAX_TEXT = 1_200_000
 """Characters of a chart text: the largest chart with its line ends and some blanks."""
 MAX_FIELD = 400 * 400
-"""Stitches of a chart to each of which a request gives a value."""
+"""Largest chart, in stitches, for which a request may give a value per stitch."""
 
 
 class PureFabricChart(RequestModel):

@@ -38,7 +38,7 @@ def all_faults(error: InputError, request: BaseModel, context: Context) -> Input
 
 
 def with_others(error: InputError, others: Iterable[InputError]) -> InputError:
-    """An error with others beside it, each once."""
+    """An error together with others, without repetitions."""
     found = {(other.field, other.problem): other for other in others}
     found.pop((error.field, error.problem), None)
     error.others = tuple(found.values())

@@ -160,7 +160,7 @@ class PieceTestResult(IntervalResult):
 
     @classmethod
     def of_pull(cls, found: Any, material: Material, **more: Any) -> Self:
-        """Of a test of a rectangle; its forces get the intervals of their deviations."""
+        """From a test of a rectangle, with an interval for each force."""
         ends = {}
         for name in cls.model_fields:
             force, is_interval, _ = name.partition("_interval_n")

@@ -1,4 +1,4 @@
-"""What an operation needs besides its request, wherever it runs."""
+"""What an operation needs besides its request, in the service and on the command line."""
 
 from __future__ import annotations
 

@@ -256,7 +256,7 @@ class Database:
 
 
 def _do(connection: Connection, action: Action) -> tuple[Any, Exception | None]:
-    """An action with a transaction of its own, which its error ends."""
+    """An action alone in its transaction, which an error ends."""
     return action(connection), None
 
 
@@ -336,7 +336,7 @@ class _File:
             raise VanishedError(f"The file of the designs {what}; nothing was changed.")
 
     def connect(self) -> sqlite3.Connection:
-        """A connection to the file, which is not made anew."""
+        """A connection to the file; a missing one is not created."""
         self.check()
         # threads take turns with a connection; the pool sees to that
         address = f"{self.path.absolute().as_uri()}?mode=rw"
