@@ -349,25 +349,17 @@ class Guard:
         in_use: InUse = scope["app"].state.in_use
         task = asyncio.current_task()
 
-        loop, watching = asyncio.get_running_loop(), set[asyncio.Task[None]]()
-
-        def again() -> asyncio.TimerHandle:
-            return loop.call_later(REMEMBERED_S, lambda: watching.add(loop.create_task(watch())))
-
-        timer = again()
-
         async def watch() -> None:
-            nonlocal timer
-            with contextlib.suppress(
-                StoreError
-            ):  # while the database is away, connections stay open
-                if not await asyncio.to_thread(login.is_open, *scope[OPENED_BY]):
-                    open_.clear()
-                    if task is not None:
-                        task.cancel()
-                    return
-            timer = again()
+            while True:
+                await asyncio.sleep(REMEMBERED_S)
+                with contextlib.suppress(StoreError):  # connections outlast a lost database
+                    if not await asyncio.to_thread(login.is_open, *scope[OPENED_BY]):
+                        open_.clear()
+                        if task is not None:
+                            task.cancel()
+                        return
 
+        watching = asyncio.create_task(watch())
         try:
             with in_use.hold("connections", current_user.get()):
                 yield open_
@@ -377,9 +369,7 @@ class Guard:
             if task is not None:
                 task.uncancel()
         finally:
-            timer.cancel()
-            for other in watching:
-                other.cancel()
+            watching.cancel()
 
 
 def _is_sign_in(scope: Scope) -> bool:
