@@ -1,4 +1,4 @@
-"""The page as users experience it: first paint, first cloth, strokes, and the size of its scripts.
+"""The page as users experience it: first paint, first cloth, strokes, yarn, size of its scripts.
 
 Headless Chromium without a GPU, against its own service on this machine. The time from an event to
 its paint is the browser's (Event Timing, in steps of 8 ms, shorter ones count as 8). Strokes are
@@ -59,6 +59,31 @@ PAINTED = """() => ({
     still: cloth.still ?? cloth.live,
     live: cloth.live,
 })"""
+
+PLAIN = """{
+    const { shaderSource } = WebGL2RenderingContext.prototype;
+    const kept = { get: () => shaderSource, set: () => {} };
+    Object.defineProperty(WebGL2RenderingContext.prototype, "shaderSource", kept);
+}"""
+"""Before the page's scripts: viser's shaders stay as they are, and yarn is plain tubes."""
+FRAMES = """async (number) => {
+    const gl = [...document.querySelectorAll("canvas")].find((c) => c.width).getContext("webgl2");
+    const times = [];
+    const request = window.requestAnimationFrame;
+    window.requestAnimationFrame = (callback) => request((time) => {
+        const start = performance.now();
+        callback(time);
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for it
+        times.push(performance.now() - start);
+    });
+    while (times.length < number) {
+        dispatchEvent(new Event("resize")); // news: idle frames wait without a GPU
+        window.__viserMutable.requestRender();
+        await new Promise((done) => setTimeout(done, 5));
+    }
+    window.requestAnimationFrame = request;
+    return times.sort((a, b) => a - b);
+}"""
 
 
 def report(what: str, value: float, unit: str, target: float) -> None:
@@ -139,15 +164,31 @@ def median(visits: list[dict[str, float]], what: str) -> float:
     return statistics.median(visit[what] for visit in visits)
 
 
-def open_chart(browser: Browser, url: str, side: int) -> Page:
-    """A mixed chart of side x side stitches with a map of moduli."""
+def yarn(browser: Browser, url: str) -> None:
+    """A frame of the 3D view of 100 x 100 stitches seen whole, with plies and as plain tubes."""
+    took: dict[str, list[float]] = {"": [], PLAIN: []}
+    for _ in range(RUNS):
+        for script in took:
+            page = open_chart(browser, url, 100, script)
+            page.locator(".fabric[data-live]").wait_for(timeout=120_000)
+            frame = next(frame for frame in page.frames if "/view/" in frame.url)
+            took[script] += frame.evaluate(FRAMES, 10)
+            page.context.close()
+    dressed, plain = (statistics.median(times) for times in took.values())
+    report("a frame of 100 x 100 stitches, yarn over plain tubes", dressed / plain, "", 1.1)
+
+
+def open_chart(browser: Browser, url: str, side: int, script: str = "") -> Page:
+    """A mixed chart of side x side stitches with a map of moduli; a script for all its frames."""
     rng = random.Random(7)
     chart = "\n".join("".join(rng.choices("KP", k=side)) for _ in range(side))
     design = {"id": f"bench-{side}", "name": "Bench", "material": "acrylic", "chart": chart}
     page = browser.new_context(viewport={"width": 1440, "height": 900}).new_page()
     page.add_init_script(
+        "if (parent === window) {"
         f"localStorage['knitcore.design'] ??= {json.dumps(json.dumps(design))};"
         'localStorage["knitcore.settings"] ??= \'{"overlay":"modulus-course"}\';'
+        "}" + script
     )
     page.goto(url)
     page.wait_for_function(
@@ -218,6 +259,7 @@ def main() -> None:
             first_paint(browser, service.url)
             first_strokes(browser, service.url)
             painting(browser, service.url)
+            yarn(browser, service.url)
             browser.close()
             print(f"forced to draw whole frames ({FORCED})")
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*own, FORCED])

@@ -14,15 +14,23 @@
   const GROOVE = 0.4;
   /** Yarn whose radius is fewer pixels shows no plies: it is drawn without them, which takes less. */
   const FEWEST_PIXELS = 1.8;
+  /** Yarn whose radius is more pixels shows fibres that stand off, up to this share of it beyond the yarn. */
+  const FUZZY_PIXELS = 8;
+  const FUZZ = 0.12;
 
-  /** Corners of a tube, turns of its plies from ring to ring, radius in the scene's unit, one over half the cloth's thickness. */
-  const yarn = new Float32Array(4);
+  /** Parts of a step in z tell the light that reaches a corner between other yarn; so many are a millimetre. */
+  const STEPS = 256;
+  /** Light where none comes from around, and where all does. */
+  const SHADE = [0.3, 1.12];
+
+  /** Corners of a tube, turns of its plies from ring to ring, radius in the scene's unit. */
+  const yarn = new Float32Array(3);
 
   const DECLARED = `
-    uniform vec4 yarn;
+    uniform vec3 yarn;
     uniform float yarnPixels; // radius, over half the picture's height in the scene's unit at distance 1
     varying vec3 vYarn; // cosine and sine of the place around the yarn, turns of the plies up to here; 0 far away
-    varying vec2 vShade; // height in the cloth towards the eye, and how far it faces outwards
+    varying float vLight; // from all around that reaches this place
   `;
   /** The corners of a tube follow each other ring by ring, with a ring at each end that closes it. */
   const PLACED = `
@@ -32,13 +40,17 @@
       float yarnAngle = 6.2831853 * ( float( gl_VertexID ) / yarnSides - yarnRing );
       vYarn = vec3( cos( yarnAngle ), sin( yarnAngle ), ( yarnRing - 1.0 ) * yarn.y );
     }
-    vec3 yarnFace = normalMatrix * im[ 2 ];
-    float yarnSide = dot( yarnFace, vViewPosition ) * inversesqrt( dot( yarnFace, yarnFace ) * dot( vViewPosition, vViewPosition ) );
-    vShade = clamp( 4.0 * yarnSide, - 1.0, 1.0 ) * vec2( position.z * yarn.w, objectNormal.z );
+    vLight = fract( position.z * ${STEPS}.0 );
+    float yarnFuzz = ${FUZZ} * smoothstep( 1.0, 2.0, yarnPixels * projectionMatrix[ 1 ][ 1 ] / ( ${FUZZY_PIXELS}.0 * vViewPosition.z ) );
+    if ( yarnFuzz > 0.0 ) {
+      mvPosition.xyz += yarnFuzz * yarn.z * normalize( transformedNormal );
+      gl_Position = projectionMatrix * mvPosition;
+      vViewPosition = - mvPosition.xyz;
+    }
   `;
   const LIT = `
     if ( yarn.x > 0.0 ) {
-      diffuseColor.rgb *= mix( 0.42, 1.06, clamp( 0.5 + 0.5 * vShade.x, 0.0, 1.0 ) ) * ( 0.9 + 0.1 * vShade.y );
+      diffuseColor.rgb *= mix( ${SHADE[0].toFixed(2)}, ${SHADE[1].toFixed(2)}, vLight );
       if ( dot( vYarn.xy, vYarn.xy ) > 0.01 && fwidth( vYarn.z ) < 0.25 ) {
         vec2 dx = dFdx( vYarn.xy ), dy = dFdy( vYarn.xy );
         float c = vYarn.x, s = vYarn.y, inside = 1.0 / max( c * c + s * s, 1e-6 );
@@ -53,6 +65,11 @@
         normal = normalize( abs( det ) * normal - sign( det ) * ( slope.x * r1 + slope.y * r2 ) );
         float fibres = sin( 5.0 * phase + 2.0 * sin( 11.0 * vYarn.z + 2.0 * c ) ) * ( 1.0 - smoothstep( 0.1, 0.5, pixel ) );
         float rim = 1.0 - clamp( dot( nonPerturbedNormal, normalize( vViewPosition ) ), 0.0, 1.0 );
+        float fuzzy = smoothstep( 1.0, 2.0, yarn.z / ( ${FUZZY_PIXELS}.0 * max( abs( dFdx( vViewPosition.x ) ), 1e-9 ) ) );
+        if ( rim * fuzzy > 0.45 ) {
+          vec2 hair = floor( vec2( 44.0 * vYarn.z + 2.0 * atan( s, c ), 1.3 * atan( s, c ) ) );
+          if ( fract( sin( dot( hair, vec2( 12.9898, 78.233 ) ) ) * 43758.5453 ) < 2.0 * rim * fuzzy - 0.9 ) discard;
+        }
         diffuseColor.rgb *= mix( 1.0, 0.62 + 0.5 * sqrt( groove ) + 0.07 * fibres + 0.35 * rim * rim * rim, near );
       }
     }
@@ -84,7 +101,7 @@
       places.set(program, (found = ["yarn", "yarnPixels"].map((name) => this.getUniformLocation(program, name))));
     const [place, pixels] = found;
     if (!place) return;
-    this.uniform4fv(place, yarn);
+    this.uniform3fv(place, yarn);
     this.uniform1f(pixels, (yarn[2] * this.drawingBufferHeight) / 2);
   };
 
@@ -101,10 +118,7 @@
     let length = 0;
     for (let ring = 1; ring < rings - 2; ring++) length += between(ring * sides, (ring + 1) * sides);
     const turns = Math.max(1, Math.round(length / (PITCH * radius)));
-    let highest = 0;
-    for (const tube of tubes)
-      for (let i = 2; i < tube.vertices.length; i += 3) highest = Math.max(highest, Math.abs(tube.vertices[i]));
-    yarn.set([sides, turns / (rings - 3), radius * scale, 1 / highest]);
+    yarn.set([sides, turns / (rings - 3), radius * scale]);
   }
 
   const Threads = Worker;

@@ -20,7 +20,9 @@ a camera that sees a cloth half a metre wide stands a metre away."""
 RESIZE = 0.06
 """Logarithm of the change of size up to which tubes are scaled instead of drawn anew."""
 FINEST = 256
-"""Steps to a millimetre in which places and sizes are sent."""
+"""Steps to a millimetre in which places and sizes are sent; frontend/yarn.js knows it, too."""
+BRIGHTEST = 63 / 64
+"""Full light is no whole step."""
 
 
 class Cloth:
@@ -59,7 +61,7 @@ class Cloth:
             self._handles: dict[int, Any] = {
                 shape: server.scene.add_batched_meshes_simple(
                     f"{name}/{shape}",
-                    vertices=_short(self._meshes.vertices[shape]),
+                    vertices=_lit(self._meshes.vertices[shape], self._meshes.light[shape]),
                     faces=self._meshes.faces,
                     lod="off",
                     scale=UNITS_PER_MM,
@@ -125,6 +127,14 @@ def _instances(scene: FabricScene, middle_mm: Array, meshes: StitchMeshes) -> di
         "batched_wxyzs": _short(quaternions(places)),
         "batched_colors": linear(scene.colours.reshape(-1, 3)),
     }
+
+
+def _lit(vertices: NDArray[np.float32], light: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Corners of a tube; what z has beyond whole steps is the light there, for the browser's
+    shaders: viser sends nothing else for each corner."""
+    told = _short(vertices)
+    told[:, 2] = (np.floor(FINEST * vertices[:, 2]) + np.minimum(light, BRIGHTEST)) / FINEST
+    return told
 
 
 def _short(values: NDArray[Any]) -> NDArray[np.float32]:

@@ -13,9 +13,8 @@ from app.viewer.fabric import FabricScene
 from app.viewer.incoming import WantedPicture
 from app.viewer.scene import SKIN
 from app.viewer.views import View, new_view
-from knitcore.geometry.instances import resampled
 from knitcore.geometry.placing import placed_lines
-from knitcore.geometry.tubes import tube_faces, tube_vertices
+from knitcore.geometry.tubes import resampled, tube_faces, tube_vertices
 
 FRAME_S = 0.14
 PICTURE_TIMEOUT_S = 25.0

@@ -14,8 +14,8 @@ from app.viewer.camera import FIELD_OF_VIEW, CameraSide, stand
 from app.viewer.colours import linear
 from app.viewer.fabric import Drawing
 from knitcore.arrays import Array
-from knitcore.geometry.instances import resampled
 from knitcore.geometry.placing import placed_lines
+from knitcore.geometry.tubes import resampled
 
 SPACING = 0.5
 """Of the balls that a yarn is drawn as, over its radius."""

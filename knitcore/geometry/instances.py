@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from knitcore.arrays import Array
+from knitcore.geometry.occlusion import occlusion
 from knitcore.geometry.placing import PlacedStitches, mean_sizes_mm
 from knitcore.geometry.stitches import StitchShapes
-from knitcore.geometry.tubes import tube_faces, tube_vertices
+from knitcore.geometry.tubes import resampled, tube_faces, tube_vertices
 
 Floats = NDArray[np.float32]
 
@@ -34,12 +35,14 @@ class StitchMeshes:
     ----------
     vertices : (shapes, V, 3) mm, around the stitch's centre; ring by ring along the tube, with a
         ring at each end that rounds it.
+    light : (shapes, V) share of the light from all around that reaches them, 0 to 1.
     faces : (F, 3), the same for all.
     sizes_mm : (shapes, 2) of the stitch that was drawn.
     depth : of the placement that was drawn.
     """
 
     vertices: Floats
+    light: Floats
     faces: NDArray[np.uint32]
     sizes_mm: Array
     depth: float
@@ -70,8 +73,10 @@ def stitch_meshes(
     tubes = tube_vertices(lines, shapes.yarn_radius_mm, sides)
     ends = [_tips(lines[:, at], lines[:, by], shapes.yarn_radius_mm) for at, by in ENDS]
     first, last = (np.repeat(tip[:, None], sides, axis=1).astype(np.float32) for tip in ends)
+    light = occlusion(shapes, points, sides)[:, [0, *range(points), points - 1]]
     return StitchMeshes(
         vertices=np.concatenate([first, tubes, last], axis=1),
+        light=light.reshape(len(light), -1).astype(np.float32),
         faces=tube_faces(points + 2, sides),
         sizes_mm=sizes,
         depth=placement.depth,
@@ -83,15 +88,6 @@ def _tips(end: Array, before: Array, radius_mm: float) -> Array:
     along = end - before
     tips: Array = end + ROUND * radius_mm * along / np.linalg.norm(along, axis=1, keepdims=True)
     return tips
-
-
-def resampled(lines: Array, points: int) -> Array:
-    """Lines (n, P, 3) resampled to another number of points, with the same ends."""
-    place = np.linspace(0.0, lines.shape[1] - 1, points)
-    before = np.minimum(place.astype(int), lines.shape[1] - 2)
-    share = (place - before)[:, None]
-    between: Array = lines[:, before] * (1.0 - share) + lines[:, before + 1] * share
-    return between
 
 
 def quaternions(placement: PlacedStitches) -> Floats:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.arrays import Array
 from knitcore.errors import InputError
 
 
@@ -92,6 +93,15 @@ def tube_faces(points: int, sides: int) -> NDArray[np.uint32]:
         ]
     )
     return faces.astype(np.uint32)
+
+
+def resampled(lines: Array, points: int) -> Array:
+    """Lines (n, P, …) with another number of points, and the same ends."""
+    place = np.linspace(0.0, lines.shape[1] - 1, points)
+    before = np.minimum(place.astype(int), lines.shape[1] - 2)
+    share = (place - before)[:, None]
+    between: Array = lines[:, before] * (1.0 - share) + lines[:, before + 1] * share
+    return between
 
 
 def _carried_normals(tangent: NDArray[np.float64]) -> NDArray[np.float64]:

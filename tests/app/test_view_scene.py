@@ -7,6 +7,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ import pytest
 from app.operations.context import Context
 from app.viewer import scene as scene_module
 from app.viewer.camera import CameraSide
-from app.viewer.cloth import Cloth
+from app.viewer.cloth import FINEST, Cloth
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.views import View, new_view
 
@@ -68,3 +69,22 @@ def test_a_moved_camera_keeps_its_place_until_reset(view: View) -> None:
     np.testing.assert_array_equal(client.camera.position, close)
     view.writer.look(CameraSide.FACE)
     assert np.linalg.norm(client.camera.position) > 2 * np.linalg.norm(close)
+
+
+def test_the_light_between_the_yarn_is_sent_with_its_corners(
+    view: View, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent: list[np.ndarray] = []
+    scene = view.server.scene
+    add = scene.add_batched_meshes_simple
+
+    def note(*args: Any, **drawn: Any) -> object:
+        sent.append(drawn["vertices"])
+        return add(*args, **drawn)
+
+    monkeypatch.setattr(scene, "add_batched_meshes_simple", note)
+    _show(view, SMALL)
+    beyond = FINEST * np.concatenate(sent) % 1
+    assert not beyond[:, :2].any()
+    assert 0 < beyond[:, 2].min() < 0.2
+    assert 0.8 < beyond[:, 2].max() < 1

@@ -8,10 +8,11 @@ from scipy.spatial import cKDTree
 
 from knitcore import Fabric, StitchChart
 from knitcore.geometry.fabrics import POINTS, cell_lines, fabric_lines
-from knitcore.geometry.instances import LEVELS, level_of, resampled, stitch_meshes
+from knitcore.geometry.instances import LEVELS, level_of, stitch_meshes
 from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.placing import DEPTH, at_rest, carried, placed_lines
 from knitcore.geometry.stitches import StitchShapes, stitch_shapes
+from knitcore.geometry.tubes import resampled
 from knitcore.materials import load_library, material
 from knitcore.yarnlibrary.store import stored_stitch
 from tests.knitcore.charts import stitch_charts
