@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import lru_cache
 from itertools import combinations
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,7 +70,7 @@ def repeats_up_to(rows: int, columns: int, *, stitches: int = LARGEST) -> tuple[
     36
     """
     sizes = [(r, c) for r in range(1, rows + 1) for c in range(1, columns + 1)]
-    small = sorted((size for size in sizes if size[0] * size[1] <= stitches), key=_by_stitches)
+    small = sorted((size for size in sizes if prod(size) <= stitches), key=prod)
     return tuple(chart for size in small for chart in primitive_repeats(*size))
 
 
@@ -89,10 +90,6 @@ def striped_repeats() -> tuple[StitchChart, ...]:
     """
     found = dict.fromkeys(chart.canonical() for chart in _stripes())
     return tuple(chart for chart in found if max(chart.purl.shape) > 4)
-
-
-def _by_stitches(size: tuple[int, int]) -> tuple[int, tuple[int, int]]:
-    return size[0] * size[1], size
 
 
 def _symmetries(

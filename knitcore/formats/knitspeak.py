@@ -27,15 +27,9 @@ from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
 from knitcore.errors import InputError
 from knitcore.formats.written import in_brackets, row_words
 from knitcore.formats.written_words import MAX_CHARACTERS
-from knitcore.worked import (
-    Construction,
-    Side,
-    WorkedRow,
-    WorkedRows,
-    as_worked,
-    face_grid,
-    side_of_row,
-)
+from knitcore.garment.piece import MAIN_YARN
+from knitcore.garment.worked_piece import PieceRow, piece_from_rows, piece_rows
+from knitcore.worked import Construction, Side, side_of_row
 
 Purls = tuple[bool, ...]
 
@@ -68,10 +62,9 @@ def write_knitspeak(
     Row 3 (RS): *K1, p1, repeat from * to last st, k1.
     <BLANKLINE>
     """
-    worked = as_worked(chart, construction, first_side=first_side)
     flat = construction is Construction.FLAT
     groups: dict[tuple[str, Side], list[int]] = {}
-    for index, row in enumerate(worked.rows):
+    for index, row in enumerate(piece_rows(chart, construction, first_side=first_side)):
         words = row_words(row.purls).replace("; rep from *", ", repeat from *")
         words = words.removesuffix(" to end")
         if index == 0:
@@ -170,8 +163,9 @@ def read_knitspeak(text: str) -> StitchChart:
             raise _wrong(
                 rows[index].line, f"row {index} does not fit {count} stitches.", "Correct it."
             )
-        worked.append(WorkedRow(side_of_row(index - 1, construction, first_side), purls))
-    return face_grid(WorkedRows(construction, first_side, tuple(worked)))
+        side = side_of_row(index - 1, construction, first_side)
+        worked.append(PieceRow(side, 0, 0, purls, (0,) * count))
+    return piece_from_rows(worked, [MAIN_YARN]).chart
 
 
 def _sentences(text: str) -> Iterator[tuple[int, str]]:

@@ -1,6 +1,6 @@
 """Rows of a piece as they are worked, with increases and decreases at their edges.
 
-The counterpart of :mod:`knitcore.worked`, whose rules it uses, for outlines and yarns.
+They are a type of their own, never mixed with the face grid; :mod:`knitcore.worked` has the rule.
 """
 
 from __future__ import annotations
@@ -38,9 +38,24 @@ class PieceRow:
 
 
 def piece_rows(
-    piece: Piece, construction: Construction = Construction.FLAT, *, first_side: Side = Side.RS
+    piece: StitchChart | Piece,
+    construction: Construction = Construction.FLAT,
+    *,
+    first_side: Side = Side.RS,
 ) -> tuple[PieceRow, ...]:
     """How a knitter works a piece.
+
+    Parameters
+    ----------
+    piece : charts, too, of one yarn.
+    construction : flat or in the round.
+    first_side : the side of row 1 in flat knitting; in the round it is always RS.
+
+    Examples
+    --------
+    >>> garter = piece_rows(StitchChart.of_fabric("garter", rows=4, columns=3))
+    >>> {row.purls for row in garter}
+    {(False, False, False)}
 
     Raises
     ------
@@ -48,6 +63,7 @@ def piece_rows(
         If it cannot be worked in the round: yarns change within a round, or an edge moves by more
         than a stitch a round.
     """
+    piece = Piece.of(piece)
     in_round = construction is Construction.ROUND
     first = Side.RS if in_round else first_side
     spans = piece.shaped.spans
