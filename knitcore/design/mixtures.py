@@ -21,6 +21,7 @@ from knitcore.design.atlas import Atlas
 from knitcore.design.atlas_build import predict_repeat
 from knitcore.fabric import PHASES, Direction
 from knitcore.materials import Material
+from knitcore.mechanics.lamination import laminated
 from knitcore.phases import quarter_phases
 
 CLOSE = 0.02
@@ -197,10 +198,9 @@ class Mixer:
         widths = np.tile(widths, (len(pairs), 1))
         share = widths * sizes[partners]
         share = share / share.sum(axis=1, keepdims=True)
-        one = 1 / (share / stiff[along][partners]).sum(axis=1)
-        mixed = one * (share * (coupling / stiff[along])[partners]).sum(axis=1)
-        own = (stiff[across] - coupling**2 / stiff[along])[partners]
-        other = (share * own).sum(axis=1) + mixed**2 / one
+        one, other, mixed = laminated(
+            stiff[along][partners], stiff[across][partners], coupling[partners], share
+        )
         moduli = {along: one - mixed**2 / other, across: other - mixed**2 / one}
         return _Estimates(
             direction,

@@ -17,7 +17,7 @@ purls are refused by name. Reference: https://stitch-maps.com/about/knitspeak/
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -26,7 +26,7 @@ import numpy as np
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_size
 from knitcore.errors import InputError
 from knitcore.formats.written import in_brackets, row_words
-from knitcore.formats.written_words import MAX_CHARACTERS
+from knitcore.formats.written_words import MAX_CHARACTERS, Line, lines_of
 from knitcore.garment.piece import MAIN_YARN
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows, piece_rows
 from knitcore.worked import Construction, Side, side_of_row
@@ -93,15 +93,15 @@ def _listed(numbers: list[int]) -> str:
 
 def looks_knitspeak(text: str) -> bool:
     """Whether a text begins with rows of KnitSpeak, without casting on."""
-    first = next((line.strip().lower() for line in text.splitlines() if line.strip()), "")
-    return _LINE.match(first) is not None
+    first = next(lines_of(text), None)
+    return first is not None and _LINE.match(first.text) is not None
 
 
 @dataclass(frozen=True)
 class _Row:
     """A row's stitches; those of ``unit`` are repeated as often as there is room, if any."""
 
-    line: int
+    line: Line
     head: Purls
     unit: Purls
     tail: Purls
@@ -132,19 +132,21 @@ def read_knitspeak(text: str) -> StitchChart:
     rows: dict[int, _Row] = {}
     stated: dict[int, Side] = {}
     rounds = None
-    for number, line in _sentences(text):
-        match = _LINE.fullmatch(line)
+    for line in lines_of(text):
+        if len(line.text) > MAX_CHARACTERS:
+            raise line.wrong(f"it has {len(line.text)} characters.", "Write it with repeats.")
+        match = _LINE.fullmatch(line.text)
         if match is None:
-            raise _wrong(number, f"{line[:60]!r} is not a row.", 'Write "Row 1 (RS): k1, p1."')
+            raise line.wrong(f"{line.text[:60]!r} is not a row.", 'Write "Row 1 (RS): k1, p1."')
         name, numbers, side, words = match.groups()
         is_round = not name.lower().startswith("row")
         if rounds is not None and rounds != is_round:
-            raise _wrong(number, "rows and rounds are mixed.", "Use one of them.")
+            raise line.wrong("rows and rounds are mixed.", "Use one of them.")
         rounds = is_round
-        row = _row(number, words.rstrip(". "))
-        for index in _numbers(number, numbers):
+        row = _row(line, words.rstrip(". "))
+        for index in _numbers(line, numbers):
             if index in rows:
-                raise _wrong(number, f"row {index} is given twice.", "Write each row once.")
+                raise line.wrong(f"row {index} is given twice.", "Write each row once.")
             rows[index] = row
             if side is not None:
                 stated[index] = Side(side.upper())
@@ -160,36 +162,23 @@ def read_knitspeak(text: str) -> StitchChart:
     for index in range(1, len(rows) + 1):
         purls = rows[index].worked(count)
         if purls is None:
-            raise _wrong(
-                rows[index].line, f"row {index} does not fit {count} stitches.", "Correct it."
+            raise rows[index].line.wrong(
+                f"row {index} does not fit {count} stitches.", "Correct it."
             )
         side = side_of_row(index - 1, construction, first_side)
         worked.append(PieceRow(side, 0, 0, purls, (0,) * count))
     return piece_from_rows(worked, [MAIN_YARN]).chart
 
 
-def _sentences(text: str) -> Iterator[tuple[int, str]]:
-    for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
-        words = " ".join(line.split())
-        if len(words) > MAX_CHARACTERS:
-            raise _wrong(number, f"it has {len(words)} characters.", "Write it with repeats.")
-        if words and not words.startswith("#"):
-            yield number, words
-
-
-def _wrong(line: int, problem: str, remedy: str) -> InputError:
-    return InputError("rows", f"line {line}: {problem}", remedy)
-
-
-def _numbers(line: int, text: str) -> Iterable[int]:
+def _numbers(line: Line, text: str) -> Iterable[int]:
     found: list[int] = []
     for match in _NUMBERS.finditer(text):
         first, last = int(match[1]), int(match[2] or match[1])
         if not 1 <= first <= last <= MAX_STITCHES_PER_SIDE:
-            raise _wrong(line, f"rows {match[0]} cannot be made.", "Number them from 1 up.")
+            raise line.wrong(f"rows {match[0]} cannot be made.", "Number them from 1 up.")
         found += range(first, last + 1)
     if not found:
-        raise _wrong(line, "it numbers no row.", 'Write "Row 1:" or "Rows 2, 4 and 6-8:".')
+        raise line.wrong("it numbers no row.", 'Write "Row 1:" or "Rows 2, 4 and 6-8:".')
     return found
 
 
@@ -215,7 +204,7 @@ def _count(rows: list[_Row]) -> int:
     return count
 
 
-def _row(line: int, words: str) -> _Row:
+def _row(line: Line, words: str) -> _Row:
     star = _STAR.fullmatch(words)
     if star is not None:
         before, body, last, after = star.groups()
@@ -229,15 +218,14 @@ def _row(line: int, words: str) -> _Row:
     head, tail = _stitches(line, before or ""), _stitches(line, after or "")
     wanted = int(last or 1) if to_last else 0
     if not unit or len(tail) != wanted:
-        raise _wrong(
-            line,
+        raise line.wrong(
             f"{len(tail)} stitches follow the repeat, but it says {wanted}.",
             'Make "to last N sts" agree with what follows.',
         )
     return _Row(line, head, unit, tail)
 
 
-def _stitches(line: int, words: str) -> Purls:
+def _stitches(line: Line, words: str) -> Purls:
     """Stitches and brackets, separated by commas; brackets may hold brackets."""
     stack: list[list[bool]] = [[]]
     rest = words.strip()
@@ -257,14 +245,13 @@ def _stitches(line: int, words: str) -> Purls:
             stack[-1] += [run[1].lower() == "p"] * int(run[2] or 1)
             rest = rest[run.end() :]
         else:
-            raise _wrong(
-                line,
+            raise line.wrong(
                 f"{rest[:30]!r} is not a knit or a purl.",
                 "Write k3, p2, [k1, p1] 3 times or *…, repeat from *; no lace, cables or shaping.",
             )
         if len(stack[-1]) > MAX_STITCHES_PER_SIDE:
-            raise _wrong(line, "it has too many stitches.", f"Use {MAX_STITCHES_PER_SIDE}.")
+            raise line.wrong("it has too many stitches.", f"Use {MAX_STITCHES_PER_SIDE}.")
         rest = rest.lstrip(" ,")
     if len(stack) > 1:
-        raise _wrong(line, "a bracket is not closed.", 'Write "[k1, p1] twice".')
+        raise line.wrong("a bracket is not closed.", 'Write "[k1, p1] twice".')
     return tuple(np.array(stack[0], dtype=bool).tolist())

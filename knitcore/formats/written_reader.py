@@ -12,7 +12,7 @@ import re
 
 from knitcore.chart import StitchChart, check_size
 from knitcore.errors import InputError
-from knitcore.formats.written_words import Line, Work, read_row
+from knitcore.formats.written_words import Line, Work, lines_of, read_row
 from knitcore.garment.piece import MAIN_YARN, Piece, PieceYarn, yarn_name
 from knitcore.garment.worked_piece import PieceRow, piece_from_rows
 from knitcore.worked import Construction, Side, side_of_row
@@ -32,8 +32,8 @@ _YARN = re.compile(r"yarn ([A-Z]{1,2}): (.*) \((#[0-9a-f]{6})\)", re.IGNORECASE)
 
 def looks_written(text: str) -> bool:
     """Whether a text is meant as written rows rather than as lines of K and P."""
-    first = next((line.strip().lower() for line in text.splitlines() if line.strip()), "")
-    return first.startswith(("cast on", "row", "rnd", "round"))
+    first = next(lines_of(text), None)
+    return first is not None and first.text.lower().startswith(("cast on", "row", "rnd", "round"))
 
 
 def read_rows(text: str) -> StitchChart:
@@ -65,11 +65,7 @@ def read_piece_rows(text: str) -> Piece:
     InputError
         As :func:`read_rows`.
     """
-    lines = [
-        Line(number, " ".join(line.split()))
-        for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
+    lines = list(lines_of(text))
     cast_on = _CAST_ON.fullmatch(lines[0].text) if lines else None
     if cast_on is None:
         raise InputError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from knitcore.chart import MAX_STITCHES_PER_SIDE, check_size
@@ -41,6 +42,14 @@ class Line:
     def wrong(self, problem: str, remedy: str) -> InputError:
         """An error that names the line."""
         return InputError("rows", f"line {self.number}: {problem}", remedy)
+
+
+def lines_of(text: str) -> Iterator[Line]:
+    """Lines with single blanks between their words, without empty ones and comments."""
+    for number, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1):
+        words = " ".join(line.split())
+        if words and not words.startswith("#"):
+            yield Line(number, words)
 
 
 @dataclass(frozen=True)

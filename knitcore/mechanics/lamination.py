@@ -74,26 +74,38 @@ class SheetGrid:
 
     def merged_along_x(self) -> SheetGrid:
         """Neighbouring columns joined in pairs, as exact laminates; an odd last one is kept."""
-        first = slice(0, None, 2)
         missing = self.shape[1] % 2
         width = np.append(self.width_mm, np.zeros(missing)).reshape(-1, 2)
         total = width.sum(axis=1)
 
-        def mean(values: Array) -> Array:
+        def pairs(values: Array) -> Array:
             padded = np.concatenate([values, values[:, -1:]], axis=1) if missing else values
-            average: Array = (
-                padded[:, first] * width[:, 0] + padded[:, 1::2] * width[:, 1]
-            ) / total
-            return average
+            return padded.reshape(len(values), -1, 2)
 
-        xxxx = 1.0 / mean(1.0 / self.xxxx)
-        xxyy = xxxx * mean(self.xxyy / self.xxxx)
-        yyyy = mean(self.yyyy - self.xxyy**2 / self.xxxx) + xxyy**2 / xxxx
-        return SheetGrid(xxxx, yyyy, xxyy, 1.0 / mean(1.0 / self.xyxy), total, self.height_mm)
+        share = width / total[:, None]
+        stiffness = laminated(pairs(self.xxxx), pairs(self.yyyy), pairs(self.xxyy), share)
+        shear = 1.0 / (share / pairs(self.xyxy)).sum(axis=-1)
+        return SheetGrid(*stiffness, shear, total, self.height_mm)
 
     def merged_along_y(self) -> SheetGrid:
         """Neighbouring rows joined in pairs."""
         return self.transposed().merged_along_x().transposed()
+
+
+def laminated(
+    across: Array, along: Array, coupling: Array, share: Array
+) -> tuple[Array, Array, Array]:
+    """Stiffnesses across and along the joints, and their coupling, of sheets joined edge to edge.
+
+    Parameters
+    ----------
+    across, along, coupling : (..., sheets) stiffnesses, N/mm.
+    share : (..., sheets) of the widths, across the joints.
+    """
+    one = 1.0 / (share / across).sum(axis=-1)
+    mixed = one * (share * coupling / across).sum(axis=-1)
+    other = (share * (along - coupling**2 / across)).sum(axis=-1) + mixed**2 / one
+    return one, other, mixed
 
 
 def coarsened(grid: SheetGrid, most_cells: int) -> SheetGrid:
