@@ -27,7 +27,9 @@ from app.designs.document import (
 from app.designs.parameters import MISSING, Cursor, Limit, Owner, Responses, RetryOf
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
+from app.designs.watching import PERIOD_S, QUIET_S
 from app.http.bodies import BoundedRoute
+from app.http.events import event_stream
 from app.http.problems import Problem
 from app.viewer.design_id import DesignId
 
@@ -134,13 +136,8 @@ def get_design_events(
     """
     store.get(owner, design)
     state = request.app.state
-    state.in_use.check("streams", owner)
-    counted = state.in_use.hold("streams", owner)
-    return StreamingResponse(
-        state.watched.events(owner, design, counted, lambda: state.stopping),
-        media_type="text/event-stream",
-        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
-    )
+    news = state.watched.events(owner, design, lambda: state.stopping)
+    return event_stream(request, news, PERIOD_S, QUIET_S)
 
 
 @router.put("/designs/{design}", summary="Replace a design", responses=CONDITIONAL)

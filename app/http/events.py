@@ -12,11 +12,13 @@ from app.budgets import InUse
 from app.http.identity import current_user
 
 QUIET_S = 15.0
-"""Time without an event after which a line is sent, so that a vanished client is noticed."""
 
 
 def event_stream(
-    request: Request, events: AsyncGenerator[str | None], period_s: float
+    request: Request,
+    events: AsyncGenerator[str | None],
+    period_s: float,
+    quiet_s: float = QUIET_S,
 ) -> StreamingResponse:
     """A response that lasts as long as there are events.
 
@@ -24,6 +26,8 @@ def event_stream(
     ----------
     events : each as its text; None where a period passed without one.
     period_s : how long a period lasts.
+    quiet_s : time without an event after which a line is sent, so that a vanished client is
+        noticed.
 
     Raises
     ------
@@ -33,7 +37,7 @@ def event_stream(
     in_use: InUse = request.app.state.in_use
     in_use.check("streams", current_user.get())
     return StreamingResponse(
-        _lines(in_use, current_user.get(), events, round(QUIET_S / period_s)),
+        _lines(in_use, current_user.get(), events, round(quiet_s / period_s)),
         media_type="text/event-stream",
         headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
     )
