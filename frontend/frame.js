@@ -128,10 +128,12 @@
     clearTimeout(pause);
     if (held) return;
     const left = rest();
-    if (left > 0) {
-      pause = setTimeout(release, left);
-      return;
-    }
+    if (left > 0) pause = setTimeout(release, left);
+    else draw();
+  }
+
+  /** What waits, in the browser's next frame. */
+  function draw() {
     const callbacks = [...waiting.values()];
     waiting.clear();
     for (const callback of callbacks) request((time) => frame(callback, time));
@@ -216,8 +218,9 @@
     const probe = document.createElement("canvas");
     software ??= drawnBySoftware(/** @type {WebGL2RenderingContext | null} */ (context.call(probe, "webgl2")));
     gl = /** @type {WebGL2RenderingContext | null} */ (context.call(this, kind, { ...options, antialias: !software }));
-    // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until the next frame.
-    new MutationObserver(() => wake(false)).observe(this, { attributeFilter: ["width", "height"] });
+    // On a slow machine viser draws fewer pixels, and a canvas of another size is empty until it is drawn again:
+    // that is not left to wait, even while somebody paints.
+    new MutationObserver(draw).observe(this, { attributeFilter: ["width", "height"] });
     return gl;
   };
 

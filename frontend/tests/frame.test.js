@@ -18,32 +18,119 @@ class Thread extends EventTarget {
   }
 }
 
-/** A worker as viser's client gets it in the frame. */
-async function framedThread() {
-  /** @type {any} */
-  const page = {
-    console: { warn: () => {} },
-    document: {},
-    location: { hash: "#pass" },
-    HTMLCanvasElement: class {},
-    Worker: Thread,
-    XMLHttpRequest: class {
-      responseText = "";
-      open() {}
-      send() {}
-    },
-    Blob,
-    URL,
-    performance,
-    setTimeout,
-    clearTimeout,
-    addEventListener() {},
-    requestAnimationFrame() {},
-    cancelAnimationFrame() {},
-  };
-  page.window = page.parent = page;
+/** The frame's window before anything runs in it. @returns {any} */
+const emptyFrame = () => ({
+  console: { warn: () => {} },
+  document: {},
+  parent: { postMessage() {} },
+  location: { hash: "#pass" },
+  HTMLCanvasElement: class {},
+  Worker: Thread,
+  XMLHttpRequest: class {
+    responseText = "";
+    open() {}
+    send() {}
+  },
+  Blob,
+  URL,
+  performance,
+  setTimeout,
+  clearTimeout,
+  addEventListener() {},
+  requestAnimationFrame() {},
+  cancelAnimationFrame() {},
+});
+
+/** Run our script in it. @param {any} page */
+async function framed(page) {
+  page.window = page;
   vm.runInNewContext(await readFile(new URL("../frame.js", import.meta.url), "utf8"), page);
-  return /** @type {Thread} */ (new page.Worker("blob:viser"));
+  return page;
+}
+
+/** A worker as viser's client gets it in the frame. @returns {Promise<Thread>} */
+const framedThread = async () => new (await framed(emptyFrame())).Worker("blob:viser");
+
+/** A client on a machine whose frames take half a second, that shows a scene and has been left alone for a while. */
+async function slowClient() {
+  const FRAME_MS = 500;
+  const client = {
+    now: 0,
+    /** What the browser draws next. @type {((time: number) => void)[]} */
+    next: [],
+    /** When what is due. @type {[number, () => void][]} */
+    timers: [],
+    resized: () => {},
+    /** @type {(message: any) => void} */
+    told: () => {},
+    frames: 0,
+    wanted: false,
+    /** As viser asks for a frame. */
+    invalidate() {
+      if (client.wanted) return;
+      client.wanted = true;
+      page.requestAnimationFrame(() => {
+        client.wanted = false;
+        client.frames++;
+        client.now += FRAME_MS;
+      });
+    },
+    /** The browser's turn to draw. */
+    frame() {
+      for (const callback of client.next.splice(0)) callback(client.now);
+      client.pass(0);
+    },
+    /** Time goes by. @param {number} ms */
+    pass(ms) {
+      client.now += ms;
+      for (const [at, act] of client.timers.splice(0)) {
+        if (at <= client.now) act();
+        else client.timers.push([at, act]);
+      }
+    },
+  };
+  const gl = {
+    createQuery: () => ({}),
+    beginQuery() {},
+    endQuery() {},
+    deleteQuery() {},
+    getExtension: () => null,
+    getParameter: () => "",
+    getQueryParameter: () => true,
+  };
+  const page = Object.assign(emptyFrame(), {
+    HTMLCanvasElement: class {
+      getContext() {
+        return gl;
+      }
+    },
+    MutationObserver: class {
+      /** @param {() => void} told */
+      constructor(told) {
+        client.resized = told;
+      }
+      observe() {}
+    },
+    performance: { now: () => client.now },
+    /** @param {() => void} act */
+    setTimeout: (act, ms = 0) => void client.timers.push([client.now + ms, act]),
+    clearTimeout: () => {},
+    /** @param {string} kind @param {(message: any) => void} listener */
+    addEventListener: (kind, listener) => kind === "message" && (client.told = listener),
+    /** @param {(time: number) => void} callback */
+    requestAnimationFrame: (callback) => client.next.push(callback),
+  });
+  page.document.createElement = () => new page.HTMLCanvasElement();
+  await framed(page);
+  new page.HTMLCanvasElement().getContext("webgl2", { antialias: true });
+  new page.Worker("blob:viser").answer("message_batch");
+  for (let frame = 0; frame < 8; frame++) {
+    client.invalidate();
+    client.frame();
+    client.pass(100);
+  }
+  assert.ok(client.wanted, "an idle frame did not wait");
+  return { client, tell: (/** @type {any} */ data) => client.told({ source: page.parent, data }) };
 }
 
 test("a connection that is being made is not given up for another one", async () => {
@@ -59,4 +146,24 @@ test("a connection that is being made is not given up for another one", async ()
   thread.postMessage({ type: "retry" });
   thread.answer("connected");
   assert.deepEqual(thread.sent, ["set_server", "retry", "retry"]);
+});
+
+test("a canvas that changes its size is drawn in the next frame, though idle frames wait", async () => {
+  const { client } = await slowClient();
+  const { frames } = client;
+  client.resized();
+  client.frame();
+  assert.equal(client.frames, frames + 1);
+});
+
+test("a canvas that changes its size is drawn while somebody paints, too", async () => {
+  const { client, tell } = await slowClient();
+  const { frames } = client;
+  tell({ hold: true });
+  client.pass(10_000);
+  client.frame();
+  assert.equal(client.frames, frames, "frames did not wait for the stroke");
+  client.resized();
+  client.frame();
+  assert.equal(client.frames, frames + 1);
 });
