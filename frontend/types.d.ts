@@ -2793,6 +2793,50 @@ export interface ViewResult {
   url: string;
 }
 
+/** A chart, its yarn, and when to stop. */
+export interface WholeRequest {
+  chart: string | PureFabricChart;
+  /** Identifier of a material of the library. */
+  material: string;
+  /** Yarn per stitch; the material's by default. */
+  loop_length_mm?: number | null;
+  /** Hold the stitches in one plane, as a fabric laid flat; not published. */
+  flat?: boolean;
+  convention?: Convention;
+  /** Stop when a round changes the energy by less than this part of it. */
+  tolerance?: number;
+  /** Most rounds on each of two grids. */
+  rounds?: number;
+  /** Return the centre lines of the yarn too. */
+  centre_lines?: boolean;
+}
+
+/** The shape of a whole chart, free of force; sizes and energies of its mean stitch. */
+export interface WholeResult {
+  /** What the 90 % intervals rest on. */
+  interval_source: string;
+  kind: "whole";
+  rows: number;
+  columns: number;
+  cell_course_mm: number;
+  cell_wale_mm: number;
+  /** 90 % interval for knitted cloth. */
+  cell_course_interval_mm: [number, number];
+  cell_wale_interval_mm: [number, number];
+  energy_n_mm: number;
+  bending_share: number;
+  contact_share: number;
+  min_distance_mm: number;
+  /** Whether the last round met the tolerance. */
+  converged: boolean;
+  /** CPU time since the job was last started. */
+  seconds: number;
+  yarn: YarnResult;
+  notes: string[];
+  /** Bottom course first; each runs once across the chart. */
+  centre_lines_mm: [number, number, number][][] | null;
+}
+
 /** Stiffness wanted in one part of the chart. */
 export interface WishInput {
   name?: string;

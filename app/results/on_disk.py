@@ -60,13 +60,23 @@ class KeptResults:
         -------
         The result, and whether it had been kept.
         """
-        modules = (*SOLVERS, kind.__module__)
-        file = self.folder / f"{content_key({'kind': kind.__name__, **inputs}, modules)}.json"
-        if not fresh and (found := self._read(kind, file)) is not None:
+        if not fresh and (found := self.found(kind, inputs)) is not None:
             return found, True
         result = make()
-        self._write(file, result.model_dump_json().encode())
+        self.keep(inputs, result)
         return result, False
+
+    def found(self, kind: type[Result], inputs: Mapping[str, Any]) -> Result | None:
+        """The kept result of these inputs."""
+        return self._read(kind, self._file(kind, inputs))
+
+    def keep(self, inputs: Mapping[str, Any], result: BaseModel) -> None:
+        """Keep a result, in place of an earlier one of the same inputs."""
+        self._write(self._file(type(result), inputs), result.model_dump_json().encode())
+
+    def _file(self, kind: type[BaseModel], inputs: Mapping[str, Any]) -> Path:
+        modules = (*SOLVERS, kind.__module__)
+        return self.folder / f"{content_key({'kind': kind.__name__, **inputs}, modules)}.json"
 
     def _read(self, kind: type[Result], file: Path) -> Result | None:
         try:

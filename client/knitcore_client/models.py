@@ -1181,6 +1181,25 @@ class ViewRequest(TypedDict):
     """Around it a chart is drawn as yarn that is too large to be drawn whole."""
 
 
+class WholeRequest(TypedDict):
+    """A chart, its yarn, and when to stop."""
+
+    chart: str | PureFabricChart
+    material: str
+    """Identifier of a material of the library."""
+    loop_length_mm: NotRequired[float | None]
+    """Yarn per stitch; the material's by default."""
+    flat: NotRequired[bool]
+    """Hold the stitches in one plane, as a fabric laid flat; not published."""
+    convention: NotRequired[Convention]
+    tolerance: NotRequired[float]
+    """Stop when a round changes the energy by less than this part of it."""
+    rounds: NotRequired[int]
+    """Most rounds on each of two grids."""
+    centre_lines: NotRequired[bool]
+    """Return the centre lines of the yarn too."""
+
+
 class WishInput(TypedDict):
     """Stiffness wanted in one part of the chart."""
 
@@ -3062,6 +3081,33 @@ class ViewResult(BaseModel):
     """For a browser; after the # the pass to watch this view."""
 
 
+class WholeResult(BaseModel):
+    """The shape of a whole chart, free of force; sizes and energies of its mean stitch."""
+
+    interval_source: str
+    """What the 90 % intervals rest on."""
+    kind: Literal["whole"] = "whole"
+    rows: int
+    columns: int
+    cell_course_mm: float
+    cell_wale_mm: float
+    cell_course_interval_mm: tuple[float, float]
+    """90 % interval for knitted cloth."""
+    cell_wale_interval_mm: tuple[float, float]
+    energy_n_mm: float
+    bending_share: float
+    contact_share: float
+    min_distance_mm: float
+    converged: bool
+    """Whether the last round met the tolerance."""
+    seconds: float
+    """CPU time since the job was last started."""
+    yarn: YarnResult
+    notes: list[str]
+    centre_lines_mm: list[list[tuple[float, float, float]]] | None = None
+    """Bottom course first; each runs once across the chart."""
+
+
 class WornResult(BaseModel):
     """Pressure at one place along the limb."""
 
@@ -3128,5 +3174,6 @@ JobResult = (
     | StretchResult
     | SweepResult
     | TrellisResult
+    | WholeResult
 )
 """The result of a job; its ``kind`` says which."""

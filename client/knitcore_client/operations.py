@@ -87,6 +87,8 @@ from knitcore_client.models import (
     TrellisRequest,
     TrellisResult,
     VersionResult,
+    WholeRequest,
+    WholeResult,
 )
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -354,6 +356,10 @@ class AsyncOperations:
     async def submit(
         self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]
     ) -> JobStatus: ...
+    @overload
+    async def submit(
+        self, kind: Literal["whole"], **request: Unpack[WholeRequest]
+    ) -> JobStatus: ...
 
     async def submit(self, kind: Any, **request: Any) -> JobStatus:
         """Run an operation in the background."""
@@ -431,6 +437,8 @@ class AsyncOperations:
     async def run(
         self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]
     ) -> TrellisResult: ...
+    @overload
+    async def run(self, kind: Literal["whole"], **request: Unpack[WholeRequest]) -> WholeResult: ...
 
     async def run(self, kind: Any, **request: Any) -> JobResult:
         """The result of an operation that runs in the background; given up, it is cancelled."""
@@ -673,6 +681,8 @@ class Operations:
     def submit(self, kind: Literal["sweep"], **request: Unpack[SweepRequest]) -> JobStatus: ...
     @overload
     def submit(self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]) -> JobStatus: ...
+    @overload
+    def submit(self, kind: Literal["whole"], **request: Unpack[WholeRequest]) -> JobStatus: ...
 
     def submit(self, kind: Any, **request: Any) -> JobStatus:
         """Run an operation in the background."""
@@ -738,6 +748,8 @@ class Operations:
     def run(self, kind: Literal["sweep"], **request: Unpack[SweepRequest]) -> SweepResult: ...
     @overload
     def run(self, kind: Literal["trellis"], **request: Unpack[TrellisRequest]) -> TrellisResult: ...
+    @overload
+    def run(self, kind: Literal["whole"], **request: Unpack[WholeRequest]) -> WholeResult: ...
 
     def run(self, kind: Any, **request: Any) -> JobResult:
         """The result of an operation that runs in the background; given up, it is cancelled."""

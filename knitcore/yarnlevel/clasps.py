@@ -22,6 +22,8 @@ from functools import lru_cache
 import numba
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse.linalg import splu
 
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
@@ -37,6 +39,8 @@ _TILT = np.array([0.0137, 0.0071])
 _PLACES = np.exp(1j * np.array([[0.7, 1.9, 2.6], [2.2, 0.9, 1.3], [1.4, 2.9, 0.5]]))
 """Where (t, x, y) the determinant is taken."""
 _SAME = 1e-6
+_DENSE_UP_TO = 1500
+"""Crossings up to which the determinant is dense; it has four entries in a row."""
 
 
 def clasp_code(lines: Array, width_mm: float, height_mm: float) -> Array:
@@ -187,15 +191,25 @@ def _determinants(found: Array, courses: int, points: int) -> Array:
     codes = []
     for t, x, y in _PLACES:
         sign = t ** found[:, 6]
-        matrix = np.zeros((size, size), complex)
-        np.add.at(matrix, (rows, before), sign * np.where(starts, 1.0 / x, 1.0))
         moved = x ** (found[:, 4] - wrapped) * y ** found[:, 5]
-        np.add.at(matrix, (rows, arc), (1.0 - sign) * moved)
-        np.add.at(matrix, (rows, rows), -1.0)
-        for k in range(len(loose)):
-            matrix[len(found) + k, len(found) + k] = 1.0 - x
-        codes.append(float(np.linalg.slogdet(matrix)[1]))
+        alone = np.arange(len(found), size)
+        entries = np.concatenate([
+            sign * np.where(starts, 1.0 / x, 1.0), (1.0 - sign) * moved,
+            np.full(len(found), -1.0), np.full(len(loose), 1.0 - x),
+        ])  # fmt: skip
+        places = (
+            np.concatenate([rows, rows, rows, alone]),
+            np.concatenate([before, arc, rows, alone]),
+        )
+        codes.append(_log_modulus(sparse.coo_array((entries, places), shape=(size, size))))
     return np.array(codes)
+
+
+def _log_modulus(matrix: sparse.coo_array) -> float:
+    """Logarithm of the modulus of a determinant."""
+    if matrix.shape[0] <= _DENSE_UP_TO:
+        return float(np.linalg.slogdet(matrix.toarray())[1])
+    return float(np.log(np.abs(splu(matrix.tocsc()).U.diagonal())).sum())
 
 
 def _arcs(

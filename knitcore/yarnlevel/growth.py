@@ -21,15 +21,15 @@ from knitcore.yarnlevel.start import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
 from knitcore.yarnlevel.topology import Guard
 from knitcore.yarnlevel.yarn import YarnModel
 
-_FIRST_OPENING = 0.2
+FIRST_OPENING = 0.2
 """Opening of the nearest contact (in shells) with the first core: enough room for smooth steps."""
-_OPENING = 0.02
+OPENING = 0.02
 """Opening of the nearest contact (in shells) with later cores."""
 _STIFFENED = 20.0
 """Factor on the contact stiffness while the core grows."""
 _STAGES = 40
 STAGE = Options(tolerance=1e-3, iterations=12)
-_START_HEIGHT = 0.8
+START_HEIGHT = 0.8
 
 
 @dataclass(frozen=True)
@@ -76,13 +76,13 @@ def grow(
     state = start_state(
         cell,
         float(np.mean(loop_length_mm)),
-        _START_HEIGHT * radius,
+        START_HEIGHT * radius,
         course_per_loop=start.course * COURSE_PER_LOOP,
         wale_per_loop=start.wale * WALE_PER_LOOP,
     )
     state = shaken(cell, state, start.noise * radius, start.seed)
     energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, (), gauge_per_bending)
-    core = _core_that_fits(yarn, _min_distance(energy, state), _FIRST_OPENING)
+    core = core_that_fits(yarn, _min_distance(energy, state), FIRST_OPENING)
     tension: Array | None = None
     steps = evaluations = 0
     for stage in range(_STAGES):
@@ -97,7 +97,7 @@ def grow(
         state, tension = found.state, found.tension
         steps += found.steps
         evaluations += found.evaluations
-        grown = _core_that_fits(yarn, found.min_distance_mm, _OPENING)
+        grown = core_that_fits(yarn, found.min_distance_mm, OPENING)
         stuck = grown <= core and found.converged and stage > 0
         if stuck or grown >= yarn.core_radius_mm:
             break
@@ -105,12 +105,17 @@ def grow(
     # where bending presses weak shells together there is no more room around a grown core
     short = grown < yarn.core_radius_mm
     if short and (core < yarn.core_radius_mm or found.min_distance_mm <= 2.0 * core):
-        raise ConvergenceError(
-            f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
-            f"only {core:.3g} mm fits. Give a longer loop or a thinner core."
-        )
+        raise ConvergenceError(does_not_fit(yarn, core))
     found = minimise(energy, state, tension=tension, options=options, cancelled=cancelled)
     return replace(found, steps=found.steps + steps, evaluations=found.evaluations + evaluations)
+
+
+def does_not_fit(yarn: YarnModel, core_mm: float) -> str:
+    """What to say where only a part of the core fits."""
+    return (
+        f"The yarn does not fit into its loop: of a core radius of {yarn.core_radius_mm:g} mm "
+        f"only {core_mm:.3g} mm fits. Give a longer loop or a thinner core."
+    )
 
 
 def stiffened(yarn: YarnModel) -> YarnModel:
@@ -127,7 +132,7 @@ def shaken(cell: YarnCell, state: Array, noise_mm: float, seed: int) -> Array:
     return moved
 
 
-def _core_that_fits(yarn: YarnModel, distance_mm: float, opening: float) -> float:
+def core_that_fits(yarn: YarnModel, distance_mm: float, opening: float) -> float:
     """Core radius at which the nearest strands are open by a part of the shell."""
     core = (distance_mm - 2.0 * opening * yarn.radius_mm) / (2.0 - 2.0 * opening)
     return float(min(max(core, 0.0), yarn.core_radius_mm))

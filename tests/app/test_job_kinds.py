@@ -23,7 +23,7 @@ from app.store.schema import migrate
 from tests.app.job_requests import job_requests
 from tests.app.jobs import answers, killed_in_the_middle
 
-SLOW = frozenset({"relax", "sweep", "characterise"})
+SLOW = frozenset({"relax", "sweep", "whole", "characterise"})
 """Their own tests wait for what they answer."""
 
 

@@ -1,0 +1,148 @@
+"""Relaxing a whole chart at the yarn level, as a job that goes on where it was stopped."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from app.models.base import Ends, IntervalResult
+from app.models.charts import to_chart
+from app.models.yarn_level import StitchRequest, YarnResult
+from app.operations.context import Context
+from app.operations.registry import Command, Operation
+from knitcore.materials.uncertainty import (
+    YARN_LEVEL_ERRORS,
+    YARN_LEVEL_SIZE_LOG_SD,
+    log_interval,
+)
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.whole import MAX_ROUNDS, Sheet, relax_whole
+
+
+class WholeRequest(StitchRequest):
+    """A chart, its yarn, and when to stop."""
+
+    flat: bool = Field(
+        False, description="Hold the stitches in one plane, as a fabric laid flat; not published."
+    )
+    convention: Convention = Convention.PUBLISHED
+    tolerance: float = Field(
+        1e-4, ge=1e-6, le=0.1,
+        description="Stop when a round changes the energy by less than this part of it.",
+    )  # fmt: skip
+    rounds: int = Field(40, ge=1, le=MAX_ROUNDS, description="Most rounds on each of two grids.")
+    centre_lines: bool = Field(False, description="Return the centre lines of the yarn too.")
+
+
+class WholeResult(IntervalResult):
+    """The shape of a whole chart, free of force; sizes and energies of its mean stitch."""
+
+    kind: Literal["whole"] = "whole"
+    rows: int
+    columns: int
+    cell_course_mm: float
+    cell_wale_mm: float
+    cell_course_interval_mm: Ends = Field(description="90 % interval for knitted cloth.")
+    cell_wale_interval_mm: Ends
+    energy_n_mm: float
+    bending_share: float
+    contact_share: float
+    min_distance_mm: float
+    converged: bool = Field(description="Whether the last round met the tolerance.")
+    seconds: float = Field(description="CPU time since the job was last started.")
+    yarn: YarnResult
+    notes: list[str]
+    centre_lines_mm: list[list[tuple[float, float, float]]] | None = Field(
+        None, description="Bottom course first; each runs once across the chart."
+    )
+
+
+class KeptSheet(BaseModel):
+    """How far a chart has come."""
+
+    controls: list[list[tuple[float, float, float]]]
+    sizes_mm: list[float]
+    tension_n: list[list[float]]
+    core_radius_mm: float
+    fine: bool
+    energies_n_mm: list[float]
+
+    @classmethod
+    def of(cls, sheet: Sheet) -> KeptSheet:
+        """For storage."""
+        return cls(
+            controls=sheet.controls.tolist(), sizes_mm=sheet.sizes_mm.tolist(),
+            tension_n=sheet.tension_n.tolist(), core_radius_mm=sheet.core_radius_mm,
+            fine=sheet.fine, energies_n_mm=list(sheet.energies_n_mm),
+        )  # fmt: skip
+
+    def sheet(self) -> Sheet:
+        """As the library takes it."""
+        return Sheet(
+            np.array(self.controls), np.array(self.sizes_mm), np.array(self.tension_n),
+            self.core_radius_mm, self.fine, tuple(self.energies_n_mm),
+        )  # fmt: skip
+
+
+def whole(request: WholeRequest, context: Context) -> WholeResult:
+    """Shape of least energy of a whole chart of up to 4,000 stitches, which repeats.
+
+    A job that was stopped, or whose machine was, goes on after the last round that ended.
+    """
+    chart = to_chart(request.chart)
+    used = request.yarn(chart, context)
+    inputs: dict[str, Any] = {
+        "chart": chart.text,
+        "used": asdict(used),
+        "asked": request.model_dump(mode="json", include={"flat", "convention"}),
+    }
+    before = context.kept.found(KeptSheet, inputs)
+    found = relax_whole(
+        chart, used.yarn, used.loop_length_mm, convention=request.convention, flat=request.flat,
+        tolerance=request.tolerance, rounds=request.rounds,
+        resume=None if before is None else before.sheet(),
+        kept=lambda sheet: context.kept.keep(inputs, KeptSheet.of(sheet)),
+        progress=context.progress, cancelled=context.cancelled,
+    )  # fmt: skip
+    return WholeResult.of(
+        found,
+        rows=chart.rows,
+        columns=chart.columns,
+        cell_course_interval_mm=log_interval(found.cell_course_mm, YARN_LEVEL_SIZE_LOG_SD),
+        cell_wale_interval_mm=log_interval(found.cell_wale_mm, YARN_LEVEL_SIZE_LOG_SD),
+        interval_source=YARN_LEVEL_ERRORS,
+        yarn=YarnResult.of(used, used.yarn),
+        centre_lines_mm=[line.tolist() for line in found.centre_lines]
+        if request.centre_lines
+        else None,
+    )
+
+
+def _lines(r: WholeResult) -> list[str]:
+    wide, high = r.cell_course_interval_mm, r.cell_wale_interval_mm
+    return [
+        f"chart           {r.columns} columns x {r.rows} rows",
+        f"stitch          {r.cell_course_mm:.3f} mm wide ({wide[0]:.2f} to {wide[1]:.2f}), "
+        f"{r.cell_wale_mm:.3f} mm high ({high[0]:.2f} to {high[1]:.2f})",
+        f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "
+        f"bending, {100 * r.contact_share:.1f} % contact",
+        f"solved          {r.seconds:.1f} s CPU, {'converged' if r.converged else 'NOT converged'}",
+    ]
+
+
+OPERATION = Operation(
+    whole,
+    path=None,
+    tag="yarn level",
+    summary="Relax a whole chart at the yarn level",
+    example={"chart": "KKK\nKKK\nKKK", "material": "acrylic", "tolerance": 0.1},
+    job=True,
+    command=Command(
+        _lines,
+        help="Relax the whole CHART at the yarn level, up to 4,000 stitches: free of force, "
+        "without friction. A stopped command continues where it left off.",
+    ),
+)

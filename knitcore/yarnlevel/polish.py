@@ -1,0 +1,211 @@
+"""Descent of a whole sheet: limited-memory BFGS steps, preconditioned by the factors of windows.
+
+The Hessian of a sheet of thousands of stitches is never made. Its windows' are, once for a descent;
+their factors together are the first guess of its inverse, to which the stiffness of the two sizes
+of a stitch is added. Steps of windows keep the lengths of yarn, so the descent does too, but for
+what yarn passes from window to window; the next descent has its windows elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from knitcore.arrays import Array
+from knitcore.errors import Cancelled, check_cancelled
+from knitcore.yarnlevel.dissection import dissected
+from knitcore.yarnlevel.energy import CellEnergy, Slope
+from knitcore.yarnlevel.fronts import Room, elimination
+from knitcore.yarnlevel.solver import Minimum
+from knitcore.yarnlevel.systems import SparseSystem
+from knitcore.yarnlevel.trajectory import Trajectory
+from knitcore.yarnlevel.windows import Ints, Window, each, window_energy
+
+_PAIR_CAP = 0.3
+_DAMPING = 0.1
+"""Least damping of a window's Hessian, in B / L³."""
+_INDEFINITE_DAMPING = 5.0
+"""Least damping that is tried where it is not positive definite."""
+_GROWTH = 3.0
+_LONGEST = 0.5
+"""Longest step of a window with its factor, in radii: its Hessian is damped until it is shorter."""
+_ANSWER = 8.0
+"""Farthest that a window's control point may move where a size of the stitch changes by one."""
+_MEMORY = 12
+"""Steps whose change of gradient is remembered."""
+_ENOUGH = 1e-4
+"""Part of the predicted decrease that a step has to bring."""
+_SHORTER = 0.3
+_TRIALS = 8
+_PROBE_MM = 1e-6
+"""Change of a size for the stiffness of the sheet."""
+_LEAST_STIFFNESS = 1e-3
+"""Least eigenvalue of that stiffness, relative to the largest."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A window's share of the inverse: its factor, and where its unknowns are in the sheet's."""
+
+    system: SparseSystem
+    lengths: Array
+    unknowns: Ints
+    rows: Ints
+    share: float
+
+
+class _Inverse:
+    """The guess of the sheet's inverse Hessian."""
+
+    def __init__(
+        self, sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], flat: bool
+    ) -> None:
+        self._sheet = sheet
+        self._parts = [_part(sheet, state, tension, window, flat) for window in windows]
+        self._sizes = np.array([self._with_size(k, len(state)) for k in range(2)])
+        here = _gradient(sheet, state, tension)
+        slopes = [
+            (_gradient(sheet, state + _PROBE_MM * move, tension) - here) / _PROBE_MM
+            for move in self._sizes
+        ]
+        stiffness = np.array(slopes) @ self._sizes.T
+        values, vectors = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
+        values = np.maximum(np.abs(values), _LEAST_STIFFNESS * np.abs(values).max())
+        self._stiffness = (vectors * values) @ vectors.T
+
+    def times(self, gradient: Array, excess: Array) -> Array:
+        """The inverse times a gradient (unknowns,), less a step that mends the lengths."""
+        found, _ = self.relaxed(gradient, excess)
+        return np.asarray(
+            np.linalg.solve(self._stiffness, self._sizes @ gradient) @ self._sizes - found
+        )
+
+    def relaxed(self, gradient: Array, excess: Array) -> tuple[Array, Array]:
+        """Newton steps of all windows at once, and the mean change of the tensions (rows,), N."""
+        step = np.zeros(len(gradient))
+        change = np.zeros(len(excess))
+        for part in self._parts:
+            slope = Slope(np.append(gradient[part.unknowns], (0.0, 0.0)), part.lengths)
+            missing = np.zeros(len(part.lengths))
+            missing[: len(part.rows)] = part.share * excess[part.rows]
+            moved, pull = part.system.solve(slope, missing, np.zeros(2))
+            step[part.unknowns] = moved[:-2]
+            change[part.rows] += part.share * pull[: len(part.rows)]
+        return step, change
+
+    def _with_size(self, size: int, unknowns: int) -> Array:
+        """How the windows answer to a change of one size of a stitch, and that change."""
+        out = np.zeros(unknowns)
+        out[size - 2] = 1.0
+        for part in self._parts:
+            rest = Slope(np.zeros(len(part.unknowns) + 2), part.lengths)
+            moved, _ = part.system.solve(rest, np.zeros(len(part.lengths)), np.eye(2)[size])
+            out[part.unknowns] = moved[:-2]
+        return out
+
+
+def polished(
+    sheet: CellEnergy, state: Array, tension: Array, windows: list[Window], *, flat: bool,
+    steps: int, cancelled: Cancelled | None = None,
+) -> Minimum:  # fmt: skip
+    """Lower the energy of a whole sheet, its two sizes included, along certified steps.
+
+    Parameters
+    ----------
+    sheet : energy of a plain periodic cell, without a plane of its own.
+    state : unknowns to begin with.
+    tension : (rows,) of the courses, N.
+    windows : cover the sheet without overlap.
+    flat : keep the middle of every stitch where it is.
+    steps : most steps.
+    """
+    path = Trajectory(sheet, state, _PAIR_CAP)
+    inverse = _Inverse(sheet, state, tension, windows, flat)
+    slope = path.slope(tension, hessian=False)
+    tension = tension + inverse.relaxed(slope.gradient, path.here.terms.excess_mm)[1]
+    past: deque[tuple[Array, Array]] = deque(maxlen=_MEMORY)
+    slope = path.slope(tension, hessian=False)
+    taken = 0
+    while taken < steps:
+        check_cancelled(cancelled)
+        terms, gradient = path.here.terms, slope.gradient
+        step = -_two_loops(inverse, past, gradient, terms.excess_mm)
+        before = sheet.merit(terms, tension)
+        pull = sheet.penalty * terms.excess_mm @ slope.lengths
+        downhill = min(float((gradient + pull) @ step), 0.0)
+        for _ in range(_TRIALS):
+            found = path.certified(step)
+            wanted = _ENOUGH * found.fraction * downhill
+            if sheet.merit(found.to.terms, tension) < before + wanted:
+                break
+            step, downhill = _SHORTER * step, _SHORTER * downhill
+        else:
+            break
+        moved = found.to.state - path.here.state
+        path.advance(found)
+        slope = path.slope(tension, hessian=False)
+        if moved @ (slope.gradient - gradient) > 0.0:
+            past.append((moved, slope.gradient - gradient))
+        taken += 1
+    here = path.here
+    return Minimum(
+        state=here.state, tension=tension, terms=here.terms, force=slope.gradient[-2:].copy(),
+        min_distance_mm=path.min_distance_mm, converged=False, stable=False, steps=taken,
+        evaluations=taken,
+    )  # fmt: skip
+
+
+def _part(sheet: CellEnergy, state: Array, tension: Array, window: Window, flat: bool) -> _Part:
+    rows, wales = window
+    none = np.zeros(sheet.cell.rows)
+    controls = sheet.cell.controls(state)
+    energy, here = window_energy(sheet, controls, state[-2:], window, none, flat=flat)
+    curve = energy.curve(here)
+    pairs, start = energy.pairs(curve, here, 2.0 * sheet.yarn.radius_mm)
+    pulls = np.concatenate([tension[rows.own], np.zeros(len(energy.held))])
+    slope = energy.derivatives(here, curve, pairs, start, pulls, sparse=True)
+    assert slope.sparse is not None  # noqa: S101 - asked for
+    touching = slope.sparse.touching
+    free = np.arange(len(here)) < len(here) - 2
+    fronts = elimination(touching, dissected(touching))
+    system = SparseSystem(slope, energy.penalty, free, fronts, Room())
+    unit = sheet.unit / sheet.mean_loop_mm**2
+    damping, longest = _DAMPING, _LONGEST * sheet.yarn.radius_mm
+    while not (system.factorise(damping * unit) and _is_short(system, slope, longest)):
+        damping = max(_GROWTH * damping, _INDEFINITE_DAMPING)
+    places = np.arange(controls.size).reshape(controls.shape)
+    places = places[np.ix_(rows.stitches, each(wales.stitches, sheet.cell.grid.controls))]
+    unknowns = places[energy.cell.free].ravel()
+    return _Part(system, slope.lengths, unknowns, rows.own, len(wales.own) / sheet.cell.wales)
+
+
+def _is_short(system: SparseSystem, slope: Slope, longest_mm: float) -> bool:
+    """Whether a window's Newton step, and its answers to the sizes, move no point too far."""
+    none = np.zeros(len(slope.lengths))
+    still = Slope(np.zeros(len(slope.gradient)), slope.lengths)
+    steps = [(slope, np.zeros(2), longest_mm), *((still, size, _ANSWER) for size in np.eye(2))]
+    return all(np.abs(system.solve(at, none, by)[0]).max() < most for at, by, most in steps)
+
+
+def _gradient(sheet: CellEnergy, state: Array, tension: Array) -> Array:
+    """Of the Lagrangian, at any state."""
+    curve = sheet.curve(state)
+    pairs, start = sheet.pairs(curve, state, 2.0 * sheet.yarn.radius_mm)
+    return sheet.derivatives(state, curve, pairs, start, tension, hessian=False).gradient
+
+
+def _two_loops(
+    inverse: _Inverse, past: deque[tuple[Array, Array]], gradient: Array, excess: Array
+) -> Array:
+    """The inverse times a gradient, with what the last steps tell of it (Nocedal 1980)."""
+    found = gradient.copy()
+    weights = []
+    for moved, turned in reversed(past):
+        weights.append(moved @ found / (moved @ turned))
+        found -= weights[-1] * turned
+    found = inverse.times(found, excess)
+    for (moved, turned), weight in zip(past, reversed(weights), strict=True):
+        found += moved * (weight - turned @ found / (moved @ turned))
+    return found

@@ -1,0 +1,357 @@
+"""A whole chart at the yarn level: its windows relaxed in turn, and the sheet together.
+
+A cell of thousands of stitches is too large for one factor. Its shape is found in rounds. A sweep
+relaxes windows one after the other by Newton steps, each with the yarn around it at rest (the
+alternating method of Schwarz); where the next round's windows end lies in the middle of this
+one's. Long waves, the sizes of the sheet, and yarn that passes along a course take many sweeps;
+these come from a descent of all unknowns at once (:mod:`knitcore.yarnlevel.polish`).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from knitcore.arrays import Array
+from knitcore.bounds import check_range
+from knitcore.chart import StitchChart, check_stitches
+from knitcore.errors import (
+    Cancelled,
+    ConvergenceError,
+    InputError,
+    UnravelledError,
+    check_cancelled,
+)  # fmt: skip
+from knitcore.yarnlevel.cell import plain_cell
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, STIFF_GAUGE_PER_BENDING, CellEnergy
+from knitcore.yarnlevel.growth import (
+    FIRST_OPENING,
+    OPENING,
+    START_HEIGHT,
+    core_that_fits,
+    does_not_fit,
+    stiffened,
+)  # fmt: skip
+from knitcore.yarnlevel.limits import check_loop
+from knitcore.yarnlevel.polish import polished
+from knitcore.yarnlevel.results import Branch
+from knitcore.yarnlevel.search import RELAXED, UNSETTLED, outcome
+from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
+from knitcore.yarnlevel.splines import COARSE, ROUGH, RelaxedRepeat, relaxed_repeat
+from knitcore.yarnlevel.start import start_state
+from knitcore.yarnlevel.tiling import refined_state
+from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.trajectory import SKIN
+from knitcore.yarnlevel.windows import Ints, Window, each, row_lengths, window_energy, windows
+from knitcore.yarnlevel.yarn import YarnModel
+
+MAX_STITCHES_WHOLE = 4_000
+"""Largest chart that is relaxed as a whole."""
+MAX_ROUNDS = 200
+_WINDOW = 8
+"""Most rows and wales of a window."""
+_FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 2, 0))
+"""Where the first window of a round begins."""
+_GROWING = Options(tolerance=1e-3, iterations=4)
+_SWEEP = Options(tolerance=1e-6, iterations=3)
+_LAST_SWEEP = Options(tolerance=1e-6, iterations=6)
+_DESCENT_STEPS = 60
+_PATIENCE = 12
+"""Sweeps in which a core may fail to grow."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A chart on its way to its shape of least energy, from which it can be continued.
+
+    Attributes
+    ----------
+    controls : (rows, controls, 3) control points, mm, without the drift of the cell.
+    sizes_mm : (2,) size of a stitch.
+    tension_n : (rows, wales).
+    core_radius_mm : core that the yarn has so far.
+    fine : whether it is on the finer of the two grids.
+    energies_n_mm : of a stitch, after each round on this grid.
+    """
+
+    controls: Array
+    sizes_mm: Array
+    tension_n: Array
+    core_radius_mm: float
+    fine: bool = False
+    energies_n_mm: tuple[float, ...] = ()
+
+    @property
+    def state(self) -> Array:
+        """Unknowns of the plain cell."""
+        return np.concatenate([self.controls.ravel(), self.sizes_mm])
+
+    @property
+    def change(self) -> float:
+        """Relative change of the energy in the last round; infinite before the second."""
+        if len(self.energies_n_mm) < 2:
+            return float("inf")
+        before, now = self.energies_n_mm[-2:]
+        return abs(before - now) / now
+
+
+def relax_whole(
+    chart: StitchChart,
+    yarn: YarnModel,
+    loop_length_mm: ArrayLike,
+    *,
+    convention: Convention | str = Convention.PUBLISHED,
+    flat: bool = False,
+    tolerance: float = 1e-4,
+    rounds: int = 40,
+    resume: Sheet | None = None,
+    kept: Callable[[Sheet], None] | None = None,
+    progress: Callable[[float, float], None] | None = None,
+    cancelled: Cancelled | None = None,
+) -> RelaxedRepeat:
+    """Shape of least energy of a chart of up to some thousand stitches, free of force.
+
+    The chart repeats; no symmetry is imposed. What is found is told honestly: ``converged`` says
+    whether the energy changed by less than the tolerance in the last round, and a note gives that
+    change and the largest force that is left.
+
+    Parameters
+    ----------
+    chart : the chart, taken as it stands.
+    yarn : the yarn.
+    loop_length_mm : mm of yarn per stitch, one number or one for every course, bottom first.
+    convention : factors of the energy.
+    flat : hold the middles of all stitches in one plane, as in a fabric laid flat, without folds.
+    tolerance : relative change of the energy in a round at which to stop.
+    rounds : most rounds on each of the two grids.
+    resume : where an earlier call was, as it gave it to ``kept``.
+    kept : called with the sheet after every round.
+    progress : called with (done, total).
+    cancelled : called before every step; True stops with CancelledError.
+
+    Raises
+    ------
+    InputError
+        If the loop is too short or too long for the yarn, the chart is too large, or ``resume`` is
+        of another chart.
+    ConvergenceError
+        If the yarn does not fit into its loop.
+    UnravelledError
+        If the stitches come undone.
+    CancelledError
+        If ``cancelled`` says so.
+    """
+    check_stitches(chart.stitches, MAX_STITCHES_WHOLE, "a whole chart")
+    check_range("tolerance", tolerance, 1e-6, 0.1)
+    check_range("rounds", rounds, 1, MAX_ROUNDS)
+    lengths = np.asarray(loop_length_mm, dtype=float)
+    if lengths.ndim > 1 or lengths.size not in (1, chart.rows):
+        raise InputError(
+            "loop_length_mm",
+            f"{lengths.size} lengths were given for {chart.rows} courses.",
+            "Give one length, or one for every course.",
+        )
+    for length in np.unique(lengths):
+        check_loop(yarn, float(length))
+    work = _Work(
+        chart, yarn, np.resize(lengths, chart.rows), Convention.parse(convention), flat,
+        tolerance, rounds, kept, progress, cancelled,
+    )  # fmt: skip
+    return work.relaxed(resume)
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    chart: StitchChart
+    yarn: YarnModel
+    loop_lengths_mm: Array
+    convention: Convention
+    flat: bool
+    tolerance: float
+    rounds: int
+    kept: Callable[[Sheet], None] | None
+    progress: Callable[[float, float], None] | None
+    cancelled: Cancelled | None
+
+    def relaxed(self, resume: Sheet | None) -> RelaxedRepeat:
+        clock = time.process_time()
+        sheet = self._first() if resume is None else self._checked(resume)
+        if not sheet.fine:
+            sheet = self._settled(self._grown(sheet))
+            sheet = self._refined(sheet)
+        sheet = self._settled(self._grown(sheet))
+        sheet = self._swept(sheet, self.energy(sheet), _LAST_SWEEP)
+        energy = self.energy(sheet)
+        found, left_n = self._minimum(energy, sheet)
+        became = outcome(energy, found)
+        if became not in (RELAXED, UNSETTLED):
+            raise UnravelledError(f"The relaxed chart is not a fabric: {became}.")
+        note = (
+            f"In the last round its energy changed by {sheet.change:.1e} of itself; forces of up "
+            f"to {left_n:.1e} N are left on the yarn."
+        )
+        return relaxed_repeat(
+            self.chart, replace(energy, flat=self.flat), Branch.FREE, found,
+            seconds=time.process_time() - clock, evaluations=0, notes=(note,),
+        )  # fmt: skip
+
+    def energy(self, sheet: Sheet) -> CellEnergy:
+        """Energy of the whole sheet."""
+        grid, gauge = (
+            (COARSE, GAUGE_PER_BENDING) if sheet.fine else (ROUGH, STIFF_GAUGE_PER_BENDING)
+        )
+        return CellEnergy(
+            plain_cell(self.chart, grid), self.yarn, self.loop_lengths_mm, self.convention,
+            gauge_per_bending=gauge,
+        )  # fmt: skip
+
+    def _first(self) -> Sheet:
+        cell = plain_cell(self.chart, ROUGH)
+        height = START_HEIGHT * self.yarn.radius_mm
+        state = start_state(cell, float(self.loop_lengths_mm.mean()), height)
+        sheet = Sheet(cell.controls(state), state[-2:], np.zeros(self.chart.purl.shape), 0.0)
+        return self._fitted(sheet, FIRST_OPENING)
+
+    def _checked(self, resume: Sheet) -> Sheet:
+        grid = COARSE if resume.fine else ROUGH
+        if resume.controls.shape != (self.chart.rows, self.chart.columns * grid.controls, 3):
+            raise InputError("resume", "belongs to another chart.", "Leave it out.")
+        return resume
+
+    def _fitted(self, sheet: Sheet, opening: float) -> Sheet:
+        """The sheet with as thick a core as fits."""
+        distance = self._guard(self.energy(sheet), sheet).min_distance_mm
+        core = core_that_fits(self.yarn, distance, opening)
+        return replace(sheet, core_radius_mm=core)
+
+    def _grown(self, sheet: Sheet) -> Sheet:
+        """The sheet with its yarn's whole core."""
+        stuck = 0
+        for round_ in range(MAX_ROUNDS):
+            if sheet.core_radius_mm >= self.yarn.core_radius_mm:
+                return sheet
+            if stuck > _PATIENCE:
+                break
+            yarn = stiffened(replace(self.yarn, core_radius_mm=sheet.core_radius_mm))
+            energy = replace(self.energy(sheet), yarn=yarn)
+            grown = self._fitted(self._swept(sheet, energy, _GROWING, round_), OPENING)
+            stuck = 0 if grown.core_radius_mm > sheet.core_radius_mm else stuck + 1
+            core = max(sheet.core_radius_mm, grown.core_radius_mm)
+            sheet = replace(grown, core_radius_mm=core)
+            self._tell(sheet)
+        raise ConvergenceError(does_not_fit(self.yarn, sheet.core_radius_mm))
+
+    def _settled(self, sheet: Sheet) -> Sheet:
+        """Rounds until the energy settles."""
+        while sheet.change > self.tolerance and len(sheet.energies_n_mm) < self.rounds:
+            number = len(sheet.energies_n_mm)
+            energy = self.energy(sheet)
+            sheet = self._swept(sheet, energy, _SWEEP, number)
+            found = polished(
+                energy, sheet.state, sheet.tension_n.mean(axis=1),
+                self._windows(energy, sheet, number), flat=self.flat, steps=_DESCENT_STEPS,
+                cancelled=self.cancelled,
+            )  # fmt: skip
+            per_stitch = found.terms.energy / energy.cell.stitches
+            sheet = replace(
+                sheet, controls=energy.cell.controls(found.state), sizes_mm=found.state[-2:],
+                tension_n=np.tile(found.tension[:, None], energy.cell.wales),
+                energies_n_mm=(*sheet.energies_n_mm, per_stitch),
+            )  # fmt: skip
+            self._tell(sheet)
+        return sheet
+
+    def _refined(self, sheet: Sheet) -> Sheet:
+        """The sheet on the finer grid."""
+        fine = plain_cell(self.chart, COARSE)
+        state = refined_state(plain_cell(self.chart, ROUGH), sheet.state, fine)
+        refined = replace(sheet, controls=fine.controls(state), fine=True, energies_n_mm=())
+        # between the old samples the cores may overlap
+        return self._fitted(refined, OPENING)
+
+    def _swept(self, sheet: Sheet, energy: CellEnergy, options: Options, number: int = 0) -> Sheet:
+        """The sheet after its windows have been relaxed in turn."""
+        controls, tension = sheet.controls.copy(), sheet.tension_n.copy()
+        curve = energy.curve(sheet.state)
+        missing = energy.loop_length_mm - row_lengths(energy.cell, curve) / energy.cell.wales
+        failed = 0
+        covering = self._windows(energy, sheet, number)
+        for window in covering:
+            check_cancelled(self.cancelled)
+            rows, wales = window
+            part, state = window_energy(
+                energy, controls, sheet.sizes_mm, window, missing, flat=self.flat
+            )
+            pulls = tension[np.ix_(rows.own, wales.own)].mean(axis=1)
+            try:
+                found = minimise(
+                    part, state, tension=np.concatenate([pulls, np.zeros(len(part.held))]),
+                    fixed=(COURSE, WALE), options=options, cancelled=self.cancelled,
+                )  # fmt: skip
+            except (ConvergenceError, UnravelledError):  # the next windows divide it elsewhere
+                failed += 1
+                continue
+            place = np.ix_(rows.stitches, each(wales.stitches, energy.cell.grid.controls))
+            block = controls[place]
+            block[part.cell.free] = found.state[:-2].reshape(-1, 3)
+            controls[place] = block
+            tension[np.ix_(rows.own, wales.own)] = found.tension[: len(rows.own), None]
+        if failed == len(covering):
+            raise UnravelledError("No window of the chart could be relaxed.")
+        return replace(sheet, controls=controls, tension_n=tension)
+
+    def _windows(self, energy: CellEnergy, sheet: Sheet, number: int) -> list[Window]:
+        """Windows with as many resting stitches around them as strands reach."""
+        pairs = self._guard(energy, sheet).pairs
+        course: Ints = np.repeat(np.arange(energy.cell.rows), len(energy.cell.place))
+        place = np.tile(energy.cell.place, energy.cell.rows)
+        one, other, across, up = pairs[:, :4].T
+        reach = (
+            np.abs(course[other] + energy.cell.rows * up - course[one]),
+            np.abs(place[other] + energy.cell.wales * across - place[one]),
+        )
+        around = [int(np.ceil(distance.max(initial=1.0))) for distance in reach]
+        first = _FIRSTS[number % len(_FIRSTS)]
+        return windows(energy.cell.purl.shape, _WINDOW, (around[0], around[1]), first)
+
+    def _guard(self, energy: CellEnergy, sheet: Sheet) -> Guard:
+        reach = (2.0 + SKIN) * self.yarn.radius_mm
+        curve = energy.curve(sheet.state)
+        pairs, _ = energy.pairs(curve, sheet.state, reach)
+        return Guard(energy.cell, sheet.state, curve, pairs, reach, 2.0 * self.yarn.radius_mm)
+
+    def _minimum(self, energy: CellEnergy, sheet: Sheet) -> tuple[Minimum, float]:
+        """The sheet as a minimum, and the largest force that is left, N."""
+        guard = self._guard(energy, sheet)
+        terms = energy.value(sheet.state, guard.curve, guard.pairs)
+        tension = sheet.tension_n.mean(axis=1)
+        start = np.searchsorted(guard.pairs[:, 0], np.arange(len(guard.curve) + 1))
+        slope = energy.derivatives(
+            sheet.state, guard.curve, guard.pairs, start, tension, hessian=False
+        )
+        left = slope.gradient[:-2].reshape(*sheet.controls.shape)
+        if self.flat:  # the plane carries the mean over a stitch
+            heights = left[..., 2].reshape(*self.chart.purl.shape, -1)
+            heights -= heights.mean(axis=2, keepdims=True)
+        found = Minimum(
+            state=sheet.state, tension=tension, terms=terms, force=slope.gradient[-2:].copy(),
+            min_distance_mm=guard.min_distance_mm, converged=sheet.change <= self.tolerance,
+            stable=False, steps=0, evaluations=0,
+        )  # fmt: skip
+        return found, float(np.abs(left).max())
+
+    def _tell(self, sheet: Sheet) -> None:
+        if self.kept is not None:
+            self.kept(sheet)
+        if self.progress is not None:
+            # the logarithm of the change falls about evenly
+            there = max(sheet.change, self.tolerance)
+            near = np.log(min(there, 1.0)) / np.log(self.tolerance) if there < np.inf else 0.0
+            share = max(float(near), len(sheet.energies_n_mm) / self.rounds)
+            grown = sheet.core_radius_mm / self.yarn.core_radius_mm
+            self.progress(0.1 * grown + (0.6 if sheet.fine else 0.0) + 0.3 * share, 1.0)

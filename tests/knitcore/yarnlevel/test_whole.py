@@ -1,0 +1,145 @@
+"""Whole charts: windows of a sheet, sweeps and the descent of the whole."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from knitcore.chart import StitchChart
+from knitcore.errors import CancelledError, InputError
+from knitcore.fabric import Fabric
+from knitcore.yarnlevel.cell import plain_cell
+from knitcore.yarnlevel.conventions import Convention
+from knitcore.yarnlevel.energy import CellEnergy
+from knitcore.yarnlevel.growth import FIRST_OPENING, core_that_fits
+from knitcore.yarnlevel.relax import relax
+from knitcore.yarnlevel.results import Branch
+from knitcore.yarnlevel.samples import sample
+from knitcore.yarnlevel.spline import SplineGrid
+from knitcore.yarnlevel.start import start_state
+from knitcore.yarnlevel.topology import Guard
+from knitcore.yarnlevel.whole import Sheet, relax_whole
+from knitcore.yarnlevel.windows import row_lengths, window_energy, windows
+
+SAMPLE = sample("acrylic", Fabric.STOCKINETTE)
+ROWS, WALES = 9, 8
+PURL = np.random.default_rng(3).random((ROWS, WALES)) < 0.3
+
+
+@pytest.fixture(scope="module")
+def sheet() -> tuple[CellEnergy, np.ndarray]:
+    """A first shape of a chart, with a core that fits into it."""
+    cell = plain_cell(StitchChart(PURL), SplineGrid(12, 4))
+    lengths = np.full(ROWS, SAMPLE.loop_length_mm)
+    energy = CellEnergy(cell, SAMPLE.yarn, lengths, Convention.PUBLISHED)
+    state = start_state(cell, SAMPLE.loop_length_mm, 0.8 * SAMPLE.yarn.radius_mm)
+    curve = energy.curve(state)
+    touch = 2.0 * SAMPLE.yarn.radius_mm
+    pairs, _ = energy.pairs(curve, state, touch)
+    nearest = Guard(cell, state, curve, pairs, touch, touch).min_distance_mm
+    core = core_that_fits(SAMPLE.yarn, nearest, FIRST_OPENING)
+    return replace(energy, yarn=replace(SAMPLE.yarn, core_radius_mm=core)), state
+
+
+def _slope(energy: CellEnergy, state: np.ndarray, tension: np.ndarray) -> np.ndarray:
+    curve = energy.curve(state)
+    pairs, start = energy.pairs(curve, state, 2.0 * energy.yarn.radius_mm)
+    return energy.derivatives(state, curve, pairs, start, tension, hessian=False).gradient
+
+
+@pytest.mark.parametrize("first", [(0, 0), (2, 3), (8, 7)])
+def test_windows_cover_every_stitch_once(first: tuple[int, int]) -> None:
+    seen = np.zeros((ROWS, WALES), int)
+    for rows, wales in windows((ROWS, WALES), 3, (2, 2), first):
+        seen[np.ix_(rows.own, wales.own)] += 1
+    assert np.all(seen == 1)
+
+
+def test_a_window_has_the_slopes_of_the_sheet(sheet: tuple[CellEnergy, np.ndarray]) -> None:
+    whole, state = sheet
+    tension = np.linspace(-1e-3, 2e-3, ROWS)
+    gradient = _slope(whole, state, tension)[:-2].reshape(ROWS, -1, 3)
+    controls, sizes = whole.cell.controls(state), state[-2:]
+    for window in windows((ROWS, WALES), 3, (2, 2), (7, 2))[:4]:
+        rows, wales = window
+        part, own = window_energy(whole, controls, sizes, window, np.zeros(ROWS), flat=False)
+        found = _slope(part, own, tension[rows.own])[:-2]
+        places = (wales.stitches[:, None] * 12 + np.arange(12)).ravel()
+        wanted = gradient[np.ix_(rows.stitches, places)][part.cell.free].ravel()
+        assert np.allclose(found, wanted, rtol=1e-9, atol=1e-12)
+
+
+def test_the_slopes_of_a_window_are_those_of_its_energy(
+    sheet: tuple[CellEnergy, np.ndarray],
+) -> None:
+    whole, state = sheet
+    window = windows((ROWS, WALES), 3, (2, 2), (0, 0))[0]
+    controls = whole.cell.controls(state)
+    part, own = window_energy(whole, controls, state[-2:], window, np.zeros(ROWS), flat=True)
+    pulls = np.linspace(0.5e-3, 1e-3, part.constraints)
+    curve = part.curve(own)
+    pairs, _ = part.pairs(curve, own, 2.5 * whole.yarn.radius_mm)
+    direction = np.append(np.random.default_rng(1).standard_normal(len(own) - 2), (0.0, 0.0))
+
+    def merit(step: float) -> float:
+        moved = own + step * direction
+        terms = part.value(moved, part.curve(moved), pairs)
+        return terms.energy + terms.gauge + float(pulls @ terms.excess_mm)
+
+    along = (merit(1e-6) - merit(-1e-6)) / 2e-6
+    assert along == pytest.approx(float(_slope(part, own, pulls) @ direction), rel=1e-5)
+
+
+def test_the_lengths_of_windows_add_up_to_those_of_the_courses(
+    sheet: tuple[CellEnergy, np.ndarray],
+) -> None:
+    whole, state = sheet
+    missing = np.linspace(0.0, 0.1, ROWS)
+    lengths = row_lengths(whole.cell, whole.curve(state))
+    gained = np.zeros(ROWS)
+    for window in windows((ROWS, WALES), 3, (2, 2), (0, 0)):
+        part, own = window_energy(
+            whole, whole.cell.controls(state), state[-2:], window, missing, flat=False
+        )
+        gained[window[0].own] -= part.excess(own, part.curve(own))
+    assert np.allclose(gained, WALES * missing)
+    assert lengths.shape == (ROWS,)
+
+
+def test_wrong_input_is_refused() -> None:
+    chart = StitchChart(PURL)
+    with pytest.raises(InputError, match="3 lengths were given for 9 courses"):
+        relax_whole(chart, SAMPLE.yarn, [11.0, 11.0, 11.0])
+    with pytest.raises(InputError, match="tolerance"):
+        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=0.5)
+    other = Sheet(np.zeros((2, 24, 3)), np.ones(2), np.zeros((2, 2)), 0.1)
+    with pytest.raises(InputError, match="another chart"):
+        relax_whole(chart, SAMPLE.yarn, SAMPLE.loop_length_mm, resume=other)
+
+
+def test_a_whole_chart_can_be_cancelled() -> None:
+    with pytest.raises(CancelledError):
+        relax_whole(StitchChart(PURL), SAMPLE.yarn, SAMPLE.loop_length_mm, cancelled=lambda: True)
+
+
+@pytest.mark.slow
+def test_a_whole_chart_of_stockinette_relaxes_like_one_stitch_and_can_be_resumed() -> None:
+    chart = StitchChart(np.zeros((10, 13), bool))
+    one = relax(StitchChart.parse("K"), SAMPLE.yarn, SAMPLE.loop_length_mm)
+    sheets: list[Sheet] = []
+    shares: list[float] = []
+    whole = relax_whole(
+        chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=1e-3, kept=sheets.append,
+        progress=lambda done, total: shares.append(done / total),
+    )  # fmt: skip
+    assert whole.converged
+    assert whole.branch is Branch.FREE
+    assert whole.energy_n_mm == pytest.approx(one.energy_n_mm, rel=2e-3)
+    assert whole.cell_course_mm == pytest.approx(one.cell_course_mm, rel=5e-3)
+    assert whole.cell_wale_mm == pytest.approx(one.cell_wale_mm, rel=5e-3)
+    assert "forces of up to" in whole.notes[0]
+    assert 0.0 <= min(shares) <= max(shares) <= 1.0
+    again = relax_whole(
+        chart, SAMPLE.yarn, SAMPLE.loop_length_mm, tolerance=1e-3, resume=sheets[-1]
+    )
+    assert again.energy_n_mm == pytest.approx(whole.energy_n_mm, rel=1e-6)
