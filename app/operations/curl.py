@@ -10,8 +10,8 @@ from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import Known, RequestModel, ResultModel
-from app.models.charts import ChartInput, MaterialName, OutlineInput, to_chart
-from app.models.laws import LawsRequest
+from app.models.charts import OutlineInput
+from app.models.laws import FabricRequest
 from app.models.posed import PosedView
 from app.models.weighed import Corners, TimeLimit, corners_of
 from app.operations.context import Context
@@ -34,11 +34,9 @@ class PullInput(RequestModel):
     strain: float = Field(gt=0, le=1, description="From clamp to clamp: 0.3 is 30 %.")
 
 
-class CurlRequest(LawsRequest):
+class CurlRequest(FabricRequest):
     """A whole piece whose edges are free, all or beside two clamps."""
 
-    chart: ChartInput
-    material: MaterialName
     outline: OutlineInput = None
     pull: PullInput | None = Field(None, description="By clamps, whose free sides curl.")
     corners: bool = Field(False, description="Also return the corners of all stitches.")
@@ -83,7 +81,7 @@ def curl(request: CurlRequest, context: Context) -> Viewed[CurlResult]:
 
 
 def _curled(request: CurlRequest, context: Context) -> CurledPiece:
-    chart, material = to_chart(request.chart), context.material(request.material)
+    chart, material = request.fabric(context)
     stitches = None if request.outline is None else outline_marks(request.outline)
     if stitches is not None and stitches.shape == chart.purl.shape and stitches.any():
         chart = ShapedChart(chart, stitches).continued()

@@ -12,8 +12,7 @@ from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
-from app.models.charts import ChartInput, MaterialName, to_chart
-from app.models.laws import LawsRequest
+from app.models.laws import FabricRequest
 from app.models.posed import Body, PosedView
 from app.operations.context import Context
 from app.operations.perform import Viewed
@@ -48,11 +47,9 @@ class Girth(RequestModel):
     )
 
 
-class LimbRequest(LawsRequest):
+class LimbRequest(FabricRequest):
     """A tube of a chart, and a limb by its girths."""
 
-    chart: ChartInput
-    material: MaterialName
     direction: Direction = Field(Direction.COURSE, description="Around the limb.")
     girths: list[Girth] = Field(
         min_length=2,
@@ -142,7 +139,7 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
         a tube, or the material lacks a fabric of the chart.
     """
     rests = [g.rest_mm for g in request.girths if g.rest_mm is not None]
-    answer = choose(to_chart(request.chart), context.material(request.material))
+    answer = choose(*request.fabric(context))
     source = in_a_sentence(answer.stretch_errors)
     if not rests:
         tube = _tube(request, context)
@@ -163,11 +160,11 @@ def limb(request: LimbRequest, context: Context) -> Viewed[LimbResult]:
 
 
 def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
-    chart = to_chart(request.chart)
+    chart, material = request.fabric(context)
     check_stitches(chart.stitches, MAX_STITCHES)
     girths = request.girths
     on = Limb(tuple(g.at_mm for g in girths), tuple(g.girth_mm for g in girths))
-    return worn_tube(chart, context.material(request.material), on, request.direction)
+    return worn_tube(chart, material, on, request.direction)
 
 
 def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
@@ -231,7 +228,7 @@ def _and_write(request: LimbRequest, context: Context, out: Path | None) -> View
     if out is not None:
         if any(girth.rest_mm is not None for girth in request.girths):
             raise InputError("out", "needs a tube that is the whole chart.", "Leave REST out.")
-        chart, material = to_chart(request.chart), context.material(request.material)
+        chart, material = request.fabric(context)
         out.write_bytes(write_curled_glb(chart, _tube(request, context).corners_mm, material))
     return limb(request, context)
 
