@@ -138,6 +138,13 @@ class AsyncClient(AsyncOperations):
         strokes = {"rows": rows, "columns": columns, "runs": runs}
         return await self._post(Painted, f"/designs/{design}/strokes", strokes)
 
+    async def watch(self, design: str) -> AsyncIterator[tuple[str, int]]:
+        """What happens to a design: ``others`` and how many more follow it, or ``changed`` and its
+        new revision.
+        """
+        async for kind, number in self._events(f"/designs/{design}/events"):
+            yield kind, int(number)
+
     async def duplicate(self, design: str) -> Design:
         """A new design with the same content."""
         return await self._make(Design, f"/designs/{design}/duplicate")
@@ -202,7 +209,7 @@ class AsyncClient(AsyncOperations):
     async def follow(self, job: str) -> AsyncIterator[JobStatus]:
         """A job's states and progress until it ends."""
         while True:
-            async for data in self._events(f"/jobs/{job}/events"):
+            async for _, data in self._events(f"/jobs/{job}/events"):
                 status = JobStatus.model_validate_json(data)
                 yield status
                 if status.state not in ("waiting", "running"):
@@ -253,7 +260,7 @@ class AsyncClient(AsyncOperations):
 
     async def clicks(self, design: str) -> AsyncIterator[Focus]:
         """Stitches that somebody clicks in the view, until it is closed."""
-        async for data in self._events(f"/views/{design}/events"):
+        async for _, data in self._events(f"/views/{design}/events"):
             stitch: Focus = json.loads(data)
             yield stitch
 
@@ -303,8 +310,8 @@ class AsyncClient(AsyncOperations):
                 await self.cancel(job)
         return await self.result(job)
 
-    async def _events(self, path: str) -> AsyncIterator[str]:
-        """Data of server-sent events, until the service ends them."""
+    async def _events(self, path: str) -> AsyncIterator[tuple[str, str]]:
+        """Kind and data of server-sent events, until the service ends them."""
         attempt = 1
         while True:
             try:
@@ -313,9 +320,13 @@ class AsyncClient(AsyncOperations):
                         await stream.aread()
                         await asyncio.sleep(wait_s(stream, attempt))
                     else:
+                        kind = ""
                         async for line in stream.aiter_lines():
-                            if line.startswith("data: "):
-                                yield line.removeprefix("data: ")
+                            field, _, value = line.partition(": ")
+                            if field == "event":
+                                kind = value
+                            elif field == "data":
+                                yield kind, value
                                 attempt = 0
                         return
             except httpx.TransportError:

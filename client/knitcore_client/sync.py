@@ -138,6 +138,13 @@ class Client(Operations):
         strokes = {"rows": rows, "columns": columns, "runs": runs}
         return self._post(Painted, f"/designs/{design}/strokes", strokes)
 
+    def watch(self, design: str) -> Iterator[tuple[str, int]]:
+        """What happens to a design: ``others`` and how many more follow it, or ``changed`` and its
+        new revision.
+        """
+        for kind, number in self._events(f"/designs/{design}/events"):
+            yield kind, int(number)
+
     def duplicate(self, design: str) -> Design:
         """A new design with the same content."""
         return self._make(Design, f"/designs/{design}/duplicate")
@@ -202,7 +209,7 @@ class Client(Operations):
     def follow(self, job: str) -> Iterator[JobStatus]:
         """A job's states and progress until it ends."""
         while True:
-            for data in self._events(f"/jobs/{job}/events"):
+            for _, data in self._events(f"/jobs/{job}/events"):
                 status = JobStatus.model_validate_json(data)
                 yield status
                 if status.state not in ("waiting", "running"):
@@ -253,7 +260,7 @@ class Client(Operations):
 
     def clicks(self, design: str) -> Iterator[Focus]:
         """Stitches that somebody clicks in the view, until it is closed."""
-        for data in self._events(f"/views/{design}/events"):
+        for _, data in self._events(f"/views/{design}/events"):
             stitch: Focus = json.loads(data)
             yield stitch
 
@@ -301,8 +308,8 @@ class Client(Operations):
                 self.cancel(job)
         return self.result(job)
 
-    def _events(self, path: str) -> Iterator[str]:
-        """Data of server-sent events, until the service ends them."""
+    def _events(self, path: str) -> Iterator[tuple[str, str]]:
+        """Kind and data of server-sent events, until the service ends them."""
         attempt = 1
         while True:
             try:
@@ -311,9 +318,13 @@ class Client(Operations):
                         stream.read()
                         time.sleep(wait_s(stream, attempt))
                     else:
+                        kind = ""
                         for line in stream.iter_lines():
-                            if line.startswith("data: "):
-                                yield line.removeprefix("data: ")
+                            field, _, value = line.partition(": ")
+                            if field == "event":
+                                kind = value
+                            elif field == "data":
+                                yield kind, value
                                 attempt = 0
                         return
             except httpx.TransportError:

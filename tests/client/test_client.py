@@ -111,6 +111,13 @@ def test_clicks_come_as_stitches() -> None:
         assert list(client.clicks("a-view")) == [{"row": 1, "column": 2}]
 
 
+def test_what_happens_to_a_design_comes_as_kinds_and_numbers() -> None:
+    events = "event: others\ndata: 1\n\n: still there\n\nevent: changed\ndata: 3\n\n"
+    answers = httpx.MockTransport(lambda _: httpx.Response(200, text=events))
+    with Client("http://knit.example", transport=answers) as client:
+        assert list(client.watch("a-design")) == [("others", 1), ("changed", 3)]
+
+
 def test_sessions_from_a_script(knit: Client) -> None:
     with pytest.raises(ProblemError, match="no session"):
         knit.end_session("no-such-session")
