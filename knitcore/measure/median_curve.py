@@ -28,24 +28,14 @@ def median_curve(test: StretchTest) -> MeasuredCurve:
     >>> runs = tuple(StretchRun("", strain, -strain, k * strain) for k in (0.9, 1.0, 2.0))
     >>> curve = median_curve(StretchTest("", "", runs, (70.0,) * 3))
     >>> round(curve.strain[-1], 3), round(curve.stress_n_per_mm[-1], 2), curve.pulls
-    (0.496, 0.49, 3)
+    (0.496, 0.5, 3)
     """
-    ends = sorted(float(run.strain_along.max()) for run in test.runs)
-    top = ends[(len(ends) - 1) // 2]  # half of the pulls, at least, reach it
-    edges = np.linspace(0.0, top, POINTS + 1)
-    centres = (edges[1:] + edges[:-1]) / 2
+    centres = (np.arange(POINTS) + 0.5) / POINTS * test.usual_strain
     stresses = np.full((len(test.runs), POINTS), np.nan)
     for stress, run in zip(stresses, test.runs, strict=True):
-        place = np.digitize(run.strain_along, edges) - 1
-        inside = (place >= 0) & (place < POINTS)
-        count = np.bincount(place[inside], minlength=POINTS)
-        strains, means = (
-            np.bincount(place[inside], values[inside], minlength=POINTS)[count > 0]
-            / count[count > 0]
-            for values in (run.strain_along, run.stress)
-        )
+        mean = run.averaged(POINTS, test.usual_strain)
         outside = (centres < run.strain_along.min()) | (centres > run.strain_along.max())
-        stress[:] = np.where(outside, np.nan, np.interp(centres, strains, means))
+        stress[:] = np.where(outside, np.nan, np.interp(centres, mean.strain_along, mean.stress))
     known = np.isfinite(stresses).sum(axis=0) * 2 >= len(test.runs)
     median = np.nanmedian(stresses[:, known], axis=0)
     return MeasuredCurve(

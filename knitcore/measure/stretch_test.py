@@ -50,6 +50,24 @@ class StretchRun:
             self.name, self.strain_along[points], self.strain_across[points], self.stress[points]
         )
 
+    def averaged(self, steps: int, top: float, *, below: bool = False) -> StretchRun:
+        """Means over equal steps of the strain along, which removes a camera's noise.
+
+        Parameters
+        ----------
+        steps : from a strain of 0 to ``top``; those without a point are left out.
+        top : points beyond it are left out.
+        below : whether points just below 0, noise at rest, belong to the first step.
+        """
+        inside = (self.strain_along <= top) & ((self.strain_along >= 0.0) | below)
+        place = (self.strain_along[inside] * steps / top).astype(np.intp).clip(0, steps - 1)
+        count = np.bincount(place, minlength=steps)
+        along, across, stress = (
+            np.bincount(place, values[inside], minlength=steps)[count > 0] / count[count > 0]
+            for values in (self.strain_along, self.strain_across, self.stress)
+        )
+        return StretchRun(self.name, along, across, stress)
+
 
 @dataclass(frozen=True, eq=False)
 class StretchTest:
@@ -84,6 +102,12 @@ class StretchTest:
     def largest_strain(self) -> float:
         """Largest strain along the pull of all runs."""
         return max(float(run.strain_along.max()) for run in self.runs)
+
+    @property
+    def usual_strain(self) -> float:
+        """Largest strain along the pull that at least half of the runs reach."""
+        ends = sorted(float(run.strain_along.max()) for run in self.runs)
+        return ends[(len(ends) - 1) // 2]
 
     def pooled(self) -> StretchRun:
         """All points of all runs, one after the other."""

@@ -247,16 +247,9 @@ def _shared_range(test: StretchTest, strain: Array) -> NDArray[np.bool_]:
 
 def _binned(run: StretchRun) -> tuple[Array, Array, Array, Array]:
     """Means over strain intervals of equal size; the weights of a run add up to one."""
-    top = float(run.strain_along.max())
-    # Points just below zero (camera noise at rest) belong to the first interval.
-    place = np.clip((run.strain_along / top * BINS).astype(int), 0, BINS - 1)
-    count = np.bincount(place, minlength=BINS)
-    used = count > 0
-    means = [
-        np.bincount(place, values, minlength=BINS)[used] / count[used]
-        for values in (run.strain_along, run.strain_across, run.stress)
-    ]
-    return means[0], means[1], means[2], np.full(int(used.sum()), 1.0 / used.sum())
+    mean = run.averaged(BINS, float(run.strain_along.max()), below=True)
+    weights = np.full(mean.length, 1.0 / mean.length)
+    return mean.strain_along, mean.strain_across, mean.stress, weights
 
 
 def _replicas(

@@ -73,20 +73,11 @@ class ForceCurve:
             If the pulls are too short or too sparse for a curve.
         """
         top = min(float(run.strain_along.max()) for run in test.runs)
-        lines = np.linspace(0.0, top, CURVE_BINS + 1)
-        points = test.pooled()
-        place = np.digitize(points.strain_along, lines) - 1
-        inside = (place >= 0) & (place < CURVE_BINS)
-        count = np.bincount(place[inside], minlength=CURVE_BINS)
-        if np.count_nonzero(count) < CURVE_BINS / 2:
+        mean = test.pooled().averaged(CURVE_BINS, top)
+        if mean.length < CURVE_BINS / 2:
             raise InputError("tests", f"{test.source} has too few points.", "Give a denser test.")
-        used = count > 0
-        strain, stress = (
-            np.bincount(place[inside], values[inside], minlength=CURVE_BINS)[used] / count[used]
-            for values in (points.strain_along, points.stress)
-        )
         width = float(np.mean(test.width_mm))
-        return cls(strain, stress, width, width * length_over_width)
+        return cls(mean.strain_along, mean.stress, width, width * length_over_width)
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,8 +61,7 @@ class MeasuredStrip:
         InputError
             If no pull covers that range.
         """
-        ends = sorted(float(run.strain_along.max()) for run in test.runs)
-        top = ends[(len(ends) - 1) // 2]
+        top = test.usual_strain
         strain = np.linspace(0.08, 0.995, LEVELS) * top
         columns = [_resampled(run, strain, top) for run in test.runs]
         stress, waist = (np.array(part) for part in zip(*columns, strict=True))
@@ -134,19 +133,14 @@ class MeasuredStrip:
 
 
 def _resampled(run: StretchRun, strain: Array, top: float) -> tuple[Array, Array]:
-    inside = (run.strain_along >= 0.0) & (run.strain_along <= top)
-    place = np.minimum((run.strain_along * BINS / top).astype(np.intp), BINS - 1)
-    count = np.bincount(place[inside], minlength=BINS)
-    used = count > 0
-    along, stress, waist = (
-        np.bincount(place[inside], values[inside], minlength=BINS)[used] / count[used]
-        for values in (run.strain_along, run.stress, run.strain_across)
-    )
-    if not len(along):
+    mean = run.averaged(BINS, top)
+    along = mean.strain_along
+    if not mean.length:
         return np.full(len(strain), np.nan), np.full(len(strain), np.nan)
     outside = (strain < along[0] - top / LEVELS) | (strain > along[-1] + top / BINS)
     return tuple(
-        np.where(outside, np.nan, np.interp(strain, along, values)) for values in (stress, waist)
+        np.where(outside, np.nan, np.interp(strain, along, values))
+        for values in (mean.stress, mean.strain_across)
     )  # type: ignore[return-value]
 
 
