@@ -10,9 +10,12 @@ import io
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from xml.etree import ElementTree as ET
 
 MM_PER_POINT = 25.4 / 72.0
+CONDENSED = 0.87
+"""Width of the letters of a PDF over their font's: Vera's are wider than those of an SVG."""
 
 
 @dataclass(frozen=True)
@@ -168,7 +171,7 @@ def to_pdf(pages: Iterable[Page], title: str) -> bytes:
     from reportlab.pdfgen.canvas import Canvas
 
     buffer = io.BytesIO()
-    canvas = Canvas(buffer, invariant=1, pageCompression=1)
+    canvas = Canvas(buffer, invariant=1, pageCompression=1, initialFontName=_embedded("Vera"))
     canvas.setTitle(title)
     for page in pages:
         canvas.setPageSize((page.width / MM_PER_POINT, page.height / MM_PER_POINT))
@@ -209,18 +212,31 @@ def _pdf(canvas: object, shape: Shape, top: float) -> None:
             canvas.setFillColor(HexColor(shape.fill))
             _circles(canvas, shape.centres, shape.radius, top)
         case Label():
-            canvas.setFillColor(HexColor("#222222"))
-            canvas.setFont("Helvetica-Bold" if shape.bold else "Helvetica", shape.size)
-            write = {
-                "start": canvas.drawString,
-                "middle": canvas.drawCentredString,
-                "end": canvas.drawRightString,
-            }
-            write[shape.anchor](shape.x, top - shape.y, shape.text)
+            font = _embedded("VeraBd" if shape.bold else "Vera")
+            width = CONDENSED * canvas.stringWidth(shape.text, font, shape.size)
+            before = {"start": 0.0, "middle": width / 2, "end": width}[shape.anchor]
+            line = canvas.beginText(shape.x - before, top - shape.y)
+            line.setFont(font, shape.size)
+            line.setHorizScale(100 * CONDENSED)
+            line.setFillColor(HexColor("#222222"))
+            line.textOut(shape.text)
+            canvas.drawText(line)
         case Photo():
             bottom = top - shape.y - shape.height
             photo = ImageReader(io.BytesIO(shape.png))
             canvas.drawImage(photo, shape.x, bottom, shape.width, shape.height, mask="auto")
+
+
+@lru_cache
+def _embedded(font: str) -> str:
+    """The name of a font that comes with reportlab and goes into the file, as printers ask for;
+    Bitstream's licence allows that.
+    """
+    from reportlab.pdfbase import pdfmetrics
+    from reportlab.pdfbase.ttfonts import TTFont
+
+    pdfmetrics.registerFont(TTFont(font, f"{font}.ttf"))
+    return font
 
 
 def _circles(

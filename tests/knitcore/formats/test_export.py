@@ -20,7 +20,7 @@ from knitcore.formats import report
 from knitcore.formats.chart_drawing import chart_pages, chart_pdf, chart_svg
 from knitcore.formats.chart_files import read_chart, read_piece
 from knitcore.formats.chart_key import HEAVY, ChartStyle, RegionMark, tinted
-from knitcore.formats.drawing import Box, Label, Page, to_svg
+from knitcore.formats.drawing import Box, Label, Page, to_pdf, to_svg
 from knitcore.formats.export import (
     FORMATS,
     ExportKind,
@@ -246,6 +246,12 @@ def test_a_large_chart_is_printed_on_several_pages() -> None:
     assert small.startswith(b"%PDF-")
     assert count[0] == 1
     assert count[1] >= 6
+
+
+def test_fonts_are_in_the_file_as_printers_ask_for() -> None:
+    content = to_pdf([Page(99, 99, (Label(9, 9, "Knit"), Label(9, 19, "Purl", bold=True)))], "Two")
+    assert content.count(b"/Type /FontDescriptor") == content.count(b"/FontFile2") == 2
+    assert b"/Subtype /Type1" not in content
 
 
 @pytest.mark.parametrize("aspect", [0.0, float("nan"), 9.0])
