@@ -13,11 +13,37 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_bipartite_matching
 
+from knitcore.yarnlevel.fronts import Front, elimination, work
+
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _LEAF = 12
 """Blocks that are not divided any more."""
+_STALE = 1.1
+"""An order is found anew where its work has grown by this factor."""
+
+
+class Dissection:
+    """The fronts of a pattern that changes little from step to step, as yarn touches and parts."""
+
+    def __init__(self) -> None:
+        self._touching: Bools | None = None
+        self._order: Ints | None = None
+        self._fronts: tuple[Front, ...] = ()
+        self._fresh = 0.0
+
+    def fronts(self, touching: Bools) -> tuple[Front, ...]:
+        """The fronts of a symmetric pattern (blocks, blocks)."""
+        if self._touching is None or not np.array_equal(self._touching, touching):
+            self._touching = touching
+            if self._order is not None:
+                self._fronts = elimination(touching, self._order)
+            if self._order is None or work(self._fronts) > _STALE * self._fresh:
+                self._order = dissected(touching)
+                self._fronts = elimination(touching, self._order)
+                self._fresh = work(self._fronts)
+        return self._fronts
 
 
 def dissected(touching: Bools) -> Ints:

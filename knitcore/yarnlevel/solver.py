@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
-from knitcore.yarnlevel.dissection import dissected
+from knitcore.yarnlevel.dissection import Dissection
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
-from knitcore.yarnlevel.fronts import Front, Room, elimination
+from knitcore.yarnlevel.fronts import Room
 from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System
 from knitcore.yarnlevel.trajectory import Trajectory
 
@@ -171,8 +171,7 @@ class _Descent:
         dense_only = energy.slides or energy.sliding is not None
         self.sparse = energy.cell.stitches >= _SPARSE_FROM and not dense_only
         self.single = self.sparse or energy.cell.unknowns >= _SINGLE_FROM
-        self.order: NDArray[np.int64] | None = None
-        self.fronts: tuple[NDArray[np.bool_], tuple[Front, ...]] | None = None
+        self.dissection = Dissection()
         self.room = Room()
         self.lowest = 0.0
         self.softest: Array | None = None
@@ -243,12 +242,8 @@ class _Descent:
     def _system(self, slope: Slope) -> System:
         if slope.sparse is None:
             return DenseSystem(slope, self.energy.penalty, self.free, self.single)
-        touching = slope.sparse.touching
-        if self.order is None:
-            self.order = dissected(touching)
-        if self.fronts is None or not np.array_equal(self.fronts[0], touching):
-            self.fronts = touching, elimination(touching, self.order)
-        return SparseSystem(slope, self.energy.penalty, self.free, self.fronts[1], self.room)
+        fronts = self.dissection.fronts(slope.sparse.touching)
+        return SparseSystem(slope, self.energy.penalty, self.free, fronts, self.room)
 
     def _factorise(self, system: System) -> None:
         """Factorise with as much damping as it takes, and learn how negative the lowest

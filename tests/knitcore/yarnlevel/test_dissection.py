@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from knitcore.yarnlevel.dissection import dissected, vertex_cover
+from knitcore.yarnlevel.dissection import Dissection, dissected, vertex_cover
+from knitcore.yarnlevel.fronts import elimination, work
 
 
 def _sheet(side: int) -> np.ndarray:
@@ -30,6 +31,18 @@ def test_the_order_holds_every_block_once_and_fills_far_less_than_row_by_row():
     order = dissected(touching)
     assert sorted(order) == list(range(256))
     assert _fill(touching, order) < 0.75 * _fill(touching, np.arange(256))
+
+
+def test_the_order_is_kept_while_little_changes_and_found_anew_where_its_work_has_grown():
+    touching = _sheet(12)
+    plan = Dissection()
+    first = plan.fronts(touching)
+    assert plan.fronts(touching.copy()) is first
+    shuffled = np.random.default_rng(3).permutation(len(touching))
+    elsewhere = touching[np.ix_(shuffled, shuffled)]
+    stale = elimination(elsewhere, np.concatenate([front.own for front in first]))
+    assert work(stale) > 2.0 * work(first)
+    assert work(plan.fronts(elsewhere)) < 1.2 * work(first)
 
 
 def test_blocks_that_all_touch_or_never_touch_are_ordered_too():

@@ -40,6 +40,13 @@ def test_every_block_is_eliminated_once_and_borders_come_later():
         assert all(rank[front.border] > rank[front.own].max())
 
 
+def test_a_chain_whose_members_pass_on_nearly_all_is_one_front():
+    band = np.abs(np.subtract.outer(np.arange(30), np.arange(30))) <= 12
+    fronts = elimination(band, np.arange(30))
+    assert len(fronts) < 8
+    assert sorted(np.concatenate([front.own for front in fronts])) == list(range(30))
+
+
 @pytest.mark.parametrize("damping", [0.0, 5.0])
 def test_solves_like_a_dense_solver(damping):
     touching, matrix, dense = _ring_with_chords()
