@@ -50,7 +50,8 @@ Mean = Callable[[NDArray[np.generic]], Array]
 """Takes means of values of the stitches (…, rows, columns)."""
 _NO_CHANGE = 1e-12
 _FEW_CROSSINGS = 0.1
-"""Share of stitches with odd segments both ways at which a chart counts as half two-dimensional."""
+"""Share of stitches with odd segments both ways, among those with any, at which a chart counts as
+half two-dimensional."""
 
 _FEW_OTHERS = 0.05
 """Share of other fabrics at which a chart is about as uncertain as a mixed one."""
@@ -137,7 +138,8 @@ def densities_of(purl: NDArray[np.bool_], mean: Mean = _mean) -> Densities:
     # even columns (rows), times changes from one to the next that go on upwards (across)
     straight = values[..., [-1, -2]] * _lines(sign, mean)
     both = mean((odd_course > 0) & (odd_wale > 0))
-    neither = both / (both + _FEW_CROSSINGS)
+    either = mean((odd_course > 0) | (odd_wale > 0))
+    neither = both / (both + _FEW_CROSSINGS * either + _NO_CHANGE)
     course = (rib + seed + _NO_CHANGE) / (rib + garter + 2 * seed + 2 * _NO_CHANGE)
     one_way = 1 - neither
     ways = np.stack([one_way * course, one_way * (1 - course), neither], axis=-1)

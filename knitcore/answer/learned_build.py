@@ -200,6 +200,7 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
     follow = np.array([row.follows for row in found])
     swept = np.isfinite(ratio).all(axis=1)
     kinds = np.array([kind_of(row.chart) for row in found])
+    ways = np.array([row.ways for row in found])
     folds = _folds(charts)
 
     folding = _settings(samples, fold)
@@ -221,12 +222,14 @@ def arrays_of(found: list[Row]) -> dict[str, NDArray[np.generic]]:
         "folding_settings": np.array(astuple(folding)),
         "unfolding_settings": np.array(astuple(unfolding)),
         "slopes": slopes,
-        "folding_scale": _scale(fold_missed, fold_variance, kinds, _FOLDING_COVERAGE),
-        "unfolding_scale": _scale(rest_missed, rest_variance, kinds[swept], 3 * (COVERAGE,)),
+        "folding_scale": _scale(fold_missed, fold_variance, ways, kinds, _FOLDING_COVERAGE),
+        "unfolding_scale": _scale(
+            rest_missed, rest_variance, ways[swept], kinds[swept], 3 * (COVERAGE,)
+        ),
         "folding_missed": fold_missed,
         "unfolding_missed": _scattered(rest_missed, swept),
         "follows": follow,
-        "ways": np.array([row.ways for row in found]),
+        "ways": ways,
         "folding_variance": fold_variance,
         "unfolding_variance": _scattered(rest_variance[:, None], swept)[:, 0],
     }
@@ -290,12 +293,23 @@ def _left_out(
 
 
 def _scale(
-    missed: Array, variance: Array, kinds: NDArray[np.str_], coverage: Sequence[float]
+    missed: Array,
+    variance: Array,
+    ways: Array,
+    kinds: NDArray[np.str_],
+    coverage: Sequence[float],
 ) -> Array:
-    """(3, outputs) scales for which 90 % intervals cover these parts of left-out values by kind."""
-    standard = np.abs(missed) / np.sqrt(variance)[:, None]
-    wanted = zip(_KINDS, coverage, strict=True)
-    return np.array([np.quantile(standard[kinds == k], c, axis=0) / Z_SCORE for k, c in wanted])
+    """(3, outputs) scales for which 90 % intervals cover these parts of left-out values by kind.
+
+    A chart's scale is a mean by its ways, so 2-D charts need what those of ribs and welts leave.
+    """
+    needed = np.abs(missed) / np.sqrt(variance)[:, None] / Z_SCORE
+    found = np.zeros((len(_KINDS), missed.shape[1]))
+    for i, (kind, part) in enumerate(zip(_KINDS, coverage, strict=True)):
+        own = kinds == kind
+        left = (needed[own] - ways[own] @ found) / ways[own, i, None]
+        found[i] = np.quantile(left, part, axis=0)
+    return found
 
 
 def _scattered(values: Array, rows_: NDArray[np.bool_]) -> Array:

@@ -45,3 +45,11 @@ def test_one_stitch_of_1024_changes_little(chart: StitchChart, row: int, column:
 def test_columns_of_a_rib_are_straight_and_rows_of_a_welt() -> None:
     assert densities(StitchChart.parse("KKPP")).straight == pytest.approx([1, 0], abs=0.01)
     assert densities(StitchChart.parse("K\nK\nP\nP")).straight == pytest.approx([0, 1], abs=0.01)
+
+
+@pytest.mark.parametrize("side", [4, 8, 32])
+def test_single_purls_are_two_dimensional_however_few_they_are(side: int) -> None:
+    grid = np.zeros((side, side), dtype=bool)
+    grid[0, 0] = True
+    assert densities(StitchChart(grid)).ways[2] > 0.6
+    assert densities(StitchChart.parse("KKPP")).ways == pytest.approx([1, 0, 0], abs=1e-9)
