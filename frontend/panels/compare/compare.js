@@ -145,7 +145,8 @@ export function create(studio, { keeper }) {
       const picture = thumbnail({ chart, outline }, { side: PICTURE_PX });
       picture.style.cssText = `width: ${width * scale}px; height: ${height * scale}px; aspect-ratio: auto`;
       sides[k].picture.replaceChildren(picture);
-      sides[k].size.textContent = `${scope.size} · ${figure(width)} × ${figure(height)} cm at rest`;
+      const about = outline ? "about " : ""; // the mean stitch of its largest rectangle stands for all
+      sides[k].size.textContent = `${scope.size} · ${about}${figure(width)} × ${figure(height)} cm at rest`;
       sides[k].size.title = scope.note;
       yarns(sides[k].yarn, studio, material);
     });
