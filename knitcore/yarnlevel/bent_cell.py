@@ -28,8 +28,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, lu_factor, lu_solve
 
 from knitcore.arrays import Array
@@ -132,20 +134,27 @@ class BentCell:
     """A cell at a state, with the factors of its linear response.
 
     Besides the lengths the rules hold the motions that cost no energy: of the cell as a whole, and
-    of each yarn along itself.
+    of each yarn along itself. ``reach`` is that of the pairs, in diameters of the flat cell.
     """
 
-    def __init__(self, energy: CellEnergy, state: Array, tension: Array) -> None:
+    def __init__(
+        self, energy: CellEnergy, state: Array, tension: Array, reach: float = _REACH
+    ) -> None:
         self.energy, self.state, self.tension = energy, state, tension
         self.curve = energy.curve(state)
-        reach = _REACH * 2.0 * energy.yarn.radius_mm
+        reach *= 2.0 * energy.yarn.radius_mm
         self._pairs, start = energy.pairs(self.curve, state, reach)
         slope = energy.derivatives(state, self.curve, self._pairs, start, tension)
         self._gradient, self._hessian = slope.gradient, slope.hessian
         self.rows = np.concatenate([slope.lengths, self._rules()])
+
+    @cached_property
+    def _factor(self) -> tuple[Array, NDArray[np.int32]]:
         none = np.zeros((len(self.rows), len(self.rows)))
         with one_blas_thread():
-            self._factor = lu_factor(np.block([[slope.hessian, self.rows.T], [self.rows, none]]))
+            matrix = np.block([[self._hessian, self.rows.T], [self.rows, none]])
+            lower_upper, pivots = lu_factor(matrix)
+        return lower_upper, pivots
 
     def is_minimum(self) -> bool:
         """Whether no small motion lowers the energy."""
