@@ -21,8 +21,8 @@ MARK = (232, 72, 44)
 INK = (30, 30, 30)
 SCALE = (128, 120, 112)
 """Seen on light and on dark."""
-SCALE_BELOW = 1.8
-"""Stitches below the fabric where the scale lies."""
+SCALE_BELOW = (1.8, 0.05)
+"""The scale lies so many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
 SKIN = (226, 205, 188)
 
@@ -219,7 +219,8 @@ class SceneWriter:
         length = round_length_mm(float(width))
         # The lowest loops reach below the fabric's own edge.
         stitch = float(ground.sizes_mm[..., 1].mean())
-        right, below = float(width) / 2, -float(height) / 2 - SCALE_BELOW * stitch
+        away = max(SCALE_BELOW[0] * stitch, SCALE_BELOW[1] * float(height))
+        right, below = float(width) / 2, -float(height) / 2 - away
         tick = 0.06 * length
         points = np.array(
             [
