@@ -54,7 +54,7 @@ def _generate_call(_context: Any, address: Any, arguments: Any) -> Any:
     return types.void(address, arguments), generate
 
 
-_call: Any = intrinsic(_generate_call)
+call: Any = intrinsic(_generate_call)
 
 
 @njit(cache=True, nogil=True)
@@ -140,15 +140,15 @@ def eliminate(
         columns = factor.ctypes.data + offset * factor.itemsize
         rest = factor.ctypes.data + middle * factor.itemsize
         corner = work.ctypes.data + place * work.itemsize
-        _call(routines[0], (lower, s_at, columns, s_at, info_at))
+        call(routines[0], (lower, s_at, columns, s_at, info_at))
         if numbers[2] != 0:
             return False
         if b > 0:
-            _call(
+            call(
                 routines[1],
                 (right, lower, transposed, plain, b_at, s_at, one, columns, s_at, rest, b_at),
             )
-            _call(routines[2], (lower, plain, b_at, s_at, minus, rest, b_at, one, corner, b_at))
+            call(routines[2], (lower, plain, b_at, s_at, minus, rest, b_at, one, corner, b_at))
     return True
 
 

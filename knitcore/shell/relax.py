@@ -14,17 +14,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.linalg import SuperLU, splu
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, check_cancelled
+from knitcore.shell.factor import SheetFactor
 from knitcore.shell.sheet import Sheet
 from knitcore.shell.tangent import Tangent
 
 MEMORY = 16
 _STRIDE = 0.3
 """Longest displacement of a corner in one step, in thicknesses."""
-_SKIN = 1.2
+_SKIN = 0.8
 """Reach of the list of near points beyond the thickness, in thicknesses."""
 TOLERANCE = 1e-3
 """Largest force on a corner of a converged sheet, in units of its bending (``force_scale_n``), or
@@ -33,6 +33,10 @@ _SHIFT = 3e-3
 """Added to the convex part of the Hessian, in units of the bending stiffness of a corner."""
 _RENEW = 32
 """Steps with one factor."""
+_GROW = 2.0
+"""Growth of the longest displacement, over that of the step before."""
+_LEAST = 0.1
+"""Of the longest displacement that is tried, in units of its greatest value."""
 _MIN_STEP = 1e-8
 _ROUNDING = 1e-10
 """Energies this close, relatively, count as equal; then the slope decides."""
@@ -120,9 +124,10 @@ class _Descent:
             self._unit = min(self._unit, float(np.linalg.norm(load_n, axis=1).max()))
         self._shift = _SHIFT * sheet.force_scale_n / float(sheet.membrane[:, :2].mean())
         self._stride = _STRIDE * sheet.thickness_mm
+        self._reach = self._stride
         self.steps = self.factors = 0
         self._past: deque[tuple[Array, Array, float]] = deque(maxlen=MEMORY)
-        self._factor: SuperLU | None = None
+        self._factor: SheetFactor | None = None
         self._age = 0
         self._list()
         self.energy, self._gradient = self._at(x)
@@ -139,7 +144,7 @@ class _Descent:
         way = self._direction()
         slope = float((way * self._gradient).sum())
         longest = float(np.sqrt((way**2).sum(axis=1).max()))
-        fraction = min(1.0, self._stride / longest)
+        fraction = min(1.0, self._reach / longest)
         while fraction > _MIN_STEP:
             moved = fraction * way
             energy, gradient = self._at(self.x + moved)
@@ -161,21 +166,31 @@ class _Descent:
             self._past.append((moved, change, product))
         self.x, self.energy, self._gradient = self.x + moved, energy, gradient
         self._age += 1
-        far = 0.5 * _SKIN * self._sheet.thickness_mm - self._stride
+        self._reach = min(self._stride, max(_GROW * fraction * longest, _LEAST * self._stride))
+        far = 0.5 * _SKIN * self._sheet.thickness_mm - self._reach
         if float(((self.x - self._listed) ** 2).sum(axis=1).max()) > far * far:
             self._list()
         return True
 
     def _renew(self) -> None:
-        shift = np.full(self.x.shape, self._shift)
-        shift[:, 2] += self._sheet.touch_n_per_mm * (self.x[:, 2] < self._floor)
-        matrix = self._tangent.matrix(self.x, self._pairs, self._free, convex=True, shift=shift)
-        self._factor = splu(
-            matrix.astype(np.float32), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )  # fmt: skip
+        """Make the factor anew, with a larger shift where single precision needs it."""
+        shift = self._shift
+        while not self._factorised(shift):
+            shift *= 10.0
         self._age = 0
         self.factors += 1
+
+    def _factorised(self, least: float) -> bool:
+        shift = np.full(self.x.shape, least)
+        shift[:, 2] += self._sheet.touch_n_per_mm * (self.x[:, 2] < self._floor)
+        matrix = self._tangent.matrix(self.x, self._pairs, self._free, convex=True, shift=shift)
+        try:
+            self._factor = SheetFactor(matrix, self._sheet.columns + 1)
+        except np.linalg.LinAlgError:
+            if least > self._sheet.stiffness_n_per_mm:
+                raise  # not a matter of rounding
+            return False
+        return True
 
     def _direction(self) -> Array:
         """Two loops of L-BFGS around the factor, for which single precision is enough."""
@@ -186,7 +201,7 @@ class _Descent:
             q -= factor * change
             factors.append(factor)
         assert self._factor is not None  # noqa: S101 - made before
-        way = self._factor.solve(q.ravel().astype(np.float32)).reshape(-1, 3).astype(float)
+        way = self._factor.solve(q.ravel()).reshape(-1, 3)
         for (moved, change, product), factor in zip(self._past, reversed(factors), strict=True):
             way += moved * (factor - float((change * way).sum()) / product)
         return -np.asarray(way)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import bsr_matrix, csc_matrix
+from scipy.sparse import bsr_matrix
 
 from knitcore.arrays import Array
 from knitcore.shell.kernels import bent, metric_energy, placed, turn_slope, width_slope
@@ -43,8 +43,9 @@ class Tangent:
         *,
         convex: bool,
         shift: Array | float = 0.0,
-    ) -> csc_matrix:
-        """Hessian at a shape; rows of coordinates that are not free are those of the unit matrix.
+    ) -> bsr_matrix:
+        """Hessian at a shape, in blocks of (3, 3). Rows of coordinates that are not free are those
+        of the unit matrix.
 
         Parameters
         ----------
@@ -74,7 +75,7 @@ class Tangent:
         data[own] += np.where(free, shift, 1.0)[:, :, None] * np.eye(3)
         start = np.searchsorted(row, np.arange(self._count + 1))
         size = 3 * self._count
-        return bsr_matrix((data, column, start), shape=(size, size)).tocsc()
+        return bsr_matrix((data, column, start), shape=(size, size))
 
 
 @numba.njit(cache=True)
