@@ -6,7 +6,7 @@ import pytest
 
 from knitcore.chart import StitchChart
 from knitcore.errors import CancelledError
-from knitcore.fabric import Fabric
+from knitcore.fabric import Direction, Fabric
 from knitcore.materials import material
 from knitcore.shell.hang import HungBy, hang
 
@@ -20,7 +20,7 @@ def test_a_piece_gets_longer_by_its_weight() -> None:
     record = ACRYLIC.record(Fabric.GARTER)
     width = 8 * record.stitch_course_mm
     stress = found.weight_n / width
-    free, held = 1.0 / record.law.modulus("wale"), 1.0 / record.law.stiffness_yyyy
+    free, held = 1.0 / record.law.modulus(Direction.WALE), 1.0 / record.law.stiffness_yyyy
     assert found.converged
     assert 0.5 * stress * held <= found.lengthening <= 1.02 * 0.5 * stress * free
     assert found.depth_mm < 0.1
