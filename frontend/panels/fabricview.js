@@ -94,13 +94,14 @@ export function fabricview(host, studio, view) {
   });
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let holding;
+  const release = () => {
+    clearTimeout(holding);
+    if (studio.document.painting) holding = setTimeout(release, BETWEEN_STROKES_MS);
+    else hold(false);
+  };
   studio.document.onChange(() => {
     hold(true);
     clearTimeout(holding);
-    const release = () => {
-      if (studio.document.painting) holding = setTimeout(release, BETWEEN_STROKES_MS);
-      else hold(false);
-    };
     holding = setTimeout(release, BETWEEN_STROKES_MS);
   });
 
@@ -237,8 +238,12 @@ export function fabricview(host, studio, view) {
     signal.listen(soon);
   }
   yarnColours.listen(now);
-  posed.listen(() => {
-    now();
+  let form = posed.value?.id;
+  posed.listen((found) => {
+    const same = found?.id === form; // it waits for the next one: sent now, it would hold that up
+    form = found?.id;
+    if (!same) now();
+    if (found && !same && !drawing.slow) release();
     describe();
   });
   pose.listen(() => {
