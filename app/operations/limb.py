@@ -12,6 +12,7 @@ from pydantic import Field
 
 from app.cli.options import out_option
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
+from app.models.charts import to_chart
 from app.models.laws import FabricRequest
 from app.models.posed import Body, PosedView
 from app.operations.context import Context
@@ -19,6 +20,7 @@ from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.limb import MAX_GIRTHS, PLACES, Limb, LimbPlace, on_limb
+from knitcore.answer.patches import SIDE
 from knitcore.chart import check_stitches
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -31,6 +33,12 @@ MAX_STITCHES = 40_000
 """Of a chart that is itself the tube."""
 FREE_ALONG = (
     "The tube is as long as where nothing holds it along the limb; friction may keep it longer."
+)
+
+BY_PATCHES = (
+    f"Its law is that of patches of {SIDE} stitches a side and more. Where textures meet, as at a "
+    "hem, the pressure steps at the border of a patch, which may lie some rows beside the hem; "
+    "within a patch it follows the size of the rows."
 )
 
 
@@ -168,13 +176,15 @@ def _tube(request: LimbRequest, context: Context) -> TubeOnLimb:
 
 
 def _of_tube(tube: TubeOnLimb, request: LimbRequest, source: str) -> LimbResult:
+    repeat = to_chart(request.chart).repeat_cut()
+    patched = max(repeat.rows, repeat.columns) > SIDE
     told = np.linspace(0, len(tube.places) - 1, min(PLACES, len(tube.places))).round().astype(int)
     return LimbResult.of(
         tube,
         **_fit([tube.places[k] for k in told], tube.places, tube.length_mm),
         interval_source=source,
         id=OPERATION.key(request),
-        notes=[ELASTIC_MEAN, FREE_ALONG],
+        notes=[ELASTIC_MEAN, FREE_ALONG, *([BY_PATCHES] if patched else [])],
     )
 
 

@@ -45,6 +45,14 @@ TUBE = {
 }
 
 
+def test_the_answer_says_where_the_pressure_of_a_hem_steps(client: TestClient) -> None:
+    plain = client.post("/api/v1/limb", json=TUBE).json()
+    hemmed = TUBE | {"chart": "\n".join(["K" * 20] * 12 + ["KP" * 10] * 12)}
+    told = client.post("/api/v1/limb", json=hemmed).json()
+    assert not any("hem" in note for note in plain["notes"])
+    assert any("at a hem" in note for note in told["notes"])
+
+
 def test_a_whole_chart_is_worn_and_shown(client: TestClient) -> None:
     told = client.post("/api/v1/limb", json=TUBE).json()
     assert len(told["places"]) == 6
