@@ -70,7 +70,7 @@ def test_the_shaders_know_the_yarn_they_draw(studio: Page) -> None:
     studio.add_init_script(
         """const set = WebGL2RenderingContext.prototype.uniform3fv;
         WebGL2RenderingContext.prototype.uniform3fv = function (place, values) {
-            (window.triples ??= []).push([...values]);
+            if (values.length === 3) (window.triples ??= []).push([...values]);
             set.call(this, place, values);
         };"""
     )
