@@ -1,6 +1,6 @@
 /**
- * Yarn that looks like yarn: plies that wind around each other, the shine of fibres that stand off,
- * and shadow where strands lie behind others. viser's tubes are plain, so this adds to the shaders
+ * Yarn that looks like yarn: plies that wind around each other, fibres that stand off, and the dark
+ * between strands, which the service computes. viser's tubes are plain, so this adds to the shaders
  * that draw them, before viser starts; a shader that is not as expected stays as it is.
  *
  * A plain script without imports: the service puts it into viser's page.
@@ -22,6 +22,11 @@
   const STEPS = 256;
   /** Light where none comes from around, and where all does. */
   const SHADE = [0.3, 1.12];
+  /** Pixels of the radius below which loops cannot be told apart: they are one even surface, since single pixels would
+   * show here a lit and there a dark side. Above the second they have their shape. */
+  const EVEN_PIXELS = [0.12, 0.4];
+  /** Light on that surface. */
+  const EVEN = 0.75;
 
   /** Corners of a tube, turns of its plies from ring to ring, radius in the scene's unit. */
   const yarn = new Float32Array(3);
@@ -30,18 +35,19 @@
     uniform vec3 yarn;
     uniform float yarnPixels; // radius, over half the picture's height in the scene's unit at distance 1
     varying vec3 vYarn; // cosine and sine of the place around the yarn, turns of the plies up to here; 0 far away
-    varying float vLight; // from all around that reaches this place
+    varying vec2 vLight; // from all around that reaches this place; how much of their shape loops show
   `;
   /** The corners of a tube follow each other ring by ring, with a ring at each end that closes it. */
   const PLACED = `
     vYarn = vec3( 0.0 );
-    if ( yarnPixels * projectionMatrix[ 1 ][ 1 ] > ${FEWEST_PIXELS} * vViewPosition.z ) {
+    float yarnWide = yarnPixels * projectionMatrix[ 1 ][ 1 ] / vViewPosition.z;
+    if ( yarnWide > ${FEWEST_PIXELS} ) {
       float yarnSides = max( yarn.x, 1.0 ), yarnRing = floor( ( float( gl_VertexID ) + 0.5 ) / yarnSides );
       float yarnAngle = 6.2831853 * ( float( gl_VertexID ) / yarnSides - yarnRing );
       vYarn = vec3( cos( yarnAngle ), sin( yarnAngle ), ( yarnRing - 1.0 ) * yarn.y );
     }
-    vLight = fract( position.z * ${STEPS}.0 );
-    float yarnFuzz = ${FUZZ} * smoothstep( 1.0, 2.0, yarnPixels * projectionMatrix[ 1 ][ 1 ] / ( ${FUZZY_PIXELS}.0 * vViewPosition.z ) );
+    vLight = vec2( fract( position.z * ${STEPS}.0 ), smoothstep( ${EVEN_PIXELS.join(", ")}, yarnWide ) );
+    float yarnFuzz = ${FUZZ} * smoothstep( ${FUZZY_PIXELS}.0, ${2 * FUZZY_PIXELS}.0, yarnWide );
     if ( yarnFuzz > 0.0 ) {
       mvPosition.xyz += yarnFuzz * yarn.z * normalize( transformedNormal );
       gl_Position = projectionMatrix * mvPosition;
@@ -50,7 +56,8 @@
   `;
   const LIT = `
     if ( yarn.x > 0.0 ) {
-      diffuseColor.rgb *= mix( ${SHADE[0].toFixed(2)}, ${SHADE[1].toFixed(2)}, vLight );
+      diffuseColor.rgb *= mix( ${SHADE[0].toFixed(2)}, ${SHADE[1].toFixed(2)}, mix( ${EVEN}, vLight.x, vLight.y ) );
+      normal = normalize( mix( normalize( vViewPosition ), normal, vLight.y ) );
       if ( dot( vYarn.xy, vYarn.xy ) > 0.01 && fwidth( vYarn.z ) < 0.25 ) {
         vec2 dx = dFdx( vYarn.xy ), dy = dFdy( vYarn.xy );
         float c = vYarn.x, s = vYarn.y, inside = 1.0 / max( c * c + s * s, 1e-6 );
