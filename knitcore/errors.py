@@ -14,6 +14,9 @@ from collections.abc import Callable
 Cancelled = Callable[[], bool]
 """Asked from time to time by a long computation; True stops it with :class:`CancelledError`."""
 
+Progress = Callable[[int, int], None]
+"""Called by a long computation with (steps done, steps in all)."""
+
 
 class KnitcoreError(Exception):
     """Base of every error that this package raises on purpose."""

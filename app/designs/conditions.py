@@ -12,9 +12,9 @@ class StaleError(ServiceError):
 
 
 class ConflictError(ServiceError):
-    """The request does not go with the present state."""
+    """The request conflicts with the current version."""
 
-    status, type, title = 409, "conflict", "This does not go with the present state"
+    status, type, title = 409, "conflict", "This conflicts with the current version"
 
 
 class UnconditionalError(ServiceError):

@@ -294,7 +294,7 @@ def add(connection: Connection, owner: str, content: dict[str, Any]) -> Design:
         raise OverBudgetError(
             f"You have {BUDGETS.designs} designs, deleted ones included; no more are kept.",
             field="designs",
-            remedy="Export and delete some; deleted ones leave for good after 30 days.",
+            remedy="Export and delete some; deleted designs are removed permanently after 30 days.",
         )
     content = _sized(connection, owner, content)
     at = now()
@@ -404,7 +404,7 @@ def _check_room(connection: Connection, owner: str, more: int) -> None:
             f"Your designs and their versions have {total / 1e6:.1f} of "
             f"{BUDGETS.kept_bytes / 1e6:.0f} MB; this would be {more / 1e6:.1f} MB more.",
             field="kept_bytes",
-            remedy="Export and delete some; deleted ones leave for good after 30 days.",
+            remedy="Export and delete some; deleted designs are removed permanently after 30 days.",
         )
 
 

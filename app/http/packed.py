@@ -1,4 +1,4 @@
-"""Answers as they are sent. They are mostly digits, so workers compress them."""
+"""Responses, compressed by the workers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from starlette.datastructures import Headers
 from app.operations.perform import LEVEL
 
 WORTH_BYTES = 1_000
-"""Shorter answers are sent as they are."""
+"""Shorter responses are sent uncompressed."""
 TAGGED: dict[int | str, dict[str, Any]] = {
     200: {"headers": {"ETag": {"$ref": "#/components/headers/ETag"}}},
     304: {"description": "It is what If-None-Match names."},

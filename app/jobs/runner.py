@@ -79,7 +79,7 @@ class JobRunner:
     async def submit(
         self, owner: str, kind: str, request: str, retry: Retry | None = None
     ) -> JobStatus:
-        """Add a job; if its result is known, and what a 3D view shows of it, it is done at once.
+        """Add a job; if its result and its 3D data are stored, the job is finished at once.
 
         Raises
         ------

@@ -141,8 +141,8 @@ class PieceTestRequest(LawsRequest):
         """A test of the library on a rectangle of the chart's cloth, and the cloth's material."""
         self.check(CutPiece.rectangle(*size_mm), context)
         material = context.material(self.material)
-        told = {"progress": context.progress, "cancelled": context.cancelled}
-        return self.pass_to(test, to_repeat(self.chart), material, **told, **more), material
+        control = {"progress": context.progress, "cancelled": context.cancelled}
+        return self.pass_to(test, to_repeat(self.chart), material, **control, **more), material
 
 
 class PieceTestResult(IntervalResult):
@@ -174,7 +174,7 @@ class PieceTestResult(IntervalResult):
 def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
     """Fields of every result, from the library's test."""
     past = bool(test.found) and test.is_past_the_law()
-    told = (
+    extrapolated = (
         "Some cloth is past 98 % of its lock-up. There the law is extrapolated: do not rely on "
         "the forces."
     )
@@ -186,7 +186,7 @@ def of_test(test: PieceTest, material: Material) -> dict[str, Any]:
         "nodes": test.nodes_mm.shape[1],
         "elements": test.mesh.nelements,
         "utilisation": test.utilisation() if test.found else 0.0,
-        "messages": [*([test.problem] if test.problem else []), *([told] if past else [])],
+        "messages": [*([test.problem] if test.problem else []), *([extrapolated] if past else [])],
     }
 
 

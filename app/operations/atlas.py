@@ -120,11 +120,11 @@ def _command(
 ) -> AtlasResult:
     yarn = context.material(request.material)
     place: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
-    told = None if as_json else _teller("repeats")
-    found = build_atlas(yarn, repeats_of(repeats), file=out, progress=told, **place)
+    progress = None if as_json else _teller("repeats")
+    found = build_atlas(yarn, repeats_of(repeats), file=out, progress=progress, **place)
     if yarn_level:
-        told = None if as_json else _teller("repeats on the yarn level")
-        found = improve_atlas(yarn, out, most_stitches=most_stitches, progress=told, **place)
+        progress = None if as_json else _teller("repeats on the yarn level")
+        found = improve_atlas(yarn, out, most_stitches=most_stitches, progress=progress, **place)
     return _result(found)
 
 

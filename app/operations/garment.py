@@ -91,7 +91,7 @@ class SockLeg(Template):
     length_mm: Length
 
     def plan(self, **yarn: Any) -> GarmentPlan:
-        """Its plan in a yarn."""
+        """The garment's plan for a yarn."""
         return sock_leg(self.ankle_mm, self.calf_mm, self.length_mm, fit=self.fit, **yarn)
 
 
@@ -107,7 +107,7 @@ class Limb(Template):
     hem_mm: Annotated[float, Field(ge=0, le=500)] = 40.0
 
     def plan(self, **yarn: Any) -> GarmentPlan:
-        """Its plan in a yarn."""
+        """The garment's plan for a yarn."""
         girths = [Girth(at, around) for at, around in self.profile]
         return limb_tube(
             "sleeve", girths, fit=self.fit, body=self.body, hem=self.hem, hem_mm=self.hem_mm, **yarn
@@ -148,7 +148,7 @@ class Glove(Template):
         return self.pass_to(Hand, thumb=thumb or _HAND.thumb, fingers=fingers or _HAND.fingers)
 
     def plan(self, **yarn: Any) -> GarmentPlan:
-        """Its plan in a yarn."""
+        """The garment's plan for a yarn."""
         return glove(self.hand, ease=self.ease, mmhg=self.target_mmhg, **yarn)
 
 

@@ -87,8 +87,8 @@ def _test(request: PieceRequest, material: Material, context: Context) -> PieceT
     cut = request.piece.piece()
     request.check(cut, context)
     cloth = request.pass_to(cloth_under, cut, to_repeat(request.chart), material)
-    told = {"progress": context.progress, "cancelled": context.cancelled}
-    return request.pass_to(solve, cut, cloth, request.piece.loads(), **told)
+    control = {"progress": context.progress, "cancelled": context.cancelled}
+    return request.pass_to(solve, cut, cloth, request.piece.loads(), **control)
 
 
 def _result(request: PieceRequest, test: PieceTest, material: Material) -> PieceResult:
@@ -97,8 +97,8 @@ def _result(request: PieceRequest, test: PieceTest, material: Material) -> Piece
     edges = []
     for i, given in enumerate(request.piece.conditions):
         found: dict[str, Any] = {"edge": given.edge, "kind": given.kind}
-        for (name, (unit, told)), (axis, letter) in product(values.items(), enumerate("xy")):
-            value, margin = told[:, i, axis], margins[name][:, i, axis]
+        for (name, (unit, by_edge)), (axis, letter) in product(values.items(), enumerate("xy")):
+            value, margin = by_edge[:, i, axis], margins[name][:, i, axis]
             found[f"{name}_{letter}_{unit}"] = value
             found[f"{name}_{letter}_interval_{unit}"] = value - margin, value + margin
         edges.append(found)

@@ -106,8 +106,8 @@ class Operation(Generic[Request, Result]):
     @cached_property
     def result(self) -> type[Result]:
         """The model of the result."""
-        told = get_type_hints(self.run)["return"]
-        return cast("type[Result]", get_args(told)[0] if self.is_viewed else told)
+        returned = get_type_hints(self.run)["return"]
+        return cast("type[Result]", get_args(returned)[0] if self.is_viewed else returned)
 
     @cached_property
     def is_viewed(self) -> bool:

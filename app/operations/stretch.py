@@ -293,14 +293,14 @@ def _stitches(
         values[:, ~there] = 0.0
     fields = {"strain_course": xx, "strain_wale": yy, "utilisation": used}
     margin = {f"strain_{request.direction}": margins.strain, "utilisation": margins.utilisation}
-    told: dict[str, Any] = {name: _rounded(values) for name, values in fields.items()}
+    shown: dict[str, Any] = {name: _rounded(values) for name, values in fields.items()}
     for name, width in margin.items():
-        told[f"{name}_interval"] = [_rounded(ends) for ends in _around(fields[name], width)]
+        shown[f"{name}_interval"] = [_rounded(ends) for ends in _around(fields[name], width)]
     result = StretchResult.of(
         _curve(chart, request, test, margins),
         chart,
         id=OPERATION.key(request),
-        stitch_fields=told,
+        stitch_fields=shown,
     )
     view = StretchView(
         direction=request.direction,

@@ -130,11 +130,11 @@ def _instances(scene: FabricScene, middle_mm: Array, meshes: StitchMeshes) -> di
 
 
 def _lit(vertices: NDArray[np.float32], light: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Corners of a tube; what z has beyond whole steps is the light there, for the browser's
+    """Corners of a tube; the fractional part of z encodes the ambient light for the browser's
     shaders: viser sends nothing else for each corner."""
-    told = _short(vertices)
-    told[:, 2] = (np.floor(FINEST * vertices[:, 2]) + np.minimum(light, BRIGHTEST)) / FINEST
-    return told
+    lit = _short(vertices)
+    lit[:, 2] = (np.floor(FINEST * vertices[:, 2]) + np.minimum(light, BRIGHTEST)) / FINEST
+    return lit
 
 
 def _short(values: NDArray[Any]) -> NDArray[np.float32]:

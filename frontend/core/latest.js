@@ -1,9 +1,9 @@
-/** Runs only the newest of many wishes: waits a little, gives up what is under way. */
+/** Runs only the newest of many requests: waits a little, gives up what is under way. */
 export class Latest {
   /** @type {ReturnType<typeof setTimeout> | undefined} */ #timer;
   /** @type {AbortController | undefined} */ #controller;
 
-  /** @param {number} delay ms to wait for a newer wish */
+  /** @param {number} delay ms to wait for a newer request */
   constructor(delay) {
     this.delay = delay;
   }

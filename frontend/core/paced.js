@@ -1,10 +1,10 @@
 /**
- * For work that need not keep up with the pointer: done at most once per interval, the last time after the
- * last wish. So it stays out of the frame that shows a stroke.
+ * For work that need not keep up with the pointer: done at most once per interval, and once more after the
+ * last call. So it stays out of the frame that shows a stroke.
  *
  * @param {() => void} act
  * @param {number} milliseconds
- * @returns {() => void} wishes for it
+ * @returns {() => void} call it whenever the work is due
  */
 export function paced(act, milliseconds) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */

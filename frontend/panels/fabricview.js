@@ -21,7 +21,7 @@ import { problemText } from "../widgets/problem.js";
 import { POSES } from "../chart/seeing.js";
 import { REST } from "../studio.js";
 
-/** Quiet time before the 3D view follows: drawing it may keep a machine without a GPU from painting. */
+/** Delay before the 3D view updates: without a GPU, drawing can block painting. */
 const DELAY_MS = 650;
 /** After a stroke another one often follows. */
 const BETWEEN_STROKES_MS = 600;
@@ -116,12 +116,12 @@ export function fabricview(host, studio, view) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
-  const wish = () => wanted(studio, view);
+  const request = () => wanted(studio, view);
   host.replaceChildren(
     frame,
     still.root,
     caption,
-    toolbar(studio, (side) => void look(side), wish),
+    toolbar(studio, (side) => void look(side), request),
     status,
   );
 
@@ -141,7 +141,7 @@ export function fabricview(host, studio, view) {
   /** Until it does, or always where it cannot, a picture stands in for it. */
   const beStill = () => {
     setLive(false);
-    void still.draw(wish(), () => {
+    void still.draw(request(), () => {
       if (!problem && !blind) status.replaceChildren();
     });
   };
@@ -163,7 +163,7 @@ export function fabricview(host, studio, view) {
       return;
     }
     open(`/view/${encodeURIComponent(studio.designId)}/`); // it loads while the scene is being made
-    const asked = wish();
+    const asked = request();
     const text = JSON.stringify(asked);
     if (text === sent) return;
     sending = true;

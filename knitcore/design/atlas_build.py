@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -19,14 +19,12 @@ from knitcore.answer.learned import SweptChart
 from knitcore.batch import BatchProgress, run_batch
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import FORMAT, STRESS_N_PER_MM, Atlas, Entry, load_atlas, save_atlas
-from knitcore.errors import Cancelled, InputError, KnitcoreError
+from knitcore.errors import Cancelled, InputError, KnitcoreError, Progress
 from knitcore.fabric import Direction
 from knitcore.materials import Interval, Material
 
 AT_ONCE = 16
 """Repeats in one task of a batch: half a second of work."""
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ fabrics of the same yarn relate the results to the measured material
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,13 +24,12 @@ from knitcore.design.atlas_build import (
     material_fingerprint,
     predict_repeat,
 )
-from knitcore.errors import Cancelled
+from knitcore.errors import Cancelled, Progress
 from knitcore.fabric import Fabric
 from knitcore.materials import Material
 from knitcore.yarnlibrary.characterise import RepeatTask, characterise_repeat, law_of
 from knitcore.yarnlibrary.yarns import yarn_for
 
-Progress = Callable[[int, int], None]
 Document = dict[str, Any]
 
 

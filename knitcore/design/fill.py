@@ -27,7 +27,7 @@ from knitcore.design.mixtures import Mixer
 from knitcore.design.patch_check import finite_size
 from knitcore.design.patches import connected, smooth, unevenness, wanted_labels
 from knitcore.design.placing import placed
-from knitcore.design.progress import Progress
+from knitcore.design.progress import SearchProgress
 from knitcore.design.readback import EXACT, deviation, nearest_chart
 from knitcore.errors import Cancelled, InputError
 from knitcore.materials import Material
@@ -143,8 +143,8 @@ def fill_field(
         )
     if parts is None:
         parts = np.zeros(wanted.shape[1:], dtype=np.intp)
-    told = Progress(progress, cancelled)
-    fill = _Fill(wanted, parts, kept, stitch, material, atlas, scattered, seed, told)
+    watch = SearchProgress(progress, cancelled)
+    fill = _Fill(wanted, parts, kept, stitch, material, atlas, scattered, seed, watch)
     return fill.run(smallest_patch, check=check and wanted[0].size <= MAX_CHECKED)
 
 
@@ -179,7 +179,7 @@ class _Fill:
         atlas: Atlas,
         scattered: bool,
         seed: int,
-        progress: Progress,
+        progress: SearchProgress,
     ) -> None:
         inside = np.ones(wanted.shape[1:], dtype=bool) if stitch is None else stitch
         self._wanted = np.where(inside, wanted, np.nan)

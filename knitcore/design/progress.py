@@ -9,7 +9,7 @@ from knitcore.errors import Cancelled, CancelledError
 
 
 @dataclass
-class Progress:
+class SearchProgress:
     """Progress that never decreases, and a request to stop."""
 
     progress: Callable[[float], None] | None

@@ -22,7 +22,7 @@ from knitcore.arrays import Array
 from knitcore.bounds import check_positive, check_range
 from knitcore.chart import StitchChart, check_size
 from knitcore.design.atlas import STRESS_N_PER_MM, Atlas
-from knitcore.design.progress import Progress
+from knitcore.design.progress import SearchProgress
 from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials import Material
@@ -170,12 +170,12 @@ class _Run:
         chosen = ROUNDS * len(FORCES_N_PER_MM)
         total = chosen + TRIES
 
-        told = Progress(progress, self._cancelled)
+        watch = SearchProgress(progress, self._cancelled)
         wish = self._by_band(1 - self._wanted)
         best: _Pulled | None = None
         aim = wish
         for turn in range(chosen):
-            told.look(turn / total)
+            watch.look(turn / total)
             if turn % ROUNDS == 0:
                 aim = wish
             pulled = self._pull(self._choose(aim, FORCES_N_PER_MM[turn // ROUNDS]))
@@ -192,8 +192,8 @@ class _Run:
                 f"{self._direction}-wise.",
                 "Ask for a smaller strain.",
             )
-        best = self._change_bands(best, rng, lambda turn: told.look((chosen + turn) / total))
-        told.look(1.0)
+        best = self._change_bands(best, rng, lambda turn: watch.look((chosen + turn) / total))
+        watch.look(1.0)
         return self._result(best)
 
     def _choose(self, aim: Array, force: float) -> tuple[int, ...]:

@@ -289,7 +289,7 @@ def _yarn_facts(piece: Piece, material: Material, options: ExportOptions) -> tup
 
 _TEXT = "text/plain; charset=utf-8"
 _LOCAL = ("Local values come from the quarter-cell composite: the stretched, flat fabric.",)
-_DRAWN = ("Drawn loops on the flat lattice, not relaxed yarn.",)
+_DRAWN = ("Loops are drawn schematically; the yarn was not simulated.",)
 
 _BUILT_IN = (
     Exporter(ExportKind.KNITOUT, ".k", _TEXT, _knitout),

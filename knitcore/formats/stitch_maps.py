@@ -1,4 +1,4 @@
-"""Maps of target moduli from a spreadsheet: the columns that :mod:`stitch_values` writes."""
+"""Maps of target moduli from a spreadsheet, in columns of :mod:`knitcore.formats.stitch_values`."""
 
 from __future__ import annotations
 

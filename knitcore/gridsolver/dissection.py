@@ -108,7 +108,9 @@ class GridFactor:
         return self._size
 
     def factorise(self, cell_matrices: Array) -> None:
-        """Factorise the sum of symmetric cell matrices, given as for :class:`Factor`.
+        """Factorise the sum of symmetric cell matrices.
+
+        They are given as for :class:`~knitcore.gridsolver.factor.Factor`.
 
         Raises
         ------

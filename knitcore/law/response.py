@@ -56,7 +56,7 @@ class Response:
 
 
 def free_response(law: ConstitutiveLaw, direction: Direction) -> Response:
-    """Of a law, free across the pull."""
+    """Response of a law with its width free."""
     return Response(law.modulus(direction), partial(free_strains_at_stress, law, direction))
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from knitcore.bounds import check_range
-from knitcore.errors import Cancelled
+from knitcore.errors import Cancelled, Progress
 from knitcore.piece.assembly import PieceEnergy
 from knitcore.piece.cloth import Cloth
 from knitcore.piece.conditions import Condition, Constraints
@@ -16,7 +16,6 @@ from knitcore.piece.equilibrium import Balance, Equilibrium
 from knitcore.piece.mesh import mesh_of
 from knitcore.piece.outline import CutPiece
 from knitcore.piece.results import PieceTest
-from knitcore.swatch.run import Progress
 from knitcore.swatch.solver import StepError
 from knitcore.threads import one_blas_thread
 

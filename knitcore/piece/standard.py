@@ -10,7 +10,7 @@ import numpy as np
 from knitcore.arrays import Array
 from knitcore.bounds import check_range
 from knitcore.chart import StitchChart
-from knitcore.errors import Cancelled, InputError
+from knitcore.errors import Cancelled, InputError, Progress
 from knitcore.fabric import Direction
 from knitcore.materials.material import Material
 from knitcore.piece.cloth import Cloth, cloth_under
@@ -19,7 +19,6 @@ from knitcore.piece.outline import CutPiece
 from knitcore.piece.results import PieceTest
 from knitcore.piece.solve import solve
 from knitcore.piece.uncertainty import force_log_sd
-from knitcore.swatch.run import Progress
 from knitcore.swatch.strip import LOCK_UP_SHARE, MAX_STRAIN
 
 STRETCH = "a stretch that can be computed"

@@ -30,7 +30,7 @@ from knitcore.yarnlevel.relax import relax
 from knitcore.yarnlibrary.yarns import yarn_for
 
 _MAX_POISSON = 0.95
-"""Of the root of the product of both ratios, beyond which an answer has no flat energy."""
+"""Upper limit of √(ν_xy ν_yx); from 1 on, the membrane energy is not positive definite."""
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ _BETWEEN = 3
 """Stitches that a pull needs: two in the clamps, one between."""
 _SHAKEN_MM = 1e-3
 _STRIPS = 0.3
-"""Share of it that each of the two strips may take with which the descent begins."""
+"""Share of the time limit for each of the two starting strips."""
 STRIP = 4.0
 """Width of the edge strip whose curl is reported, in thicknesses."""
 PULLED_NOTE = (
@@ -34,8 +34,8 @@ PULLED_NOTE = (
     "that of small strains, so that forces are those of the stretch test, and not of this shape."
 )
 UNBALANCED_NOTE = (
-    "Knits and purls of its ribs or welts do not balance, so that it rolls up as a whole, as bend "
-    "says of the repeat, too. Laid flat it has the size that predict gives."
+    "Its knits and purls do not balance, so the whole piece rolls up; `bend` shows the same for "
+    "the repeat. Laid flat it has the size that `predict` gives."
 )
 NOTE = (
     "Without friction, set and weight: edges roll and folds close as far as they can; real fabric "

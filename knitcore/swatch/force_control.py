@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from knitcore.errors import Cancelled, ConvergenceError, InputError
+from knitcore.errors import Cancelled, ConvergenceError, InputError, Progress
 from knitcore.fabric import Direction
 from knitcore.swatch.results import StripTest
-from knitcore.swatch.run import Path, Progress, run_path
+from knitcore.swatch.run import Path, run_path
 from knitcore.swatch.sheet import Sheet
 from knitcore.swatch.solver import Equilibrium
 from knitcore.swatch.strip import (

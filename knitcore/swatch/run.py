@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.arrays import Array
-from knitcore.errors import Cancelled
+from knitcore.errors import Cancelled, Progress
 from knitcore.swatch.sheet import Sheet, State
 from knitcore.swatch.solver import Equilibrium, PathSolver, StepError, Tolerance
 from knitcore.threads import one_blas_thread
-
-Progress = Callable[[int, int], None]
-"""Called with (steps done, steps in all)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from knitcore.arrays import Array
 from knitcore.bounds import check_range
 from knitcore.chart import StitchChart
 from knitcore.choice import Choice
-from knitcore.errors import Cancelled, InputError
+from knitcore.errors import Cancelled, InputError, Progress
 from knitcore.fabric import PHASES, Direction
 from knitcore.law.constitutive import ConstitutiveLaw
 from knitcore.materials.material import Material
@@ -22,7 +22,7 @@ from knitcore.swatch.grid import QuarterGrid, check_cloth
 from knitcore.swatch.misfit import draw_in as draw_in_path
 from knitcore.swatch.models import EnergyModel, SheetModel, energy_model
 from knitcore.swatch.results import StripTest
-from knitcore.swatch.run import Path, Progress, run_path
+from knitcore.swatch.run import Path, run_path
 from knitcore.swatch.sheet import Sheet
 
 DEFAULT_STEPS = 10

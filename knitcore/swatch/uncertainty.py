@@ -299,7 +299,7 @@ def _varied(
 
 
 def _stress_scaled(direction: Direction, law: ConstitutiveLaw, step: float) -> ConstitutiveLaw:
-    """By the logarithm of the scale of stress in a direction, Poisson's ratios' product fixed."""
+    """The law for a step of ln(stress scale) in one direction, with ν_xy ν_yx fixed."""
     factor, axis = math.exp(step), "xx" if direction is Direction.COURSE else "yy"
     stiffness, stiffening = f"stiffness_{axis * 2}", f"beta_{axis}"
     coupling = law.stiffness_xxyy * math.sqrt(factor)

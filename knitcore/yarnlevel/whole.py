@@ -1,9 +1,9 @@
 """A whole chart at the yarn level: its windows relaxed in turn, and the sheet together.
 
-A cell of thousands of stitches is too large for one factor. Its shape is found in rounds. A sweep
+A cell of thousands of stitches is too large for one factor. Its shape is found in rounds. A pass
 relaxes windows one after the other by Newton steps, each with the yarn around it at rest (the
 alternating method of Schwarz); where the next round's windows end lies in the middle of this
-one's. Long waves, the sizes of the sheet, and yarn that passes along a course take many sweeps;
+one's. Long waves, the sizes of the sheet, and yarn that passes along a course take many passes;
 these come from a descent of all unknowns at once (:mod:`knitcore.yarnlevel.polish`).
 """
 
@@ -58,11 +58,11 @@ _WINDOW = 8
 _FIRSTS = ((0, 0), (_WINDOW // 2, _WINDOW // 2), (0, _WINDOW // 2), (_WINDOW // 2, 0))
 """Where the first window of a round begins."""
 _GROWING = Options(tolerance=1e-3, iterations=4)
-_SWEEP = Options(tolerance=1e-6, iterations=3)
-_LAST_SWEEP = Options(tolerance=1e-6, iterations=6)
+_PASS = Options(tolerance=1e-6, iterations=3)
+_LAST_PASS = Options(tolerance=1e-6, iterations=6)
 _DESCENT_STEPS = 60
 _PATIENCE = 12
-"""Sweeps in which a core may fail to grow."""
+"""Passes in which a core may fail to grow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ class _Work:
             sheet = self._settled(self._grown(sheet))
             sheet = self._refined(sheet)
         sheet = self._settled(self._grown(sheet))
-        sheet = self._swept(sheet, self.energy(sheet), _LAST_SWEEP)
+        sheet = self._one_pass(sheet, self.energy(sheet), _LAST_PASS)
         energy = self.energy(sheet)
         found, left_n = self._minimum(energy, sheet)
         became = outcome(energy, found)
@@ -239,7 +239,7 @@ class _Work:
                 break
             yarn = stiffened(replace(self.yarn, core_radius_mm=sheet.core_radius_mm))
             energy = replace(self.energy(sheet), yarn=yarn)
-            grown = self._fitted(self._swept(sheet, energy, _GROWING, round_), OPENING)
+            grown = self._fitted(self._one_pass(sheet, energy, _GROWING, round_), OPENING)
             stuck = 0 if grown.core_radius_mm > sheet.core_radius_mm else stuck + 1
             core = max(sheet.core_radius_mm, grown.core_radius_mm)
             sheet = replace(grown, core_radius_mm=core)
@@ -251,7 +251,7 @@ class _Work:
         while sheet.change > self.tolerance and len(sheet.energies_n_mm) < self.rounds:
             number = len(sheet.energies_n_mm)
             energy = self.energy(sheet)
-            sheet = self._swept(sheet, energy, _SWEEP, number)
+            sheet = self._one_pass(sheet, energy, _PASS, number)
             found = polished(
                 energy, sheet.state, sheet.tension_n.mean(axis=1),
                 self._windows(energy, sheet, number), flat=self.flat, steps=_DESCENT_STEPS,
@@ -274,7 +274,9 @@ class _Work:
         # between the old samples the cores may overlap
         return self._fitted(refined, OPENING)
 
-    def _swept(self, sheet: Sheet, energy: CellEnergy, options: Options, number: int = 0) -> Sheet:
+    def _one_pass(
+        self, sheet: Sheet, energy: CellEnergy, options: Options, number: int = 0
+    ) -> Sheet:
         """The sheet after its windows have been relaxed in turn."""
         controls, tension = sheet.controls.copy(), sheet.tension_n.copy()
         curve = energy.curve(sheet.state)

@@ -4,7 +4,7 @@
  * @import {Studio} from "../../studio.js"
  * @import {ViewRequest} from "../../types.js"
  *
- * @typedef {() => ViewRequest} Wish what the view shows
+ * @typedef {() => ViewRequest} RequestOfView what the view shows
  * @typedef {"page" | "recording" | "solid"} Kind
  */
 
@@ -41,12 +41,12 @@ export async function viewPicture(studio, width) {
 
 /**
  * @param {Studio} studio
- * @param {Wish} wish
+ * @param {RequestOfView} request
  * @param {Kind} kind
  * @param {boolean} animated
  */
-export async function saveFile(studio, wish, kind, animated) {
-  const body = { ...wish(), animated, dark: isDark() };
+export async function saveFile(studio, request, kind, animated) {
+  const body = { ...request(), animated, dark: isDark() };
   await save(studio, ENDINGS[kind], async () => (await fetched(`/views/${kind}`, { method: "POST", body })).blob());
 }
 

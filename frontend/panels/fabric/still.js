@@ -25,16 +25,16 @@ export class Still {
   /** Grows with each design: a picture of the one before is not shown any more. */
   #design = 0;
 
-  /** At most one is being drawn; of the wishes meanwhile only the last is. @param {ViewRequest} wish @param {() => void} shown */
-  async draw(wish, shown) {
-    const asked = JSON.stringify(wish);
+  /** At most one is being drawn; of the requests meanwhile only the last is. @param {ViewRequest} request @param {() => void} shown */
+  async draw(request, shown) {
+    const asked = JSON.stringify(request);
     if (asked === this.#asked) return;
     this.#asked = asked;
     if (this.#busy) return;
     this.#busy = true;
     const design = this.#design;
     try {
-      const content = await this.#drawn(wish);
+      const content = await this.#drawn(request);
       if (design === this.#design) {
         URL.revokeObjectURL(this.root.src);
         this.root.src = URL.createObjectURL(content);
@@ -60,12 +60,12 @@ export class Still {
     this.root.hidden = true;
   }
 
-  /** @param {ViewRequest} wish */
-  async #drawn(wish) {
+  /** @param {ViewRequest} request */
+  async #drawn(request) {
     const { clientWidth, clientHeight } = this.frame;
     const width = Math.max(16, Math.min(WIDEST, clientWidth));
     const height = Math.max(16, Math.min(HIGHEST, clientHeight));
-    const answer = await fetched(`/views/still?width=${width}&height=${height}`, { method: "POST", body: wish });
+    const answer = await fetched(`/views/still?width=${width}&height=${height}`, { method: "POST", body: request });
     return answer.blob();
   }
 }

@@ -37,9 +37,9 @@ const COLOURS = [
 /**
  * @param {Studio} studio
  * @param {(side: CameraSide) => void} look
- * @param {import("./share.js").Wish} wish
+ * @param {import("./share.js").RequestOfView} request
  */
-export function toolbar(studio, look, wish) {
+export function toolbar(studio, look, request) {
   const sides = SIDES.map(({ side, label, hint }) =>
     h("button", { class: "segment", id: `look-${side}`, title: hint, onclick: () => look(side) }, label),
   );
@@ -77,15 +77,15 @@ export function toolbar(studio, look, wish) {
     h("div", { class: "segmented", role: "group", "aria-label": "Side" }, ...sides),
     h("div", { class: "segmented", role: "radiogroup", "aria-label": "Shape" }, ...poses),
     root,
-    shareMenu(studio, wish),
+    shareMenu(studio, request),
   );
 }
 
 /**
  * @param {Studio} studio
- * @param {import("./share.js").Wish} wish
+ * @param {import("./share.js").RequestOfView} request
  */
-function shareMenu(studio, wish) {
+function shareMenu(studio, request) {
   const { root, setItems, button } = menu({
     id: "fabric-share",
     label: "Give the view away",
@@ -107,16 +107,21 @@ function shareMenu(studio, wish) {
       item("picture", "Picture (.png)", (files) => files.savePicture(studio, 1600)),
       item("picture-large", "Large picture (.png)", (files) => files.savePicture(studio, 3200)),
       null,
-      item("page", "Page to turn it in (.html)", (files) => files.saveFile(studio, wish, "page", false)),
-      item("animation", "Page with the stretch (.html)", (files) => files.saveFile(studio, wish, "page", true), still),
+      item("page", "Page to turn it in (.html)", (files) => files.saveFile(studio, request, "page", false)),
+      item(
+        "animation",
+        "Page with the stretch (.html)",
+        (files) => files.saveFile(studio, request, "page", true),
+        still,
+      ),
       item(
         "recording",
         "Recording of the stretch (.viser)",
-        (files) => files.saveFile(studio, wish, "recording", true),
+        (files) => files.saveFile(studio, request, "recording", true),
         still,
       ),
       null,
-      item("solid", "Solid with colours (.glb)", (files) => files.saveFile(studio, wish, "solid", false)),
+      item("solid", "Solid with colours (.glb)", (files) => files.saveFile(studio, request, "solid", false)),
     ]);
   };
   studio.stretch.watch(show);
