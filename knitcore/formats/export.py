@@ -25,10 +25,10 @@ from knitcore.formats import (
 from knitcore.formats.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
 from knitcore.formats.drawing import Page, to_long_svg, to_pdf
 from knitcore.formats.knitout import Finish
+from knitcore.formats.laid_out import mean_stitch_mm
 from knitcore.formats.layout import DesignLayout, layout_fields, piece_of, region_cells
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
-from knitcore.geometry.lattice import flat_lattice
 from knitcore.materials import Material
 from knitcore.worked import Construction, Side
 
@@ -238,8 +238,8 @@ def _design(piece: Piece, material: Material, options: ExportOptions) -> bytes:
 
 
 def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
-    sizes = flat_lattice(piece.chart, material).sizes_mm.mean(axis=(0, 1))
-    aspect = min(max(float(sizes[1] / sizes[0]), 0.2), 5.0)
+    width, height = mean_stitch_mm(piece, material)
+    aspect = min(max(float(height / width), 0.2), 5.0)
     facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
     marks = tuple(
         RepeatMark(

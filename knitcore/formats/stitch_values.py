@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
+from knitcore.formats.laid_out import laid_corners_mm
 from knitcore.garment.piece import Piece
-from knitcore.geometry.lattice import flat_lattice
 from knitcore.materials import Material
 from knitcore.mechanics.local import local_moduli
 
@@ -49,15 +49,11 @@ def _as_text(name: str) -> str:
 
 
 def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
-    """Stitches as rectangles in mm, with their values as cell data."""
+    """Stitches in mm, laid flat at rest, with their values as cell data."""
     import meshio
 
     piece = Piece.of(chart)
-    lattice = flat_lattice(piece.shaped.continued(), material)
-    x = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[0, :, 0])])
-    y = np.concatenate([[0.0], np.cumsum(lattice.sizes_mm[:, 0, 1])])
-    grid_x, grid_y = np.meshgrid(x, y)
-    points = np.column_stack([grid_x.ravel(), grid_y.ravel(), np.zeros(grid_x.size)])
+    points = np.pad(laid_corners_mm(piece, material).reshape(-1, 2), ((0, 0), (0, 1)))
     row, column = np.nonzero(piece.shaped.stitch)
     corner = row * (piece.chart.columns + 1) + column
     above = corner + piece.chart.columns + 1

@@ -1,6 +1,6 @@
 """The yarn of a chart as a solid: one closed tube a course, as glTF (metres) or STL (mm).
 
-The geometry is that of a drawing, laid flat with the material's stitch sizes, not an equilibrium.
+The loops are drawn; the cloth lies flat at rest, with the stitch size that `predict` gives.
 """
 
 from __future__ import annotations
@@ -11,13 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart, check_stitches
 from knitcore.fabric import Fabric
+from knitcore.formats.laid_out import laid_corners_mm
 from knitcore.garment.piece import Piece
-from knitcore.geometry.lattice import flat_lattice
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.geometry.tubes import TriangleMesh, tube
 from knitcore.materials import Material
+from knitcore.shell.surface import Surface
 
 MAX_STITCHES = 10_000
 POINTS, SIDES = 17, 6
@@ -26,25 +28,29 @@ DEFAULT_DIAMETER_SHARE = 0.3
 
 
 def course_centre_lines(
-    chart: StitchChart | Piece, material: Material
+    chart: StitchChart,
+    corners_mm: NDArray[np.float64],
+    material: Material,
+    stitches: NDArray[np.bool_] | None = None,
 ) -> tuple[NDArray[np.float64], ...]:
-    """The yarn of every course in mm, arrays (stitches * (POINTS - 1) + 1, 3)."""
-    spans = (
-        [(0, chart.columns)] * chart.rows if isinstance(chart, StitchChart) else chart.shaped.spans
-    )
-    chart = chart if isinstance(chart, StitchChart) else chart.shaped.continued()
-    lattice, kinds = flat_lattice(chart, material), loop_kinds(chart)
-    radius = yarn_radius_mm(chart, material)
-    shapes = {int(kind): loop_centre_line(int(kind), POINTS) for kind in np.unique(kinds)}
-    lines = []
+    """The yarn of every course on a surface, mm: (stitches * (POINTS - 1) + 1, 3).
+
+    Parameters
+    ----------
+    corners_mm : (rows + 1, columns + 1, 3)
+    stitches : (rows, columns) False where there are none, which cut a course into several.
+    """
+    shown = np.ones(chart.purl.shape, dtype=bool) if stitches is None else stitches
+    surface = Surface(corners_mm)
+    radius, kinds = yarn_radius_mm(chart, material), loop_kinds(chart)
+    lines: list[NDArray[np.float64]] = []
     for row in range(chart.rows):
-        parts = []
-        for column in range(*spans[row]):
-            scale = np.array([*lattice.sizes_mm[row, column], radius])
-            offset = np.array([*lattice.centres_mm[row, column], 0.0])
-            parts.append(shapes[int(kinds[row, column])] * scale + offset)
-        joined = [part[:-1] for part in parts[:-1]] + [parts[-1]]
-        lines.append(np.concatenate(joined))
+        for columns in _runs(shown[row]):
+            shapes = np.stack([loop_centre_line(int(k), POINTS) for k in kinds[row, columns]])
+            shapes[..., 0] += columns[:, None] + 0.5
+            shapes[..., 1] += row + 0.5
+            line = np.concatenate([shapes[:, :-1].reshape(-1, 3), shapes[-1, -1:]])
+            lines.append(surface.at(line[:, 0], line[:, 1], radius * line[:, 2]))
     return tuple(lines)
 
 
@@ -54,8 +60,7 @@ def yarn_radius_mm(chart: StitchChart, material: Material) -> float:
     known = [d for d in diameters if d is not None]
     if known:
         return 0.5 * float(np.mean(known))
-    widths = flat_lattice(chart, material).sizes_mm[..., 0]
-    return 0.5 * DEFAULT_DIAMETER_SHARE * float(widths.mean())
+    return 0.5 * DEFAULT_DIAMETER_SHARE * choose(chart, material).relaxed_course_mm
 
 
 def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
@@ -66,9 +71,12 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     InputError
         If there are too many stitches for a mesh of use.
     """
-    grid = chart if isinstance(chart, StitchChart) else chart.shaped.continued()
-    check_stitches(grid.stitches, MAX_STITCHES)
-    return solid(course_centre_lines(chart, material), yarn_radius_mm(grid, material))
+    piece = Piece.of(chart)
+    check_stitches(piece.chart.stitches, MAX_STITCHES)
+    shown, grid = piece.shaped.stitch, piece.shaped.continued()
+    corners = np.pad(laid_corners_mm(piece, material), ((0, 0), (0, 0), (0, 1)))
+    lines = course_centre_lines(grid, corners, material, shown)
+    return solid(lines, yarn_radius_mm(grid, material))
 
 
 def solid(lines: Iterable[NDArray[np.float64]], radius_mm: float) -> TriangleMesh:
@@ -109,3 +117,10 @@ def _closed(mesh: TriangleMesh) -> TriangleMesh:
     end = last + np.stack([zero, ring, ring + 1], axis=-1)
     faces = np.concatenate([mesh.faces, start, end]).astype(np.uint32)
     return TriangleMesh(mesh.vertices, faces)
+
+
+def _runs(stitches: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """Columns of the stitches of a row, those side by side together."""
+    columns = np.flatnonzero(stitches)
+    runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
+    return [run for run in runs if len(run)]

@@ -28,6 +28,23 @@ class Lattice:
     centres_mm: Array
     sizes_mm: Array
 
+    @property
+    def corners_mm(self) -> Array:
+        """Corners of the cells, (rows + 1, columns + 1, 2): the mean of the edges that meet there.
+
+        Those along x end at a corner from below and above, those along y from left and right.
+        """
+        return np.stack([self._edges_along(0), self._edges_along(1).T], axis=-1)
+
+    def _edges_along(self, axis: int) -> Array:
+        """One coordinate of the corners; the lines that run along it come first."""
+        centres, sizes = (v[..., axis] for v in (self.centres_mm, self.sizes_mm))
+        if axis == 1:
+            centres, sizes = centres.T, sizes.T
+        ends = centres[:, -1:] + sizes[:, -1:] / 2
+        edges = np.pad(np.hstack([centres - sizes / 2, ends]), ((1, 1), (0, 0)), mode="edge")
+        return np.asarray((edges[1:] + edges[:-1]) / 2)
+
 
 def stitch_sizes_mm(material: Material) -> Array:
     """Width and height of the 16 kinds of stitch, (16, 2), each the mean of its four quarters."""

@@ -20,7 +20,10 @@ from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.formats import report
 from knitcore.formats.chart_key import ChartStyle
 from knitcore.formats.drawing import Label, Page
-from knitcore.materials import material
+from knitcore.formats.laid_out import laid_corners_mm, mean_stitch_mm
+from knitcore.formats.yarn_mesh import course_centre_lines
+from knitcore.garment.piece import Piece
+from knitcore.materials import Material, material
 from knitcore.yarnlibrary.store import stored_charts
 from tests.app.command_line import run
 
@@ -65,7 +68,7 @@ def test_all_ways_of_asking_give_one_answer(
     yarn: str,
     charts: list[StitchChart],
 ) -> None:
-    """Library, operation, command line, REST, report and atlas."""
+    """Library, operation, command line, REST, report, atlas and the files of stitches."""
     used, file = material(yarn), tmp_path / "chart.txt"
     atlas = build_atlas(used, [chart.canonical() for chart in charts])
     for chart in charts:
@@ -74,6 +77,7 @@ def test_all_ways_of_asking_give_one_answer(
         _agrees_with_library(told, answer)
         _agrees_with_atlas(atlas, chart, answer)
         _agrees_with_report(_report(chart, yarn, monkeypatch), answer)
+        _agrees_with_files(chart, used, answer)
         file.write_text(chart.text)
         assert run("predict", file, "--material", yarn) == told
         assert client.post("/api/v1/predict", json=body).json() == told
@@ -144,6 +148,19 @@ def _agrees_with_report(labels: set[str], answer: Answer) -> None:
             (along.relaxed_mm, along.relaxed_interval_mm),
         ):
             assert f"{value:.3g}  ({interval.low:.3g} to {interval.high:.3g})" in labels
+
+
+def _agrees_with_files(chart: StitchChart, used: Material, answer: Answer) -> None:
+    """The cloth of VTU, glTF and STL is as large as its stitches together."""
+    piece = Piece.of(chart)
+    stitch = np.array([answer.along(direction).relaxed_mm for direction in Direction])
+    corners = laid_corners_mm(piece, used)
+    width, height = (np.diff(corners[..., k], axis=1 - k).mean() for k in (0, 1))
+    np.testing.assert_allclose([width, height], stitch, rtol=0.02)
+    lines = course_centre_lines(chart, np.pad(corners, ((0, 0), (0, 0), (0, 1))), used)
+    ends = [line[-1, 0] - line[0, 0] for line in lines]
+    assert np.mean(ends) == pytest.approx(chart.columns * stitch[0], rel=0.02)
+    np.testing.assert_allclose(mean_stitch_mm(piece, used), stitch, rtol=1e-12)
 
 
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])

@@ -58,3 +58,16 @@ def test_a_repeat_lies_straight_and_a_pure_fabric_as_before() -> None:
     seed = StitchChart.of_fabric("seed", 6, 9)
     straight, drawn = (f(seed, material("acrylic")) for f in (flat_lattice, resting_lattice))
     np.testing.assert_array_equal(straight.centres_mm, drawn.centres_mm)
+
+
+@pytest.mark.parametrize("text", ["KP/PK", "KKPP", "K/P/K/K"])
+def test_neighbouring_stitches_share_their_corners(text: str) -> None:
+    lattice = resting_lattice(StitchChart.parse(text).resized(9, 12), material("acrylic"))
+    corners = lattice.corners_mm
+    assert corners.shape == (10, 13, 2)
+    middles = (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1]) / 4
+    spread = lattice.sizes_mm.min(axis=(0, 1)).min()
+    np.testing.assert_allclose(middles, lattice.centres_mm, atol=0.1 * spread)
+    sizes = lattice.sizes_mm.sum(axis=(0, 1))
+    span = np.ptp(corners[..., 0], axis=1).sum(), np.ptp(corners[..., 1], axis=0).sum()
+    np.testing.assert_allclose(np.array(span) * [9 / 10, 12 / 13], sizes, rtol=0.02)
