@@ -17,7 +17,7 @@ from scipy.sparse import bsr_matrix, csr_matrix
 
 from knitcore.arrays import Array
 from knitcore.gridsolver import elimination
-from knitcore.yarnlevel.dissection import vertex_cover
+from knitcore.yarnlevel.elimination_order import vertex_cover
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float32]

@@ -263,14 +263,14 @@ class BentCell:
             self.curve, self.state[_COURSE], self.state[_WALE], self._pairs, cell.layout,
             energy.contact_law, speeds, kappa, (np.cos(d.angle), np.sin(d.angle)), d.skew,
         )  # fmt: skip
-        rod, gauge, slopes = energy.along_yarn(frame.bent, self.tension, by_speed)
+        rod, spacing, slopes = energy.along_yarn(frame.bent, self.tension, by_speed)
         lengths = np.bincount(energy.stretch_of, speeds) / cell.grid.samples
         excess = lengths - energy.prescribed_mm
         by_height, slopes = frame.pulled_back(slopes)
         force[:-1, 2] += by_height
         gradient = energy.gathered(force[:-1], slopes)
         gradient[-2:] += force[-1, :2]
-        return Lagrangian(value + rod + gauge + float(self.tension @ excess), gradient, excess)
+        return Lagrangian(value + rod + spacing + float(self.tension @ excess), gradient, excess)
 
 
 @dataclass(frozen=True, eq=False)

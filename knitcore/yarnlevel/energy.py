@@ -20,9 +20,9 @@ from knitcore.yarnlevel.yarn import YarnModel
 
 Ints = NDArray[np.int64]
 
-GAUGE_PER_BENDING = 100.0
-"""Stiffness of the gauge penalty in units of B / L: keeps the samples evenly spread."""
-STIFF_GAUGE_PER_BENDING = 1000.0
+SPACING_PER_BENDING = 100.0
+"""Stiffness of the spacing penalty in units of B / L: keeps the samples evenly spread."""
+STIFF_SPACING_PER_BENDING = 1000.0
 """The same on the way to a large cell's shape: the sparse Hessian, which leaves out the penalty of
 the lengths, is then convex in them. It costs 1e-4 of the energy, so the last steps go without."""
 BLOCK = 12
@@ -41,7 +41,7 @@ class Terms:
 
     rod: float
     contact: float
-    gauge: float
+    spacing: float
     excess_mm: Array
     """Excess of the lengths, and of other constrained quantities, over their prescribed values."""
     friction: float = 0.0
@@ -108,7 +108,7 @@ class CellEnergy:
     convention : factors of the terms.
     flat : the middles of all stitches are held in one plane.
     slides : where the yarn may not slide.
-    gauge_per_bending : stiffness of the gauge penalty in units of B / L.
+    spacing_per_bending : stiffness of the spacing penalty in units of B / L.
     sliding : pairs of samples that rub in this step; None without friction.
     """
 
@@ -118,7 +118,7 @@ class CellEnergy:
     convention: Convention
     flat: bool = False
     slides: tuple[SlideConstraint, ...] = ()
-    gauge_per_bending: float = GAUGE_PER_BENDING
+    spacing_per_bending: float = SPACING_PER_BENDING
     sliding: kernels.Sliding | None = None
 
     @cached_property
@@ -191,11 +191,11 @@ class CellEnergy:
 
     @cached_property
     def rod_law(self) -> kernels.RodLaw:
-        """Parameters of bending, regularisation and gauge penalty for the kernels."""
+        """Parameters of bending, regularisation and spacing penalty for the kernels."""
         return kernels.RodLaw(
             bend=self.convention.bending_factor * self.yarn.bending_modulus_n_mm2,
             regular=self.convention.regularisation_factor * self.regularisation_n_mm4,
-            gauge=self.gauge_per_bending * self.unit,
+            spacing=self.spacing_per_bending * self.unit,
             step=1.0 / self.cell.grid.samples,
         )
 
@@ -240,20 +240,20 @@ class CellEnergy:
         contact = kernels.contact_energy(
             curve, state[-2], state[-1], pairs, self.cell.layout, self.contact_law
         )
-        rod, gauge = kernels.rod_energy(curve, self.rod_law, self.speeds)
+        rod, spacing = kernels.rod_energy(curve, self.rod_law, self.speeds)
         friction = 0.0
         if self.sliding is not None:
             friction = kernels.friction_energy(
                 curve, state[-2], state[-1], self.sliding, self.cell.layout, self.speeds
             )
-        return Terms(rod, contact, gauge, self.excess(state, curve), friction)
+        return Terms(rod, contact, spacing, self.excess(state, curve), friction)
 
     def merit(self, terms: Terms, tension: Array) -> float:
         """Augmented Lagrangian, N·mm, with the given tensions (multipliers of constraints), N."""
         excess = terms.excess_mm
         return float(
             terms.energy
-            + terms.gauge
+            + terms.spacing
             + terms.friction
             + tension @ excess
             + 0.5 * self.penalty * excess @ excess
@@ -319,13 +319,13 @@ class CellEnergy:
     def along_yarn(
         self, curve: Array, tension: Array, by_speed: Array
     ) -> tuple[float, float, Array]:
-        """Rod and gauge energy, without contact, and their slopes (n, 3, 3) by d1, d2, d3.
+        """Rod and spacing energy, without contact, and their slopes (n, 3, 3) by d1, d2, d3.
 
         The slopes include the tensions and ``by_speed``, the slope of the contact by |d1|.
         """
         along = curve, self.rod_law, self.speeds
-        rod, gauge = kernels.rod_energy(*along)
-        return rod, gauge, kernels.rod_slopes(*along, tension[self.stretch_of], by_speed)
+        rod, spacing = kernels.rod_energy(*along)
+        return rod, spacing, kernels.rod_slopes(*along, tension[self.stretch_of], by_speed)
 
     def gathered(self, force: Array, slopes: Array) -> Array:
         """(unknowns,) gradient from slopes (n, 3) by the positions and (n, 3, 3) by d1, d2, d3."""

@@ -15,7 +15,7 @@ from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError
 from knitcore.yarnlevel.cell import YarnCell
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, CellEnergy
+from knitcore.yarnlevel.energy import SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.solver import COURSE, WALE, Minimum, Options, minimise
 from knitcore.yarnlevel.start import COURSE_PER_LOOP, WALE_PER_LOOP, start_state
 from knitcore.yarnlevel.topology import Guard
@@ -60,7 +60,7 @@ def grow(
     *,
     options: Options,
     flat: bool = False,
-    gauge_per_bending: float = GAUGE_PER_BENDING,
+    spacing_per_bending: float = SPACING_PER_BENDING,
     cancelled: Cancelled | None = None,
 ) -> Minimum:
     """Relax a cell from a start.
@@ -81,7 +81,7 @@ def grow(
         wale_per_loop=start.wale * WALE_PER_LOOP,
     )
     state = shaken(cell, state, start.noise * radius, start.seed)
-    energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, (), gauge_per_bending)
+    energy = CellEnergy(cell, yarn, loop_length_mm, convention, flat, (), spacing_per_bending)
     core = core_that_fits(yarn, _min_distance(energy, state), FIRST_OPENING)
     tension: Array | None = None
     steps = evaluations = 0

@@ -15,7 +15,7 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, check_cancelled
-from knitcore.yarnlevel.dissection import dissected
+from knitcore.yarnlevel.elimination_order import dissected
 from knitcore.yarnlevel.energy import CellEnergy, Slope
 from knitcore.yarnlevel.fronts import Room, elimination
 from knitcore.yarnlevel.solver import Minimum

@@ -150,8 +150,8 @@ class Search:
         best = self.best()
         state = refined_state(self.energy.cell, best.state, energy.cell)
         tension = None if energy.held.size else best.tension
-        if self.energy.gauge_per_bending != energy.gauge_per_bending:
-            nearly = replace(energy, gauge_per_bending=self.energy.gauge_per_bending)
+        if self.energy.spacing_per_bending != energy.spacing_per_bending:
+            nearly = replace(energy, spacing_per_bending=self.energy.spacing_per_bending)
             near = self._minimised(nearly, state, tension, self.options)
             state, tension = near.state, near.tension
         found = self._minimised(energy, state, tension, options)
@@ -214,7 +214,7 @@ class Search:
     def _grow(self, energy: CellEnergy, start: Start) -> Minimum:
         return grow(
             energy.cell, energy.yarn, energy.loop_length_mm, energy.convention, start,
-            options=self.options, flat=energy.flat, gauge_per_bending=energy.gauge_per_bending,
+            options=self.options, flat=energy.flat, spacing_per_bending=energy.spacing_per_bending,
             cancelled=self.cancelled,
         )  # fmt: skip
 

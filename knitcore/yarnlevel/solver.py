@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled, ConvergenceError, UnravelledError, check_cancelled
-from knitcore.yarnlevel.dissection import Dissection
+from knitcore.yarnlevel.elimination_order import Dissection
 from knitcore.yarnlevel.energy import CellEnergy, Slope, Terms
 from knitcore.yarnlevel.fronts import Room
 from knitcore.yarnlevel.systems import DenseSystem, SparseSystem, System

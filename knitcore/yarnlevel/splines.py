@@ -16,7 +16,7 @@ from knitcore.chart import StitchChart, check_stitches
 from knitcore.errors import Cancelled, ConvergenceError, InputError, UnravelledError
 from knitcore.yarnlevel.cell import YarnCell, free_cell, mirrored_cell, plain_cell
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, STIFF_GAUGE_PER_BENDING, CellEnergy
+from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import Start, grow
 from knitcore.yarnlevel.limits import check_loop, check_size
 from knitcore.yarnlevel.results import Branch, RelaxedCell, StartReport
@@ -143,7 +143,7 @@ def relax_splines(
         lengths = np.resize(lengths, draft.rows)
     energy = CellEnergy(replace(draft, grid=explored), yarn, lengths, convention, flat)
     if explored != grid:
-        energy = replace(energy, gauge_per_bending=STIFF_GAUGE_PER_BENDING)
+        energy = replace(energy, spacing_per_bending=STIFF_SPACING_PER_BENDING)
     options = Options(tolerance=1e-9 if draft.stitches <= FINE_UP_TO else 1e-6)
     _compile()
     clock = time.process_time()
@@ -160,7 +160,7 @@ def relax_splines(
     best = search.best()
     if explored != grid:
         energy = replace(
-            energy, cell=replace(draft, grid=grid), gauge_per_bending=GAUGE_PER_BENDING
+            energy, cell=replace(draft, grid=grid), spacing_per_bending=SPACING_PER_BENDING
         )
         best = search.refined(energy, options)
     if any(size is not None for size in sizes_mm):

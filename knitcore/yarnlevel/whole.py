@@ -28,7 +28,7 @@ from knitcore.errors import (
 )  # fmt: skip
 from knitcore.yarnlevel.cell import plain_cell
 from knitcore.yarnlevel.conventions import Convention
-from knitcore.yarnlevel.energy import GAUGE_PER_BENDING, STIFF_GAUGE_PER_BENDING, CellEnergy
+from knitcore.yarnlevel.energy import SPACING_PER_BENDING, STIFF_SPACING_PER_BENDING, CellEnergy
 from knitcore.yarnlevel.growth import (
     FIRST_OPENING,
     OPENING,
@@ -202,12 +202,12 @@ class _Work:
 
     def energy(self, sheet: Sheet) -> CellEnergy:
         """Energy of the whole sheet."""
-        grid, gauge = (
-            (COARSE, GAUGE_PER_BENDING) if sheet.fine else (ROUGH, STIFF_GAUGE_PER_BENDING)
+        grid, spacing = (
+            (COARSE, SPACING_PER_BENDING) if sheet.fine else (ROUGH, STIFF_SPACING_PER_BENDING)
         )
         return CellEnergy(
             plain_cell(self.chart, grid), self.yarn, self.loop_lengths_mm, self.convention,
-            gauge_per_bending=gauge,
+            spacing_per_bending=spacing,
         )  # fmt: skip
 
     def _first(self) -> Sheet:

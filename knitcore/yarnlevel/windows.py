@@ -242,7 +242,7 @@ def window_energy(
     energy = WindowEnergy(
         cell=cell, yarn=sheet.yarn, loop_length_mm=sheet.loop_length_mm[rows.stitches],
         convention=sheet.convention, flat=flat,
-        gauge_per_bending=sheet.gauge_per_bending, cut=(rows.cut, wales.cut), moving=moving,
+        spacing_per_bending=sheet.spacing_per_bending, cut=(rows.cut, wales.cut), moving=moving,
         resting_curve=curve, own_rows=own_rows,
         length_mm=row_lengths(cell, curve)[own_rows] + share,
     )  # fmt: skip

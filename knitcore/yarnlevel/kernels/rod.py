@@ -1,4 +1,4 @@
-"""Bending, regularisation, gauge penalty and tension: terms of single samples of the curve.
+"""Bending, regularisation, spacing penalty and tension: terms of single samples of the curve.
 
 Everything depends on a = |d1|², b = d1·d2, c = |d2|², d = d1·d3, e = d2·d3, f = |d3|², d_n the n-th
 derivative with respect to the parameter t. Bending and regularisation are sums of monomials in
@@ -7,7 +7,7 @@ them, whatever the parametrisation:
     ∫κ² ds         = ∫ (c a^-3/2 − b² a^-5/2) dt
     ∫|∂_ss t|² ds  = ∫ (f a^-5/2 + (c² − d² − 6be) a^-7/2 + b²(7c + 6d) a^-9/2 − 8b⁴ a^-11/2) dt
 
-The length, the gauge penalty and the weights w = |d1| dt of the contact sum are functions of √a.
+The length, the spacing penalty and the weights w = |d1| dt of the contact sum are functions of √a.
 """
 
 from __future__ import annotations
@@ -84,25 +84,25 @@ def _length(d: Array) -> float:
 
 @numba.njit(cache=True)
 def rod_energy(curve: Array, law: RodLaw, lengths: Array) -> tuple[float, float]:
-    """Bending with regularisation, and gauge penalty, N·mm.
+    """Bending with regularisation, and spacing penalty, N·mm.
 
     ``lengths``: what |d1| should be at each sample, mm.
     """
     slope, curvature = np.empty(6), np.empty((6, 6))
     bend, regular = law.step * law.bend, law.step * law.regular
-    rod = gauge = 0.0
+    rod = spacing = 0.0
     for i in range(curve.shape[0]):
         rod += rod_sample(curve[i], bend, regular, 0, slope, curvature)
         stretch = _length(curve[i]) / lengths[i] - 1.0
-        gauge += 0.5 * law.step * law.gauge * stretch * stretch
-    return rod, gauge
+        spacing += 0.5 * law.step * law.spacing * stretch * stretch
+    return rod, spacing
 
 
 @numba.njit(cache=True)
 def _pull(d: Array, law: RodLaw, length: float, tension: float, by_speed: float) -> float:
-    """Derivative by |d1| of gauge penalty, tension and contact."""
+    """Derivative by |d1| of spacing penalty, tension and contact."""
     stretch = _length(d) / length - 1.0
-    return law.step * (tension + law.gauge * stretch / length) + by_speed
+    return law.step * (tension + law.spacing * stretch / length) + by_speed
 
 
 @numba.njit(cache=True)
@@ -147,7 +147,9 @@ def rod_hessian(
         pull = _pull(d, law, lengths[i], tension[i], by_speed[i])
         slope[0] += 0.5 * pull / speed
         _by_derivatives(d, slope, gradient[i])
-        curvature[0, 0] += 0.25 * (law.step * law.gauge / lengths[i] ** 2 - pull / speed) / speed**2
+        curvature[0, 0] += (
+            0.25 * (law.step * law.spacing / lengths[i] ** 2 - pull / speed) / speed**2
+        )
         for m in range(3):
             lift[0, m] = 2.0 * d[1, m]
             lift[1, m] = d[2, m]

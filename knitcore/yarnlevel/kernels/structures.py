@@ -64,11 +64,11 @@ class RodLaw(NamedTuple):
     ----------
     bend : factor of ∫κ² ds, N·mm².
     regular : factor of ∫|∂_ss t|² ds, N·mm⁴.
-    gauge : stiffness that keeps the samples evenly spread, N·mm.
+    spacing : stiffness that keeps the samples evenly spread, N·mm.
     step : of the parameter from sample to sample.
     """
 
     bend: float
     regular: float
-    gauge: float
+    spacing: float
     step: float

@@ -81,7 +81,7 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
 
     def lagrangian(y):
         terms = energy.value(y, energy.curve(y), pairs)
-        return terms.energy + terms.gauge + tension @ terms.excess_mm
+        return terms.energy + terms.spacing + tension @ terms.excess_mm
 
     def gradient_at(y):
         c = energy.curve(y)

@@ -57,7 +57,7 @@ def test_gradient_and_hessian_agree_with_differences(text, kind):
 
     def value(y):
         terms = rubbing.value(y, rubbing.curve(y), empty)
-        return terms.energy + terms.gauge + terms.friction
+        return terms.energy + terms.spacing + terms.friction
 
     start = np.zeros(len(curve) + 1, np.int64)
     none = np.zeros(energy.constraints)

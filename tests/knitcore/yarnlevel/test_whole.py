@@ -84,7 +84,7 @@ def test_the_slopes_of_a_window_are_those_of_its_energy(
     def merit(step: float) -> float:
         moved = own + step * direction
         terms = part.value(moved, part.curve(moved), pairs)
-        return terms.energy + terms.gauge + float(pulls @ terms.excess_mm)
+        return terms.energy + terms.spacing + float(pulls @ terms.excess_mm)
 
     along = (merit(1e-6) - merit(-1e-6)) / 2e-6
     assert along == pytest.approx(float(_slope(part, own, pulls) @ direction), rel=1e-5)

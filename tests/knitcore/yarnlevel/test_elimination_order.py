@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from knitcore.yarnlevel.dissection import Dissection, dissected, vertex_cover
+from knitcore.yarnlevel.elimination_order import Dissection, dissected, vertex_cover
 from knitcore.yarnlevel.fronts import elimination, work
 
 
