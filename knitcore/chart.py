@@ -275,9 +275,15 @@ def check_size(rows: int, columns: int) -> None:
     if max(rows, columns) > MAX_STITCHES_PER_SIDE:
         raise InputError(
             "chart",
-            f"{columns} columns x {rows} rows is too large.",
+            f"{size_in_words(columns, rows)} is too large.",
             f"Use at most {MAX_STITCHES_PER_SIDE} rows and {MAX_STITCHES_PER_SIDE} columns.",
         )
+
+
+def size_in_words(columns: int, rows: int) -> str:
+    """Such as ``1 column x 12 rows``."""
+    counts = (columns, "column"), (rows, "row")
+    return " x ".join(f"{count} {name}{'' if count == 1 else 's'}" for count, name in counts)
 
 
 def _period(grid: NDArray[np.bool_], *, cut: bool = False) -> int:

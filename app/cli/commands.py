@@ -23,6 +23,7 @@ from pydantic.fields import FieldInfo
 from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user_data_dir
 from app.models.base import UNIT, IntervalResult
 from app.models.charts import IS_REPEAT
+from app.models.refusals import OF_VALUES, problem_in_words, remedy_in_words
 from app.models.uploads import UploadedFile
 from app.operations.context import Context
 from app.operations.perform import Viewed, carried_out
@@ -132,8 +133,11 @@ class _Options:
             place = place[1:] if place and place[0] in self._groups else place
             name = ".".join(self._named(part) for part in place) or "request"
             given_text = f"{first['input']!r}: " if isinstance(first["input"], str | float) else ""
+            known = first["type"] in OF_VALUES
             raise InputError(
-                name, f"{given_text}{first['msg']}.", "See --help for what it takes."
+                name,
+                f"{given_text}{problem_in_words(first)}.",
+                remedy_in_words(first, name) if known else "See --help for what it takes.",
             ) from None
 
     def _chart(self, given: dict[str, Any]) -> dict[str, Any]:

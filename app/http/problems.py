@@ -18,6 +18,7 @@ from starlette.exceptions import HTTPException
 from app.http.faults import also_wrong
 from app.http.kinds import type_uri
 from app.models.base import InvalidRequestError, MissingError
+from app.models.refusals import problem_in_words, remedy_in_words
 from knitcore.errors import (
     CancelledError,
     ConvergenceError,
@@ -262,46 +263,22 @@ def _fault(error: dict[str, Any]) -> Fault:
             field="body",
             remedy="Send one JSON object as /docs describes it.",
         )
-    place, context = error["loc"], error.get("ctx", {})
+    place = error["loc"]
     if len(place) > 2 and place[2] == "request":  # of a job: leave its kind out of the place
         place = (place[0], *place[2:])
     # Pydantic names the alternatives of a union as parts of the place; no caller wrote those.
     parts = [str(part) for part in place if part not in _NOT_FIELDS]
     if error["type"].startswith("union_tag"):
-        parts.append(context["discriminator"].strip("'"))
+        parts.append(error["ctx"]["discriminator"].strip("'"))
     field = ".".join(parts) or "body"
-    remedy = _REMEDIES.get(error["type"], "{msg}; see /docs.")
     return Fault(
-        detail=f"{field}: {error['msg']}.",
+        detail=f"{field}: {problem_in_words(error)}.",
         field=field,
-        remedy=remedy.format_map(context | {"field": field, "msg": error["msg"]}),
+        remedy=remedy_in_words(error, field),
     )
 
 
 _NOT_FIELDS = frozenset({"body", "path", "query", "header", "float", "K/P text", "pure fabric"})
-_REMEDIES = {
-    "missing": "Give {field}; /docs has an example.",
-    "extra_forbidden": "Leave {field} out, or compare its name with /docs.",
-    **dict.fromkeys(
-        ("model_attributes_type", "model_type"),
-        "Send a JSON object, with Content-Type: application/json.",
-    ),
-    "union_tag_invalid": "Use one of {expected_tags}.",
-    "literal_error": "Use {expected}.",
-    "enum": "Use {expected}.",
-    "greater_than": "Use more than {gt}.",
-    "greater_than_equal": "Use {ge} or more.",
-    "less_than": "Use less than {lt}.",
-    "less_than_equal": "Use {le} or less.",
-    "string_too_short": "Use {min_length} or more characters.",
-    "string_too_long": "Use {max_length} or fewer characters.",
-    "too_short": "Give {min_length} or more.",
-    "too_long": "Give {max_length} or fewer.",
-    "int_parsing": "Use a whole number.",
-    "int_from_float": "Use a whole number.",
-    "float_parsing": "Use a number.",
-}
-"""What would be accepted, by pydantic's type of error; fields in braces are of its context."""
 
 
 def install_problem_handlers(app: FastAPI) -> None:

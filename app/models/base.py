@@ -18,6 +18,7 @@ from pydantic import (
 )
 from pydantic.config import JsonDict
 
+from app.models.refusals import problem_in_words
 from knitcore.errors import InputError
 
 T = TypeVar("T")
@@ -59,7 +60,7 @@ def read(model: Any, content: bytes | str) -> Any:
 def first_fault(error: ValidationError) -> str:
     """The first thing that is wrong, and where."""
     fault = error.errors()[0]
-    return ": ".join(filter(None, (".".join(map(str, fault["loc"])), fault["msg"])))
+    return ": ".join(filter(None, (".".join(map(str, fault["loc"])), problem_in_words(fault))))
 
 
 class RequestModel(BaseModel):

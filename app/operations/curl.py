@@ -17,6 +17,7 @@ from app.models.weighed import Corners, TimeLimit, corners_of
 from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
+from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
 from knitcore.formats.curled import write_curled_glb, write_curled_npz
 from knitcore.garment.shaped import ShapedChart, outline_marks
@@ -126,7 +127,7 @@ def _and_write(request: CurlRequest, context: Context, out: Path | None) -> Curl
 def _lines(r: CurlResult) -> list[str]:
     state = "" if r.converged else "  NOT converged: a preview"
     return [
-        f"{r.columns} columns x {r.rows} rows, flat {r.flat_width_mm:.0f} x "
+        f"{size_in_words(r.columns, r.rows)}, flat {r.flat_width_mm:.0f} x "
         f"{r.flat_height_mm:.0f} mm",
         f"as it lies      {r.width_mm:.0f} x {r.height_mm:.0f} x {r.depth_mm:.0f} mm{state}",
         *(

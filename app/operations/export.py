@@ -15,7 +15,7 @@ from app.models.laws import LawsRequest
 from app.models.uploads import Content
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart, check_stitches
+from knitcore.chart import StitchChart, check_stitches, size_in_words
 from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart
 from knitcore.formats.knitout import Finish
 from knitcore.formats.layout import DesignLayout
@@ -119,7 +119,7 @@ def _command(request: ExportRequest, context: Context, out: Path) -> ExportFacts
 
 
 def _lines(facts: ExportFacts) -> list[str]:
-    lines = [f"{facts.columns} columns x {facts.rows} rows, {facts.bytes} bytes of {facts.kind}"]
+    lines = [f"{size_in_words(facts.columns, facts.rows)}, {facts.bytes} bytes of {facts.kind}"]
     if facts.transfers is not None:
         lines.append(f"{facts.transfers} transfers")
     if facts.carriers is not None:

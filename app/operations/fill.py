@@ -26,7 +26,7 @@ from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
 from knitcore.design.wishes import Parts, Wish, wanted_maps, wished_parts
@@ -229,7 +229,7 @@ def _command(
 
 def _lines(r: FillResult) -> list[str]:
     head = (
-        f"{r.columns} columns x {r.rows} rows in {len(r.patches)} patches; "
+        f"{size_in_words(r.columns, r.rows)} in {len(r.patches)} patches; "
         f"{r.off_share:.1%} of the stitches with a target miss it by more than 10 %"
     )
     return [r.chart, head]

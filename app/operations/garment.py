@@ -16,6 +16,7 @@ from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText
 from app.models.laws import Extensibility, LawsRequest, Moduli
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
+from knitcore.chart import size_in_words
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric
 from knitcore.formats.design import DesignFile, write_design
@@ -388,7 +389,7 @@ def _command(request: GarmentRequest, context: Context, out: Path | None) -> Gar
 
 def _lines(r: GarmentResult) -> list[str]:
     lines = [
-        f"{r.name}: {r.columns} columns x {r.rows} rows, {r.stitches} stitches, "
+        f"{r.name}: {size_in_words(r.columns, r.rows)}, {r.stitches} stitches, "
         f"{r.yarn_m:.0f} m of yarn ({r.yarn_interval_m[0]:.0f} to {r.yarn_interval_m[1]:.0f}); "
         f"{r.closing}",
         f"{'region':20} {'stitches':>8} {'course':>8} {'wale':>8}  mm/N",

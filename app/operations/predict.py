@@ -13,7 +13,7 @@ from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.measures import measure
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, size_in_words
 from knitcore.fabric import Direction
 from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.shaped import ShapedChart, outline_marks
@@ -102,7 +102,7 @@ def _lines(r: PredictResult) -> list[str]:
     low_x, high_x = r.modulus_course_interval_n_per_mm
     low_y, high_y = r.modulus_wale_interval_n_per_mm
     return [
-        f"{r.columns} columns x {r.rows} rows",
+        f"{size_in_words(r.columns, r.rows)}",
         f"segments        course {course.even} even, {course.odd} odd   "
         f"wale {wale.even} even, {wale.odd} odd",
         f"Young's modulus course {r.modulus_course_n_per_mm:.4f} N/mm "

@@ -11,7 +11,7 @@ from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
-from knitcore.chart import StitchChart
+from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
@@ -161,7 +161,7 @@ def _between(ends: tuple[float, float] | None) -> str:
 
 def _lines(r: RelaxResult) -> list[str]:
     return [
-        f"repeat          {r.repeat_columns} columns x {r.repeat_rows} rows, {r.branch} branch",
+        f"repeat          {size_in_words(r.repeat_columns, r.repeat_rows)}, {r.branch} branch",
         f"stitch          {r.cell_course_mm:.3f} mm wide{_between(r.cell_course_interval_mm)}, "
         f"{r.cell_wale_mm:.3f} mm high{_between(r.cell_wale_interval_mm)}",
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "

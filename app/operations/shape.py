@@ -17,6 +17,7 @@ from app.models.laws import LawsRequest
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
+from knitcore.chart import size_in_words
 from knitcore.design.atlas import Atlas
 from knitcore.design.shape import fill_shape
 from knitcore.errors import InputError
@@ -127,7 +128,7 @@ def _read(file: Path) -> list[float | None]:
 def _lines(r: ShapeResult) -> list[str]:
     bands = ", ".join(f"{b.lines} of {b.repeat}" for b in r.bands)
     head = (
-        f"{r.columns} columns x {r.rows} rows; widths {r.rms:.1%} off (rms), {r.largest:.1%} at "
+        f"{size_in_words(r.columns, r.rows)}; widths {r.rms:.1%} off (rms), {r.largest:.1%} at "
         f"most; {r.force_n:.2f} N; from the first line: {bands}"
     )
     return [r.chart, head]

@@ -13,6 +13,7 @@ from app.models.charts import to_chart
 from app.models.yarn_level import StitchRequest, YarnResult
 from app.operations.context import Context
 from app.operations.registry import Command, Operation
+from knitcore.chart import size_in_words
 from knitcore.materials.uncertainty import (
     YARN_LEVEL_ERRORS,
     YARN_LEVEL_SIZE_LOG_SD,
@@ -124,7 +125,7 @@ def whole(request: WholeRequest, context: Context) -> WholeResult:
 def _lines(r: WholeResult) -> list[str]:
     wide, high = r.cell_course_interval_mm, r.cell_wale_interval_mm
     return [
-        f"chart           {r.columns} columns x {r.rows} rows",
+        f"chart           {size_in_words(r.columns, r.rows)}",
         f"stitch          {r.cell_course_mm:.3f} mm wide ({wide[0]:.2f} to {wide[1]:.2f}), "
         f"{r.cell_wale_mm:.3f} mm high ({high[0]:.2f} to {high[1]:.2f})",
         f"energy          {r.energy_n_mm:.4f} N·mm a stitch, {100 * r.bending_share:.1f} % "

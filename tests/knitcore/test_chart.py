@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from knitcore import Fabric, InputError, StitchChart
-from knitcore.chart import MAX_STITCHES_PER_SIDE, check_stitches
+from knitcore.chart import MAX_STITCHES_PER_SIDE, check_stitches, size_in_words
 from tests.knitcore.charts import stitch_charts
 
 
@@ -107,3 +107,8 @@ def test_too_many_stitches_are_refused_with_the_most_that_are_taken() -> None:
     with pytest.raises(InputError, match=r"chart: its cell has 12 stitches. Use at most 11.") as no:
         check_stitches(rib.stitches, 11, "its cell")
     assert no.value.most == 11
+
+
+def test_one_column_is_not_several() -> None:
+    assert size_in_words(1, 12) == "1 column x 12 rows"
+    assert size_in_words(20, 1) == "20 columns x 1 row"

@@ -27,6 +27,12 @@ TESTS = {"a.csv", "b.csv"}
         ("/stretch", STRETCH | {"direction": "up"}, "direction", "Use 'course' or 'wale'."),
         ("/stretch", STRETCH | {"colour": 1}, "colour", "Leave colour out"),
         ("/stretch", {**STRETCH, "material": None}, "material", "valid string"),
+        (
+            "/limb",
+            {"chart": "K", "material": "acrylic", "girths": [{"at_mm": 0, "girth_mm": 150}]},
+            "girths",
+            "Give 2 or more girths.",
+        ),
         ("/designs", {"name": ""}, "name", "Use 1 or more characters."),
         ("/designs", {"chart": "K"}, "name", "Give name"),
         ("/jobs", {"kind": "dance", "request": {}}, "kind", "Use one of 'atlas', 'bend'"),
