@@ -64,6 +64,9 @@ class Along:
     relaxed_log_sd: float
     bounds_n_per_mm: Interval
 
+    def __repr__(self) -> str:
+        return f"Y = {self.modulus_n_per_mm:.3g} N/mm, stitch {self.relaxed_mm:.3g} mm"
+
     @property
     def modulus_n_per_mm(self) -> float:
         """Young's modulus at small strain."""
@@ -151,9 +154,15 @@ class Answer:
         """What the intervals rest on, in words."""
         return f"Stretch: {'; '.join(self.stretch_errors)}. Size: {'; '.join(self.size_errors)}."
 
-    def along(self, direction: Direction) -> Along:
-        """The answer for a pull in a direction."""
-        return direction.of(self.course, self.wale)
+    def along(self, direction: Direction | str) -> Along:
+        """The answer for a pull in a direction.
+
+        Raises
+        ------
+        InputError
+            If there is no direction of this name.
+        """
+        return Direction.parse(direction).of(self.course, self.wale)
 
     def with_size(self, relaxed: RelaxedSize) -> Answer:
         """The answer with a measured relaxed size, and the same stretch from it."""
@@ -165,9 +174,12 @@ class Answer:
             self, course=course, wale=wale, relaxed_source=GAUGE, size_errors=GAUGE_ERRORS
         )
 
-    def modulus_n_per_mm(self, direction: Direction) -> float:
+    def modulus_n_per_mm(self, direction: Direction | str) -> float:
         """Young's modulus in a direction."""
         return self.along(direction).modulus_n_per_mm
+
+    def __repr__(self) -> str:
+        return f"Answer(course: {self.course}; wale: {self.wale}; {self.provenance})"
 
     def _repr_html_(self) -> str:
         def ends(value: float, interval: Interval, digits: str) -> str:

@@ -44,6 +44,10 @@ class ChartCurve:
     provenance: Source
     interval_source: str
 
+    def __repr__(self) -> str:
+        end = f"strain {self.strain[-1]:.3g} at {self.stress_n_per_mm[-1]:.3g} N/mm"
+        return f"ChartCurve({len(self.strain)} points to {end}, {self.provenance})"
+
     def _repr_html_(self) -> str:
         ends = self.strain_low, self.strain_high
         drawn = [(str(self.provenance), self.strain, self.stress_n_per_mm, ends)]

@@ -15,7 +15,6 @@ from knitcore.design.atlas import Atlas
 from knitcore.design.cost import CostLimits, KnittingCost
 from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.errors import InputError
-from knitcore.fabric import Fabric
 from knitcore.materials import Interval, Laws
 from knitcore.materials.library import INCONSISTENT
 
@@ -154,12 +153,9 @@ def _doubtful(atlas: Atlas, index: int, targets: Sequence[Target]) -> bool:
     return any(
         atlas.material == Laws.PUBLISHED.of(yarn)
         and bool(asked & directions)
-        and _canonical(atlas.keys[index]) == _canonical(_REPEAT[fabric])
+        and _canonical(atlas.keys[index]) == StitchChart.of_fabric(fabric).canonical().key
         for (yarn, fabric), directions in INCONSISTENT.items()
     )
-
-
-_REPEAT = {Fabric.STOCKINETTE: "K", Fabric.GARTER: "K/P", Fabric.RIB: "KP", Fabric.SEED: "KP/PK"}
 
 
 @cache

@@ -31,7 +31,8 @@ MAX_REGIONS = 12
 """Most lines in the table of regions, as fit a page; the rest is in the CSV export."""
 LOCAL_ASSUMPTIONS = (
     "Means of local values over the stitches of a region; intervals cover 90 %.",
-    "Local values come from the quarter-cell composite: the stretched, flat fabric.",
+    "Local values come from the quarter-cell composite: the stretched, flat fabric. "
+    "At rest ribs and welts fold and give more: for a modulus at small strain, predict the repeat.",
     "An elastic model: no recovery, growth or hysteresis. Moduli are force per width.",
 )
 """What the numbers of a piece with an outline take for granted."""
@@ -89,7 +90,13 @@ def _regions(
     size = f"{piece.chart.columns} stitches × {piece.chart.rows} rows, {shaped.stitches} stitches"
     yield Label(MARGIN_MM, 22.0, f"{size} in {material.name} ({material.identifier})", 3.4)
     places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
-    head = ("region", "stitches", "Y course, N/mm", "Y wale, N/mm", "1/Y course × wale, mm/N")
+    head = (
+        "region",
+        "stitches",
+        "flat local Y course",
+        "flat local Y wale, N/mm",
+        "1/Y course × wale, mm/N",
+    )
     for x, text in zip(places, head, strict=True):
         yield Label(x, 30.0, text, 3.0)
     yield Strokes(((MARGIN_MM, 32.0, A4_MM[0] - MARGIN_MM, 32.0),), "#b5b0a8", 0.2)
@@ -112,9 +119,9 @@ def _regions(
         left=MARGIN_MM,
         top=top,
         width=A4_MM[0] - 2 * MARGIN_MM,
-        height=A4_MM[1] - top - 40.0,
+        height=A4_MM[1] - top - 44.0,
     )
-    yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 26.0)
+    yield from _assumptions(LOCAL_ASSUMPTIONS, A4_MM[1] - 30.0)
 
 
 def _factor(value: float, factor: float) -> str:

@@ -63,7 +63,7 @@ class RegionMisfit:
 
 @dataclass(frozen=True)
 class RegionNumbers:
-    """Mean stitch-level numbers of a region."""
+    """Mean stitch-level numbers of a region: of flat cloth, without the folds of ribs and welts."""
 
     name: str
     stitches: int

@@ -186,6 +186,9 @@ class Material:
         measured = self.record(fabric).yarn_diameter_mm
         return self.yarn.diameter_mm if measured is None else measured
 
+    def __repr__(self) -> str:
+        return f"Material({self.identifier}: {self.name}, {', '.join(self.fabrics)})"
+
     def _repr_html_(self) -> str:
         head = ("", "Y course, wale (N/mm)", "Poisson yx, xy", "lock-up", "stitch (mm)", "laws")
         rows = []

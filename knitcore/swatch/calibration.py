@@ -34,13 +34,17 @@ FIELD_NOISE_PERCENT = 0.12
 INDEPENDENT_POINTS = 50
 """Errors of neighbouring points are correlated; a frame counts as this many independent points."""
 FORCE_NOISE = 0.03
-"""Relative error of a measured force."""
+"""Relative error of a mean force curve. A strip fit, which holds two tests at once, leaves 0.04
+(:data:`knitcore.swatch.measured_strip.FORCE_NOISE`)."""
 FORCE_POINTS = 12
 CURVE_BINS = 40
 KAPPA_PRIOR = (0.45, 0.15)
-"""Mean and standard deviation."""
+"""Mean and standard deviation. Narrower than a strip fit's (:mod:`knitcore.swatch.strip_fit`): a
+field of small stretch hardly tells kappa from the coupling."""
 LOG_SHEAR_PRIOR = (float(np.log(0.02)), 1.0)
-"""Mean and standard deviation of ln(C_xyxy / (N/mm))."""
+"""Mean and standard deviation of ln(C_xyxy / (N/mm)). In acrylic garter, for which it was chosen,
+0.02 N/mm is 0.2 sqrt(Y_x Y_y), the mean of a strip fit's prior; other fabrics may be far from it.
+Its deviation is also that of a shear modulus which nobody fitted (``swatch/uncertainty.py``)."""
 CELLS_ACROSS = 64
 SAMPLED_POINTS = 4000
 

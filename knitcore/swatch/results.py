@@ -189,6 +189,13 @@ class StripTest(SwatchTest):
     width_mm: float
     length_mm: float
 
+    def __repr__(self) -> str:
+        size = f"{self.width_mm:.3g} x {self.length_mm:.3g} mm"
+        end = (
+            f", {self.force_n[-1]:.3g} N at a strain of {self.strain[-1]:.3g}" if self.steps else ""
+        )
+        return f"StripTest({size} pulled {self.direction}-wise, {self.steps} steps{end})"
+
     def _repr_html_(self) -> str:
         strain, stress = (np.append(0.0, a) for a in (self.strain, self.stress_n_per_mm))
         drawn = [(f"pulled {self.direction}-wise", strain, stress, None)]

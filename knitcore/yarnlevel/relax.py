@@ -13,7 +13,7 @@ from knitcore.errors import Cancelled, InputError
 from knitcore.yarnlevel.conventions import Convention
 from knitcore.yarnlevel.growth import Start
 from knitcore.yarnlevel.published.relax import relax_published
-from knitcore.yarnlevel.published.stitch import pure_fabric
+from knitcore.yarnlevel.published.stitch import published_fabric
 from knitcore.yarnlevel.results import Branch, RelaxedCell
 from knitcore.yarnlevel.spline import SplineGrid
 from knitcore.yarnlevel.splines import RelaxedRepeat, relax_splines
@@ -119,6 +119,6 @@ def relax(
             "Use mirrored or free.",
         )
     return relax_published(
-        pure_fabric(chart), yarn, np.asarray(loop_length_mm, dtype=float).item(),
+        published_fabric(chart), yarn, np.asarray(loop_length_mm, dtype=float).item(),
         cell_course_mm, cell_wale_mm, factors, cancelled=cancelled,
     )  # fmt: skip

@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from knitcore import StitchChart, curve, material, predict, showing, strip_test
+from knitcore import InputError, StitchChart, curve, material, predict, showing, strip_test
 from knitcore.garment.shaped import ShapedChart
 from tests.knitcore.notebook.results import curled, relaxed_cell, sweep
 
@@ -89,3 +89,21 @@ def test_shapes_and_sweeps_show_themselves(made) -> None:  # type: ignore[no-unt
 def test_names_are_escaped() -> None:
     assert "<b>" not in showing.figure("", "<b>bold</b>")
     assert "&lt;b&gt;" in showing.table(["<b>"], [])
+
+
+def test_results_print_in_one_short_line() -> None:
+    chart = StitchChart.parse("KKPP")
+    answer = predict(chart, ACRYLIC)
+    test = strip_test(GARTER, ACRYLIC, "course", [0.05])
+    for of in (ACRYLIC, answer, answer.course, curve(chart, ACRYLIC, "course"), test):
+        assert "\n" not in repr(of)
+        assert len(repr(of)) < 160
+    assert f"{answer.modulus_wale_n_per_mm:.3g} N/mm" in repr(answer)
+    assert f"{test.force_n[-1]:.3g} N" in repr(test)
+
+
+def test_an_answer_knows_directions_by_name() -> None:
+    answer = predict(StitchChart.parse("KKPP"), ACRYLIC)
+    assert answer.along("wale") is answer.wale
+    with pytest.raises(InputError, match="not known"):
+        answer.along("across")

@@ -20,7 +20,7 @@ def shown_chart(fabric: Fabric) -> StitchChart:
     return StitchChart.of_fabric(fabric).repeat().swap()
 
 
-def pure_fabric(chart: StitchChart) -> Fabric:
+def published_fabric(chart: StitchChart) -> Fabric:
     """The pure fabric that a chart repeats.
 
     Raises

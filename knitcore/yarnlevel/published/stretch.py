@@ -10,7 +10,7 @@ from knitcore.fabric import Direction
 from knitcore.yarnlevel.published.continuation import Continuation
 from knitcore.yarnlevel.published.relax import relaxed_cell
 from knitcore.yarnlevel.published.slide import SlideQuenching
-from knitcore.yarnlevel.published.stitch import Stitch, pure_fabric
+from knitcore.yarnlevel.published.stitch import Stitch, published_fabric
 from knitcore.yarnlevel.results import RelaxedCell
 
 
@@ -32,7 +32,7 @@ class PublishedStretch:
     @classmethod
     def of(cls, zero: RelaxedCell, along: Direction, quenched: bool | None) -> PublishedStretch:
         """With the paper's slide quenching, or without; by default where the paper had it."""
-        quenching = SlideQuenching.default(pure_fabric(zero.chart), along)
+        quenching = SlideQuenching.default(published_fabric(zero.chart), along)
         if quenched is not None:
             quenching = SlideQuenching.PAPER if quenched else SlideQuenching.NONE
         return cls(zero, along, quenching)
@@ -46,7 +46,7 @@ class PublishedStretch:
     def reach(self, known: Sequence[RelaxedCell], size_mm: float) -> RelaxedCell:
         """The relaxed state with one size prescribed, continued from the last two states."""
         zero = self.zero
-        stitch = Stitch(pure_fabric(zero.chart), zero.yarn, zero.convention)
+        stitch = Stitch(published_fabric(zero.chart), zero.yarn, zero.convention)
         held = self.quenching.weights
         loop_mm = float(zero.loop_lengths_mm.mean())
         path = Continuation(stitch, loop_mm, held, held @ stitch.evaluate(zero.state).lengths_mm)
