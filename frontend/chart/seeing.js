@@ -23,6 +23,11 @@ import { loadSettings, saveSettings } from "../core/store.js";
 /** Names of the poses. @type {Record<Pose, string>} */
 export const POSES = { flat: "Flat", lying: "As it lies", worn: "On the body", hung: "Hanging", tested: "In a test" };
 
+/** What to say of a shape: one that is not at rest, or of a chart that was changed, is a preview. @param {Posed} posed */
+export function wordsOf({ words, converged }) {
+  return converged ? words : `${words}: a preview, not yet at rest`;
+}
+
 const SETTINGS = {
   yarnColours: /** @type {YarnColours} */ ("chart"),
   groups: /** @type {Groups} */ ("stitch"),

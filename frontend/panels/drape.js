@@ -15,8 +15,8 @@ import { problemText } from "../widgets/problem.js";
 
 /** @typedef {{chart: string, material: string, linear_density_g_per_m: number}} Weighed */
 /**
- * @typedef {{words: string[], notes: string[], piece?: {id: string, chart: string, outline: string}}} Told
- *   words, and what to show in 3D
+ * @typedef {{words: string[], notes: string[], converged?: boolean, piece?: {id: string, chart: string, outline: string}}} Told
+ *   words, and what to show in 3D and whether that is at rest
  */
 
 /** Fabrics of a border. */
@@ -40,6 +40,7 @@ const TESTS = [
       return {
         words: [`Bending length ${rows} cm along the rows, ${columns} cm along the columns.`],
         notes: found[0].notes,
+        converged: found[0].converged,
         piece: found[0].piece,
       };
     },
@@ -49,7 +50,8 @@ const TESTS = [
     label: "Over a disc",
     hint: "A round piece of 30 cm over a disc of 18 cm: the drape coefficient",
     tell: async (asked, signal) => {
-      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, piece } = await api.drape(asked, signal);
+      const found = await api.drape(asked, signal);
+      const { coefficient, coefficient_of_states: ends, folds, fall_mm, notes, converged, piece } = found;
       const states = ends.map((end) => percent(end)).join(" to ");
       return {
         words: [
@@ -57,6 +59,7 @@ const TESTS = [
           `Falls by ${figure(fall_mm / 10, 2)} cm. Soft cloth drapes more than this.`,
         ],
         notes,
+        converged,
         piece,
       };
     },
@@ -89,8 +92,8 @@ export function drape(host, studio) {
   weight.addEventListener("change", () => {
     if (weight.valueAsNumber > 0) studio.weight.value = weight.valueAsNumber;
   });
-  /** @param {string} label @param {{id: string, chart: string, outline: string}} piece @param {string} note */
-  const show = (label, { id, chart, outline }, note) => {
+  /** @param {string} label @param {NonNullable<Told["piece"]>} piece @param {boolean} converged @param {string} note */
+  const show = (label, { id, chart, outline }, converged, note) => {
     const { rows, columns } = studio.document.grid;
     studio.seeing.pose.value = "tested";
     studio.seeing.posed.value = {
@@ -98,7 +101,7 @@ export function drape(host, studio) {
       id,
       rows,
       columns,
-      converged: true,
+      converged,
       words: `${label}, by its weight`,
       note,
       piece: { chart, outline },
@@ -115,8 +118,8 @@ export function drape(host, studio) {
     answer.replaceChildren(h("span", { class: "spinner" }), `${label}: being computed`);
     latest.run(async (signal) => {
       try {
-        const { words, notes, piece } = await tell(asked, signal);
-        if (piece) show(label, piece, notes[0]);
+        const { words, notes, converged = false, piece } = await tell(asked, signal);
+        if (piece) show(label, piece, converged, notes[0]);
         answer.replaceChildren(
           ...words.map((text) => h("p", { class: "figures" }, text)),
           ...notes.map((text) => h("p", { class: "muted" }, text)),

@@ -18,7 +18,7 @@ import { Still } from "./fabric/still.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
 import { problemText } from "../widgets/problem.js";
-import { POSES } from "../chart/seeing.js";
+import { POSES, wordsOf } from "../chart/seeing.js";
 import { REST } from "../studio.js";
 
 /** Delay before the 3D view updates: without a GPU, drawing can block painting. */
@@ -313,7 +313,7 @@ function pulled(studio) {
 function poseText(studio) {
   const { pose, posed } = studio.seeing;
   const { value } = pose;
-  if (posed.value) return posed.value.words;
+  if (posed.value) return wordsOf(posed.value);
   if (value === "flat") return "Relaxed, held flat";
   return `${POSES[value]}: being computed`;
 }

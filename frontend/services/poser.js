@@ -74,8 +74,7 @@ export function startPoser(studio) {
 /** @param {Studio} studio @param {AbortSignal} signal @returns {AsyncGenerator<Posed>} */
 async function* lying(studio, signal) {
   for await (const found of curled(studio, signal, null)) {
-    const words = found.converged ? "As it lies, without friction" : "As it lies: a preview, still moving";
-    yield { ...found, pose: "lying", words };
+    yield { ...found, pose: "lying", words: "As it lies, without friction" };
   }
 }
 
@@ -84,7 +83,7 @@ async function* pulled(studio, signal) {
   const [direction, strain] = [studio.stretchDirection(), studio.currentStrain() ?? 0];
   const words = `Stretched ${along(direction)} by ${(100 * strain).toFixed(0)} %, free edges curl`;
   for await (const found of curled(studio, signal, { direction, strain })) {
-    yield { ...found, pose: "pulled", words: found.converged ? words : `${words}: a preview` };
+    yield { ...found, pose: "pulled", words };
   }
 }
 
@@ -96,7 +95,7 @@ async function* hung(studio, signal) {
     const { id, converged, weight_g, drop_mm, lengthening, notes } = await api.hang({ ...asked, time_limit_s }, signal);
     const length = `reaches ${figure(drop_mm / 10, 3)} cm down, stitches ${percent(lengthening, 1)} longer`;
     const filled = studio.document.shaped ? ", its outline filled" : "";
-    const words = `Hanging${filled}: ${figure(weight_g, 2)} g, ${length}${converged ? "" : ": a preview"}`;
+    const words = `Hanging${filled}: ${figure(weight_g, 2)} g, ${length}`;
     yield { pose: "hung", id, rows, columns, converged, words, note: notes[0] };
   }
 }
