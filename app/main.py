@@ -15,14 +15,15 @@ from typing import TYPE_CHECKING
 from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 
+from app import memory
 from app.api import routers
 from app.budgets import BUDGETS, InUse
-from app.compute import memory
 from app.compute.answers import Answers
 from app.compute.compute import Compute
 from app.compute.places import Place
 from app.compute.processes import processes
 from app.compute.turns import Gate
+from app.context import Context
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
 from app.designs.watching import Watched
@@ -39,7 +40,6 @@ from app.http.sessions import Sessions
 from app.http.tokens import REMEMBERED_S, Login, Tokens
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.operations.context import Context
 from app.operations.predict import PredictRequest, predict
 from app.results.recent import RecentResults
 from app.settings import Settings

@@ -18,7 +18,7 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from app.compute.memory import machine_bytes
+from app.memory import machine_bytes
 from knitcore.errors import InputError
 
 NO_SETTINGS = frozenset(

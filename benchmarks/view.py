@@ -17,7 +17,7 @@ from statistics import median
 import numpy as np
 import zstandard
 
-from app.operations.context import Context
+from app.context import Context
 from app.operations.stretch import StretchRequest, stretch
 from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.views import View, new_view

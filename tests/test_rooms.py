@@ -68,3 +68,53 @@ def test_the_library_does_not_import_the_service() -> None:
     outside = {"app", "fastapi", "starlette", "uvicorn", "sqlalchemy", "viser"}
     for file in (ROOT / "knitcore").rglob("*.py"):
         assert not {module.split(".")[0] for module in imports(file)} & outside, file
+
+
+APP_FLOORS = (
+    {"command_options", "listeners", "memory", "version"},
+    {"settings"},
+    {"results"},
+    {"context"},
+    {"models"},
+    {"operations"},
+    {"store"},
+    {"budgets"},
+    {"http"},
+    {"compute"},
+    {"designs", "doctor"},
+    {"jobs", "viewer"},
+    {"api"},
+    {"main"},
+    {"cli"},
+)
+"""Rooms of the service from the ground up."""
+
+UPWARD = {
+    "budgets": {"http"},
+    "http": {"compute", "doctor"},
+    "operations": {"viewer"},
+    "results": {"context"},
+    "store": {"http"},
+}
+"""Imports against that order. Each one that goes is struck off here; none may be added."""
+
+
+def app_room(module: str) -> str | None:
+    """The room of the service that a module belongs to."""
+    first, _, rest = module.partition(".")
+    room = rest.partition(".")[0]
+    return room if first == "app" and any(room in names for names in APP_FLOORS) else None
+
+
+def test_the_service_imports_upward_only_where_it_already_does() -> None:
+    floors = {name: floor for floor, names in enumerate(APP_FLOORS) for name in names}
+    upward: dict[str, set[str]] = {}
+    for file in (ROOT / "app").rglob("*.py"):
+        room = file.relative_to(ROOT / "app").parts[0].removesuffix(".py")
+        if room == "__init__":
+            continue
+        assert room in floors, f"{room} has no floor yet: add it to APP_FLOORS"
+        for other in {app_room(module) for module in imports(file)} - {None, room}:
+            if other is not None and floors[other] >= floors[room]:
+                upward.setdefault(room, set()).add(other)
+    assert upward == UPWARD

@@ -7,10 +7,10 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Request
 from fastapi.concurrency import run_in_threadpool
 
+from app.context import Context
 from app.designs.parameters import MISSING, Owner
 from app.http.bodies import BoundedRoute
 from app.http.problems import NotFoundError
-from app.operations.context import Context
 from app.operations.material import MaterialSummary, summary
 from app.results.own_materials import keep_material, remove_material
 from knitcore.materials.document import MaterialDocument

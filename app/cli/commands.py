@@ -20,12 +20,13 @@ import click
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from app.cli.common import emit, json_option, resolve_chart, resolve_piece, user_data_dir
+from app.cli.common import emit, json_option, resolve_piece, user_data_dir
+from app.command_options import resolve_chart
+from app.context import Context
 from app.models.base import UNIT, IntervalResult
 from app.models.charts import IS_REPEAT
 from app.models.refusals import OF_VALUES, problem_in_words, remedy_in_words
 from app.models.uploads import UploadedFile
-from app.operations.context import Context
 from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart

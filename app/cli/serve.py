@@ -82,7 +82,7 @@ def serve_on(settings: Settings, listener: socket.socket) -> None:
     """Serve on an open socket until a signal ends the service."""
     import uvicorn
 
-    from app.compute import memory
+    from app import memory
     from app.http.connections import Connection, Door, Socket
     from app.main import create_app
     from app.viewer.incoming import MAX_PICTURE_BYTES

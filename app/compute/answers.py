@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from app.compute.compute import Compute
-from app.operations.context import Context
+from app.context import Context
 from app.operations.perform import Reply, perform
 from app.operations.registry import Operation
 from app.results.recent import RecentResults

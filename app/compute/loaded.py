@@ -26,8 +26,8 @@ def _end_with_service() -> None:
 
 def _load() -> None:
     be_nice()  # the first page comes before this
+    from app.context import Context
     from app.models.charts import PureFabricChart
-    from app.operations.context import Context
     from app.operations.stretch import StretchRequest, stretch
     from knitcore.fabric import Fabric
     from knitcore.materials import material

@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from knitcore.errors import InputError
 
 if TYPE_CHECKING:
-    from app.operations.context import Context
+    from app.context import Context
 
 
 @dataclass(frozen=True)

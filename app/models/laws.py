@@ -6,9 +6,9 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
+from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
-from app.operations.context import Context
 from knitcore.chart import StitchChart
 from knitcore.materials import Laws, Material, load_library
 

@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 import numpy as np
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import Floats, IntervalResult, RequestModel
 from app.models.charts import MaterialName, RepeatInput, to_repeat
 from app.models.laws import LawsRequest
-from app.operations.context import Context
 from knitcore.errors import InputError
 from knitcore.materials import Material
 from knitcore.materials.uncertainty import Z_SCORE

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName
 from app.models.laws import LawsRequest
 from app.models.posed import Floats
-from app.operations.context import Context
 from knitcore.arrays import Array
 from knitcore.chart import StitchChart
 from knitcore.garment.shaped import ShapedChart

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatInput, to_chart, to_repeat
-from app.operations.context import Context
 from knitcore.chart import MAX_STITCHES_PER_SIDE, StitchChart, check_stitches
 from knitcore.errors import InputError
 from knitcore.materials import Material

@@ -10,11 +10,11 @@ from typing import Annotated, Any, Literal, get_args
 import click
 from pydantic import BeforeValidator, Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import IntervalResult
 from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
 from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas

@@ -7,10 +7,10 @@ from typing import Literal
 from pydantic import Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import ConvergenceError, UnravelledError
 from knitcore.yarnlevel.bending import (

@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.measure.bending import measure_bending
 

@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import EndsOfList, Floats
 from app.models.pieces import PieceTestRequest, PieceTestResult, Size, table
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.piece.standard import biaxial_test
 

@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
 from app.models.weighed import FROM_QUARTERS, WeighedRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.fabric import Fabric

@@ -8,13 +8,13 @@ from typing import Literal
 import click
 from pydantic import Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import Floats
 from app.models.charts import MaterialName
 from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
 from app.models.laws import LawResult, LawsRequest
 from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Direction, Fabric

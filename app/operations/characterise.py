@@ -9,10 +9,10 @@ from typing import Any, Literal, Self
 import click
 from pydantic import Field, RootModel, model_validator
 
-from app.cli.options import write_csv
+from app.command_options import write_csv
+from app.context import Context
 from app.models.base import Positive, RequestModel, ResultModel
 from app.models.charts import MaterialName
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.batch import BatchProgress
 from knitcore.errors import InputError

@@ -6,12 +6,12 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import MaterialName
 from app.models.fields import FieldRequest, FrameErrorResult, errors_table, load
 from app.models.laws import LawsRequest
 from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.fabric import Fabric

@@ -8,9 +8,9 @@ from typing import Literal
 import click
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.measure.compression import PROBE_WIDTH_MM, average_compression, fit_compression

@@ -8,13 +8,13 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import Known, RequestModel, ResultModel
 from app.models.charts import OutlineInput
 from app.models.laws import FabricRequest
 from app.models.posed import PosedView
 from app.models.weighed import Corners, TimeLimit, corners_of
-from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words

@@ -8,10 +8,10 @@ import click
 import numpy as np
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import EARLIER_NAME, EndsOfList, Floats, IntervalResult
 from app.models.checks import Check
 from app.models.gauge import GaugedRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.curve import DEFAULT_STRESS_N_PER_MM, increasing
 from knitcore.answer.curve import curve as chart_curve

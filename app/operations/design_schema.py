@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import RootModel
 
+from app.context import Context
 from app.models.base import NoRequest
-from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.formats.design import design_schema as schema_of_designs
 

@@ -8,10 +8,10 @@ from typing import Any
 import click
 from pydantic import Field, ValidationError
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import UNIT, Ends, IntervalResult, RequestModel, ResultModel
 from app.models.laws import LawResult
-from app.operations.context import Context
 from app.operations.estimate_report import (
     LeftOutResult,
     ModelReport,

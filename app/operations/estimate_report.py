@@ -6,8 +6,8 @@ import math
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import NoRequest, ResultModel
-from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.estimate.model import left_out, library_table
 from knitcore.fabric import Direction, Fabric

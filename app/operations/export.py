@@ -7,13 +7,13 @@ from pathlib import Path
 
 from pydantic import ConfigDict, Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.extensions import ExtensionName
 from app.models.laws import LawsRequest
 from app.models.uploads import Content
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, check_stitches, size_in_words
 from knitcore.formats.export import ExportedFile, ExportKind, ExportOptions, export_chart

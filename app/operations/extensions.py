@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import NoRequest, ResultModel
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.measures import Measure
 from knitcore.extensions import ExtensionError, Group, Offer

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.cli.common import resolve_chart
-from app.cli.options import atlas_option, design_option, write_design_of
+from app.command_options import atlas_option, design_option, resolve_chart, write_design_of
+from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, RequestModel, ResultModel
 from app.models.charts import (
     ChartLines,
@@ -23,7 +23,6 @@ from app.models.charts import (
     Row,
 )
 from app.models.laws import LawsRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
 from knitcore.chart import StitchChart, size_in_words

@@ -10,11 +10,11 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, KnownEnds, RequestModel, ResultModel
 from app.models.charts import MaterialName, RepeatText
 from app.models.checks import Check
 from app.models.laws import LawsRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import EXTENTS, Extent, atlas_of
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas, load_atlas

@@ -7,12 +7,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from app.cli.options import out_option, write_csv
+from app.command_options import out_option, write_csv
+from app.context import Context
 from app.models.base import Floats, RequestModel, ResultModel
 from app.models.checks import Check
 from app.models.laws import ElasticConstants, LawConstants, LawResult
 from app.models.uploads import UploadedFile, example_file, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
 from knitcore.formats.law_files import LawFile, save_law

@@ -10,11 +10,11 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import CellLines, ChartLines, MaterialName, RepeatText
 from app.models.laws import Extensibility, LawsRequest, Moduli
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
 from knitcore.errors import InputError

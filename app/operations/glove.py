@@ -8,10 +8,10 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import IntervalResult
 from app.models.posed import Body, PosedView
-from app.operations.context import Context
 from app.operations.garment import Glove, KnitterRequest, measured, read_measured
 from app.operations.limb import HEADING, LimbPlaceResult
 from app.operations.perform import Viewed

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field
 from scipy.constants import g as STANDARD_GRAVITY  # noqa: N812 - a constant
 
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import ChartInput, to_chart
 from app.models.posed import PosedView
 from app.models.weighed import FRICTIONLESS, Corners, TimeLimit, WantsCorners, WeighedRequest
-from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.shell.curl import TIME_LIMIT_S

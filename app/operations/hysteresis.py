@@ -7,10 +7,10 @@ from typing import Literal
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import Ends, Floats, IntervalResult, ResultModel
 from app.models.laws import LawsRequest
 from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction
 from knitcore.yarnlevel import hysteresis as loops

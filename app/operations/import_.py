@@ -6,10 +6,10 @@ from pathlib import Path
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartLines, RepeatText
 from app.models.uploads import UploadedFile, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.formats.chart_files import read_chart, read_piece

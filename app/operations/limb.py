@@ -10,12 +10,12 @@ import click
 import numpy as np
 from pydantic import Field
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import to_chart
 from app.models.laws import FabricRequest
 from app.models.posed import Body, PosedView
-from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose

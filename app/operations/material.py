@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import (
     Ends,
     Floats,
@@ -15,7 +16,6 @@ from app.models.base import (
 )
 from app.models.charts import MaterialName
 from app.models.laws import ElasticConstants, Extensibility, LawResult, Moduli
-from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction, Fabric

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
+from app.context import Context
 from app.models.base import NoRequest, ResultModel
-from app.operations.context import Context
 from app.operations.material import (
     MaterialDetail,
     MaterialRequest,

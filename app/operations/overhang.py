@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import ResultModel
 from app.models.charts import RepeatInput, to_repeat
 from app.models.posed import Body, PosedView
@@ -19,7 +20,6 @@ from app.models.weighed import (
     notes_of,
     piece_of,
 )
-from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from app.context import Context
 from app.models.base import RequestModel, ResultModel
 from app.models.charts import ChartLines, ChartText, RepeatText
-from app.operations.context import Context
 from app.operations.registry import Operation
 from knitcore.chart import StitchChart
 

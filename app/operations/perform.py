@@ -11,9 +11,9 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from pydantic import BaseModel
 
+from app.context import Context
 from app.models.base import read
 from app.models.checks import all_faults
-from app.operations.context import Context
 from knitcore.errors import InputError
 
 Result = TypeVar("Result", bound=BaseModel)

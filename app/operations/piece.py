@@ -9,12 +9,12 @@ from typing import Annotated, Any, Literal
 import click
 from pydantic import Field, ValidationError
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import EndsOfList, Floats, ResultModel, first_fault
 from app.models.charts import to_repeat
 from app.models.checks import Check
 from app.models.pieces import PieceInput, PieceTestRequest, PieceTestResult, of_test
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.errors import InputError
 from knitcore.materials import Material

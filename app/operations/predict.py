@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.charts import OutlineInput
 from app.models.extensions import ExtensionName
 from app.models.gauge import GaugedRequest
 from app.models.laws import ElasticConstants, Extensibility
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.measures import measure

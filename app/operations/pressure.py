@@ -10,10 +10,10 @@ from pathlib import Path
 import click
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import Ends, IntervalResult
 from app.models.charts import ChartInput, MaterialName, to_chart
 from app.models.laws import LawsRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.answer.answer import Answer
 from knitcore.answer.choose import choose

@@ -30,7 +30,7 @@ from typing import (
 from pydantic import BaseModel
 
 import app.operations as package
-from app.operations.context import Context
+from app.context import Context
 from app.operations.perform import Viewed, key_of
 
 Request = TypeVar("Request", bound=BaseModel)

@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.cli.options import loop_lengths
+from app.command_options import loop_lengths
+from app.context import Context
 from app.models.base import Ends, IntervalResult, Known, ResultModel
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.errors import ConvergenceError, UnravelledError

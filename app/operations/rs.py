@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.base import Ends, IntervalResult, RequestModel, ResultModel
 from app.models.charts import MaterialName
 from app.models.laws import Moduli
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.fabric import Direction, Fabric
 from knitcore.materials.uncertainty import RS_ERRORS, RS_LOG_SD, log_interval

@@ -10,11 +10,11 @@ import click
 import numpy as np
 from pydantic import BeforeValidator, Field
 
-from app.cli.options import atlas_option, design_option, write_design_of
+from app.command_options import atlas_option, design_option, write_design_of
+from app.context import Context
 from app.models.base import Known, ResultModel
 from app.models.charts import ChartLines, MaterialName, RepeatText
 from app.models.laws import LawsRequest
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from app.results.atlases import Extent, atlas_of
 from knitcore.chart import size_in_words

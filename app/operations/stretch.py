@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from pydantic import Field
 from scipy.ndimage import distance_transform_edt
 
-from app.cli.options import out_option
+from app.command_options import out_option
+from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult, ResultModel
 from app.models.charts import Column, OutlineInput, Row, to_chart
 from app.models.gauge import GaugedRequest
-from app.operations.context import Context
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, check_stitches

@@ -6,11 +6,11 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.cli.options import loop_lengths
+from app.command_options import loop_lengths
+from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult
 from app.models.laws import ElasticConstants
 from app.models.yarn_level import YarnLevelRequest, YarnResult, kept_or_made, relaxed_cell
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart
 from knitcore.errors import KnitcoreError

@@ -8,10 +8,10 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, Field
 
+from app.context import Context
 from app.models.base import Ends, IntervalResult
 from app.models.charts import to_chart
 from app.models.yarn_level import StitchRequest, YarnResult
-from app.operations.context import Context
 from app.operations.registry import Command, Operation
 from knitcore.chart import size_in_words
 from knitcore.materials.uncertainty import (

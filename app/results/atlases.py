@@ -15,7 +15,7 @@ from knitcore.repeats import known_larger_repeats, repeats_up_to, striped_repeat
 from knitcore.yarnlibrary.fingerprint import code_version
 
 if TYPE_CHECKING:
-    from app.operations.context import Context
+    from app.context import Context
 
 log = logging.getLogger("knitcore.atlas")
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
+from app.context import Context
 from app.models.base import RequestModel
 from app.models.charts import (
     ChartInput,
@@ -22,7 +23,6 @@ from app.models.charts import (
     to_chart,
 )
 from app.models.posed import PosedView
-from app.operations.context import Context
 from app.operations.stretch import StretchView
 from app.viewer.fabric import Drawing, FabricScene
 from app.viewer.stitch_colours import (

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from pydantic import Field
 
+from app.context import Context
 from app.models.charts import to_chart
 from app.models.posed import PosedView
-from app.operations.context import Context
 from app.operations.stretch import StretchView
 from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.fabric import FabricScene

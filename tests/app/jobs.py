@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from app.compute.answers import Answers
 from app.compute.compute import Compute
-from app.operations.context import Context
+from app.context import Context
 from app.operations.perform import perform
 from app.operations.registry import Operation
 from app.results.recent import RecentResults

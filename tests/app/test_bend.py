@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
+from app.context import Context
 from app.operations.bend import BendRequest, bend
-from app.operations.context import Context
 from tests.app.command_line import run
 
 

@@ -17,8 +17,8 @@ from click.testing import CliRunner
 from pydantic import ValidationError
 
 from app.cli.main import main
+from app.context import Context
 from app.operations.characterise import CharacteriseRequest, characterise
-from app.operations.context import Context
 from knitcore.errors import CancelledError
 from tests.knitcore.test_batch import cluster  # noqa: F401 - a fixture
 

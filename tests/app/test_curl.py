@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.context import Context
+from app.context import Context
 from app.operations.curl import CurlRequest, curl
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.share import solid_glb

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.context import Context
+from app.context import Context
 from app.operations.curve import CurveRequest, curve
 from knitcore.errors import CancelledError
 from knitcore.fabric import Direction, Fabric

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.context import Context
 from app.operations import find as find_module
-from app.operations.context import Context
 from app.results.atlases import repeats_of
 from knitcore.errors import InputError
 from knitcore.formats.stitch_maps import read_wanted_moduli

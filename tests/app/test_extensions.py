@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.context import Context
+from app.context import Context
 from app.operations.export import ExportRequest, export
 from knitcore.errors import InputError
 from knitcore.extensions import Group

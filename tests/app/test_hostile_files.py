@@ -19,11 +19,11 @@ import pytest
 from PIL import Image
 from pydantic import ValidationError
 
+from app.context import Context
 from app.models.uploads import UploadedFile, stored
 from app.operations.bending import BendingRequest, bending
 from app.operations.compare import CompareRequest, compare
 from app.operations.compression import CompressionRequest, compression
-from app.operations.context import Context
 from app.operations.fit import FitRequest, fit
 from app.operations.import_ import ImportRequest, import_
 from knitcore.errors import InputError, KnitcoreError

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from app.operations.context import Context
+from app.context import Context
 from app.operations.predict import PredictRequest
 from app.operations.predict import predict as predict_operation
 from knitcore import Direction, Fabric, RelaxedSize, StitchChart, curve, predict, strip_test

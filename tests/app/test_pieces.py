@@ -13,9 +13,9 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
+from app.context import Context
 from app.operations.bias import BiasRequest, bias
 from app.operations.biaxial import BiaxialRequest, biaxial
-from app.operations.context import Context
 from app.operations.piece import PieceRequest, piece
 from app.operations.trellis import TrellisRequest, trellis
 from knitcore.errors import CancelledError, InputError

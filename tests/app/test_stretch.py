@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from fastapi.testclient import TestClient
 
 from app.cli.main import main
-from app.operations.context import Context
+from app.context import Context
 from app.operations.stretch import StretchRequest, StretchView, stretch
 from knitcore.chart import StitchChart
 from knitcore.formats.design import DesignFile

@@ -14,8 +14,8 @@ import pytest
 import trimesh
 from fastapi.testclient import TestClient
 
+from app.context import Context
 from app.listeners import Listeners
-from app.operations.context import Context
 from app.viewer.clicks import Cell, clicked_stitch
 from app.viewer.colours import MAKERS_COLOURS, rgb
 from app.viewer.design_view import ViewRequest, build_scene

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.operations.context import Context
+from app.context import Context
 from app.viewer import scene as scene_module
 from app.viewer.camera import CameraSide
 from app.viewer.cloth import FINEST, Cloth

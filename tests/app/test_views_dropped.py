@@ -14,7 +14,7 @@ import viser
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.compute import memory
+from app import memory
 from app.main import create_app
 from app.settings import Settings
 from app.viewer.views import Views

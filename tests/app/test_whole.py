@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.operations.context import Context
+from app.context import Context
 from app.operations.whole import WholeRequest, whole
 from knitcore.errors import CancelledError
 from tests.app.command_line import run

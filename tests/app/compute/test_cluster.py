@@ -20,10 +20,10 @@ from app.compute import compute as compute_module
 from app.compute.cluster import Cluster, ClusterError, ClusterPlace
 from app.compute.compute import Compute
 from app.compute.places import AbandonedError, TimeLimitError, WorkerDiedError
+from app.context import Context
 from app.jobs.document import JobState
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
-from app.operations.context import Context
 from app.operations.curve import CurveRequest, CurveResult, curve
 from app.store.database import Database
 from app.store.schema import migrate

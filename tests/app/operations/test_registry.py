@@ -16,18 +16,18 @@ from pydantic import Field, ValidationError
 
 from app.cli.commands import command_of
 from app.cli.main import main
+from app.context import Context
 from app.models.base import Ends, Floats, Known, RequestModel, ResultModel
 from app.models.charts import ChartInput, MaterialName, OutlineInput, RepeatInput
 from app.models.gauge import GaugeInput
 from app.models.uploads import UploadedFile, stored
-from app.operations.context import Context
 from app.operations.registry import Command, Operation, commands, operations
 from app.operations.stretch import StretchResult
 from knitcore.fabric import Direction
 from knitcore.materials import Interval
 from scripts.page_types import FILE, page_types
 
-MACHINERY = {"__init__", "context", "perform", "registry"}
+MACHINERY = {"__init__", "perform", "registry"}
 
 
 def test_every_module_of_the_package_is_one_operation() -> None:

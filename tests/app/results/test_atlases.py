@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.operations.context import Context
+from app.context import Context
 from app.results import atlases
 from app.results.atlases import FOLDER, atlas_of
 from knitcore.chart import StitchChart

@@ -10,8 +10,8 @@ import pytest
 from fastapi.testclient import TestClient
 from PIL import Image
 
+from app.context import Context
 from app.models.posed import PosedView
-from app.operations.context import Context
 from app.viewer.colours import FABRIC_COLOURS, rgb
 from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.still import still_png

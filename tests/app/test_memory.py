@@ -10,7 +10,7 @@ import pytest
 SCRIPT = """
 import os
 from pathlib import Path
-from app.compute import memory
+from app import memory
 
 def resident_mb():
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6

@@ -1,16 +1,20 @@
-"""Options of commands that are not fields of their requests."""
+"""Options and arguments of commands that are not fields of their requests."""
 
 from __future__ import annotations
 
 import csv
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
+from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.fabric import Fabric
+from knitcore.patterns import patterns
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -108,3 +112,37 @@ def check_writable(path: Path | None, field: str) -> None:
         raise InputError(field, f"{path} is a folder.", "Name a file in it.")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise InputError(field, f"{path} cannot be written.", "Name a file that you may write.")
+
+
+def resolve_chart(chart: str, size: str | None) -> StitchChart:
+    """The chart that CHART and --size name: a file, or a fabric or a pattern of a size.
+
+    Raises
+    ------
+    InputError
+        If it is none, or the size is missing or malformed.
+    """
+    if Path(chart).suffix:
+        from knitcore.formats.chart_files import read_chart  # a fabric needs no readers
+
+        if size is not None:
+            raise InputError(
+                "size", "goes with the name of a fabric, not with a file.", "Leave --size out."
+            )
+        return read_chart(chart)
+    named = {str(fabric): StitchChart.of_fabric(fabric) for fabric in Fabric}
+    if chart.lower() not in named:
+        named |= {pattern.identifier: pattern.chart for pattern in patterns()}
+    if chart.lower() not in named:
+        names = ", ".join(named)
+        raise InputError(
+            "chart",
+            f"{chart!r} is neither a file nor a fabric.",
+            f"Name a .txt, .png or .json file, or one of {names} with --size.",
+        )
+    if size is None:
+        raise InputError("size", f"{chart} needs a size.", "Add --size COLUMNSxROWS.")
+    match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", size.strip().lower())
+    if match is None:
+        raise InputError("size", f"{size!r} is not a size.", "Write COLUMNSxROWS, such as 31x20.")
+    return named[chart.lower()].resized(rows=int(match[2]), columns=int(match[1]))
