@@ -93,8 +93,8 @@ def _regions(
     head = (
         "region",
         "stitches",
-        "flat local Y course",
-        "flat local Y wale, N/mm",
+        "flat Y course, N/mm",
+        "flat Y wale, N/mm",
         "1/Y course × wale, mm/N",
     )
     for x, text in zip(places, head, strict=True):

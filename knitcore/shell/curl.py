@@ -15,7 +15,7 @@ from knitcore.errors import Cancelled, InputError
 from knitcore.fabric import Direction
 from knitcore.materials import Material
 from knitcore.shell.folds import balances
-from knitcore.shell.relax import settle
+from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.rolled import start
 from knitcore.shell.sheet import Sheet, sheet_of
 
@@ -24,7 +24,6 @@ MAX_STITCHES = 10_000
 TIME_LIMIT_S = 120.0
 _BETWEEN = 3
 """Stitches that a pull needs: two in the clamps, one between."""
-_SHAKEN_MM = 1e-3
 _STRIPS = 0.3
 """Share of the time limit for each of the two starting strips."""
 STRIP = 4.0
@@ -201,7 +200,7 @@ def _pulled(sheet: Sheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
     x[:, axis] += longer * np.clip((sheet.flat_mm[:, axis] - at[1]) / (at[-2] - at[1]), 0.0, 1.0)
     held = np.zeros(len(x), dtype=bool)
     held[lines[[0, 1, -2, -1]]] = True
-    x[~held] += _SHAKEN_MM * np.random.default_rng(0).standard_normal((np.count_nonzero(~held), 3))
+    x[~held] += shake_mm((np.count_nonzero(~held), 3))
     return x, held
 
 

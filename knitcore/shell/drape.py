@@ -18,7 +18,7 @@ from knitcore.arrays import Array
 from knitcore.bounds import check_range
 from knitcore.errors import Cancelled, InputError
 from knitcore.shell.cloth import Cloth
-from knitcore.shell.relax import Shape, settle
+from knitcore.shell.relax import Shape, settle, shake_mm
 from knitcore.shell.sheet import Sheet
 
 PIECE_MM, DISC_MM = 300.0, 180.0
@@ -127,7 +127,7 @@ def _waved(sheet: Sheet, held: NDArray[np.bool_], waves: int) -> Array:
     x = sheet.flat_mm.copy()
     out = np.linalg.norm(x, axis=1) - np.linalg.norm(x[held], axis=1).max()
     wave = _WAVE * out * np.cos(waves * np.arctan2(x[:, 1], x[:, 0]))
-    noise = _SHAKEN_MM * np.random.default_rng(0).standard_normal(len(x))
+    noise = shake_mm((len(x),), _SHAKEN_MM)
     x[~held, 2] += (wave + noise)[~held]
     return x
 

@@ -13,10 +13,8 @@ from knitcore.errors import Cancelled
 from knitcore.materials import Material
 from knitcore.shell.cloth import stitch_weights_n
 from knitcore.shell.curl import TIME_LIMIT_S, check_size
-from knitcore.shell.relax import settle
+from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.sheet import sheet_of
-
-_SHAKEN_MM = 1e-3
 
 
 class HungBy(Choice):
@@ -83,7 +81,7 @@ def hang(
     load[:, 1] = -sheet.shared(weights.ravel())
     held = np.zeros((chart.rows + 1, chart.columns + 1), dtype=bool)
     held[-1, :: chart.columns if by is HungBy.CORNERS else 1] = True
-    begin = sheet.flat_mm + _SHAKEN_MM * np.random.default_rng(0).standard_normal(load.shape)
+    begin = sheet.flat_mm + shake_mm(load.shape)
     begin[held.ravel()] = sheet.flat_mm[held.ravel()]
     found = settle(
         sheet, begin, held=held.ravel(), load_n=load, time_limit_s=time_limit_s, cancelled=cancelled

@@ -64,6 +64,17 @@ class Shape:
     seconds: float
 
 
+def shake_mm(shape: tuple[int, ...], size_mm: float = 1e-3) -> Array:
+    """Random displacements, mm, the same every time: they move a start off a saddle of the energy.
+
+    Parameters
+    ----------
+    shape : of the result.
+    size_mm : standard deviation of each.
+    """
+    return np.asarray(size_mm * np.random.default_rng(0).standard_normal(shape))
+
+
 def settle(
     sheet: Sheet,
     x: Array,

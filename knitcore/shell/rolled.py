@@ -13,11 +13,9 @@ import numpy as np
 
 from knitcore.arrays import Array
 from knitcore.errors import Cancelled
-from knitcore.shell.relax import settle
+from knitcore.shell.relax import settle, shake_mm
 from knitcore.shell.sheet import Net, Sheet
 
-_SHAKEN_MM = 1e-3
-"""Perturbation, without which an unstable flat sheet would stay flat."""
 _ALIKE = 0.1
 """Share by which energies may differ that count as alike: of two bent shapes alike that is taken
 which is bent the shorter way, so that the long edges roll, and of a bent and the flat one that."""
@@ -41,8 +39,7 @@ def start(sheet: Sheet, *, time_limit_s: float = 60.0, cancelled: Cancelled | No
     best = bent[0] if energy[0] < (1.0 + _ALIKE) * energy[1] else bent[1]
     if min(energy) > (1.0 - _ALIKE) * _energy(sheet, sheet.flat_mm):
         best = sheet.flat_mm
-    noise = np.random.default_rng(0).standard_normal(best.shape)
-    return np.asarray(best + _SHAKEN_MM * noise)
+    return np.asarray(best + shake_mm(best.shape))
 
 
 def _shorter_first(sheet: Sheet) -> tuple[int, int]:
@@ -108,7 +105,7 @@ def extruded(sheet: Sheet, axis: int, strip_mm: Array) -> Array:
 def _shaken(strip: Sheet) -> Array:
     """The flat strip, lifted a little, both sides alike, so that it does not twist."""
     sides = (strip.rows + 1, 1) if strip.columns == 1 else (1, strip.columns + 1)
-    lift = _SHAKEN_MM * np.random.default_rng(0).standard_normal(sides)
+    lift = shake_mm(sides)
     shaken = strip.flat_mm.copy()
     shaken[:, 2] += np.broadcast_to(lift, (strip.rows + 1, strip.columns + 1)).ravel()
     return shaken
