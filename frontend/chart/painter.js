@@ -11,6 +11,7 @@
 
 import { Floating } from "../core/floating.js";
 import { inked } from "../core/ink.js";
+import { withPlace } from "../core/repeats.js";
 import { combined, selects } from "../core/selection.js";
 import { Brush } from "../core/stroke.js";
 import { listenToPinches } from "./pinch.js";
@@ -264,7 +265,7 @@ export class Painter {
     }
     const { row0: row, column0: column, row1, column1 } = box;
     const place = { row, column, rows: row1 - row, columns: column1 - column };
-    studio.document.changeRepeat(repeat.id, { placements: [...repeat.placements, place] }, "Place a repeat");
+    studio.document.changeRepeat(repeat.id, { placements: withPlace(repeat, place) }, "Place a repeat");
   }
 
   /** Move a copy of a repeat; the stitches it leaves stay and are no longer linked. @param {Placed} placed */

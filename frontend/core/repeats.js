@@ -104,6 +104,24 @@ export function laying(repeat, grid) {
 }
 
 /**
+ * A repeat's placements and one more, without those that it covers whole.
+ *
+ * @param {Repeat} repeat
+ * @param {PlacementItem} place
+ */
+export function withPlace({ placements }, place) {
+  const { row, column, rows, columns } = place;
+  const seen = placements.filter(
+    (other) =>
+      other.row < row ||
+      other.column < column ||
+      other.row + other.rows > row + rows ||
+      other.column + other.columns > column + columns,
+  );
+  return [...seen, place];
+}
+
+/**
  * Repeats with only those placements that a chart shows.
  *
  * @param {readonly Repeat[]} repeats

@@ -11,6 +11,7 @@
 import { action } from "../actions/registry.js";
 import { boxOf, filledBox } from "../chart/placing.js";
 import { MAX_ITEMS } from "../core/design.js";
+import { withPlace } from "../core/repeats.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { repeat as placeTool } from "../tools/repeat.js";
@@ -121,7 +122,7 @@ export function create(studio, context) {
                 rows: box.row1 - box.row0,
                 columns: box.column1 - box.column0,
               };
-              lay(repeat, [...placements, place], "Place a repeat");
+              lay(repeat, withPlace(repeat, place), "Place a repeat");
             }),
           ),
           placements.length

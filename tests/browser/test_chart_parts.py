@@ -101,9 +101,9 @@ def test_a_chart_filled_with_a_repeat_grows_by_whole_motifs(flat_studio: Page) -
     flat_studio.click("#tool-select")
     chart.drag((1, 12), (1, 9))
     flat_studio.click("#selection-make-repeat")
-    flat_studio.click("#repeat-1-0-unlink")
     flat_studio.click("#repeat-1-fill")
     assert kept_chart(flat_studio).splitlines()[0] == "PKKK" * 3
+    assert len(kept_design(flat_studio)["repeats"][0]["placements"]) == 1, "the first is covered"
     flat_studio.click("#chart-size")
     flat_studio.fill("#new-columns", "15")
     flat_studio.get_by_role("button", name="Keep it whole: 16 × 10").click()
