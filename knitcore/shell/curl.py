@@ -200,7 +200,7 @@ def _pulled(sheet: Sheet, pull: Pull) -> tuple[Array, NDArray[np.bool_]]:
     x[:, axis] += longer * np.clip((sheet.flat_mm[:, axis] - at[1]) / (at[-2] - at[1]), 0.0, 1.0)
     held = np.zeros(len(x), dtype=bool)
     held[lines[[0, 1, -2, -1]]] = True
-    x[~held] += shake_mm((np.count_nonzero(~held), 3))
+    x[~held] += shake_mm(x[~held].shape)
     return x, held
 
 
