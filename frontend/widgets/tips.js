@@ -16,11 +16,18 @@ export function tips() {
   let shown = null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
+  /** A button under the pointer may be given other words: *Stretch*, then *Give the test up*. */
+  const renamed = new MutationObserver(() => {
+    const element = shown?.element;
+    if (!element?.title) return;
+    hide();
+    show(element);
+  });
 
   const hide = () => {
     clearTimeout(timer);
     if (!shown) return;
-    // Meanwhile the button may have been given other words.
+    renamed.disconnect();
     if (!shown.element.title) shown.element.title = shown.title;
     shown = null;
     if (tip.matches(":popover-open")) tip.hidePopover();
@@ -42,6 +49,7 @@ export function tips() {
     );
     tip.showPopover();
     place(tip, element);
+    renamed.observe(element, { attributeFilter: ["title"] });
   };
 
   /** @param {Event} event */
