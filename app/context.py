@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.results.on_disk import KeptResults
 from app.results.own_materials import KINDS, PREFIX, find_own_material
 from knitcore.materials import Material, load_material_file, material
+
+if TYPE_CHECKING:
+    from app.results.atlases import Extent
+    from knitcore.design.atlas import Atlas
 
 
 def _never() -> bool:
@@ -65,6 +70,28 @@ class Context:
         if self.local and name.lower().endswith(KINDS):
             return load_material_file(name)
         return find_own_material(name, self.data_dir) if name.startswith(PREFIX) else material(name)
+
+    def atlas(self, name: str, extent: Extent, file: Path | None = None) -> Atlas:
+        """The atlas of a material, built if it is not kept; or that of a file.
+
+        Raises
+        ------
+        InputError
+            If there is no such material, or the file cannot be read.
+        """
+        # most operations need none
+        from app.results.atlases import atlas_of
+        from knitcore.design.atlas import load_atlas
+
+        if file is not None:
+            return load_atlas(file)
+        return atlas_of(
+            self.material(name),
+            extent,
+            self.data_dir,
+            cancelled=self.cancelled,
+            progress=self.progress,
+        )
 
     def share(self, done: float) -> None:
         """Report progress, from 0 to 1."""

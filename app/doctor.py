@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, Field
 
-from app.http.problems import ServiceError
+from app.problems.errors import ServiceError
 from app.settings import Settings
 from app.store.database import Database, check_not_lost
 from app.store.lock import holder

@@ -15,24 +15,21 @@ from typing import TYPE_CHECKING
 from anyio.to_thread import current_default_thread_limiter
 from fastapi import FastAPI
 
-from app import memory
+from app import health, memory
 from app.api import routers
-from app.budgets import BUDGETS, InUse
 from app.compute.answers import Answers
 from app.compute.compute import Compute
 from app.compute.places import Place
 from app.compute.processes import processes
-from app.compute.turns import Gate
 from app.context import Context
 from app.designs.idempotency import forget_old_keys
 from app.designs.store import DesignStore
 from app.designs.watching import Watched
-from app.http import health
-from app.http.kinds import serve_kinds
+from app.http.error_responses import install_problem_handlers
 from app.http.observing import Metrics, Observer, configure_logging
 from app.http.page import serve_page
 from app.http.passes import Passes
-from app.http.problems import PROBLEM_RESPONSES, install_problem_handlers
+from app.http.problem_pages import serve_kinds
 from app.http.reference import serve_reference
 from app.http.schema import install_schema
 from app.http.security import Guard
@@ -40,7 +37,10 @@ from app.http.sessions import Sessions
 from app.http.tokens import REMEMBERED_S, Login, Tokens
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
+from app.limits.budgets import BUDGETS, InUse
+from app.limits.turns import Gate
 from app.operations.predict import PredictRequest, predict
+from app.problems.problem import PROBLEM_RESPONSES
 from app.results.recent import RecentResults
 from app.settings import Settings
 from app.store.database import Database, StoreError

@@ -34,7 +34,7 @@ import viser
 import websockets
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from app.budgets import BUDGETS
+from app.limits.budgets import BUDGETS
 from tests.app.service import Service
 
 USERS = int(os.environ.get("USERS", "50"))

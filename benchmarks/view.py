@@ -18,8 +18,8 @@ import numpy as np
 import zstandard
 
 from app.context import Context
+from app.drawing.design_view import StretchStep, ViewRequest, build_scene
 from app.operations.stretch import StretchRequest, stretch
-from app.viewer.design_view import StretchStep, ViewRequest, build_scene
 from app.viewer.views import View, new_view
 from knitcore.chart import StitchChart
 

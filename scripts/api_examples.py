@@ -14,9 +14,9 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from app.http.identity import LOCAL_USER
 from app.http.schema import operations
 from app.http.sessions import Sessions
+from app.identity import LOCAL_USER
 from app.jobs.store import OPEN
 from app.main import create_app
 from app.models.uploads import EXAMPLES

@@ -16,11 +16,11 @@ from pydantic.json_schema import models_json_schema
 
 from app.api.views import CameraRequest, MarkRequest
 from app.designs import document as designs
-from app.http.problems import Problem
+from app.drawing.design_view import ViewRequest, ViewResult
 from app.http.sessions import SignedIn
 from app.jobs.document import JobPage
 from app.operations.registry import operations
-from app.viewer.design_view import ViewRequest, ViewResult
+from app.problems.problem import Problem
 from app.viewer.shared import SharedViewRequest
 from knitcore.formats.layout import DesignLayout
 

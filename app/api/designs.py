@@ -30,7 +30,7 @@ from app.designs.store import DesignStore
 from app.designs.watching import PERIOD_S, QUIET_S
 from app.http.bodies import BoundedRoute
 from app.http.events import event_stream
-from app.http.problems import Problem
+from app.problems.problem import Problem
 from app.viewer.design_id import DesignId
 
 CONFLICT: Responses = {

@@ -15,10 +15,11 @@ from app.designs.parameters import MISSING, Cursor, Limit, Owner, RetryOf
 from app.http.bodies import OrUndecoded, Undecoded, WorkerRoute
 from app.http.events import event_stream
 from app.http.packed import ASKED_WITH_TAG, TAGGED, etag_of, is_known, json_response
-from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
 from app.jobs.kinds import JobRequest, JobResult
 from app.jobs.runner import JobRunner
+from app.problems.errors import NotFoundError
+from app.problems.problem import Problem
 
 EVENT_PERIOD_S = 0.25
 

@@ -10,8 +10,8 @@ from fastapi.concurrency import run_in_threadpool
 from app.context import Context
 from app.designs.parameters import MISSING, Owner
 from app.http.bodies import BoundedRoute
-from app.http.problems import NotFoundError
 from app.operations.material import MaterialSummary, summary
+from app.problems.errors import NotFoundError
 from app.results.own_materials import keep_material, remove_material
 from knitcore.materials.document import MaterialDocument
 

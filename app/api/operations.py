@@ -13,15 +13,15 @@ from fastapi.concurrency import run_in_threadpool
 from pydantic import BaseModel
 
 from app.compute.answers import Answers
-from app.compute.turns import Gate
 from app.http.bodies import OrUndecoded, Undecoded, WorkerRoute
-from app.http.identity import current_user
 from app.http.packed import ASKED_WITH_TAG, TAGGED, json_response, plain, tagged
-from app.http.problems import Problem
 from app.http.waiting import abandoned
+from app.identity import current_user
+from app.limits.turns import Gate
 from app.models.charts import size_of
 from app.operations.perform import Viewed, carried_out
 from app.operations.registry import Operation, operations
+from app.problems.problem import Problem
 
 MAX_LIGHT = 2_500
 """Most stitches of a request that the service answers itself. A larger one goes to a worker, with

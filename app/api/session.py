@@ -6,15 +6,16 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
 
-from app.budgets import BUDGETS, InUse, Use
 from app.designs.parameters import Owner
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
-from app.http.identity import current_session
-from app.http.problems import NotFoundError, Problem
 from app.http.security import SESSION_COOKIE
 from app.http.sessions import Sessions, SignedIn
 from app.http.tokens import Login
+from app.identity import current_session
+from app.limits.budgets import BUDGETS, InUse, Use
+from app.problems.errors import NotFoundError
+from app.problems.problem import Problem
 
 router = APIRouter(tags=["session"])
 

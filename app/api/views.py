@@ -13,31 +13,32 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
-from app.budgets import InUse
 from app.compute.compute import Compute
-from app.compute.turns import Gate
-from app.http.bodies import BoundedRoute
-from app.http.events import event_stream
-from app.http.identity import current_user
-from app.http.passes import Passes
-from app.http.problems import NotFoundError, Problem
-from app.http.security import OPENED_BY
-from app.http.waiting import abandoned
-from app.models.base import RequestModel
-from app.models.charts import size_of_chart
-from app.models.posed import PosedView
-from app.operations.perform import Reply
-from app.operations.stretch import StretchView
-from app.viewer.camera import CameraSide
-from app.viewer.design_id import DesignId, private_name
-from app.viewer.design_view import (
+from app.drawing.design_view import (
     ViewRequest,
     ViewResult,
     build_drawing,
     build_scene,
     is_large,
 )
-from app.viewer.fabric import Box, Drawing
+from app.drawing.fabric import Box, Drawing
+from app.http.bodies import BoundedRoute
+from app.http.events import event_stream
+from app.http.passes import Passes
+from app.http.security import OPENED_BY
+from app.http.waiting import abandoned
+from app.identity import current_user
+from app.limits.budgets import InUse
+from app.limits.turns import Gate
+from app.models.base import RequestModel
+from app.models.charts import size_of_chart
+from app.models.posed import PosedView
+from app.models.stretched import StretchView
+from app.operations.perform import Reply
+from app.problems.errors import NotFoundError
+from app.problems.problem import Problem
+from app.viewer.camera import CameraSide
+from app.viewer.design_id import DesignId, private_name
 from app.viewer.scene import round_length_mm
 from app.viewer.share import picture_png
 from app.viewer.shared import (

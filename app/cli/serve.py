@@ -39,7 +39,7 @@ def command(host: str | None, port: int | None, as_json: bool) -> None:
     given = {k: v for k, v in {"host": host, "port": port}.items() if v is not None}
     settings = Settings.model_validate(user_settings().model_dump() | given).check()
     from app.http.observing import configure_logging
-    from app.http.problems import ServiceError
+    from app.problems.errors import ServiceError
 
     os.umask(0o077)  # files are readable by this user only
     configure_logging(settings.log_format)

@@ -9,7 +9,6 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from typing import Any, TypeVar
 
-from app.budgets import BUDGETS, ComputingTime
 from app.compute.places import (
     AbandonedError,
     NotBegunError,
@@ -17,8 +16,9 @@ from app.compute.places import (
     TimeLimitError,
     WorkerDiedError,
 )
-from app.compute.turns import Turns
-from app.http.identity import current_user
+from app.identity import current_user
+from app.limits.budgets import BUDGETS, ComputingTime
+from app.limits.turns import Turns
 
 log = logging.getLogger("knitcore.compute")
 T = TypeVar("T")

@@ -7,7 +7,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, TypeVar
 
-from app.http.problems import ServiceError, UnavailableError
+from app.problems.errors import ServiceError, UnavailableError
 
 T = TypeVar("T")
 R_co = TypeVar("R_co", covariant=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.http.problems import ServiceError
+from app.problems.errors import ServiceError
 
 
 class StaleError(ServiceError):

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from sqlalchemy import Connection, insert, select
 from sqlalchemy.exc import IntegrityError
 
-from app.http.problems import ServiceError
+from app.problems.errors import ServiceError
 from app.store.database import Database
 from app.store.tables import idempotency_keys
 from app.store.values import now

@@ -9,8 +9,8 @@ from fastapi import Depends, Header, Query, Request
 from pydantic import BaseModel
 
 from app.designs.idempotency import Retry
-from app.http.identity import asking
-from app.http.problems import Problem
+from app.identity import asking
+from app.problems.problem import Problem
 
 Responses = dict[int | str, dict[str, Any]]
 MISSING: Responses = {

@@ -6,11 +6,11 @@ import secrets
 
 from sqlalchemy import Connection, Row, func, insert, select, update
 
-from app.budgets import BUDGETS, OverBudgetError
 from app.designs.document import Design, NewShare, Share, SharedDesign, ShareMode, Shares
 from app.designs.idempotency import Retry, once
 from app.designs.store import add, copied, document_of, find, most_of_one
-from app.http.problems import NotFoundError, RefusedError
+from app.limits.budgets import BUDGETS, OverBudgetError
+from app.problems.errors import NotFoundError, RefusedError
 from app.store.database import Database
 from app.store.tables import designs, shares
 from app.store.values import hash_of, now

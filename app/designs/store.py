@@ -20,7 +20,6 @@ from sqlalchemy import (
     update,
 )
 
-from app.budgets import BUDGETS, OverBudgetError
 from app.designs.conditions import ConflictError, check_match
 from app.designs.document import (
     Design,
@@ -36,7 +35,8 @@ from app.designs.document import (
 )
 from app.designs.idempotency import Retry, once
 from app.designs.painting import kinds_around, paint
-from app.http.problems import NotFoundError
+from app.limits.budgets import BUDGETS, OverBudgetError
+from app.problems.errors import NotFoundError
 from app.store.database import Database
 from app.store.pages import one_page
 from app.store.tables import design_versions, designs

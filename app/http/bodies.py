@@ -18,8 +18,8 @@ from pydantic import ValidatorFunctionWrapHandler, WrapValidator
 from starlette.exceptions import HTTPException
 from starlette.types import Message, Receive
 
-from app.compute.turns import Gate
-from app.http.identity import current_user
+from app.identity import current_user
+from app.limits.turns import Gate
 from app.models.charts import MAX_FIELD
 
 SMALL_BYTES = 64_000

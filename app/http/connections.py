@@ -19,7 +19,7 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.frames import Frame
 
-from app.http.rate import RateLimit
+from app.limits.rate import RateLimit
 
 log = logging.getLogger("knitcore.app")
 

@@ -8,8 +8,8 @@ from contextlib import aclosing
 from fastapi import Request
 from fastapi.responses import StreamingResponse
 
-from app.budgets import InUse
-from app.http.identity import current_user
+from app.identity import current_user
+from app.limits.budgets import InUse
 
 QUIET_S = 15.0
 

@@ -17,7 +17,7 @@ from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Info
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.http.identity import current_user
+from app.identity import current_user
 from app.version import VERSION
 
 log = logging.getLogger("knitcore.access")

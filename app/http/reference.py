@@ -10,10 +10,10 @@ from typing import Any
 
 from fastapi import FastAPI, Request, Response
 
-from app.http.kinds import FOLDER
 from app.http.packed import tagged
 from app.http.pages import page, prose
 from app.http.schema import FIRST_PROBLEM
+from app.problems.kinds import FOLDER
 
 Schema = dict[str, Any]
 

@@ -10,9 +10,10 @@ from typing import Any
 
 from fastapi import FastAPI, Request, Response
 
+from app.http.error_responses import problem_of
 from app.http.packed import tagged
-from app.http.problems import PROBLEM_TYPE, problem_of
 from app.models.uploads import EXAMPLES
+from app.problems.problem import PROBLEM_TYPE
 from knitcore.errors import InputError
 
 FIRST_PROBLEM = 400

@@ -17,23 +17,17 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketClose
 
-from app.budgets import InUse
 from app.http.bodies import limited
-from app.http.identity import NOBODY, current_session, current_user
-from app.http.kinds import PAGES
+from app.http.error_responses import answer_to, unexpected
 from app.http.passes import Opener, Passes
-from app.http.problems import (
-    RefusedError,
-    ServiceError,
-    StoppingError,
-    TooManyError,
-    answer_to,
-    unexpected,
-)
-from app.http.rate import RateLimit
+from app.http.problem_pages import PAGES
 from app.http.sessions import SESSION_S
 from app.http.sign_in import PATH, sign_in_form, sign_in_page, token_page
 from app.http.tokens import REMEMBERED_S, Login
+from app.identity import NOBODY, current_session, current_user
+from app.limits.budgets import InUse
+from app.limits.rate import RateLimit
+from app.problems.errors import RefusedError, ServiceError, StoppingError, TooManyError
 from app.settings import Settings
 from app.store.database import StoreError
 

@@ -7,7 +7,7 @@ import secrets
 from pydantic import AwareDatetime, BaseModel, Field
 from sqlalchemy import delete, insert, select
 
-from app.budgets import Use
+from app.limits.budgets import Use
 from app.store.database import Database
 from app.store.tables import sessions
 from app.store.values import now

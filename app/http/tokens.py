@@ -11,8 +11,8 @@ from itsdangerous import BadSignature, URLSafeTimedSerializer
 from pydantic import AwareDatetime, BaseModel
 from sqlalchemy import Connection, insert, or_, select, update
 
-from app.http.identity import LOCAL_USER
 from app.http.sessions import SESSION_S, Sessions
+from app.identity import LOCAL_USER
 from app.store.database import Database
 from app.store.tables import access_tokens, service_keys
 from app.store.values import hash_of, now

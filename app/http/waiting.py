@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import Request
 
-from app.http.problems import StoppingError
+from app.problems.errors import StoppingError
 
 
 async def abandoned(request: Request) -> bool:

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from pydantic import AwareDatetime, BaseModel, Field
 
-from app.http.problems import Problem
+from app.problems.problem import Problem
 
 
 class JobState(StrEnum):

@@ -9,15 +9,17 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any
 
-from app.budgets import SpentError
 from app.compute.answers import Answers
 from app.compute.places import AbandonedError, NotBegunError
 from app.designs.idempotency import Retry
 from app.http.bodies import SMALL_BYTES
-from app.http.problems import Problem, ServiceError, problem_of
+from app.http.error_responses import problem_of
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, job_key, read_job
 from app.jobs.store import JobStore
+from app.limits.budgets import SpentError
+from app.problems.errors import ServiceError
+from app.problems.problem import Problem
 from app.store.database import StoreError
 
 log = logging.getLogger("knitcore.jobs")

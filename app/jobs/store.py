@@ -9,10 +9,11 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Row, bindparam, func, insert, select, update
 
-from app.budgets import BUDGETS, OverBudgetError
 from app.designs.idempotency import Retry, once
-from app.http.problems import NotFoundError, Problem
 from app.jobs.document import JobPage, JobState, JobStatus
+from app.limits.budgets import BUDGETS, OverBudgetError
+from app.problems.errors import NotFoundError
+from app.problems.problem import Problem
 from app.store.database import Database, StoreError
 from app.store.pages import one_page
 from app.store.tables import job_requests, jobs, results

@@ -16,7 +16,7 @@ from app.models.base import IntervalResult
 from app.models.charts import MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import EXTENTS, Extent, atlas_of, repeats_of
+from app.results.atlases import EXTENTS, Extent, repeats_of
 from knitcore.design.atlas import INTERVAL_SOURCE, VALUES, Atlas
 from knitcore.design.atlas_build import build_atlas
 from knitcore.design.atlas_yarn import improve_atlas
@@ -69,7 +69,7 @@ COSTS = ("transfers_per_stitch", "crossings_per_stitch", "curl")
 
 def atlas(request: AtlasRequest, context: Context) -> AtlasResult:
     """Columns for a scatter of stiffness course-wise against wale-wise."""
-    return _result(atlas_of(request.material, request.repeats, context))
+    return _result(context.atlas(request.material, request.repeats))
 
 
 def _result(found: Atlas) -> AtlasResult:

@@ -24,7 +24,7 @@ from app.models.charts import (
 )
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import Extent, atlas_of
+from app.results.atlases import Extent
 from knitcore.chart import StitchChart, size_in_words
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas
 from knitcore.design.fill import fill_field
@@ -155,7 +155,7 @@ def fill(request: FillRequest, context: Context) -> FillResult:
             f"{wanted[0].size} stitches are too many here.",
             f"Use at most {MAX_STITCHES}, or the command line.",
         )
-    atlas = atlas_of(request.material, request.repeats, context.within(0.0, 0.3))
+    atlas = context.within(0.0, 0.3).atlas(request.material, request.repeats)
     return _filled(request, wanted, atlas, context.within(0.3, 0.7))
 
 
@@ -220,7 +220,7 @@ def _command(
     wanted = *read_wanted_moduli(target), None
     if kept is not None:
         request = request.model_copy(update={"chart": resolve_chart(kept, None).text})
-    table = atlas_of(request.material, request.repeats, context, atlas)
+    table = context.atlas(request.material, request.repeats, atlas)
     result = _filled(request, wanted, table, context)
     write_design_of(result.chart, request.material, target.stem, out)
     return result

@@ -16,7 +16,7 @@ from app.models.charts import MaterialName, RepeatText
 from app.models.checks import Check
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import EXTENTS, Extent, atlas_of
+from app.results.atlases import EXTENTS, Extent
 from knitcore.design.atlas import INTERVAL_SOURCE, Atlas, load_atlas
 from knitcore.design.cost import CostLimits
 from knitcore.design.find import Candidate, find_fabric
@@ -175,8 +175,7 @@ def _atlases(names: Sequence[str], extent: Extent, context: Context) -> list[Atl
         context.material(name)  # an unknown material is reported before any atlas is computed
     part = 1 / max(len(names), 1)
     return [
-        atlas_of(name, extent, context.within(number * part, part))
-        for number, name in enumerate(names)
+        context.within(number * part, part).atlas(name, extent) for number, name in enumerate(names)
     ]
 
 

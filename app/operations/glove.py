@@ -107,9 +107,9 @@ def _and_write(request: GloveRequest, context: Context, out: Path | None) -> Glo
     result = _result(found, request, context)
     if out is not None:
         # the 3D view's libraries take a second to load
-        from app.viewer.design_view import Curled, ViewRequest, build_scene
-        from app.viewer.share import solid_glb
-        from app.viewer.stitch_colours import Colour
+        from app.drawing.design_view import Curled, ViewRequest, build_scene
+        from app.drawing.solid import solid_glb
+        from app.drawing.stitch_colours import Colour
 
         shaped = found.plan.shaped
         shown = ViewRequest(

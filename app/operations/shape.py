@@ -16,7 +16,7 @@ from app.models.base import Known, ResultModel
 from app.models.charts import ChartLines, MaterialName, RepeatText
 from app.models.laws import LawsRequest
 from app.operations.registry import Command, Operation
-from app.results.atlases import Extent, atlas_of
+from app.results.atlases import Extent
 from knitcore.chart import size_in_words
 from knitcore.design.atlas import Atlas
 from knitcore.design.shape import fill_shape
@@ -78,7 +78,7 @@ class ShapeResult(ResultModel):
 
 def shape(request: ShapeRequest, context: Context) -> ShapeResult:
     """Bands of repeats across the pull, chosen, checked in the finite swatch and chosen again."""
-    return _shaped(request, atlas_of(request.material, request.repeats, context), context)
+    return _shaped(request, context.atlas(request.material, request.repeats), context)
 
 
 def _shaped(request: ShapeRequest, atlas: Atlas, context: Context) -> ShapeResult:
@@ -103,7 +103,7 @@ def _widths(profile: Path) -> dict[str, Any]:
 def _command(
     request: ShapeRequest, context: Context, atlas: Path | None, out: Path | None
 ) -> ShapeResult:
-    table = atlas_of(request.material, request.repeats, context, atlas)
+    table = context.atlas(request.material, request.repeats, atlas)
     result = _shaped(request, table, context)
     write_design_of(result.chart, request.material, "Shape", out)
     return result

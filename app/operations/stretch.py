@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,6 +16,7 @@ from app.context import Context
 from app.models.base import EndsOfList, Floats, IntervalResult, ResultModel
 from app.models.charts import Column, OutlineInput, Row, to_chart
 from app.models.gauge import GaugedRequest
+from app.models.stretched import StretchView
 from app.operations.perform import Viewed
 from app.operations.registry import Command, Operation
 from knitcore.chart import StitchChart, check_stitches
@@ -136,29 +136,6 @@ class StretchResult(StretchCurve):
     rows: int
     columns: int
     stitch_fields: StitchFields
-
-
-@dataclass(frozen=True, eq=False)
-class StretchView:
-    """A test for the 3D view.
-
-    Attributes
-    ----------
-    direction : of the pull.
-    positions_mm : (steps, rows, columns, 2) stitch centres.
-    strain : (steps, rows, columns, 2) course-wise and wale-wise.
-    utilisation : (steps, rows, columns).
-    """
-
-    direction: Direction
-    positions_mm: Array
-    strain: Array
-    utilisation: Array
-
-    @property
-    def size_bytes(self) -> int:
-        """How much memory it takes."""
-        return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))
 
 
 def stretch(request: StretchRequest, context: Context) -> Viewed[StretchResult]:

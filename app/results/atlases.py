@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from knitcore.chart import StitchChart
 from knitcore.design.atlas import Atlas, load_atlas, save_atlas
 from knitcore.design.atlas_build import build_atlas, material_fingerprint
 from knitcore.errors import InputError
+from knitcore.materials import Material
 from knitcore.repeats import known_larger_repeats, repeats_up_to, striped_repeats
 from knitcore.yarnlibrary.fingerprint import code_version
-
-if TYPE_CHECKING:
-    from app.context import Context
 
 log = logging.getLogger("knitcore.atlas")
 
@@ -36,21 +35,23 @@ def repeats_of(extent: Extent) -> tuple[StitchChart, ...]:
     return tuple(dict.fromkeys((*repeats_up_to(4, 4), *larger, *striped_repeats())))
 
 
-def atlas_of(name: str, extent: Extent, context: Context, file: Path | None = None) -> Atlas:
-    """The atlas of a material, from memory or the data folder if it is there; or that of a file."""
-    if file is not None:
-        return load_atlas(file)
-    material = context.material(name)
+def atlas_of(
+    material: Material,
+    extent: Extent,
+    data_dir: Path,
+    *,
+    cancelled: Callable[[], bool],
+    progress: Callable[[float, float], None],
+) -> Atlas:
+    """The atlas of a material, from memory or the data folder if it is there."""
     key = f"{material.identifier}-{extent}-{material_fingerprint(material)}"
     built = built_here()
     if key not in built:
-        cached = context.data_dir / FOLDER / f"{key}-{code_version(*DECIDING)[:8]}.npz"
+        cached = data_dir / FOLDER / f"{key}-{code_version(*DECIDING)[:8]}.npz"
         repeats = repeats_of(extent)
         found = _load(cached, len(repeats))
         if found is None:
-            found = build_atlas(
-                material, repeats, cancelled=context.cancelled, progress=context.progress
-            )
+            found = build_atlas(material, repeats, cancelled=cancelled, progress=progress)
             _save(found, cached)
         built[key] = found
     return built[key]

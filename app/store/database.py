@@ -22,7 +22,7 @@ from sqlalchemy.exc import DatabaseError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.pool import QueuePool
 
-from app.http.problems import NoRoomError, UnavailableError
+from app.problems.errors import NoRoomError, UnavailableError
 from knitcore.errors import InputError
 
 log = logging.getLogger("knitcore.store")

@@ -8,8 +8,8 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.viewer.colours import linear
-from app.viewer.fabric import FabricScene
+from app.drawing.colours import linear
+from app.drawing.fabric import FabricScene
 from knitcore.arrays import Array
 from knitcore.geometry.instances import StitchMeshes, quaternions, stitch_meshes
 from knitcore.geometry.placing import mean_sizes_mm

@@ -15,10 +15,10 @@ import websockets
 from fastapi import APIRouter, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
-from app.budgets import InUse, OverBudgetError
-from app.http.identity import current_user
 from app.http.page import page_files
-from app.http.rate import RateLimit
+from app.identity import current_user
+from app.limits.budgets import InUse, OverBudgetError
+from app.limits.rate import RateLimit
 from app.viewer.design_id import DesignId, private_name
 from app.viewer.incoming import BURST, PER_S, RefusedMessageError, passed_on
 from app.viewer.private_port import RELAY_HEADERS

@@ -9,9 +9,10 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.drawing.colours import SKIN
+from app.drawing.fabric import Box, Drawing, FabricScene, Ground
 from app.viewer.camera import CameraSide, place_camera
 from app.viewer.cloth import UNITS_PER_MM, Cloth
-from app.viewer.fabric import Box, Drawing, FabricScene, Ground
 from knitcore.arrays import Array
 from knitcore.geometry.instances import level_of
 
@@ -24,7 +25,6 @@ SCALE = (128, 120, 112)
 SCALE_BELOW = (1.8, 0.05)
 """The scale lies so many stitches below the fabric, and this share of its height at least."""
 PAPER = (255, 252, 246)
-SKIN = (226, 205, 188)
 
 
 class SceneWriter:

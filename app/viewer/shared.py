@@ -8,12 +8,13 @@ from pathlib import Path
 from pydantic import Field
 
 from app.context import Context
+from app.drawing.design_view import StretchStep, ViewRequest, build_scene
+from app.drawing.fabric import FabricScene
+from app.drawing.solid import MAX_SOLID, solid_glb
 from app.models.charts import to_chart
 from app.models.posed import PosedView
-from app.operations.stretch import StretchView
-from app.viewer.design_view import StretchStep, ViewRequest, build_scene
-from app.viewer.fabric import FabricScene
-from app.viewer.share import MAX_SOLID, page_html, recording, solid_glb
+from app.models.stretched import StretchView
+from app.viewer.share import page_html, recording
 from app.viewer.still import still_png
 from knitcore.chart import check_stitches
 from knitcore.garment.shaped import outline_marks

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from app.drawing.colours import linear
+from app.drawing.fabric import Drawing
 from app.viewer.camera import FIELD_OF_VIEW, CameraSide, stand
-from app.viewer.colours import linear
-from app.viewer.fabric import Drawing
 from knitcore.arrays import Array
 from knitcore.geometry.placing import placed_lines
 from knitcore.geometry.tubes import resampled

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 import viser
 
-from app.budgets import BUDGETS, OverBudgetError
-from app.http.problems import ServiceError, UnavailableError
+from app.drawing.fabric import Drawing
+from app.limits.budgets import BUDGETS, OverBudgetError
 from app.listeners import Listeners
+from app.problems.errors import ServiceError, UnavailableError
 from app.viewer.camera import FARTHEST
 from app.viewer.clicks import Cell, clicked_stitch
 from app.viewer.cloth import UNITS_PER_MM
-from app.viewer.fabric import Drawing
 from app.viewer.incoming import WantedPicture
 from app.viewer.private_port import private_server
 from app.viewer.scene import SceneWriter

@@ -14,9 +14,9 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.context import Context
+from app.drawing.design_view import ViewRequest, build_scene
+from app.drawing.solid import solid_glb
 from app.operations.curl import CurlRequest, curl
-from app.viewer.design_view import ViewRequest, build_scene
-from app.viewer.share import solid_glb
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.design import DesignFile, write_design

@@ -251,7 +251,7 @@ def test_a_wrong_material_is_refused_before_any_atlas_is_computed(
     def never(*_: object) -> None:
         raise AssertionError("an atlas was computed")
 
-    monkeypatch.setattr(find_module, "atlas_of", never)
+    monkeypatch.setattr(Context, "atlas", never)
     request = find_module.FindRequest.model_validate(
         {"materials": ["acrylic", "nope"], "targets": [WISH]}
     )

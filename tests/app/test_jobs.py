@@ -14,17 +14,17 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.budgets import Budgets, OverBudgetError
 from app.compute import compute as compute_module
 from app.compute.compute import Compute
 from app.compute.processes import processes
-from app.http.problems import NotFoundError
 from app.jobs import runner as runner_module
 from app.jobs.document import JobState, JobStatus
 from app.jobs.kinds import KINDS, job_key
 from app.jobs.runner import JobRunner
 from app.jobs.store import JobStore
+from app.limits.budgets import Budgets, OverBudgetError
 from app.main import create_app
+from app.problems.errors import NotFoundError
 from app.settings import Settings
 from app.store.database import Database, StoreError
 from app.store.schema import migrate

@@ -10,7 +10,8 @@ from fastapi.testclient import TestClient
 
 from app.cli.main import main
 from app.context import Context
-from app.operations.stretch import StretchRequest, StretchView, stretch
+from app.models.stretched import StretchView
+from app.operations.stretch import StretchRequest, stretch
 from knitcore.chart import StitchChart
 from knitcore.formats.design import DesignFile
 

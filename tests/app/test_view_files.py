@@ -15,11 +15,11 @@ import trimesh
 from fastapi.testclient import TestClient
 
 from app.context import Context
+from app.drawing.colours import MAKERS_COLOURS, rgb
+from app.drawing.design_view import ViewRequest, build_scene
+from app.drawing.fabric import RECTANGLE, Box
 from app.listeners import Listeners
 from app.viewer.clicks import Cell, clicked_stitch
-from app.viewer.colours import MAKERS_COLOURS, rgb
-from app.viewer.design_view import ViewRequest, build_scene
-from app.viewer.fabric import RECTANGLE, Box
 from knitcore.errors import InputError
 from tests.app.test_stretch import ASKED, GARTER
 

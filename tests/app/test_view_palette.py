@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.viewer.colours import BATLOW, FABRIC_COLOURS, VIK
-from app.viewer.stitch_colours import Palette
+from app.drawing.colours import BATLOW, FABRIC_COLOURS, VIK
+from app.drawing.stitch_colours import Palette
 
 FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from app.context import Context
+from app.drawing.design_view import ViewRequest, build_scene
 from app.viewer import scene as scene_module
 from app.viewer.camera import CameraSide
 from app.viewer.cloth import FINEST, Cloth
-from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.views import View, new_view
 
 SMALL = {"chart": "KPKP\nPKPK\nKPKP", "material": "acrylic"}

@@ -12,8 +12,8 @@ import zstandard
 from fastapi.testclient import TestClient
 
 from app.api import views as views_api
-from app.budgets import BUDGETS
-from app.viewer.colours import diverging, fabric_mix, sequential
+from app.drawing.colours import diverging, fabric_mix, sequential
+from app.limits.budgets import BUDGETS
 from app.viewer.views import Views
 from tests.app.test_stretch import ASKED, GARTER
 

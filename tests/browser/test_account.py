@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from app.budgets import OverBudgetError
-from app.http.problems import problem_of
+from app.http.error_responses import problem_of
+from app.limits.budgets import OverBudgetError
 from tests.app.service import Service
 from tests.browser.axe import THEMES, violations
 

@@ -22,7 +22,7 @@ from app.compute.places import (
     WorkerDiedError,
 )
 from app.compute.processes import NICENESS, SCRATCH, processes
-from app.http.problems import UnavailableError
+from app.problems.errors import UnavailableError
 from knitcore import InputError
 from tests.app import jobs
 

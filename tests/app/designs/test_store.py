@@ -7,14 +7,14 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from app.budgets import Budgets, OverBudgetError
 from app.designs import store as store_module
 from app.designs.conditions import ConflictError, StaleError, UnconditionalError
 from app.designs.document import DesignDocument, DesignPatch, Run, ShareMode, Strokes
 from app.designs.idempotency import KEPT_S, Retry, ReusedKeyError, forget_old_keys
 from app.designs.sharing import NotAllowedError, Sharing
 from app.designs.store import DesignStore
-from app.http.problems import NotFoundError
+from app.limits.budgets import Budgets, OverBudgetError
+from app.problems.errors import NotFoundError
 from app.store.database import Database
 from knitcore.errors import InputError
 

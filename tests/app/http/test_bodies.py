@@ -11,9 +11,9 @@ from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
 
 from app.api import routers
-from app.budgets import BUDGETS, Budgets, InUse
 from app.http.bodies import MAX_DECODED_BYTES, MAX_VALUES, SMALL_BYTES, BoundedRoute
-from app.http.identity import LOCAL_USER
+from app.identity import LOCAL_USER
+from app.limits.budgets import BUDGETS, Budgets, InUse
 from app.models.base import RequestModel
 from app.models.charts import MAX_FIELD
 

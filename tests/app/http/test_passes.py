@@ -10,8 +10,8 @@ from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from app.http import tokens
-from app.http.identity import current_user
 from app.http.passes import Passes
+from app.identity import current_user
 from tests.app.http.test_security import bearing, guarded_service, tokens_of
 
 BODY = {"chart": "KP", "material": "acrylic"}

@@ -21,9 +21,9 @@ from websockets.typing import Subprotocol
 
 from app.cli.main import main
 from app.http.bodies import MAX_VALUES
-from app.http.rate import RateLimit
 from app.http.security import LOGIN_FAILURES, PAGE_POLICY, with_own_cookie_only
 from app.http.tokens import Tokens
+from app.limits.rate import RateLimit
 from app.main import create_app
 from app.settings import Settings
 from app.viewer import relay
@@ -249,7 +249,7 @@ def test_the_token_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_client_over_its_rate_learns_when_to_retry(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.http.rate.time", SimpleNamespace(monotonic=lambda: 100.0))
+    monkeypatch.setattr("app.limits.rate.time", SimpleNamespace(monotonic=lambda: 100.0))
     with guarded_service(require_login=True, data_dir=tmp_path, requests_per_s=0.5) as client:
         ada, bob = (bearing(tokens_of(client).create(name).token) for name in ("ada", "bob"))
         first = client.get("/api/v1/patterns", headers=ada)

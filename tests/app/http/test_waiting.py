@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from starlette.requests import Request
 
-from app.http.problems import StoppingError
 from app.http.waiting import abandoned
+from app.problems.errors import StoppingError
 
 
 def _request(message: str, *, stopping: bool = False) -> Request:

@@ -8,7 +8,7 @@ import pytest
 
 from app.context import Context
 from app.results import atlases
-from app.results.atlases import FOLDER, atlas_of
+from app.results.atlases import FOLDER
 from knitcore.chart import StitchChart
 
 
@@ -32,28 +32,28 @@ def files(context: Context) -> list[str]:
 def test_an_atlas_is_read_by_the_next_process(
     context: Context, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    built = atlas_of("acrylic", "small", context)
+    built = context.atlas("acrylic", "small")
     assert len(files(context)) == 1
     monkeypatch.setattr(atlases, "build_atlas", None)
-    assert atlas_of("acrylic", "small", context).keys == built.keys
+    assert context.atlas("acrylic", "small").keys == built.keys
 
 
 def test_an_atlas_of_other_code_is_built_again_and_replaces_it(
     context: Context, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    atlas_of("acrylic", "small", context)
-    atlas_of("cotton", "small", context)
+    context.atlas("acrylic", "small")
+    context.atlas("cotton", "small")
     before = files(context)
     monkeypatch.setattr(atlases, "code_version", lambda *_: "of another program")
-    atlas_of("acrylic", "small", context)
+    context.atlas("acrylic", "small")
     after = files(context)
     assert len(after) == 2
     assert len(set(after) & set(before)) == 1
 
 
 def test_a_damaged_file_is_built_again(context: Context) -> None:
-    built = atlas_of("acrylic", "small", context)
+    built = context.atlas("acrylic", "small")
     (file,) = (context.data_dir / FOLDER).iterdir()
     file.write_bytes(b"not an atlas")
-    assert atlas_of("acrylic", "small", context).keys == built.keys
+    assert context.atlas("acrylic", "small").keys == built.keys
     assert file.stat().st_size > 100

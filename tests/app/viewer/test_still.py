@@ -11,9 +11,9 @@ from fastapi.testclient import TestClient
 from PIL import Image
 
 from app.context import Context
+from app.drawing.colours import FABRIC_COLOURS, rgb
+from app.drawing.design_view import ViewRequest, build_scene
 from app.models.posed import PosedView
-from app.viewer.colours import FABRIC_COLOURS, rgb
-from app.viewer.design_view import ViewRequest, build_scene
 from app.viewer.still import still_png
 from knitcore.fabric import Fabric
 

@@ -19,6 +19,7 @@ FABRIC_COLOURS: dict[Fabric, str] = {
     Fabric.SEED: "8a62ad",
 }
 
+SKIN = (226, 205, 188)
 UNDYED = "d8c6ab"
 """Of wool, where a yarn's name holds no colour."""
 MAKERS_COLOURS = {

@@ -9,8 +9,8 @@ from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from app.budgets import OverBudgetError
-from app.http.problems import UnavailableError
+from app.limits.budgets import OverBudgetError
+from app.problems.errors import UnavailableError
 
 Place = TypeVar("Place")
 MAX_AT_A_GATE = 100

@@ -12,6 +12,14 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
 from app.context import Context
+from app.drawing.fabric import Drawing, FabricScene
+from app.drawing.stitch_colours import (
+    Colour,
+    FieldColours,
+    Palette,
+    region_labels,
+    stitch_colours,
+)
 from app.models.base import RequestModel
 from app.models.charts import (
     ChartInput,
@@ -23,15 +31,7 @@ from app.models.charts import (
     to_chart,
 )
 from app.models.posed import PosedView
-from app.operations.stretch import StretchView
-from app.viewer.fabric import Drawing, FabricScene
-from app.viewer.stitch_colours import (
-    Colour,
-    FieldColours,
-    Palette,
-    region_labels,
-    stitch_colours,
-)
+from app.models.stretched import StretchView
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.formats.layout import DesignRegion

@@ -1,24 +1,23 @@
-"""Errors as problem details (RFC 9457), with fields to blame and remedies."""
+"""Every error as a response: problem details (RFC 9457), with fields to blame and remedies."""
 
 from __future__ import annotations
 
 import errno
 import logging
-import math
 from collections.abc import Mapping, Sequence
 from itertools import islice
-from typing import Annotated, Any
+from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, BeforeValidator, Field
 from starlette.exceptions import HTTPException
 
 from app.http.faults import also_wrong
-from app.http.kinds import type_uri
 from app.models.base import InvalidRequestError, MissingError
 from app.models.refusals import problem_in_words, remedy_in_words
+from app.problems.errors import NoRoomError, NotFoundError, ServiceError
+from app.problems.problem import MAX_FAULTS, PROBLEM_TYPE, Fault, Problem
 from knitcore.errors import (
     CancelledError,
     ConvergenceError,
@@ -28,141 +27,6 @@ from knitcore.errors import (
 )
 
 log = logging.getLogger("knitcore.app")
-
-
-PROBLEM_TYPE = "application/problem+json"
-
-
-MAX_FAULTS = 100
-
-
-class Fault(BaseModel):
-    """One thing that is wrong with a request."""
-
-    detail: str = Field(description="What is wrong, in words.")
-    field: str | None = Field(None, description="The input that is to blame.")
-    remedy: str | None = Field(None, description="What would be accepted.")
-
-
-class Problem(BaseModel):
-    """What every error response looks like."""
-
-    type: Annotated[str, BeforeValidator(type_uri)] = Field(
-        description="The kind of problem: the address of a page about it.",
-        examples=["/problems/input"],
-    )
-    title: str
-    status: int
-    detail: str = Field(description="What is wrong, in words.")
-    field: str | None = Field(None, description="The input that is to blame.")
-    remedy: str | None = Field(None, description="What would be accepted.")
-    most: float | None = Field(
-        None, description="The largest number that the field would accept, where that is known."
-    )
-    errors: list[Fault] = Field(
-        [],
-        description=f"Of inputs that cannot be used: all that is wrong, at most {MAX_FAULTS}; "
-        "`field`, `detail` and `remedy` are those of the first.",
-    )
-
-
-PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
-    status: {"model": Problem, "description": text}
-    for status, text in {
-        400: "The request cannot be read.",
-        401: "The service requires a token, and there is none or an unknown one.",
-        403: "The request comes from a page of another site.",
-        405: "The address does not support this method.",
-        413: "The request is too large.",
-        422: "An input cannot be used; the problem names the field and the remedy.",
-        429: "You are asking too often; Retry-After says when to come back.",
-        503: "The service is busy or the computation took too long.",
-        507: "The disk of the service is full; nothing was changed.",
-    }.items()
-}
-
-
-class ServiceError(Exception):
-    """An error that the service answers with; subclasses name its kind.
-
-    Parameters
-    ----------
-    detail : what is wrong, in words.
-    field : the input to blame.
-    remedy : what would be accepted.
-    """
-
-    status = 500
-    type = "internal"
-    title = "Something went wrong in the service"
-    default_remedy: str | None = None
-    headers: Mapping[str, str] = {}
-
-    def __init__(self, detail: str, *, field: str | None = None, remedy: str | None = None) -> None:
-        super().__init__(detail)
-        self.detail = detail
-        self.field = field
-        self.remedy = remedy or self.default_remedy
-
-    @property
-    def problem(self) -> Problem:
-        """The error as clients see it."""
-        return Problem(
-            type=self.type,
-            title=self.title,
-            status=self.status,
-            detail=self.detail,
-            field=self.field,
-            remedy=self.remedy,
-        )
-
-
-class UnavailableError(ServiceError):
-    """The service cannot do this now; the text says what to do."""
-
-    status, type, title = 503, "busy", "Not now"
-    default_remedy = "Try again in a moment, or ask for less."
-    headers: Mapping[str, str] = {"Retry-After": "2"}
-
-
-class StoppingError(UnavailableError):
-    """The service is being stopped."""
-
-    default_remedy = "Try again when it is back."
-
-
-class NoRoomError(UnavailableError):
-    """The disk is full."""
-
-    status, type, title = 507, "full", "No room left"
-    headers: Mapping[str, str] = {}
-    default_remedy = (
-        "Make room on the disk of the service, then try again; nothing that was acknowledged is "
-        "lost."
-    )
-
-
-class NotFoundError(ServiceError):
-    """It does not exist, or belongs to another user."""
-
-    status, type, title = 404, "not-found", "Not found here"
-
-
-class RefusedError(ServiceError):
-    """The request is not allowed."""
-
-    status, type, title = 403, "refused", "Refused"
-
-
-class TooManyError(ServiceError):
-    """Requests come too often."""
-
-    status, type, title = 429, "too-many", "Too many requests"
-
-    def __init__(self, detail: str, wait_s: float) -> None:
-        wait = math.ceil(wait_s)
-        super().__init__(detail, remedy=f"Try again in {wait} s.")
-        self.headers = {"Retry-After": str(wait)}
 
 
 def answer_to(error: Exception) -> JSONResponse:

@@ -13,18 +13,18 @@ import viser
 from fastapi.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from app.budgets import BUDGETS, Budgets, ComputingTime, InUse, OverBudgetError, SpentError
 from app.compute.compute import Compute
 from app.designs import sharing as sharing_module
 from app.designs import store as store_module
 from app.designs.document import DesignDocument, ShareMode
 from app.designs.sharing import Sharing
 from app.designs.store import DesignStore
-from app.http.identity import LOCAL_USER
 from app.http.tokens import Tokens
+from app.identity import LOCAL_USER
 from app.jobs import store as job_store_module
 from app.jobs.document import JobState
 from app.jobs.store import JobStore
+from app.limits.budgets import BUDGETS, Budgets, ComputingTime, InUse, OverBudgetError, SpentError
 from app.main import create_app
 from app.settings import Settings
 from app.store.database import Database

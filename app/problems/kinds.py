@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from fastapi import FastAPI, HTTPException
-from fastapi.responses import HTMLResponse
-
-from app.http.pages import page, prose
-
 FOLDER = "/problems"
-ALL = f'<p><a href="{FOLDER}">All problems</a> · <a href="/docs">REST API</a></p>'
 
 
 class Kind(NamedTuple):
@@ -96,31 +90,7 @@ KINDS = {
     ),
 }
 
-PAGES = frozenset({FOLDER, *(f"{FOLDER}/{name}" for name in KINDS)})
-
 
 def type_uri(name: str) -> str:
     """The address of a kind's page; jobs that failed in earlier versions have bare names."""
     return name if name.startswith("/") else f"{FOLDER}/{name.replace(' ', '-')}"
-
-
-def serve_kinds(app: FastAPI) -> None:
-    """Add the pages."""
-
-    @app.get(FOLDER, include_in_schema=False)
-    def kinds() -> HTMLResponse:
-        return HTMLResponse(page("Knitcore: problems", "".join(map(_part, KINDS))))
-
-    @app.get(FOLDER + "/{name}", include_in_schema=False)
-    def kind(name: str) -> HTMLResponse:
-        if name not in KINDS:
-            raise HTTPException(404)
-        return HTMLResponse(page(f"Knitcore: problem {name}", _part(name) + ALL))
-
-
-def _part(name: str) -> str:
-    kind = KINDS[name]
-    return (
-        f'<h2><a href="{FOLDER}/{name}">{name}</a></h2>{prose(kind.means)}{prose(kind.remedy)}'
-        f"<p>Status: {kind.statuses}</p>"
-    )

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 
 from pydantic import BaseModel
 
-from app.http.identity import LOCAL_USER
-from app.http.problems import ServiceError
-from app.http.rate import RateLimit
+from app.identity import LOCAL_USER
+from app.limits.rate import RateLimit
 from app.memory import machine_bytes
+from app.problems.errors import ServiceError
 
 DAY_S = 86_400.0
 MIN_S = 60.0

@@ -9,8 +9,9 @@ from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from pydantic import BaseModel, Field
 
 from app.doctor import examine_running
-from app.http.identity import LOCAL_USER, current_user
-from app.http.problems import Problem, RefusedError, UnavailableError
+from app.identity import LOCAL_USER, current_user
+from app.problems.errors import RefusedError, UnavailableError
+from app.problems.problem import Problem
 
 router = APIRouter(tags=["service"])
 

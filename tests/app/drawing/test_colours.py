@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.viewer.colours import UNDYED, named_colour, rgb
+from app.drawing.colours import UNDYED, named_colour, rgb
 
 
 @pytest.mark.parametrize(

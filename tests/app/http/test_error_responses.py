@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.http.kinds import KINDS, type_uri
-from app.http.problems import ServiceError
+from app.problems.errors import ServiceError
+from app.problems.kinds import KINDS, type_uri
 
 API = "/api/v1"
 STRETCH = {"chart": "KP\nPK", "material": "acrylic", "direction": "wale", "strain": 0.2}

@@ -10,10 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.models.base import RequestModel
-from app.models.charts import MAX_FIELD
-from app.operations.stretch import StretchView
-from app.viewer.colours import (
+from app.drawing.colours import (
     FABRIC_COLOURS,
     diverging,
     fabric_mix,
@@ -21,6 +18,9 @@ from app.viewer.colours import (
     rgb,
     sequential,
 )
+from app.models.base import RequestModel
+from app.models.charts import MAX_FIELD
+from app.models.stretched import StretchView
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
 from knitcore.fabric import PHASES, Direction, Fabric

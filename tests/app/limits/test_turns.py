@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.budgets import OverBudgetError
-from app.compute.turns import Gate, Ticket, Turns
-from app.http.problems import UnavailableError
+from app.limits.budgets import OverBudgetError
+from app.limits.turns import Gate, Ticket, Turns
+from app.problems.errors import UnavailableError
 
 
 def _turns(places: int = 1, background: int = 1) -> Turns[int]:

@@ -1,0 +1,1 @@
+"""What each user may use of the service, and who comes next."""

@@ -1,0 +1,31 @@
+"""A stretch test: data of a result for the 3D view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from knitcore.arrays import Array
+from knitcore.fabric import Direction
+
+
+@dataclass(frozen=True, eq=False)
+class StretchView:
+    """A test for the 3D view.
+
+    Attributes
+    ----------
+    direction : of the pull.
+    positions_mm : (steps, rows, columns, 2) stitch centres.
+    strain : (steps, rows, columns, 2) course-wise and wale-wise.
+    utilisation : (steps, rows, columns).
+    """
+
+    direction: Direction
+    positions_mm: Array
+    strain: Array
+    utilisation: Array
+
+    @property
+    def size_bytes(self) -> int:
+        """How much memory it takes."""
+        return sum(array.nbytes for array in (self.positions_mm, self.strain, self.utilisation))
