@@ -29,7 +29,7 @@ import { split } from "./widgets/split.js";
 import { stretchdrawer } from "./panels/stretchdrawer.js";
 import { offerTour, topbar } from "./panels/topbar.js";
 import { watchConnection } from "./services/connection.js";
-import { listenToImports } from "./services/importer.js";
+import { listenToImports } from "./panels/dialogs/importer.js";
 import { startPredictor } from "./services/predictor.js";
 import { startPoser } from "./services/poser.js";
 import { Stretcher } from "./services/stretcher.js";

@@ -2,12 +2,12 @@
  * The state that the panels share: the chart, how it is shown and painted, what the service says of
  * it. Panels watch the signals and change them; none knows another.
  *
- * @import {GirthAt} from "./chart/seeing.js"
+ * @import {GirthAt} from "./studio/seeing.js"
  * @import {ChartDocument} from "./core/document.js"
  * @import {Selection} from "./core/selection.js"
  * @import {History} from "./core/history.js"
  * @import {Ink, Symmetry} from "./core/ink.js"
- * @import {Overlay} from "./chart/overlays.js"
+ * @import {Overlay} from "./studio/overlays.js"
  * @import {Tool} from "./tools/tool.js"
  * @import {DesignDocument, Direction, MaterialDetail, MaterialSummary, PredictResult, Problem, StitchKind,
  *   StretchResult} from "./types.js"
@@ -22,10 +22,10 @@ import { Grid } from "./core/grid.js";
 import { PURL } from "./core/ink.js";
 import { Signal } from "./core/signal.js";
 import { loadSettings, saveSettings } from "./core/store.js";
-import { Editing } from "./chart/editing.js";
-import { OVERLAYS } from "./chart/overlays.js";
-import { Seeing } from "./chart/seeing.js";
-import { Gauges } from "./services/gauges.js";
+import { Editing } from "./studio/editing.js";
+import { OVERLAYS } from "./studio/overlays.js";
+import { Seeing } from "./studio/seeing.js";
+import { Gauges } from "./studio/gauges.js";
 import { TOOLS } from "./tools/registry.js";
 
 const SETTINGS = {

@@ -6,7 +6,10 @@
  * @import {Studio} from "../studio.js"
  * @import {IconName} from "../icons.js"
  *
- * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: import("../panels/registry.js").PanelName) => void,
+ * @typedef {"account" | "atlas" | "compare" | "conflict" | "designs" | "exports" | "fill" | "find" | "gallery"
+ *   | "garments" | "help" | "import" | "palette" | "regions" | "repeats" | "resize" | "share" | "tour"
+ *   | "versions" | "yarns"} PanelName that are loaded when they are opened
+ * @typedef {{studio: Studio, view: ChartView, keeper: Keeper, open: (panel: PanelName) => void,
  *   toggleTheme: () => void}} ActionContext
  *
  * @typedef {object} Action

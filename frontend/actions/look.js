@@ -8,7 +8,7 @@
 /** @type {Symmetry[]} */
 const SYMMETRIES = ["none", "across", "up", "both"];
 export const SIZES = [1, 2, 3, 5, 8];
-/** @type {import("../chart/editing.js").Look[]} */
+/** @type {import("../studio/editing.js").Look[]} */
 const LOOKS = ["both", "colours", "symbols", "loops"];
 
 /**

@@ -13,7 +13,7 @@ import { selectedCells, selectionOf } from "../core/selection.js";
 import { move } from "../tools/move.js";
 import { repeat as placeTool } from "../tools/repeat.js";
 import { stamp } from "../tools/stamp.js";
-import { nextRegionColour } from "../chart/palette.js";
+import { nextRegionColour } from "../studio/palette.js";
 
 const group = "Selection";
 

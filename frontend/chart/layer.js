@@ -3,7 +3,7 @@
  * the chart changed and drawn enlarged: painting costs the same at any zoom.
  *
  * @import {Box, Grid} from "../core/grid.js"
- * @import {Colouring} from "./overlays.js"
+ * @import {Colouring} from "../studio/overlays.js"
  */
 
 export class ColourLayer {

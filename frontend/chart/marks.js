@@ -5,10 +5,10 @@
  * @import {Box, Grid} from "../core/grid.js"
  * @import {Viewport} from "./viewport.js"
  * @import {ColourLayer} from "./layer.js"
- * @import {Palette} from "./palette.js"
+ * @import {Palette} from "../studio/palette.js"
  */
 
-import { lightness } from "./palette.js";
+import { lightness } from "../studio/palette.js";
 
 /** Symbols are left out on cells narrower than this. */
 const MIN_SYMBOL = 7;

@@ -6,7 +6,7 @@
  * @import {Box, Grid} from "../core/grid.js"
  * @import {Edges} from "./edges.js"
  * @import {Viewport} from "./viewport.js"
- * @import {Palette} from "./palette.js"
+ * @import {Palette} from "../studio/palette.js"
  */
 
 import { edgePath, edgesOf } from "./edges.js";

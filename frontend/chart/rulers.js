@@ -4,7 +4,7 @@
  *
  * @import {Grid} from "../core/grid.js"
  * @import {Viewport} from "./viewport.js"
- * @import {Palette} from "./palette.js"
+ * @import {Palette} from "../studio/palette.js"
  */
 
 import { MARGIN } from "./viewport.js";

@@ -4,17 +4,19 @@
  *
  * @import {Box} from "../core/grid.js"
  * @import {Cell} from "../core/raster.js"
- * @import {Colouring} from "./overlays.js"
- * @import {Place} from "../keeping/windows.js"
+ * @import {Colouring} from "../studio/overlays.js"
  * @import {Studio} from "../studio.js"
+ *
+ * @typedef {{cell: Cell | null, box: Box | null}} Presence of another window: stitch under its pointer, box of
+ *   its selection
  */
 
 import { Signal } from "../core/signal.js";
 import { h } from "../dom.js";
 import { ColourLayer } from "./layer.js";
 import { drawGrid, drawSegments, drawSymbols } from "./marks.js";
-import { OVERLAYS } from "./overlays.js";
-import { pixel, readPalette } from "./palette.js";
+import { OVERLAYS } from "../studio/overlays.js";
+import { pixel, readPalette } from "../studio/palette.js";
 import { drawAbsent, drawRegions, drawRepeatLabels, drawRepeats, selectionEdge } from "./parts.js";
 import { drawCrosses } from "./crosses.js";
 import { drawRectangles } from "./rectangles.js";
@@ -36,7 +38,7 @@ export class ChartView {
   /** Where something being dragged would come to lie. */
   preview = new Signal(/** @type {Box | null} */ (null));
   /** Where others are in the chart, by name. */
-  others = new Signal(/** @type {ReadonlyMap<string, Place>} */ (new Map()));
+  others = new Signal(/** @type {ReadonlyMap<string, Presence>} */ (new Map()));
   #layer = new ColourLayer();
   /** @type {Colouring | null} */ #colouring = null;
   /** Stitches to draw anew: all, some, none. @type {Box | "all" | null} */ #dirty = "all";
@@ -389,7 +391,7 @@ export class ChartView {
   }
 }
 
-/** All stitches of the colour of a knit: the symbols say it all. @param {import("./palette.js").Palette} palette */
+/** All stitches of the colour of a knit: the symbols say it all. @param {import("../studio/palette.js").Palette} palette */
 function paper({ knit }) {
   return { table: new Uint32Array(128).fill(pixel(knit)) };
 }

@@ -2,10 +2,7 @@
  * Other windows that show the same design: how many there are, where the pointers and selections of those of
  * this browser are, and when the design has changed.
  *
- * @import {Box} from "../core/grid.js"
- * @import {Cell} from "../core/raster.js"
- *
- * @typedef {{cell: Cell | null, box: Box | null}} Place stitch under the pointer, and the selection's box
+ * @import {Presence} from "../chart/view.js"
  */
 
 import { Signal } from "../core/signal.js";
@@ -15,21 +12,21 @@ import { Follower } from "./follower.js";
 /** How often the others are asked whether they are still there, and how long they have to answer. */
 const ASK_MS = 4000;
 const ANSWER_MS = 1000;
-/** @type {Place} */
+/** @type {Presence} */
 const NOWHERE = { cell: null, box: null };
 
 /**
  * @typedef {{kind: "here" | "gone" | "who", window: string, design: string | null}
  *   | {kind: "changed", window: string, design: string, revision: number}
  *   | {kind: "elsewhere", window: string, design: string, others: number}
- *   | {kind: "at", window: string, design: string, place: Place}} Word
+ *   | {kind: "at", window: string, design: string, place: Presence}} Word
  */
 
 export class Windows {
   /** Number of other windows with the design. */
   others = new Signal(0);
   /** Where they are, by window. */
-  places = new Signal(/** @type {ReadonlyMap<string, Place>} */ (new Map()));
+  places = new Signal(/** @type {ReadonlyMap<string, Presence>} */ (new Map()));
   /** Called when there is a new revision of the design, perhaps this window's own. @type {(revision: number) => void} */
   onChanged = () => {};
   #channel = new BroadcastChannel("knitcore-windows");
@@ -78,7 +75,7 @@ export class Windows {
     if (this.#design) this.#say({ kind: "changed", window: this.#name, design: this.#design, revision });
   }
 
-  /** This window's pointer and selection are there. @param {Place} place */
+  /** This window's pointer and selection are there. @param {Presence} place */
   at(place) {
     this.#place = place;
     if (this.#design && this.others.value) this.#say({ kind: "at", window: this.#name, design: this.#design, place });

@@ -2,7 +2,7 @@
  * Above the chart: its key, which side of the cloth is seen, how it is knitted and drawn, and zoom.
  *
  * @import {ActionContext} from "../actions/action.js"
- * @import {Look} from "../chart/editing.js"
+ * @import {Look} from "../studio/editing.js"
  * @import {Signal} from "../core/signal.js"
  */
 

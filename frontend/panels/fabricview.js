@@ -8,7 +8,7 @@
  */
 
 import { ApiError, api } from "../api.js";
-import { atRest, shownOverlay } from "../chart/overlays.js";
+import { atRest, shownOverlay } from "../studio/overlays.js";
 import { along } from "../core/directions.js";
 import { outlineText } from "../core/snapshot.js";
 import { h } from "../dom.js";
@@ -18,7 +18,7 @@ import { Still } from "./fabric/still.js";
 import { onTheme } from "./fabric/theme.js";
 import { toolbar } from "./fabric/toolbar.js";
 import { problemText } from "../widgets/problem.js";
-import { POSES, wordsOf } from "../chart/seeing.js";
+import { POSES, wordsOf } from "../studio/seeing.js";
 import { REST } from "../studio.js";
 
 /** Delay before the 3D view updates: without a GPU, drawing can block painting. */

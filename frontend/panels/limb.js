@@ -1,7 +1,7 @@
 /**
  * The chart (or its part) worn as a tube on a limb: how it fits and presses along it.
  *
- * @import {GirthAt} from "../chart/seeing.js"
+ * @import {GirthAt} from "../studio/seeing.js"
  * @import {Studio} from "../studio.js"
  * @import {Direction, LimbResult} from "../types.js"
  */

@@ -2,12 +2,12 @@
  * What the chart's colours show: chips, the legend, and a read-out of the stitch under the pointer.
  *
  * @import {ChartView} from "../chart/view.js"
- * @import {ScaleLegend} from "../chart/overlays.js"
+ * @import {ScaleLegend} from "../studio/overlays.js"
  * @import {Cell} from "../core/raster.js"
  * @import {Studio} from "../studio.js"
  */
 
-import { OVERLAYS, shownOverlay } from "../chart/overlays.js";
+import { OVERLAYS, shownOverlay } from "../studio/overlays.js";
 import { groupAt, meanExtensibility } from "../chart/rectangles.js";
 import { LINES } from "../core/directions.js";
 import { figure, percent, percentRange, range } from "../core/format.js";
@@ -72,7 +72,7 @@ export function overlaybar(host, studio, view) {
       onchange: () => {
         const [groups, block] = grouping.value.split("-");
         if (block) studio.seeing.block.value = Number(block);
-        studio.seeing.groups.value = /** @type {import("../chart/seeing.js").Groups} */ (groups);
+        studio.seeing.groups.value = /** @type {import("../studio/seeing.js").Groups} */ (groups);
       },
     },
     h("option", { value: "stitch" }, "each stitch"),

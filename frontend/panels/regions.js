@@ -9,7 +9,7 @@
 
 import { action } from "../actions/registry.js";
 import { hasRoom } from "../actions/selection.js";
-import { nextRegionColour } from "../chart/palette.js";
+import { nextRegionColour } from "../studio/palette.js";
 import { isFilled } from "../core/regions.js";
 import { KNIT, regionInk } from "../core/ink.js";
 import { motifGrid, motifText } from "../core/motif.js";

@@ -2,13 +2,13 @@
  * What to paint with: knit, purl, their opposite, no stitch, a region, whole patterns, and patterns of one's own.
  *
  * @import {ActionContext} from "../actions/action.js"
- * @import {Palette} from "../chart/palette.js"
+ * @import {Palette} from "../studio/palette.js"
  * @import {Ink} from "../core/ink.js"
  * @import {Studio} from "../studio.js"
  */
 
 import { action } from "../actions/registry.js";
-import { readPalette } from "../chart/palette.js";
+import { readPalette } from "../studio/palette.js";
 import { FLIP, KNIT, NO_STITCH, PURL } from "../core/ink.js";
 import { motifText } from "../core/motif.js";
 import { QUARTERS, surroundings } from "../core/segments.js";

@@ -3,7 +3,7 @@
  * a moment after each change, then the shape at rest, both given up when the next change comes. Until
  * the first shape is there, the old one is shown, if the piece has kept its size.
  *
- * @import {Posed} from "../chart/seeing.js"
+ * @import {Posed} from "../studio/seeing.js"
  * @import {Studio} from "../studio.js"
  */
 

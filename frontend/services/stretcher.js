@@ -9,7 +9,7 @@
  */
 
 import { ApiError, api, isAbort } from "../api.js";
-import { OVERLAYS } from "../chart/overlays.js";
+import { OVERLAYS } from "../studio/overlays.js";
 import { Signal } from "../core/signal.js";
 import { outlineText } from "../core/snapshot.js";
 import { runJob } from "./jobs.js";

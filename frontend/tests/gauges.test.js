@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Gauges } from "../services/gauges.js";
+import { Gauges } from "../studio/gauges.js";
 
 const RIB = { chart: "KP", material: "acrylic" };
 const COUNTED = { stitches_per_10_cm: 25, rows_per_10_cm: 36 };

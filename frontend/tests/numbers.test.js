@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { batlow, vik } from "../chart/colormaps.js";
-import { logScale } from "../chart/overlays.js";
+import { batlow, vik } from "../studio/colormaps.js";
+import { logScale } from "../studio/overlays.js";
 import { figure, percent, percentRange, percents, range } from "../core/format.js";
 
 test("three figures, with the zeros that count", () => {

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { api } from "../api.js";
-import { wordsOf } from "../chart/seeing.js";
+import { wordsOf } from "../studio/seeing.js";
 import { Signal } from "../core/signal.js";
 import { startPoser } from "../services/poser.js";
 

@@ -1,10 +1,10 @@
 /**
  * A chart as a small picture: every quarter of a stitch in the colour of its fabric, purls darker.
  *
- * @import {Palette} from "../chart/palette.js"
+ * @import {Palette} from "../studio/palette.js"
  */
 
-import { pixel, readPalette } from "../chart/palette.js";
+import { pixel, readPalette } from "../studio/palette.js";
 import { Grid } from "../core/grid.js";
 import { QUARTERS, surroundings } from "../core/segments.js";
 import { h } from "../dom.js";

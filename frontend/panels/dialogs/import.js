@@ -7,7 +7,7 @@
 
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
-import { importFile, importText } from "../../services/importer.js";
+import { importFile, importText } from "./importer.js";
 import { problemText } from "../../widgets/problem.js";
 import { dialog } from "../../widgets/dialog.js";
 

@@ -9,7 +9,7 @@
  */
 
 import { ACTIONS, shown } from "../../actions/registry.js";
-import { OVERLAYS } from "../../chart/overlays.js";
+import { OVERLAYS } from "../../studio/overlays.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { dialog } from "../../widgets/dialog.js";

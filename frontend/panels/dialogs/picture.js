@@ -6,7 +6,7 @@
  * @import {ActionContext} from "../../actions/action.js"
  */
 
-import { pixel, readPalette } from "../../chart/palette.js";
+import { pixel, readPalette } from "../../studio/palette.js";
 import { plainDesign } from "../../core/design.js";
 import { MAX_SIDE } from "../../core/grid.js";
 import { bestThreshold, detectedGrid, greys, stitchesOf } from "../../core/picture.js";

@@ -5,7 +5,7 @@
  * @import {CameraSide} from "../../types.js"
  */
 
-import { POSES } from "../../chart/seeing.js";
+import { POSES } from "../../studio/seeing.js";
 import { h } from "../../dom.js";
 import { icon } from "../../icons.js";
 import { menu } from "../../widgets/menu.js";
@@ -18,14 +18,14 @@ const SIDES = [
   { side: "angle", label: "Angle", hint: "Look from below right" },
 ];
 
-/** @type {[import("../../chart/seeing.js").Pose, string][]} */
+/** @type {[import("../../studio/seeing.js").Pose, string][]} */
 const HINTS = [
   ["flat", "The fabric held flat"],
   ["lying", "Curled and folded, as it lies on its own"],
   ["worn", 'Closed to a tube on a limb, its girths under "Limb"; a glove that was planned here on its hand'],
 ];
 
-/** @type {[import("../../chart/seeing.js").YarnColours, string][]} */
+/** @type {[import("../../studio/seeing.js").YarnColours, string][]} */
 const COLOURS = [
   ["chart", "Colours of the chart"],
   ["yarn", "The yarn's own colour"],

@@ -2,12 +2,12 @@
  * Files of instructions: written rows, KnitSpeak and knitout. The service reads them, with their outline
  * and yarns, and they are opened as a design of their own.
  *
- * @import {ActionContext} from "../actions/action.js"
- * @import {DesignDocument, Problem} from "../types.js"
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {DesignDocument, Problem} from "../../types.js"
  */
 
-import { ApiError, call } from "../api.js";
-import { readDesign } from "../core/design.js";
+import { ApiError, call } from "../../api.js";
+import { readDesign } from "../../core/design.js";
 
 const WRITTEN = /^\s*(cast on|rows?|rounds?|rnds?)\s+\d/i;
 

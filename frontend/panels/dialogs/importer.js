@@ -2,15 +2,15 @@
  * Charts from outside: pasted or dropped text, project files, pictures. The service reads the text, so
  * that the page and the command line accept the same; what cannot be read changes nothing.
  *
- * @import {ActionContext} from "../actions/action.js"
- * @import {Problem} from "../types.js"
+ * @import {ActionContext} from "../../actions/action.js"
+ * @import {Problem} from "../../types.js"
  */
 
-import { paste } from "../actions/selection.js";
-import { ApiError, api } from "../api.js";
-import { DesignError, readDesign } from "../core/design.js";
-import { Grid, MAX_SIDE, isChartText } from "../core/grid.js";
-import { refusal } from "./refusal.js";
+import { paste } from "../../actions/selection.js";
+import { ApiError, api } from "../../api.js";
+import { DesignError, readDesign } from "../../core/design.js";
+import { Grid, MAX_SIDE, isChartText } from "../../core/grid.js";
+import { refusal } from "../../services/refusal.js";
 
 const MAX_FILE_BYTES = 12_000_000;
 
@@ -54,7 +54,7 @@ export async function importText(context, text, name = "Pasted.txt") {
  */
 async function importYarn({ studio }, text) {
   if (!text.includes("knitcore-material")) return undefined;
-  const { adopt, isYarnFile } = await import("./yarns.js");
+  const { adopt, isYarnFile } = await import("../../services/yarns.js");
   try {
     const document = JSON.parse(text);
     if (!isYarnFile(document)) return undefined;
@@ -103,7 +103,7 @@ export async function importFile(context, file) {
   }
   if (!file.size) return refusal(`${file.name} is empty.`, "Choose a text, a PNG or a project file.");
   if (file.type.startsWith("image/")) {
-    const { importPicture } = await import("../panels/dialogs/picture.js");
+    const { importPicture } = await import("./picture.js");
     return importPicture(context, file);
   }
   const text = await file.text();
