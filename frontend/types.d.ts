@@ -1959,7 +1959,7 @@ export interface Placement {
   columns: number;
 }
 
-/** A chart and its material; a shaped piece counts by the largest rectangle inside it. */
+/** A chart and its material; constants of a shaped piece are those of the largest rectangle inside its outline, its size is that of the whole. */
 export interface PredictRequest {
   /** Of the library's yarns: refitted clamp to clamp (default), or as published. */
   laws?: Laws | null;
@@ -2006,6 +2006,12 @@ export interface PredictResult {
   relaxed_course_interval_mm: [number, number];
   relaxed_wale_interval_mm: [number, number];
   relaxed_source: string;
+  /** Of the whole piece at rest, at its widest. */
+  width_mm: number;
+  /** Of the whole piece at rest, at its highest. */
+  height_mm: number;
+  width_interval_mm: [number, number];
+  height_interval_mm: [number, number];
   /** measured; estimated; swept; learned; or learned with known size */
   provenance: string;
   method: string;

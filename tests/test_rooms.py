@@ -22,7 +22,8 @@ FLOORS = (
     {"yarnlevel"},
     {"yarnlibrary"},
     {"answer"},
-    {"swatch", "shell", "garment", "geometry"},
+    {"swatch", "shell", "garment"},
+    {"geometry"},
     {"piece"},
     {"formats", "design", "notebook"},
 )

@@ -13,15 +13,16 @@ from app.models.laws import ElasticConstants, Extensibility
 from app.operations.registry import Command, Operation
 from knitcore.answer.choose import choose
 from knitcore.answer.measures import measure
-from knitcore.chart import StitchChart, size_in_words
+from knitcore.chart import size_in_words
 from knitcore.fabric import Direction
-from knitcore.garment.inscribed import largest_rectangle
 from knitcore.garment.shaped import ShapedChart, outline_marks
+from knitcore.geometry.laid_out import size_at_rest
 from knitcore.segments import segment_map
 
 
 class PredictRequest(GaugedRequest):
-    """A chart and its material; a shaped piece counts by the largest rectangle inside it."""
+    """A chart and its material; constants of a shaped piece are those of the largest rectangle
+    inside its outline, its size is that of the whole."""
 
     outline: OutlineInput = None
     measures: list[ExtensionName] = Field(
@@ -65,6 +66,10 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
     relaxed_course_interval_mm: Ends
     relaxed_wale_interval_mm: Ends
     relaxed_source: str
+    width_mm: float = Field(description="Of the whole piece at rest, at its widest.")
+    height_mm: float = Field(description="Of the whole piece at rest, at its highest.")
+    width_interval_mm: Ends
+    height_interval_mm: Ends
     provenance: str = Field(
         description="measured; estimated; swept; learned; or learned with known size"
     )
@@ -75,19 +80,22 @@ class PredictResult(ElasticConstants, Extensibility, IntervalResult):
 
 def predict(request: PredictRequest, context: Context) -> PredictResult:
     """Effective constants with their 90 % intervals and their source."""
-    chart, material = request.fabric(context)
-    notes = []
+    whole, material = request.fabric(context)
+    shaped = ShapedChart.rectangle(whole)
     if request.outline is not None:
-        shaped = ShapedChart(chart, outline_marks(request.outline))
-        chart = StitchChart(chart.purl[largest_rectangle(shaped.stitch)])
-        if not shaped.stitch.all():
-            size = f"{chart.columns} x {chart.rows}"
-            notes.append(f"For the largest rectangle inside the outline, {size} stitches.")
+        shaped = ShapedChart(whole, outline_marks(request.outline))
+    chart, notes = shaped.rectangle_inside(), []
+    if not shaped.is_rectangle:
+        notes.append(
+            "All but the size is of the largest rectangle inside the outline, "
+            f"{chart.columns} x {chart.rows} stitches."
+        )
     found = choose(chart, material, request.relaxed_size)
     segments = segment_map(chart)
     return PredictResult.of(
         found,
         chart,
+        size_at_rest(shaped, material, found),
         segments={direction: segments.counts(direction) for direction in Direction},
         notes=[*notes, *found.notes],
         measures=[
@@ -113,6 +121,7 @@ def _lines(r: PredictResult) -> list[str]:
         f"wale {r.extensibility_wale_mm_per_n:.2f} mm/N",
         f"Poisson's ratio yx {r.poisson_yx:.3f}   xy {r.poisson_xy:.3f}",
         f"stitch at rest  {_relaxed(r)}",
+        f"size at rest    {r.width_mm / 10:.1f} x {r.height_mm / 10:.1f} cm",
         f"source          {r.provenance} ({r.method})",
         *(
             f"{m.identifier:15} {'none' if m.value is None else f'{m.value:.4g}'} {m.unit}"

@@ -819,7 +819,8 @@ class Placement(BaseModel):
 
 
 class PredictRequest(TypedDict):
-    """A chart and its material; a shaped piece counts by the largest rectangle inside it."""
+    """A chart and its material; constants of a shaped piece are those of the largest rectangle
+    inside its outline, its size is that of the whole."""
 
     laws: NotRequired[Laws | None]
     """Of the library's yarns: refitted clamp to clamp (default), or as published."""
@@ -2592,6 +2593,12 @@ class PredictResult(BaseModel):
     relaxed_course_interval_mm: tuple[float, float]
     relaxed_wale_interval_mm: tuple[float, float]
     relaxed_source: str
+    width_mm: float
+    """Of the whole piece at rest, at its widest."""
+    height_mm: float
+    """Of the whole piece at rest, at its highest."""
+    width_interval_mm: tuple[float, float]
+    height_interval_mm: tuple[float, float]
     provenance: str
     """measured; estimated; swept; learned; or learned with known size"""
     method: str

@@ -3,13 +3,14 @@
  *
  * @import {Studio} from "../studio.js"
  * @import {Direction, PredictResult} from "../types.js"
+ * @import {Scope} from "../services/scope.js"
  */
 
 import { LINES, along } from "../core/directions.js";
 import { figure, percents, range } from "../core/format.js";
 import { paced } from "../core/paced.js";
 import { FABRICS, countSegments, fabricShares, surroundings } from "../core/segments.js";
-import { scopeOf } from "../services/scope.js";
+import { scopeOf, sizeAtRest } from "../services/scope.js";
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { curvePlot } from "../plots/curve.js";
@@ -148,7 +149,7 @@ export function inspector(host, studio) {
     problem.hidden = !wrong || wrong.type === "offline";
     if (wrong) problem.replaceChildren(icon("warning"), problemText(wrong));
     // Numbers of another scope would be mistaken for this one's.
-    fill(table, scope === part.kind ? value : null, part.counted.grid);
+    fill(table, scope === part.kind ? value : null, part);
     source.hidden = !value;
     if (value) {
       const told = [part.note, ...value.notes, `90 % intervals: ${value.interval_source}`].filter(Boolean);
@@ -224,9 +225,10 @@ export function inspector(host, studio) {
 /**
  * @param {HTMLTableElement} table
  * @param {PredictResult | null} value
- * @param {{rows: number, columns: number}} size of the cloth, in stitches
+ * @param {Scope} scope of the numbers
  */
-function fill(table, value, { rows, columns }) {
+function fill(table, value, scope) {
+  const size = value && sizeAtRest(scope, value);
   /** @param {string} id @param {number | undefined} number @param {string} [interval] */
   const cell = (id, number, interval) =>
     h(
@@ -279,16 +281,8 @@ function fill(table, value, { rows, columns }) {
         "Size at rest",
         "cm",
         "Width and height of the cloth when nothing pulls at it",
-        cell(
-          "size-course",
-          times(columns / 10, value?.relaxed_course_mm),
-          range(ends(columns / 10, value?.relaxed_course_interval_mm)),
-        ),
-        cell(
-          "size-wale",
-          times(rows / 10, value?.relaxed_wale_mm),
-          range(ends(rows / 10, value?.relaxed_wale_interval_mm)),
-        ),
+        cell("size-course", inCm(size?.course.value), range(size && cmOf(size.course.interval))),
+        cell("size-wale", inCm(size?.wale.value), range(size && cmOf(size.wale.interval))),
       ),
       row(
         "Poisson",
@@ -301,11 +295,11 @@ function fill(table, value, { rows, columns }) {
   );
 }
 
-/** @param {number} count @param {number | undefined} each */
-const times = (count, each) => (each === undefined ? undefined : count * each);
+/** @param {number | undefined} mm */
+const inCm = (mm) => (mm === undefined ? undefined : mm / 10);
 
-/** @param {number} count @param {[number, number] | null | undefined} each @returns {[number, number] | null} */
-const ends = (count, each) => (each ? [count * each[0], count * each[1]] : null);
+/** @param {[number, number]} mm @returns {[number, number]} */
+const cmOf = ([low, high]) => [low / 10, high / 10];
 
 /** @param {[number, number] | null | undefined} interval @returns {[number, number] | null} */
 function inverse(interval) {

@@ -20,10 +20,10 @@ export function startPredictor(studio) {
     const { prediction } = studio;
     if (!prediction.value.busy) prediction.value = { ...prediction.value, busy: true };
     latest.run(async (signal) => {
-      const { kind: scope, grid } = scopeOf(studio);
+      const { kind: scope, grid, shaped } = scopeOf(studio);
       try {
         const cloth = { chart: grid.text, material: studio.materialId.value };
-        const value = await api.predict({ ...cloth, gauge: studio.gauges.of(cloth) }, signal);
+        const value = await api.predict({ ...cloth, ...shaped, gauge: studio.gauges.of(cloth) }, signal);
         if (signal.aborted) return;
         prediction.value = { value, busy: false, problem: null, scope };
         studio.online.value = true;

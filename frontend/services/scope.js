@@ -5,18 +5,21 @@
  * @import {ChartState} from "../core/state.js"
  * @import {Selection} from "../core/selection.js"
  * @import {Studio} from "../studio.js"
+ * @import {Direction, PredictResult} from "../types.js"
  *
  * @typedef {object} Scope
  * @property {"chart" | "selection" | "region"} kind
  * @property {string} title
  * @property {string} size in words
  * @property {Grid} grid the stitches whose moduli are shown, as a chart of their own
+ * @property {{chart: string, outline: string} | null} shaped the whole of a piece with an outline
  * @property {{grid: Grid, mask: Uint8Array | null}} counted the stitches whose segments are counted
  * @property {string} note how the grid represents stitches that do not form a rectangle; "" if they do
  */
 
 import { largestRectangle } from "../core/inscribed.js";
 import { selectionOf } from "../core/selection.js";
+import { outlineText } from "../core/snapshot.js";
 
 /**
  * @param {Studio} studio
@@ -43,11 +46,9 @@ export function scopeIn(chart, id) {
     const size = `${grid.columns} × ${grid.rows}`;
     const counted = { grid, mask: chart.shaped ? chart.outline : null };
     const inside = chart.shaped ? largestRectangle(chart.outline, grid.columns) : null;
+    const shaped = inside && { chart: grid.text, outline: outlineText(chart.outline, grid.columns) };
     const part = inside ? grid.region(inside) : grid;
-    const note = inside
-      ? `Of the largest rectangle inside the fabric, ${part.columns} × ${part.rows} stitches: its other parts are regions.`
-      : "";
-    return { kind: "chart", title: "Whole chart", size, grid: part, counted, note };
+    return { kind: "chart", title: "Whole chart", size, grid: part, shaped, counted, note: "" };
   }
   const around = /** @type {Selection} */ (selectionOf(region.cells, grid));
   const part = partOf(around, grid, "region", region.name);
@@ -66,9 +67,44 @@ function partOf(box, chart, kind, title) {
   const { mask = null } = box;
   const counted = { grid, mask };
   const inside = mask && largestRectangle(mask, grid.columns);
-  if (!mask || !inside) return { kind, title, size: `${grid.columns} × ${grid.rows}`, grid, counted, note: "" };
+  const common = { kind, title, shaped: null, counted };
+  if (!mask || !inside) return { ...common, size: `${grid.columns} × ${grid.rows}`, grid, note: "" };
   const part = grid.region(inside);
   const stitches = mask.reduce((sum, one) => sum + one, 0);
   const note = `Moduli of the largest rectangle inside it, ${part.columns} × ${part.rows} stitches.`;
-  return { kind, title, size: `${stitches} stitches`, grid: part, counted, note };
+  return { ...common, size: `${stitches} stitches`, grid: part, note };
+}
+
+/**
+ * How wide and high the cloth lies at rest, mm: of a part of a chart, its widest row and its highest column.
+ *
+ * @param {Scope} scope
+ * @param {PredictResult} predicted of its cloth
+ * @returns {Record<Direction, {value: number, interval: [number, number]}>}
+ */
+export function sizeAtRest({ kind, counted }, predicted) {
+  const { width_mm, height_mm, width_interval_mm, height_interval_mm } = predicted;
+  if (kind === "chart")
+    return {
+      course: { value: width_mm, interval: width_interval_mm },
+      wale: { value: height_mm, interval: height_interval_mm },
+    };
+  const { columns, rows } = mostInLine(counted);
+  const { relaxed_course_interval_mm: wide, relaxed_wale_interval_mm: high } = predicted;
+  return {
+    course: { value: columns * predicted.relaxed_course_mm, interval: [columns * wide[0], columns * wide[1]] },
+    wale: { value: rows * predicted.relaxed_wale_mm, interval: [rows * high[0], rows * high[1]] },
+  };
+}
+
+/** Stitches of the widest row and of the highest column. @param {Scope["counted"]} counted */
+function mostInLine({ grid: { rows, columns }, mask }) {
+  if (!mask) return { rows, columns };
+  const wide = new Uint32Array(rows);
+  const high = new Uint32Array(columns);
+  mask.forEach((inside, i) => {
+    wide[Math.floor(i / columns)] += inside;
+    high[i % columns] += inside;
+  });
+  return { rows: Math.max(...high), columns: Math.max(...wide) };
 }

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Grid } from "../core/grid.js";
-import { scopeOf } from "../services/scope.js";
+import { scopeOf, sizeAtRest } from "../services/scope.js";
 
 /** @param {Partial<{purl: string, mask: number[]}>} options */
 function lassoed({ purl = "KKKK\nKPPK\nKKKK", mask } = {}) {
@@ -20,4 +20,15 @@ test("numbers of a lasso are those of its stitches, not of the box around it", (
   assert.match(lasso.note, /2 × 2/);
   const box = lassoed();
   assert.deepEqual([box.size, box.note, box.counted.mask], ["3 × 3", "", null]);
+});
+
+test("a part is as wide as its widest row and as high as its highest column, without gaps", () => {
+  const stitch = { relaxed_course_mm: 5, relaxed_wale_mm: 3 };
+  const ends = { relaxed_course_interval_mm: [4, 6], relaxed_wale_interval_mm: [2, 4] };
+  const predicted = /** @type {import("../types.js").PredictResult} */ (
+    /** @type {unknown} */ ({ ...stitch, ...ends })
+  );
+  const { course, wale } = sizeAtRest(lassoed({ mask: [1, 0, 1, 0, 0, 0, 1, 0, 0] }), predicted);
+  assert.deepEqual(course, { value: 10, interval: [8, 12] });
+  assert.deepEqual(wale, { value: 6, interval: [4, 8] });
 });

@@ -25,10 +25,10 @@ from knitcore.formats import (
 from knitcore.formats.chart_key import ChartStyle, RegionMark, RepeatMark, multiple_words
 from knitcore.formats.drawing import Page, to_long_svg, to_pdf
 from knitcore.formats.knitout import Finish
-from knitcore.formats.laid_out import mean_stitch_mm
 from knitcore.formats.layout import DesignLayout, layout_fields, piece_of, region_cells
 from knitcore.garment.piece import Piece
 from knitcore.garment.regions import yarn_use
+from knitcore.geometry.laid_out import mean_stitch_mm
 from knitcore.materials import Material
 from knitcore.worked import Construction, Side
 
@@ -238,7 +238,7 @@ def _design(piece: Piece, material: Material, options: ExportOptions) -> bytes:
 
 
 def _style(piece: Piece, material: Material, options: ExportOptions) -> ChartStyle:
-    width, height = mean_stitch_mm(piece, material)
+    width, height = mean_stitch_mm(piece.shaped, material)
     aspect = min(max(float(height / width), 0.2), 5.0)
     facts = _yarn_facts(piece, material, options) if len(piece.yarns) > 1 else ()
     marks = tuple(

@@ -39,7 +39,7 @@ def design_of_plan(plan: GarmentPlan, material: str, *, intarsia: bool = False) 
         material=material,
         chart=plan.shaped.chart.text,
         note="\n".join(_notes(plan)),
-        outline=None if plan.shaped.stitch.all() else plan.shaped.outline,
+        outline=None if plan.shaped.is_rectangle else plan.shaped.outline,
         regions=regions,
     )
 

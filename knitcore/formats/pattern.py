@@ -15,9 +15,8 @@ from itertools import pairwise
 import numpy as np
 from PIL import Image, ImageChops
 
-from knitcore.answer.answer import Answer, Source
+from knitcore.answer.answer import Along, Answer, Source
 from knitcore.answer.choose import choose
-from knitcore.answer.neighbourhood import neighbourhood_sizes
 from knitcore.arrays import Array
 from knitcore.errors import InputError
 from knitcore.fabric import Direction
@@ -34,6 +33,7 @@ from knitcore.formats.chart_key import (
 from knitcore.formats.drawing import Box, Label, Page, Photo, Shape
 from knitcore.formats.written import written_sections
 from knitcore.garment.piece import Piece, yarn_name
+from knitcore.geometry.laid_out import SizeAtRest, laid_sizes_mm, size_at_rest
 from knitcore.materials import Interval, Material
 from knitcore.worked import Construction
 
@@ -157,36 +157,28 @@ class _Facts:
     Attributes
     ----------
     answer : None for a piece with an outline, which has no answer of its own.
-    sizes_mm : (rows, columns, 2) relaxed width and height of the stitches.
+    size : of the whole.
+    sizes_mm : (rows, columns, 2) width and height of the stitches, laid flat at rest.
     """
 
     piece: Piece
     answer: Answer | None
+    size: SizeAtRest
     sizes_mm: Array
 
     @classmethod
     def of(cls, piece: Piece, material: Material) -> _Facts:
-        answer = choose(piece.chart, material) if piece.is_rectangle else None
-        sizes = neighbourhood_sizes(piece.shaped.continued(), material)
-        return cls(piece, answer, np.broadcast_to(sizes, (*piece.chart.purl.shape, 2)))
-
-    @property
-    def extent_cm(self) -> tuple[float, float]:
-        """Greatest width, and height."""
-        if self.answer is not None:
-            width, height = (self.answer.along(d).relaxed_mm for d in Direction)
-            return width * self.piece.chart.columns / 10, height * self.piece.chart.rows / 10
-        inside = self.piece.shaped.stitch
-        widths = np.where(inside, self.sizes_mm[:, :, 0], 0.0).sum(axis=1)
-        height = float(self.sizes_mm[inside][:, 1].mean()) * self.piece.chart.rows
-        return float(widths.max()) / 10, height / 10
+        shaped = piece.shaped
+        answer = choose(shaped.rectangle_inside(), material)
+        size = size_at_rest(shaped, material, answer)
+        own = answer if piece.is_rectangle else None
+        return cls(piece, own, size, laid_sizes_mm(shaped, material))
 
     @property
     def finished(self) -> str:
         """The finished size in words."""
-        width, height = self.extent_cm
         most = "" if self.piece.is_rectangle else " at the widest and highest"
-        return f"{width:.1f} × {height:.1f} cm at rest{most}"
+        return f"{self.size.width_mm / 10:.1f} × {self.size.height_mm / 10:.1f} cm at rest{most}"
 
 
 class _Flow:
@@ -329,28 +321,27 @@ def _materials(flow: _Flow, piece: Piece, material: Material, yarn_facts: Sequen
 
 def _gauge(flow: _Flow, facts: _Facts) -> None:
     flow.heading("Gauge and size")
+    stitch = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0).tolist()
+    of = "of the whole cloth at rest."
     if facts.answer is None:
-        stitch = facts.sizes_mm[facts.piece.shaped.stitch].mean(axis=0)
-        flow.text(f"{_per_10_cm(*stitch.tolist())}, the mean of all parts; each has its own below.")
-        flow.text(f"Finished size {facts.finished}.")
-        return
-    course, wale = (facts.answer.along(direction) for direction in Direction)
-    flow.text(f"{_per_10_cm(course.relaxed_mm, wale.relaxed_mm)} of the whole cloth at rest.")
+        of = "at rest, the mean of all parts; each has its own below."
+    flow.text(f"{_per_10_cm(*stitch)} {of}")
     places = (0.0, 62.0, 124.0)
     flow.row(("", "along the rows", "along the columns"), places, bold=True)
-    counts = facts.piece.chart.columns, facts.piece.chart.rows
-    sizes = (
-        _interval(a.relaxed_mm, a.relaxed_interval_mm, n / 10, "cm", 1)
-        for a, n in zip((course, wale), counts, strict=True)
-    )
-    flow.row(("Finished size", *sizes), places)
-    pulled = []
-    for along in (course, wale):
-        low, high = along.strain_interval(PULL_N_PER_MM)
-        strain = float(along.strain(PULL_N_PER_MM))
-        pulled.append(_interval(strain, Interval(float(low), float(high)), 100.0, "%", 0))
-    flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
+    size = facts.size
+    width = _interval(size.width_mm, size.width_interval_mm, 0.1, "cm", 1)
+    height = _interval(size.height_mm, size.height_interval_mm, 0.1, "cm", 1)
+    flow.row(("Finished size", width, height), places)
+    if facts.answer is not None:
+        pulled = [_pulled(facts.answer.along(direction)) for direction in Direction]
+        flow.row((f"Stretch under {PULL_N_PER_MM * 100:g} N on 10 cm", *pulled), places)
     flow.text("In brackets 90 % intervals: nine pieces of ten should lie inside.")
+
+
+def _pulled(along: Along) -> str:
+    low, high = along.strain_interval(PULL_N_PER_MM)
+    strain = float(along.strain(PULL_N_PER_MM))
+    return _interval(strain, Interval(float(low), float(high)), 100.0, "%", 0)
 
 
 def _per_10_cm(width_mm: float, height_mm: float) -> str:
@@ -363,7 +354,7 @@ def _interval(value: float, ends: Interval, scale: float, unit: str, digits: int
 
 
 def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
-    """Each region: where it lies, its gauge and its size."""
+    """Each region: where it lies, its gauge, and its size at its widest row and highest column."""
     inside = facts.piece.shaped.stitch
     known = [(region, region.cells & inside) for region in regions]
     shown = [(region, cells) for region, cells in known if cells.any()]
@@ -377,12 +368,17 @@ def _parts(flow: _Flow, facts: _Facts, regions: Sequence[RegionMark]) -> None:
         width, height = facts.sizes_mm[cells].mean(axis=0).tolist()
         first, last = (facts.piece.chart.columns - c for c in (columns.max(), columns.min()))
         where = f"rows {rows.min() + 1}–{rows.max() + 1}, sts {first}–{last}"
-        across = width * (columns.max() - columns.min() + 1) / 10
-        up = height * (rows.max() - rows.min() + 1) / 10
+        across, up = (
+            np.where(cells, facts.sizes_mm[..., axis], 0.0).sum(axis=1 - axis).max() / 10
+            for axis in range(2)
+        )
         gauge = f"{100 / width:.1f} sts, {100 / height:.1f} rows"
         cells_told = (_short(region.name), where, gauge, f"{across:.1f} × {up:.1f} cm")
         flow.row(cells_told, places, colour=region.colour)
-    flow.text("Stitches are counted from the right edge; sizes are of each part's outermost rows.")
+    flow.text(
+        "Stitches are counted from the right edge; sizes are of each part's widest row and "
+        "highest column."
+    )
 
 
 def _short(name: str, most: int = 26) -> str:

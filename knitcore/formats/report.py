@@ -19,6 +19,7 @@ from knitcore.formats.drawing import Box, Label, Page, Shape, Strokes, to_pdf
 from knitcore.formats.extensibility_drawing import field_shapes, region_fields
 from knitcore.formats.layout import DesignRegion
 from knitcore.garment.piece import Piece
+from knitcore.geometry.laid_out import SizeAtRest, size_at_rest
 from knitcore.materials import Interval, Material
 from knitcore.mechanics.local import local_moduli
 from knitcore.segments import segment_map
@@ -58,16 +59,19 @@ def design_report(
     """
     piece = Piece.of(chart)
     pages = []
+    found = choose(piece.shaped.rectangle_inside(), material)
+    size = size_at_rest(piece.shaped, material, found)
     if piece.is_rectangle:
-        found = choose(piece.chart, material)
         shapes = [
-            *_numbers(piece.chart, material, name, found),
+            *_numbers(piece.chart, material, name, found, size),
             *_maps(piece, material, style.aspect, 73.0),
         ]
         shapes += [*_plot(found), *_assumptions(assumptions(found), 228.0)]
         pages.append(Page(*A4_MM, tuple(shapes)))
     if regions or not piece.is_rectangle:
-        pages.append(Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions))))
+        pages.append(
+            Page(*A4_MM, tuple(_regions(piece, material, name, style.aspect, regions, size)))
+        )
     return to_pdf([*pages, *chart_pages(piece, style, first=len(pages) + 1)], name)
 
 
@@ -82,13 +86,19 @@ def assumptions(found: Answer) -> list[str]:
 
 
 def _regions(
-    piece: Piece, material: Material, name: str, aspect: float, regions: Sequence[DesignRegion]
+    piece: Piece,
+    material: Material,
+    name: str,
+    aspect: float,
+    regions: Sequence[DesignRegion],
+    at_rest: SizeAtRest,
 ) -> Iterator[Shape]:
     """Regions with their means, the maps of all stitches, and the extensibility field."""
     yield Label(MARGIN_MM, 16.0, f"{name}: regions", 6.0)
     shaped = piece.shaped
     size = f"{piece.chart.columns} stitches × {piece.chart.rows} rows, {shaped.stitches} stitches"
-    yield Label(MARGIN_MM, 22.0, f"{size} in {material.name} ({material.identifier})", 3.4)
+    yield Label(MARGIN_MM, 22.0, f"{size}, {_in_cm(at_rest)}", 3.4)
+    yield Label(MARGIN_MM, 26.0, f"{material.name} ({material.identifier})", 3.0)
     places = (MARGIN_MM, 62.0, 84.0, 124.0, 164.0)
     head = (
         "region",
@@ -128,12 +138,16 @@ def _factor(value: float, factor: float) -> str:
     return f"{value:.3g}  ({value / factor:.3g} to {value * factor:.3g})"
 
 
-def _numbers(chart: StitchChart, material: Material, name: str, found: Answer) -> Iterator[Shape]:
+def _in_cm(size: SizeAtRest) -> str:
+    return f"{size.width_mm / 10:.1f} × {size.height_mm / 10:.1f} cm at rest"
+
+
+def _numbers(
+    chart: StitchChart, material: Material, name: str, found: Answer, at_rest: SizeAtRest
+) -> Iterator[Shape]:
     yield Label(MARGIN_MM, 16.0, name, 6.0)
-    size = (
-        f"{chart.columns} stitches × {chart.rows} rows in {material.name} ({material.identifier})"
-    )
-    yield Label(MARGIN_MM, 22.0, size, 3.4)
+    size = f"{chart.columns} stitches × {chart.rows} rows, {_in_cm(at_rest)}"
+    yield Label(MARGIN_MM, 22.0, f"{size}, in {material.name} ({material.identifier})", 3.4)
     segments = segment_map(chart)
     course, wale = (segments.counts(d) for d in Direction)
     yield Label(

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from knitcore.chart import StitchChart
-from knitcore.formats.laid_out import laid_corners_mm
 from knitcore.garment.piece import Piece
+from knitcore.geometry.laid_out import laid_corners_mm
 from knitcore.materials import Material
 from knitcore.mechanics.local import local_moduli
 
@@ -53,7 +53,7 @@ def write_vtu(chart: StitchChart | Piece, material: Material) -> bytes:
     import meshio
 
     piece = Piece.of(chart)
-    points = np.pad(laid_corners_mm(piece, material).reshape(-1, 2), ((0, 0), (0, 1)))
+    points = np.pad(laid_corners_mm(piece.shaped, material).reshape(-1, 2), ((0, 0), (0, 1)))
     row, column = np.nonzero(piece.shaped.stitch)
     corner = row * (piece.chart.columns + 1) + column
     above = corner + piece.chart.columns + 1

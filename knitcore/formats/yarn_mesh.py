@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from knitcore.answer.choose import choose
 from knitcore.chart import StitchChart, check_stitches
 from knitcore.fabric import Fabric
-from knitcore.formats.laid_out import laid_corners_mm
 from knitcore.garment.piece import Piece
+from knitcore.geometry.laid_out import laid_corners_mm
 from knitcore.geometry.loops import loop_centre_line, loop_kinds
 from knitcore.geometry.tubes import TriangleMesh, tube
 from knitcore.materials import Material
@@ -74,7 +74,7 @@ def yarn_mesh(chart: StitchChart | Piece, material: Material) -> TriangleMesh:
     piece = Piece.of(chart)
     check_stitches(piece.chart.stitches, MAX_STITCHES)
     shown, grid = piece.shaped.stitch, piece.shaped.continued()
-    corners = np.pad(laid_corners_mm(piece, material), ((0, 0), (0, 0), (0, 1)))
+    corners = np.pad(laid_corners_mm(piece.shaped, material), ((0, 0), (0, 0), (0, 1)))
     lines = course_centre_lines(grid, corners, material, shown)
     return solid(lines, yarn_radius_mm(grid, material))
 

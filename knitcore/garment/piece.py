@@ -85,7 +85,7 @@ class Piece:
     @property
     def is_rectangle(self) -> bool:
         """Whether every cell is a stitch."""
-        return bool(self.shaped.stitch.all())
+        return self.shaped.is_rectangle
 
     @property
     def is_plain(self) -> bool:

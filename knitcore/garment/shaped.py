@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from knitcore import showing
 from knitcore.chart import StitchChart
 from knitcore.errors import InputError
+from knitcore.garment.inscribed import largest_rectangle
 
 INSIDE, OUTSIDE = "x", "."
 
@@ -64,6 +65,11 @@ class ShapedChart:
         return "\n".join("".join(INSIDE if s else OUTSIDE for s in row) for row in rows)
 
     @property
+    def is_rectangle(self) -> bool:
+        """Whether every cell is a stitch."""
+        return bool(self.stitch.all())
+
+    @property
     def stitches(self) -> int:
         """Number of stitches."""
         return int(np.count_nonzero(self.stitch))
@@ -81,7 +87,7 @@ class ShapedChart:
         So a segment that would cross the outline has the parity of the one on the stitch's other
         side, the rule of :func:`knitcore.phases.surroundings` at the edges of a rectangle.
         """
-        if self.stitch.all():
+        if self.is_rectangle:
             return self.chart
         purl = self.chart.purl.copy()
         column = np.arange(self.chart.columns)
@@ -94,6 +100,12 @@ class ShapedChart:
             edge = inside[:-2] & inside[1:-1] & ~inside[2:]
             grid[2:][edge] = grid[:-2][edge]
         return StitchChart(purl)
+
+    def rectangle_inside(self) -> StitchChart:
+        """The largest rectangle of stitches, for which effective moduli can be given."""
+        if self.is_rectangle:
+            return self.chart
+        return StitchChart(self.chart.purl[largest_rectangle(self.stitch)])
 
     def _repr_html_(self) -> str:
         size = f"{self.stitches} stitches in {self.chart.columns} columns × {self.chart.rows} rows"

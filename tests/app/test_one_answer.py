@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
@@ -20,9 +22,13 @@ from knitcore.design.targets import Quantity, Target, WornTube, values_of
 from knitcore.formats import report
 from knitcore.formats.chart_key import ChartStyle
 from knitcore.formats.drawing import Label, Page
-from knitcore.formats.laid_out import laid_corners_mm, mean_stitch_mm
+from knitcore.formats.pattern import pattern_pages
+from knitcore.formats.stitch_values import write_vtu
 from knitcore.formats.yarn_mesh import course_centre_lines
+from knitcore.garment.glove import Hand, glove
 from knitcore.garment.piece import Piece
+from knitcore.garment.shaped import ShapedChart
+from knitcore.geometry.laid_out import laid_corners_mm, mean_stitch_mm
 from knitcore.materials import Material, material
 from knitcore.yarnlibrary.store import stored_charts
 from tests.app.command_line import run
@@ -154,13 +160,42 @@ def _agrees_with_files(chart: StitchChart, used: Material, answer: Answer) -> No
     """The cloth of VTU, glTF and STL is as large as its stitches together."""
     piece = Piece.of(chart)
     stitch = np.array([answer.along(direction).relaxed_mm for direction in Direction])
-    corners = laid_corners_mm(piece, used)
+    corners = laid_corners_mm(piece.shaped, used)
     width, height = (np.diff(corners[..., k], axis=1 - k).mean() for k in (0, 1))
     np.testing.assert_allclose([width, height], stitch, rtol=0.02)
     lines = course_centre_lines(chart, np.pad(corners, ((0, 0), (0, 0), (0, 1))), used)
     ends = [line[-1, 0] - line[0, 0] for line in lines]
     assert np.mean(ends) == pytest.approx(chart.columns * stitch[0], rel=0.02)
-    np.testing.assert_allclose(mean_stitch_mm(piece, used), stitch, rtol=1e-12)
+    np.testing.assert_allclose(mean_stitch_mm(piece.shaped, used), stitch, rtol=1e-12)
+
+
+def test_a_glove_has_one_size_wherever_it_is_told(
+    client: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """REST, pattern, report and the files of its stitches; a counted gauge scales it."""
+    wool = material("glove-wool")
+    shaped = glove(Hand(), wool).shaped
+    body = {"chart": shaped.chart.text, "outline": shaped.outline, "material": "glove-wool"}
+    told = client.post("/api/v1/predict", json=body).json()
+    in_cm = f"{told['width_mm'] / 10:.1f} × {told['height_mm'] / 10:.1f} cm at rest"
+    for side in ("width", "height"):
+        low, high = told[f"{side}_interval_mm"]
+        assert low < told[f"{side}_mm"] < high
+
+    pages = pattern_pages(Piece.plain(shaped), wool, ChartStyle())
+    assert any(in_cm in text for text in _texts(pages))
+    assert any(in_cm in text for text in _report(shaped, "glove-wool", monkeypatch))
+
+    file = tmp_path / "glove.vtu"
+    file.write_bytes(write_vtu(Piece.plain(shaped), wool))
+    mesh = meshio.read(file)
+    points = mesh.points[np.unique(mesh.cells_dict["quad"])]
+    np.testing.assert_allclose(np.ptp(points[:, :2], axis=0), [told["width_mm"], told["height_mm"]])
+
+    gauge = {"stitches_per_10_cm": 20, "rows_per_10_cm": 30}
+    counted = client.post("/api/v1/predict", json=body | {"gauge": gauge}).json()
+    mean = mean_stitch_mm(shaped, wool)
+    assert counted["width_mm"] == pytest.approx(told["width_mm"] * 5 / mean[0])
 
 
 @pytest.mark.parametrize("yarn", ["acrylic", "cotton"])
@@ -220,9 +255,15 @@ def _operation(body: dict[str, str]) -> Any:
     return predict_operation(request, Context(Path())).model_dump(mode="json")
 
 
-def _report(chart: StitchChart, yarn: str, monkeypatch: pytest.MonkeyPatch) -> set[str]:
+def _report(
+    chart: StitchChart | ShapedChart, yarn: str, monkeypatch: pytest.MonkeyPatch
+) -> set[str]:
     """All that is written on the pages of the report."""
     pages: list[Page] = []
     monkeypatch.setattr(report, "to_pdf", lambda drawn, _title: pages.extend(drawn) or b"")
-    report.design_report(chart, material(yarn), "One", ChartStyle())
+    report.design_report(Piece.plain(chart), material(yarn), "One", ChartStyle())
+    return _texts(pages)
+
+
+def _texts(pages: Iterable[Page]) -> set[str]:
     return {shape.text for page in pages for shape in page.shapes if isinstance(shape, Label)}

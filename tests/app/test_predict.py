@@ -88,6 +88,7 @@ def test_a_prediction_is_of_the_largest_rectangle_in_the_outline(
     own = run("predict", "stockinette", "--size", "4x4", "--material", "acrylic")
     assert told["modulus_wale_n_per_mm"] == pytest.approx(own["modulus_wale_n_per_mm"])
     assert "4 x 4" in told["notes"][0]
+    assert told["height_mm"] > 5 * told["relaxed_wale_mm"]  # of the whole
 
     file = tmp_path / "shaped.json"
     design = {"format": "knitcore-design", "version": 2, "name": "Shaped", "material": "acrylic"}

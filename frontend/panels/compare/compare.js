@@ -18,6 +18,7 @@ import { h } from "../../dom.js";
 import { drawPair } from "../../plots/pair.js";
 import { dialog, problemBox } from "../../widgets/dialog.js";
 import { thumbnail } from "../../widgets/thumbnail.js";
+import { sizeAtRest } from "../../services/scope.js";
 import { NOW, answers, choices, piece } from "./pieces.js";
 
 /** The sides, and the colours that their curves and rectangles have. */
@@ -117,7 +118,7 @@ export function create(studio, { keeper }) {
           sides.map(async ({ which, yarn }) => {
             const one = await piece(studio, keeper, which.value);
             const material = yarn.value || one.material;
-            return { piece: { ...one, material }, answers: await answers(one.scope.grid, material, signal) };
+            return { piece: { ...one, material }, answers: await answers(one.scope, material, signal) };
           }),
         );
         if (signal.aborted) return;
@@ -136,18 +137,17 @@ export function create(studio, { keeper }) {
   const draw = () => {
     if (!found.length) return;
     const sizes = found.map(({ piece: { scope }, answers: { predicted } }) => {
-      const { rows, columns } = scope.counted.grid;
-      return { width: (columns * predicted.relaxed_course_mm) / 10, height: (rows * predicted.relaxed_wale_mm) / 10 };
+      const { course, wale } = sizeAtRest(scope, predicted);
+      return { width: course.value / 10, height: wale.value / 10 };
     });
     const scale = PICTURE_PX / Math.max(...sizes.flatMap(({ width, height }) => [width, height]));
-    found.forEach(({ piece: { chart, outline, material, scope } }, k) => {
+    found.forEach(({ piece: { chart, outline, material, scope }, answers: { predicted } }, k) => {
       const { width, height } = sizes[k];
       const picture = thumbnail({ chart, outline }, { side: PICTURE_PX });
       picture.style.cssText = `width: ${width * scale}px; height: ${height * scale}px; aspect-ratio: auto`;
       sides[k].picture.replaceChildren(picture);
-      const about = outline ? "about " : ""; // the mean stitch of its largest rectangle stands for all
-      sides[k].size.textContent = `${scope.size} · ${about}${figure(width)} × ${figure(height)} cm at rest`;
-      sides[k].size.title = scope.note;
+      sides[k].size.textContent = `${scope.size} · ${figure(width)} × ${figure(height)} cm at rest`;
+      sides[k].size.title = scope.note || predicted.notes.join(" ");
       yarns(sides[k].yarn, studio, material);
     });
     fill(

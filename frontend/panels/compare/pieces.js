@@ -83,15 +83,15 @@ function opened(design) {
 }
 
 /**
- * @param {Grid} grid
+ * @param {Scope} scope
  * @param {string} material
  * @param {AbortSignal} signal
  * @returns {Promise<Answers>}
  */
-export async function answers(grid, material, signal) {
+export async function answers({ grid, shaped }, material, signal) {
   const body = { chart: grid.text, material };
   const [predicted, course, wale] = await Promise.all([
-    api.predict(body, signal),
+    api.predict({ ...body, ...shaped }, signal),
     api.curve({ ...body, direction: "course" }, signal),
     api.curve({ ...body, direction: "wale" }, signal),
   ]);
